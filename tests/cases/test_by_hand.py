@@ -97,7 +97,7 @@ class TestCalibration:
         assert p.excess_compliance == pytest.approx(np.array([0, 0, 1.25e-10]), rel=1e-13)
 
     def test_the_ordinary_joint_is_found_among_soft_ones(self):
-        """Where every joint is a layer of its own the first stands for them."""
+        """If every joint is a layer of its own, the first represents them."""
         soft = {"y": 1.5, "spacing_stiffness": 6e9}
         p = calibrate(scene(soft_layers=[soft, {**soft, "y": 4.5}]))
         assert p.regular_own_shear_stiffness == pytest.approx(1e9 / 0.31875, rel=1e-13)
@@ -189,7 +189,7 @@ class TestDamping:
         assert p.joint_time_constant == pytest.approx(np.full(3, 0.004), rel=1e-13)
 
     def test_rayleigh_without_the_round_off_of_one_that_is_zero(self):
-        """Ratios in proportion to frequencies, or to their inverse, but for the last digit."""
+        """Ratios proportional to frequencies, or to their inverse, except for the last digit."""
         frequencies = [1000.0, 7000.0]
         alpha, beta = Rayleigh(frequencies=frequencies, ratios=[0.017, 0.119]).coefficients
         assert alpha == 0 and beta == pytest.approx(0.017 / (1000 * pi), rel=1e-12)

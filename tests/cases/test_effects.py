@@ -1,4 +1,4 @@
-"""What a scene calls for, key by key."""
+"""The effects of a scene, key by key."""
 
 import pytest
 

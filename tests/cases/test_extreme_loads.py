@@ -1,4 +1,4 @@
-"""Loads whose squares are no numbers: scaled where the scene scales, else refused."""
+"""Loads whose squares overflow or underflow: scaled if the scene is homogeneous, else refused."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from compare.exact.bar import images
 
 @pytest.mark.parametrize("amplitude", [1e-300, -1e200, 1e300])
 def test_load_is_near_one_and_its_power_of_two_is_kept(pillar, amplitude):
-    """The history is divided by what the result is multiplied by, to the last digit."""
+    """The history is divided by the factor of the result, to the last digit."""
     scene = pillar(load__amplitude=amplitude, record__energy=False)
     history = load_history(scene)
     assert 0.5 <= abs(history.amplitude) <= 1
@@ -26,7 +26,7 @@ def test_load_of_any_ordinary_size_is_left_alone(pillar):
 
 
 def test_engine_and_exact_solution_agree_at_any_size(pillar):
-    """The bar and the blocks are as far apart under 1e300 Pa as under 1 Pa."""
+    """The difference of bar and blocks is the same under 1e300 Pa as under 1 Pa."""
     changes = {"record__energy": False, "pillar__length": 10.0, "record__stress": [5.0]}
     changes["record__velocity"] = []
 
@@ -56,7 +56,7 @@ def test_engine_and_exact_solution_agree_at_any_size(pillar):
     ],
 )
 def test_what_does_not_scale_is_refused(pillar, changes, key):
-    """One line names the key that stands in the way."""
+    """One line names the conflicting key."""
     with pytest.raises(SceneError) as error:
         pillar(**{"load__amplitude": 1e300, "record__energy": False} | changes)
     assert error.value.key == key and "\n" not in str(error.value)

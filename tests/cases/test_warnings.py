@@ -1,4 +1,4 @@
-"""What a scene is warned of: each slip by numbers worked out here, and nothing that is shipped."""
+"""Warnings: each mistake by numbers derived here, and none for shipped scenes."""
 
 from math import pi, sqrt, tan
 

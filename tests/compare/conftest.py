@@ -1,4 +1,4 @@
-"""What tests measure kept apart from the user's own; and a browser for the tests of pages."""
+"""Separate storage for timings of tests; and a browser for the tests of pages."""
 
 import shutil
 from functools import cache

@@ -27,7 +27,7 @@ def test_two_orthogonal_sets_make_a_lattice(rectangle, joints):
 
 
 def test_normals_are_exactly_those_of_the_set(rectangle, joints):
-    """A flat joint's normal has no component along it, whatever the coordinates' round-off."""
+    """A flat joint's normal has no component along it, regardless of the coordinates' round-off."""
     sets = [joints("flat", 0.0, spacing=0.3), joints("steep", 90.0, spacing=0.7)]
     contacts = cut(rectangle(10.0, 6.0), sets).contacts
     flat = contacts.joint_set == 0
@@ -147,7 +147,7 @@ def test_a_slope_is_an_outline_that_is_not_convex(joints):
 
 
 def test_an_opening_may_open_the_boundary(rectangle, joints):
-    """A bench at the upper right corner: its two faces, and what is left of right and top."""
+    """A bench at the upper right corner: its two faces, and the rest of right and top."""
     bench = [[6.0, 3.0], [10.0, 3.0], [10.0, 6.0], [6.0, 6.0]]
     sets = [joints("rows", 0.0, spacing=1.0), joints("columns", 90.0, spacing=1.0)]
     found = cut(rectangle(10.0, 6.0, openings=[bench]), sets)

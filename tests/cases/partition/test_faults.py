@@ -1,4 +1,4 @@
-"""What is refused when a rock mass is cut: in one line, with file, key, place and cause."""
+"""Errors when a rock mass is cut: in one line, with file, key, place and cause."""
 
 import re
 
@@ -55,7 +55,7 @@ def test_the_scene_is_cut(scene):
 
 @pytest.mark.parametrize("scatter", [{}, {"scatter": 0.01, "seed": 1}])
 def test_a_set_that_cuts_nothing_is_refused_when_it_is_read(scene, scatter):
-    """Its joints are further apart than the domain is high, and one lies along its bottom."""
+    """The spacing of its joints exceeds the domain's height, and one lies along its bottom."""
     changes = {f"joint_sets__0__{key}": value for key, value in scatter.items()}
     with pytest.raises(SceneError, match=r"rows.toml: joint_sets\[0\]: does not cut the domain$"):
         scene(joint_sets__0__spacing=7.0, **changes)
@@ -89,7 +89,7 @@ def test_one_joint_on_the_joint_that_it_ends_at(scene, joints):
 
 
 def test_blocks_that_are_not_convex(scene):
-    """At a corner of the tunnel inside of a row, until cutting is asked for."""
+    """At a corner of the tunnel inside a row, unless cutting is requested."""
     tunnel = [[4.0, 1.0], [6.0, 1.0], [6.0, 2.5], [4.0, 2.5]]
     said = line(scene(domain__openings=[tunnel], record__points=[[1.0, 1.0]]))
     assert said.startswith("domain: a block is not convex") and 'domain.non_convex = "cut"' in said
@@ -106,7 +106,7 @@ def test_an_outline_that_is_not_convex(scene):
 
 @pytest.mark.parametrize("slivers", ["merge", "refuse"])
 def test_a_row_that_is_too_thin(scene, slivers):
-    """Two joints 5 mm apart: joined to the row above or below, or refused where told to."""
+    """Two joints 5 mm apart: joined to the row above or below, or refused on request."""
     law = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
     near = {"name": "near", "dip": 0.0, "through": [0.0, 2.005], **law}
     changed = scene(domain__slivers=slivers)
@@ -224,7 +224,7 @@ def test_the_estimate_is_near_what_is_cut(rectangle, joints, spacing):
 
 
 def test_the_estimate_bounds_the_memory_that_is_taken(rectangle, joints, scene):
-    """What Python's allocator has given out while 20,000 blocks are cut."""
+    """The peak of Python's allocations while 20,000 blocks are cut."""
     import tracemalloc
 
     changed = scene(domain__size=[100.0, 100.0], joint_sets__0__spacing=0.7)

@@ -1,4 +1,4 @@
-"""Lattices that hold the joints of a scene: where their lines are, and what they refuse."""
+"""Lattices that contain the joints of a scene: positions of their lines, and their errors."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What every partition has, over random domains and joint sets."""
+"""Properties of every partition, over random domains and joint sets."""
 
 import numpy as np
 import pytest
@@ -50,7 +50,7 @@ def joint_sets(draw, most=3):
 
 
 def shape_of(domain):
-    """The domain less its openings, by shapely alone."""
+    """The domain minus its openings, by shapely only."""
     whole = shapely.Polygon(domain.corners)
     return whole.difference(shapely.union_all([shapely.Polygon(o) for o in domain.openings]))
 

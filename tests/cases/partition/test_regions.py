@@ -1,4 +1,4 @@
-"""Domains cut into regions of rock: whose each block is, and what lies along the boundaries."""
+"""Domains cut into regions of rock: the region of each block, and joints along the boundaries."""
 
 import numpy as np
 import pytest
@@ -60,7 +60,7 @@ def test_sets_cut_the_regions_that_they_name_alone(rectangle, joints):
 
 
 def test_a_joint_along_a_boundary_is_what_that_is(rectangle, joints):
-    """Alone, or one of a set that cuts one side alone."""
+    """A single joint, or one of a set that cuts only one side."""
     layers, alone = [region("upper", 2.0)], joints("fault", 0.0, through=[3.0, 2.0])
     beds = joints("bed", 0.0, spacing=1.0, regions=["upper"])
     for one, count in ((alone, 2), (beds, 4)):

@@ -1,4 +1,4 @@
-"""Effects of rock masses: what the scene calls for, by the names that pillars' effects have."""
+"""Effects of rock masses: those of the scene, by the same names as in pillars."""
 
 import pytest
 

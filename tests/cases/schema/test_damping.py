@@ -1,4 +1,4 @@
-"""Damping of the motion: Rayleigh's coefficients, and what they make of the dashpots."""
+"""Damping of the motion: Rayleigh's coefficients, and the resulting dashpots."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Recorded histories as traces: what ObsPy writes is read back; what is wrong takes one line."""
+"""Recorded histories as traces: files of ObsPy are read back; an error takes one line."""
 
 import numpy as np
 import obspy

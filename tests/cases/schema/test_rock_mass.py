@@ -402,7 +402,7 @@ def test_sides_of_a_slope(written):
 
 
 def test_both_kinds_are_read_and_told_apart(written, paper_folder):
-    """Whoever takes one kind alone says so in one line, with the file."""
+    """A command for one kind of scene only says so in one line, with the file."""
     path = written(GOOD)
     mass, pillar = load(path)[0], load_variant(paper_folder / "fig-03.toml")
     assert (mass.kind, pillar.kind) == ("rock mass", "pillar")

@@ -108,7 +108,7 @@ def test_view_says_how_to_get_what_it_needs(monkeypatch):
 
 
 def test_help_draws_nothing():
-    """Neither drawing nor engines are imported to say what a command takes."""
+    """Neither figures nor engines are imported for a command's help."""
     script = (
         "import sys; sys.argv = ['jointwave', 'animate', '--help']\n"
         "from compare.cli.program import main\n"

@@ -67,7 +67,7 @@ def test_explain_says_what_is_left_out_and_why(jointwave):
 
 
 def test_explain_steps_no_block_unless_it_is_asked_to(pillar, monkeypatch):
-    """No kernel is compiled or loaded; what was measured is remembered."""
+    """No kernel is compiled or loaded; measured rates are stored."""
     scene = pillar(time__duration=0.01, numerics__continuum__elements_per_block=1)
 
     def refuse(*_):
@@ -99,7 +99,7 @@ def test_explain_gives_the_critical_steps_of_motion_in_space(jointwave):
 
 
 def test_warning_is_a_line_on_standard_error(jointwave):
-    """What should not be said is said to be so, and the answer is given all the same."""
+    """A questionable value gives one line of warning, and the answer is given nonetheless."""
     done = jointwave("explain", SCENE, "--set", "damping.local=0.3", "--json")
     assert done.err.count("\n") == 1
     assert done.err.startswith("jointwave: warning: damping.local")
@@ -141,7 +141,7 @@ def test_strict_refuses_what_is_warned_of(jointwave, command, tmp_path, monkeypa
 
 
 def test_strict_refuses_a_sweep_and_a_page(jointwave, tmp_path):
-    """The page takes files alone; nothing is run of either."""
+    """The page takes only files; neither is run."""
     (tmp_path / "new.toml").write_text(starter(tmp_path / "new.toml").replace("2400.0", "2.4"))
     for options in (
         ("run", SCENE, "--sweep", "load.period=0.01,0.001"),
@@ -221,7 +221,7 @@ def test_compare_tells_numerical_from_modelling_error(jointwave):
     ],
 )
 def test_mistake_is_one_line_and_exit_2(jointwave, arguments, words, tmp_path, monkeypatch):
-    """Nothing is written, nothing is traced back."""
+    """No file is written, and no traceback is printed."""
     monkeypatch.chdir(tmp_path)
     done = jointwave(*arguments, code=2)
     assert done.err.count("\n") == 1 and words in done.err
@@ -229,14 +229,14 @@ def test_mistake_is_one_line_and_exit_2(jointwave, arguments, words, tmp_path, m
 
 
 def test_a_message_about_a_long_argument_is_short(jointwave, tmp_path):
-    """Its beginning and its end are there, whatever stands between."""
+    """Its beginning and its end are present, regardless of the text between them."""
     done = jointwave("run" + "x" * 50_000, SCENE, code=2)
     assert done.err.startswith("jointwave: No such command 'runxxx")
     assert done.err.count("\n") == 1 and len(done.err) < 1600 and " ... " in done.err
 
 
 def test_instability_is_caught_with_exit_3_and_old_results_stay(jointwave, tmp_path):
-    """A forced step that blows up leaves the earlier file as it was, beside what is sound."""
+    """A forced step that diverges leaves the earlier file unchanged, beside the valid part."""
     old = tmp_path / "dem.nc"
     jointwave("run", SCENE, "--variant", "", *SHORT, "--out", tmp_path)
     before = old.read_bytes()
@@ -288,7 +288,7 @@ def test_rigid_block_run_imports_neither_dolfinx_nor_matplotlib(tmp_path):
 
 
 def test_compare_writes_figure_curves_and_distances(jointwave, tmp_path):
-    """What the plugin's failure message sends a user to: every curve, drawn and as numbers."""
+    """The files named in the plugin's failure message: every curve, drawn and as numbers."""
     out = tmp_path / "out"
     jointwave("compare", SCENE, "--variant", "", *SHORT, "--no-spectral", "--out", out)
     assert {path.suffix for path in out.iterdir()} == {".svg", ".pdf", ".png", ".csv"}
@@ -298,7 +298,7 @@ def test_compare_writes_figure_curves_and_distances(jointwave, tmp_path):
 
 @pytest.mark.parametrize("arguments", [("list",), ("compare", SCENE, *SHORT, "--no-spectral")])
 def test_reader_that_leaves_early_is_no_error(arguments):
-    """As `jointwave compare ... | head -1`: whatever is loaded, nothing is said about the pipe."""
+    """As `jointwave compare ... | head -1`: no message about the closed pipe, with any imports."""
     command = [sys.executable, "-m", "compare", *arguments]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         process.stdout.close()

@@ -1,4 +1,4 @@
-"""What `jointwave compare` prints: an answer of at most ten lines, and all facts on request."""
+"""The output of `jointwave compare`: an answer of at most ten lines, and all facts on request."""
 
 import json
 

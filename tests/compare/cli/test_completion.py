@@ -1,4 +1,4 @@
-"""What a shell is given when a key is pressed: by the very call that its script makes."""
+"""Shell completion, tested by the same call as in the shell's script."""
 
 import os
 import shutil
@@ -109,7 +109,7 @@ except SystemExit:
 
 
 def imported(*arguments, **environment):
-    """Return what of HEAVY a command imports."""
+    """Return the modules of HEAVY that a command imports."""
     done = subprocess.run(
         [sys.executable, "-c", IMPORTED, *arguments],
         capture_output=True,

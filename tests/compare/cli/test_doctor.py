@@ -1,4 +1,4 @@
-"""`jointwave doctor`: what is there, missing or broken, and whether the engines are right."""
+"""`jointwave doctor`: packages present, missing or broken, and whether the engines are correct."""
 
 import json
 import os
@@ -107,7 +107,7 @@ def test_no_launcher_and_one_that_starts_nothing(tmp_path, monkeypatch):
 
 
 def test_ranks_are_those_that_see_each_other(mpiexec, monkeypatch):
-    """As many as there are cores; outside whatever MPI the tests have joined themselves."""
+    """As many as there are cores; outside the MPI job that the tests themselves have joined."""
     for name in os.environ.keys() - mpiexec[1].keys():
         monkeypatch.delenv(name)
     for name, value in mpiexec[1].items():

@@ -1,4 +1,4 @@
-"""The scene that `jointwave new` writes: explained by the models, and runnable as it stands."""
+"""The scene written by `jointwave new`: documented from the models, and runnable unchanged."""
 
 import re
 import tomllib
@@ -96,7 +96,7 @@ def test_it_has_every_table_that_a_scene_needs_and_no_key_that_is_none(tmp_path,
 
 @pytest.mark.parametrize("key", [key for key in OFFERED if key not in INSTEAD])
 def test_a_choice_that_is_taken_is_understood(tmp_path, key):
-    """One at a time: the scene has it, or says in one line what else it needs."""
+    """One key at a time: the scene has it, or names in one line what else it needs."""
     text = chosen(starter(tmp_path / "x.toml"), key)
     found = tomllib.loads(text)
     for part in key.split("."):
@@ -137,7 +137,7 @@ def test_the_other_pair_of_constants_is_understood(tmp_path):
 
 
 def test_a_rock_mass_is_loaded_and_meets_its_own_expectations(tmp_path):
-    """As it stands; and nothing in it is hardly meant."""
+    """The scene is runnable unchanged, and gives no warning."""
     (path,) = write_new(str(tmp_path / "mine"), template=ROCK_MASS)
     scenes = cases.load(path)
     assert [(scene.kind, scene.name) for scene in scenes] == [
@@ -192,7 +192,7 @@ def test_a_copy_keeps_its_comments_and_the_files_that_it_names(tmp_path):
 @pytest.mark.parametrize("source", [None, "beyond/blast-history"])
 @pytest.mark.parametrize("taken", ["a.toml", "blast-two-delays.csv"])
 def test_nothing_is_replaced(tmp_path, source, taken):
-    """Not a file, not what a link leads to; and nothing is written beside it."""
+    """Neither a file nor the target of a link; and nothing is written beside it."""
     (tmp_path / "own").write_text("mine")
     (tmp_path / taken).symlink_to(tmp_path / "own")
     if source is None and taken != "a.toml":

@@ -139,7 +139,7 @@ def test_a_sweep_of_it_has_a_row_a_receiver(jointwave_says, tmp_path):
 
 
 def test_tables_and_curves_of_a_comparison_name_places(jointwave_says, tmp_path):
-    """What --out writes is read back by --with: the same curves, at the same places."""
+    """Files of --out are read back by --with: the same curves, at the same places."""
     code, out, _ = jointwave_says("compare joint.toml --set numerics.continuum.size=4 --out found")
     assert code == 0 and "oblique-joint" in out
     header = (tmp_path / "found" / "comparison.csv").read_text().splitlines()[0]

@@ -53,7 +53,7 @@ except SystemExit:
 
 
 def test_messages_of_numba_are_not_coloured(tmp_path):
-    """colorama would end whatever goes to a terminal, JSON too, by an escape sequence."""
+    """colorama would append an escape sequence to all terminal output, also JSON."""
     (tmp_path / "colorama.py").write_text(COLORAMA)
     done = subprocess.run(
         (sys.executable, "-c", MESSAGE),

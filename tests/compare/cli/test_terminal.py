@@ -30,7 +30,7 @@ rich.console.monotonic = lambda: clock[0]
 
 
 def on_terminal(command, **environment):
-    """Return what a command writes to a terminal that is its output and its error."""
+    """Return a command's output to a terminal that is its stdout and stderr."""
     ours, theirs = pty.openpty()
     clean = {k: v for k, v in os.environ.items() if k not in ("NO_COLOR", "FORCE_COLOR")}
     told = {**clean, "TERM": "xterm-256color", "COLUMNS": "120", **environment}
@@ -70,14 +70,14 @@ def test_nothing_of_what_is_soon_done_reaches_a_pipe(stream):
 
 
 def piped(code, every):
-    """Return a program that has run with pipes, and with a line of progress every so many s."""
+    """Return a program that has run with pipes, and with a progress line at an interval (s)."""
     environment = os.environ | {"JOINTWAVE_PROGRESS": every}
     command = [sys.executable, "-c", code]
     return subprocess.run(command, capture_output=True, text=True, env=environment)
 
 
 def test_a_pipe_gets_a_line_now_and_then():
-    """On standard error alone, with what is done so far; none is left once the work has ended."""
+    """On standard error only, with the progress so far; none remains after the work has ended."""
     done = piped(SLOW + "sleep(0.6)", "0.4")
     assert done.stdout == ""
     lines = done.stderr.splitlines()

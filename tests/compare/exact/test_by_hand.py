@@ -176,7 +176,7 @@ def test_a_step_in_the_free_bar(solve):
 
 @pytest.mark.parametrize(("start", "enters"), [("free", 1000.0), ("quiet", 500.0)])
 def test_images_of_a_fixed_end(start, enters):
-    """The stress doubles as the wave comes back, 0.07 s, and the rock stands still."""
+    """The stress doubles when the wave returns, 0.07 s, and the rock is at rest."""
     at = {"stress": [0.5], "velocity": [0.5], "interval": 0.02}
     found = images.solve(scene(0.08, record=at, ends={"start": start, "end": "fixed"}))
     holds(found.stress[0], np.array([0, 1, 1, 1, 2]) * enters)
@@ -296,7 +296,7 @@ def test_parallel_joints(count, passed):
 
 
 def test_one_of_parallel_joints():
-    """2 kappa / sqrt(4 kappa^2 + 1), whatever the spacing."""
+    """2 kappa / sqrt(4 kappa^2 + 1), for any spacing."""
     for kappa, passed in ((0.5, 1 / sqrt(2)), (1.0, 2 / sqrt(5)), (2.0, 4 / sqrt(17))):
         for spacing in (0.0, 0.1):
             found = parallel_joints.transmission(1, kappa, spacing)

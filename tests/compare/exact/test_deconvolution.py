@@ -35,7 +35,7 @@ def column(direction=(0, 1, 0), **tables):
 
 
 def recovered(scene, solver, early=0.0):
-    """Return what comes up by a solver's surface motion, and the pulse so much early (s)."""
+    """Return the incident motion from a solver's surface motion, and the advanced pulse."""
     found = deconvolve(scene, solve(solver, scene).velocity[0].isel(axis=0))
     return found.values, PULSE.value(found.time.values + early)
 

@@ -203,7 +203,7 @@ def fourth_order(scene, times, steps):
 
 
 def own(scene, **options):
-    """Return what `integrate` finds, and the samples."""
+    """Return the result of `integrate`, and the samples."""
     model, times = chain(scene), sample_times(scene)
     found = integrate(model, drive(scene), times, None, scene.load.period, **options)
     n = model.block_count

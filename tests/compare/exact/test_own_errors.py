@@ -138,7 +138,7 @@ def test_of_the_damped_bar_s_modes(scene, seed):
 
 
 def test_of_the_paper_s_series(scene):
-    """What it leaves out, to the digit: 0.585 % of the stress at 20 m after a hundred terms."""
+    """The truncation error, to the digit: 0.585 % of the stress at 20 m after a hundred terms."""
     at = scene(record={"velocity": [33.3]})
     found, exact = series.solve(at, series.PAPER_TERMS), images.solve(at)
     for name in QUANTITIES:

@@ -1,4 +1,4 @@
-"""The joint whose friction depends on rate and state, against what it must do in simple cases."""
+"""The joint with rate-and-state friction, against its known behaviour in simple cases."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def test_steady_slip_under_a_step(compliance):
 
 
 def test_the_impulse_is_that_of_the_stress():
-    """Two ways to one number: S is integrated, the stress follows from ln theta alone."""
+    """Two ways to the same number: S is integrated, the stress follows from ln theta only."""
     times = np.linspace(0.0, 0.03, 60_001)
     for compliance in (0.0, 1e-10):
         joint = JOINT._replace(compliance=compliance)

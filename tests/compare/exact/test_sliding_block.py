@@ -12,7 +12,7 @@ G = 9.81
 
 @pytest.fixture
 def slope(scene):
-    """Return the scene of a block on a slope of so many degrees."""
+    """Return the scene of a block on a slope (degrees)."""
 
     def make(angle, friction=30.0, **tables):
         beta = radians(angle)

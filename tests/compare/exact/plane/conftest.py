@@ -1,4 +1,4 @@
-"""What several tests of waves in jointed rock in plane strain share."""
+"""Shared by several tests of waves in jointed rock in plane strain."""
 
 from typing import NamedTuple
 
@@ -89,5 +89,5 @@ def ricker():
 
 @pytest.fixture
 def directed():
-    """Return the direction of travel at so many degrees from y towards x."""
+    """Return the direction of travel at an angle (degrees) from y towards x."""
     return lambda degrees: np.array([np.sin(np.radians(degrees)), np.cos(np.radians(degrees))])

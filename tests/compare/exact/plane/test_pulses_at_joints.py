@@ -1,4 +1,4 @@
-"""Plane pulses at joints in time: what the fields satisfy, closed forms, and their own errors."""
+"""Plane pulses at joints in time: equations of the fields, closed forms, and error bounds."""
 
 import numpy as np
 import pytest

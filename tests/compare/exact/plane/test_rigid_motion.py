@@ -109,7 +109,7 @@ def test_matrix_exponentials_agree():
 
 
 def test_free_blocks_fall():
-    """A constant force: u = F t^2 / 2 m, to round-off, whatever the step."""
+    """A constant force: u = F t^2 / 2 m, to round-off, for any step."""
     partition = squares()
     masses = masses_of(partition)
     still = inner_stiffness(partition, partition.contacts)

@@ -1,4 +1,4 @@
-"""What the tests of exact solutions of rock masses share."""
+"""Shared by the tests of exact solutions of rock masses."""
 
 from copy import deepcopy
 from pathlib import Path

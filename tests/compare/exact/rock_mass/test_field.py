@@ -14,7 +14,7 @@ TIMES = np.linspace(0, 0.02, 201)
 
 
 def test_it_is_the_field_of_the_solution(rock_mass, wave):
-    """Two waves at once, on all sides."""
+    """Two simultaneous waves, on all sides."""
     one, other = wave(direction=[0.28, 0.96]), wave(direction=[0.0, 1.0], kind="S", amplitude=3e5)
     scene = rock_mass(waves=[one, other])
     found, exact = field_of(scene)(SIDES, TIMES), motion_at(scene, stack_of(scene), SIDES, TIMES)

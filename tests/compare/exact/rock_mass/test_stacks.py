@@ -275,7 +275,7 @@ def test_unlike_sets_and_scattered_spacings_are_the_formula(rock_mass, joint, wa
     kind=st.sampled_from("PS"),
 )
 def test_errors_are_bounded(rock_mass, joint, wave, dip, spacing, zeta, angle, shape, kind):
-    """What finer inversions, of four times as many samples, give lies within the sum of bounds."""
+    """The difference from inversions with four times the samples is within the sum of bounds."""
     travel = np.radians(dip + 90 + angle)
     direction = np.array([np.cos(travel), np.sin(travel)])
     begin = np.array([20.0, 15.0]) - 40 * direction

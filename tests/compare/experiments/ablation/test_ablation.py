@@ -60,7 +60,7 @@ CALLS = {
 
 
 def test_every_effect_that_can_be_left_out_is_tried():
-    """Those of sides are of rock masses alone."""
+    """Those of sides exist only for rock masses."""
     assert set(CALLS) == {name for name in WITHOUT if not name.endswith(" sides")}
 
 
@@ -153,7 +153,7 @@ def test_costs_are_differences_of_what_was_timed(pillar, monkeypatch):
 
 
 def test_what_stands_still_with_an_effect_has_no_misfit():
-    """Round-off across the load; what moves with it has."""
+    """A component that is round-off with the effect has none; the moving one has a misfit."""
     still = [[1.0, 1e-17], [2.0, -1e-17], [1.0, 3e-17]]
     result, without = (
         xr.Dataset(
@@ -181,7 +181,7 @@ def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, cheap):
 
 
 def test_rock_that_cannot_take_the_scene_has_no_number(pillar, cheap):
-    """Local damping is the rigid blocks' alone; their own costs are there all the same."""
+    """Only rigid blocks have local damping; their own costs are given nonetheless."""
     scene = pillar(damping={"local": 0.1}, time__duration=0.01)
     there = ablation.Dropped("local damping", 0.1, 1.0, False, False, "")
     found = ablate("a/b", scene, [there])

@@ -113,7 +113,7 @@ def test_a_stretch_takes_the_steps_of_a_run():
 
 
 def test_influence_is_the_misfit_of_the_result_without(monkeypatch):
-    """Local damping, which rigid blocks alone have, and a quiet side; what acts has a reason."""
+    """Local damping, which only rigid blocks have, and a quiet side; loads cannot be left out."""
     monkeypatch.setattr(ablation, "everything_like", lambda scene: scene)
     monkeypatch.setattr(step_cost, "REPEATS", 1)
     scene = mass(damping={"local": 0.3}, boundaries={"bottom": "quiet"})

@@ -28,7 +28,7 @@ FOUND = [
 
 @pytest.fixture
 def counted(monkeypatch):
-    """Replace solving and timing by something that counts; return what was timed."""
+    """Replace solving and timing by stubs; return the list of timed cases."""
     timed = []
     monkeypatch.setattr(
         runner, "prepare", lambda scene: [Dropped("energy ledger", 0.0, 1.0, True, False, "")]
@@ -43,7 +43,7 @@ def counted(monkeypatch):
 
 
 def test_what_is_done_is_not_done_again(counted, pillar, tmp_path):
-    """The second run reads what the first has written, nan and all, and measures what is new."""
+    """The second run reads the files of the first, including nan, and measures only new cases."""
     wanted = [Variant("a/b", pillar())]
     first, fractions = run(wanted, tmp_path, None, None), []
     more = [*wanted, Variant("a/c", pillar(time__duration=0.01))]
@@ -56,7 +56,7 @@ def test_what_is_done_is_not_done_again(counted, pillar, tmp_path):
 
 
 def test_an_interrupted_run_keeps_what_was_solved(counted, pillar, tmp_path, monkeypatch):
-    """Answers that are there are taken; only the timing is left to do."""
+    """Existing answers are used; only the timing remains."""
     wanted = [Variant("a/b", pillar())]
     timed = runner.ablate
     monkeypatch.setattr(runner, "ablate", lambda *case: (_ for _ in ()).throw(KeyboardInterrupt))
@@ -121,7 +121,7 @@ def test_table_says_what_is_not_resolved():
 
 
 def test_diagram_has_a_point_for_every_effect_that_can_be_left_out():
-    """What costs or influences nothing lies at an edge, hollow; the rest is filled."""
+    """Effects without cost or influence are hollow points at an edge; the others are filled."""
     ax = draw(FOUND).axes[0]
     points = {line.get_label(): line.get_xydata()[0] for line in ax.lines if line.get_gid()}
     assert set(points) == {"energy ledger", "joints that differ", "dashpots"}

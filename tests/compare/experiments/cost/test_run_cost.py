@@ -1,4 +1,4 @@
-"""What `--dry-run` says comes true: steps exactly, sizes exactly, memory within a factor."""
+"""Estimates of `--dry-run`: steps exact, sizes exact, memory within a factor."""
 
 import json
 import tracemalloc
@@ -52,7 +52,7 @@ def test_steps_and_size_are_those_of_the_run(pillar, name):
     ],
 )
 def test_memory_is_what_the_arrays_take_within_a_factor_of_three(pillar, engine, changes):
-    """Of what Python's arrays take at most at once, by its own account of them."""
+    """Relative to the peak of Python's arrays, by tracemalloc."""
     scene = pillar(**{**SHORT, "time__duration": 2e-3, "record__energy": False, **changes})
     solve(engine, scene)  # compiled, imported
     tracemalloc.start()
@@ -84,7 +84,7 @@ def test_estimates_are_collected_by_their_keys(pillar):
 
 @pytest.mark.parametrize("engine", ["dem", "continuum-jointed"])
 def test_time_is_that_of_the_last_run_of_the_kind(pillar, engine):
-    """In proportion to steps and size; of another kind there is none."""
+    """Proportional to steps and size; no estimate for another kind of run."""
     scene = pillar(**SHORT)
     about = dict(solve(engine, scene).attrs) | {"seconds_stepping": 2.0}
     timings.note(engine, scene, about)
@@ -139,7 +139,7 @@ def test_times_in_words():
 
 @pytest.fixture
 def dry(tmp_path, command):
-    """Return a function that gives what a command would do, and sees that it writes nothing."""
+    """Return a function that gives a command's estimates, and checks that it writes nothing."""
 
     def run(*arguments, code=0):
         said = command(*arguments, "--dry-run", code=code)
@@ -150,7 +150,7 @@ def dry(tmp_path, command):
 
 
 def test_nothing_is_run_or_written(dry):
-    """Whatever the command: only what would be done is said."""
+    """For every command: only estimates are printed."""
     said = dry("run", SCENE, "--engine", "dem", "--engine", "continuum").out
     assert "12 would run" in said and "7,200" in said and "100 blocks" in said
     said = dry("compare", SCENE, "--variant", "").out

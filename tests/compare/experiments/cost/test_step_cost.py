@@ -1,4 +1,4 @@
-"""What a block-step costs is measured, and the cost of everything only once."""
+"""The cost of a block-step is measured, and that of all effects only once."""
 
 import json
 
@@ -11,7 +11,7 @@ from compare.experiments.cost.step_cost import in_turns, stretch, whole
 
 
 def test_stretch_counts_its_block_steps():
-    """Blocks times steps of the samples taken, along the axis and in space alike."""
+    """Blocks times steps of the samples taken, both along the axis and in space."""
     for changes in ({}, scenes.ACROSS):
         scene = changed({**changes, "time.duration": 5e-4, "record.energy": False}, 100)
         march, block_steps = stretch(scene)

@@ -1,4 +1,4 @@
-"""Keys fitted to waveforms: known values are found again, and intervals hold what they promise."""
+"""Keys fitted to waveforms: known values are recovered, and intervals have their coverage."""
 
 import json
 from itertools import combinations

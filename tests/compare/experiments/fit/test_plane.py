@@ -72,7 +72,7 @@ def test_rigid_blocks_keep_their_steps(scene):
 
 
 def test_every_number_of_a_rock_mass_is_free_or_refused(scene):
-    """What cuts it into blocks, solves or records it is refused; a value that is set is read."""
+    """Keys of blocks, solution and recording are refused; a value that is set is read."""
     free_tables = set()
     for key, _ in keys(type(scene)):
         here = key.replace("joint_sets.", "joint_sets.0.").replace("waves.", "waves.0.")

@@ -1,4 +1,4 @@
-"""Plans: what is predicted is obtained, the cheapest that does is taken, and nothing is hidden."""
+"""Plans: predictions are obtained, the cheapest sufficient choice is taken, failures are shown."""
 
 import re
 from functools import cache
@@ -70,7 +70,7 @@ def test_coarse_demands_are_met_by_rigid_blocks_and_fine_ones_by_rock(planned):
 
 
 def test_options_make_the_configuration(planned):
-    """What is printed gives the misfit that is printed."""
+    """The printed options reproduce the printed misfit."""
     found = planned(0.01, False)
     scene = found.scene
     overrides = {key.replace("__", "."): value for key, value in SHORT.items()}
@@ -232,7 +232,7 @@ def test_sizes_of_a_rock_mass_are_parts_of_its_slowest_wave():
 
 
 def test_blocks_between_spaced_joints_have_a_model_of_their_own():
-    """As it stands it is exact in time as a lattice; cut into smaller blocks it is not."""
+    """With its own blocks it is exact in time as a lattice; cut into smaller blocks it is not."""
     changes = {"domain.size": [8.0, 4.0], "record.points": [[2.5, 1.5]], "record.joints": []}
     changes |= {"joint_sets.1.ends_at": [], "joint_sets.1.offset": 0.0}
     scene = cases.load_variant(find("rock-mass/brickwork"), "", changes)
@@ -328,7 +328,7 @@ def test_the_order_is_measured_from_three_runs(order):
 
 
 def test_each_waveform_is_extrapolated_by_itself():
-    """The numerical error is that of the worst one, whatever the size of the others."""
+    """The numerical error is that of the worst one, regardless of the size of the others."""
     (one,) = trials(1.0, (8,))
     assert one.misfits[1] == pytest.approx(one.misfits[0] / 2)
     assert one.misfit == one.misfits[0]

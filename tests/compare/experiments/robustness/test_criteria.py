@@ -88,7 +88,7 @@ def test_bound_that_bounds_nothing_fails():
 
 
 def test_spared_and_impossible_rows_give_their_reason():
-    """What a case spares and what a scheme cannot do are rows without a number."""
+    """Spared cases and cases beyond a scheme are rows without a number."""
     spared = judged(accuracy.near_exact, {}, spared={"dem": "because"})
     assert (spared.state, spared.message) == (NONE, "because") and np.isnan(spared.value)
     damped = judged(accuracy.near_exact, {"joints.damping_ratio": 0.1}, FOURTH)

@@ -1,4 +1,4 @@
-"""The stability map: what theory says of it, and that it can be wrong."""
+"""The stability map: agreement with theory, and detection of wrong cells."""
 
 import numpy as np
 import pytest

@@ -68,7 +68,7 @@ def rows():
 
 @pytest.mark.parametrize("place", list(rows()))
 def test_row_holds_or_says_why_not(place):
-    """The value is within the bound that theory gives; what does not apply has a reason."""
+    """The value is within the theoretical bound; a row that does not apply has a reason."""
     row = row_at(place)
     about = f"{row.criterion}: {row.value:.3g}, bound {row.bound:.3g}; {row.message}"
     assert row.state in (HELD, NONE), about

@@ -27,7 +27,7 @@ def test_every_point_is_drawn_where_it_was_measured(study, tmp_path):
 
 
 def test_sentences_hold_for_their_numbers(study, tmp_path):
-    """The next best that comes within the same misfit, not the dearest; costs apart."""
+    """The next best within the same misfit, not the most expensive; separately for each cost."""
     timed = study(timed=True, repeats=1, finest="lattice")
     errors, costs = (0.05, 0.02, 0.005, 0.004, 0.003), (1, 2, 4, 12.0, 900.0)
     row = run(timed, tmp_path)[0]._replace(setup=0.3, compile=2e-4, freedoms=1.0)

@@ -1,4 +1,4 @@
-"""What a user would write instead: right where it applies, refused where it does not."""
+"""Methods that a user would write instead: correct if applicable, else refused."""
 
 import pytest
 

@@ -114,7 +114,7 @@ def test_shipped_orders_are_within_a_tenth_of_theory(name, cut, tmp_path):
 
 
 def test_orders_are_those_of_rock_in_both_models_and_of_blocks():
-    """What the study of convergence claims: nothing of it is left out unnoticed."""
+    """The claims of the convergence study: none is omitted unnoticed."""
     claims = {curve.label: curve.order for curve in load("convergence").curves}
     for p in (1, 2, 3, 4):
         for model in ("jointed rock", "homogenised bar"):
