@@ -62,7 +62,7 @@ OPEN_MPI = {
 
 
 def pytest_collection_modifyitems(items):
-    """Test what every shipped scene holds where its pairs are tested."""
+    """Test properties of every shipped scene together with its pairs."""
     if any(item.path.suffix == ".toml" for item in items):
         from shipped_scenes import added_to
 

@@ -1,4 +1,4 @@
-"""The registry: an entry for each engine and exact solution, imported when it is asked for."""
+"""The registry: an entry for each engine and exact solution, imported on demand."""
 
 import inspect
 import subprocess

@@ -39,7 +39,7 @@ def store(tmp_path):
 
 
 def test_points_are_computed_once_in_their_order(store):
-    """Also one that is asked for twice; the second time all are read, NaN included."""
+    """Also one requested twice; the second time all are read from files, including NaN."""
     calls, fractions = [], []
 
     def counted(number):

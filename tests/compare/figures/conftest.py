@@ -1,4 +1,4 @@
-"""What the tests of pictures share: small comparisons by the fast engine and its exact solution."""
+"""Shared by the tests of figures: small comparisons by the fast engine and its exact solution."""
 
 import matplotlib
 import numpy as np
@@ -11,7 +11,7 @@ from compare.misfit.pairs import Comparison
 
 @pytest.fixture(scope="session")
 def compared():
-    """Return a function that solves scenes by the rigid blocks, or by what is named."""
+    """Return a function that solves scenes by the rigid blocks, or by the named solvers."""
 
     def comparisons(*scenes, by=("dem", "lattice")):
         return [

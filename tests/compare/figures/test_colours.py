@@ -53,7 +53,7 @@ def seen(colour, sight):
 
 
 def least_distance(colours, sight):
-    """Return the least distance of two colours in CIELAB; 2.3 can just be told apart."""
+    """Return the least distance of two colours in CIELAB; 2.3 is just noticeable."""
     labs = [seen(colour, sight) for colour in colours]
     return min(np.linalg.norm(a - b) for a, b in combinations(labs, 2))
 
@@ -63,7 +63,7 @@ def test_black_and_white_are_a_hundred_apart():
 
 
 def test_red_and_green_of_one_lightness_meet_in_deuteranopia():
-    """The simulation can fail: what it must find too close, it does."""
+    """The simulation can fail: it detects colours that are too close."""
     bad = ["#c0392b", "#6f7b1e"]
     assert least_distance(bad, "normal") > 40
     assert least_distance(bad, "deuteranopia") < 15

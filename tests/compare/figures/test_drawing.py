@@ -1,4 +1,4 @@
-"""The drawing of a scene has what the scene has, where it has it."""
+"""The drawing of a scene shows all its parts, at their positions."""
 
 from collections import Counter
 
@@ -146,7 +146,7 @@ def test_a_squat_pillar_is_true_to_scale_and_a_slender_one_says_by_how_much(pill
 
 
 def test_labels_move_apart_as_far_as_they_must():
-    """As little as can be, and within what there is."""
+    """By the least shifts, and within the available width."""
     wanted, widths = np.array([1.0, 1.1, 1.2, 5.0]), np.full(4, 0.5)
     assert _apart(wanted, widths, 7.0) == pytest.approx([0.6, 1.1, 1.6, 5.0])
     assert _apart(wanted, widths, 5.0) == pytest.approx([0.6, 1.1, 1.6, 4.75])

@@ -1,4 +1,4 @@
-"""Which waveforms share a pair of axes, and what each leaves from its reference."""
+"""Waveforms that share a pair of axes, and their residuals from the reference."""
 
 from itertools import pairwise
 from pathlib import Path
@@ -34,7 +34,7 @@ CHANGES = {
 
 
 def solved(*scenes, by=("lattice", "jointed-bar", "equivalent-bar")):
-    """Return scenes solved exactly, the bars and the chain in the place of the engines."""
+    """Return scenes solved exactly, with the bars and the chain in place of the engines."""
     engines = dict(zip(by, ("dem", "continuum-jointed", "continuum-equivalent"), strict=False))
     found = []
     for scene in scenes:

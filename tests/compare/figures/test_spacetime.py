@@ -1,4 +1,4 @@
-"""Space-time diagrams against what is known of the waves in them."""
+"""Space-time diagrams against known properties of their waves."""
 
 import json
 
@@ -21,7 +21,7 @@ from dem.axial.model import build_model
 
 
 def fields_of(scene, names):
-    """Return what `along_pillar` would, by these solutions alone."""
+    """Return the result of `along_pillar` for these solutions only."""
     return {name: solve(name, recorded_along(scene)) for name in names}
 
 

@@ -68,7 +68,7 @@ def test_taper_leaves_nine_tenths_and_ends_in_zero():
 
 
 def test_nothing_passes_above_the_cut_off_of_the_chain(pillar, compared):
-    """The homogenised bar passes what the blocks do not."""
+    """The homogenised bar transmits frequencies that the blocks do not."""
     (comparison,) = compared(pillar(load__period=0.002), by=("dem", "lattice", "equivalent-bar"))
     shown = spectra_of(panels([comparison])[0][0])
     cut_off = marks(comparison)["chain cut-off"]

@@ -37,7 +37,7 @@ def test_panel_shows_the_component_that_moves_most(pillar, changes, places):
 
 
 def test_variants_of_different_motion_share_a_figure_and_a_table(pillar):
-    """Axial, spatial and twisted: each panel has its own unit, each column says what it is."""
+    """Axial, spatial and twisted: each panel has its own unit, each column its full heading."""
     found = [
         comparison(pillar, lattice),
         comparison(pillar, load__direction=[1.0, 0.0, 0.0]),
@@ -72,7 +72,7 @@ def test_what_moves_is_drawn_not_what_stands(pillar, normal):
 
 
 def test_the_static_state_is_taken_from_a_waveform_and_said(pillar):
-    """Drawn is the motion; the table keeps what was recorded."""
+    """The motion is drawn; the table contains the recorded values."""
     scenes = [pillar(**RECORD, prestress__normal=normal) for normal in (0.0, 2e6)]
     found = [Comparison(scene, {"lattice": lattice.solve(scene)}) for scene in scenes]
     (moving, _), (stressed, _) = panels(found)

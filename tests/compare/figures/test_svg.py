@@ -1,4 +1,4 @@
-"""SVGs made small: what is drawn stays where it is."""
+"""Compact SVGs: drawn parts keep their positions."""
 
 import base64
 import io
@@ -39,7 +39,7 @@ def test_lines_after_a_move_have_no_letter_and_each_move_has_its_own():
 
 
 def test_uses_do_not_repeat_the_stroke_of_their_path():
-    """What a path says of its stroke wins over what a use of it says; its fill is the use's."""
+    """A path's stroke overrides that of its use; its fill is that of the use."""
     path = '<path id="m1" d="M 0 0" style="stroke: #000; stroke-width: 0.6"/>'
     use = '<use xlink:href="#m1" x="1" style="stroke: #000; stroke-width: 0.6{}"/>'
     small = compact(f"{HEAD}{path}{use.format('')}{use.format('; fill: #fff')}</svg>", "a")

@@ -161,7 +161,7 @@ def test_our_own_table_is_read_as_it_was_written(table):
     ],
 )
 def test_one_solution_or_variant_of_our_own_table(which, solution, variant, places, table):
-    """By its parts, alone or with a label; one variant is held against every scene."""
+    """By its parts, with or without a label; one variant is compared with every scene."""
     scenes, found, file = table
     curves = read_curves([file + which], scenes)
     assert [one.name for one in curves] == ["comparison.csv"] * (2 if variant is None else 1)
@@ -175,7 +175,7 @@ def test_one_solution_or_variant_of_our_own_table(which, solution, variant, plac
 
 
 def test_variants_of_our_own_table_stand_beside_their_own(table, monkeypatch):
-    """Each variant is compared with the table's columns of it alone."""
+    """Each variant is compared only with its own columns of the table."""
     monkeypatch.setattr(pairs, "applicable", lambda scene: {"lattice": YES})
     scenes, _, file = table
     curves = read_curves([f"{file}:lattice"], scenes)
@@ -273,7 +273,7 @@ def test_uneven_samples_count_by_the_time_they_stand_for():
 
 
 def test_prestress_does_not_dilute_a_curves_misfit(scene, tmp_path):
-    """A tenth too large is 10 % off, whatever stress stands in the rock; the clock is found too."""
+    """A tenth too large is 10 % off, for any static stress in the rock; the clock is found too."""
     still = scene.model_copy(update={"prestress": Prestress(normal=5e7)})
     time, stress = sampled(scene, scene.interval)
     file = save(tmp_path / "curve.csv", time + 1e-3, 5e7 + 1.1 * stress)
@@ -333,7 +333,7 @@ def test_clock_is_moved_onto_the_solution_that_fits_best(scene, tmp_path):
 
 
 def test_curves_are_in_table_figure_and_files(scene, tmp_path):
-    """Two files of one name are told apart; places that the scene lacks are named."""
+    """Two files of one name get different labels; places not in the scene are named."""
     time, stress = sampled(scene, 4 * scene.interval)
     (tmp_path / "a").mkdir()
     (tmp_path / "b").mkdir()
@@ -415,7 +415,7 @@ def refused(arguments, monkeypatch, capsys):
 
 @pytest.mark.parametrize(("text", "where", "allowed"), FAULTS.values(), ids=FAULTS)
 def test_fault_is_one_line_and_exit_2(text, where, allowed, written, monkeypatch, capsys):
-    """File, row and what is allowed, before anything is solved."""
+    """File, row and requirement, before anything is solved."""
     said = refused(["compare", SCENE, "--with", written(text)], monkeypatch, capsys)
     assert where in said and allowed in said and "curve.csv" in said
 
@@ -445,7 +445,7 @@ def test_wrong_option_is_one_line(arguments, words, tmp_path, monkeypatch, capsy
 
 
 def netcdf_faults():
-    """Yield datasets that are no curve, and what is said of each."""
+    """Yield datasets that are not curves, each with its error message."""
     stress = ("time", STRESS)
     yield xr.Dataset({"stress": stress}), "time"
     yield xr.Dataset({"strain": stress}, {"time": TIME}), "one or more of stress"

@@ -120,7 +120,7 @@ def test_the_waveform_that_is_furthest_off_decides():
 
 @pytest.mark.parametrize("normal", [1e5, 1e6, 1e7])
 def test_a_prestress_that_nothing_feels_changes_no_misfit(normal):
-    """What stands still is not motion, however large it is."""
+    """A static value is not motion, however large it is."""
     held = {"starts": {"starts": "prestressed", "prestress": normal}}
     one, other = shears(1.01, 1.03), shears(1, 1)
     pressed = [
@@ -146,7 +146,7 @@ def test_a_state_at_rest_under_gravity_is_that_of_the_first_sample():
     st.floats(-0.3, 0.3),
 )
 def test_misfits_depend_on_neither_unit_nor_receivers_that_see_nothing(unit, faint, off):
-    """Waveforms below a hundredth of the loudest decide nothing, whatever the unit of the load."""
+    """Waveforms below a hundredth of the largest are ignored, at any amplitude of the load."""
     places = np.arange(1.0 + len(faint))
 
     def at(factors):
@@ -161,7 +161,7 @@ def test_misfits_depend_on_neither_unit_nor_receivers_that_see_nothing(unit, fai
 
 
 def test_motion_where_there_should_be_none_is_not_passed_over():
-    """Against a reference that stands still the misfit is infinite; nothing against nothing 0."""
+    """Against a reference at rest the misfit is infinite; zero against zero gives 0."""
     still = shears(0, 0)
     assert misfit(shears(1, 1), still) == np.inf
     assert worst(still, still) == Worst(0.0)

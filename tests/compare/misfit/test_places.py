@@ -103,7 +103,7 @@ def test_every_component_at_every_receiver_has_a_distance_of_its_own():
 
 
 def test_quantities_of_one_unit_are_judged_together():
-    """A slip of a thousandth of the displacement decides nothing; alone it does."""
+    """A slip of a thousandth of the displacement is ignored; without displacement it counts."""
     mass, loud = scene(), np.broadcast_to(WAVE[:, None], (2, 101, 2))
     quantities = {"displacement": loud, "slip": 1e-3 * WAVE[None]}
     one, other = (

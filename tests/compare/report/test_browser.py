@@ -1,4 +1,4 @@
-"""The page as its reader meets it: a headless Chromium opens it alone, without a network."""
+"""The page in a browser: a headless Chromium opens the single file, without a network."""
 
 import io
 import re

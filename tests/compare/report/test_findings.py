@@ -48,7 +48,7 @@ def changed(comparison, quantity, change):
 
 
 def every(quantity, change):
-    """Return what makes a claim false by changing every variant's waveforms."""
+    """Return a function that makes a claim false by changing every variant's waveforms."""
     return lambda comparisons: [changed(c, quantity, change) for c in comparisons]
 
 
@@ -59,7 +59,7 @@ def swapped(comparisons):
 
 
 def alike(index):
-    """Return what gives every variant the results of one."""
+    """Return a function that gives every variant the results of one."""
 
     def change(comparisons):
         results = comparisons[index].results
@@ -69,7 +69,7 @@ def alike(index):
 
 
 def end_as(end, other):
-    """Return what gives the variant with one end the results of that with the other."""
+    """Return a function that swaps in the results of the variant with the other end."""
 
     def change(comparisons):
         of = {c.scene.ends.end: c.results for c in comparisons}
@@ -87,7 +87,7 @@ def after(time, factor):
 
 
 def first_only(wave, t):
-    """Return the incident pulses alone: zero from 38 ms on, when the end sends them back."""
+    """Return the incident pulses only: zero from 38 ms on, when the end reflects them."""
     return np.where(t < 0.038, wave, 0.0)
 
 

@@ -1,4 +1,4 @@
-"""Where engines stand, on made-up results whose distances are known."""
+"""Verdicts on engines, from synthetic results with known distances."""
 
 from math import nan
 

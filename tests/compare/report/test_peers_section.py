@@ -15,7 +15,7 @@ MISSING = {"curve": "Gone", "solves": "spheres", "state": "missing", "message": 
 
 @pytest.fixture
 def rows():
-    """Return the table of two runs of another code, one of ours, and one that is missing."""
+    """Return the table of two runs of another code, one of jointwave, and a missing one."""
     slow = OTHER | {"stepping_over_ours": 124.4, "whole_over_ours": 2.68}
     quick = OTHER | {"stepping_over_ours": 5.81, "whole_over_ours": 0.132}
     return pd.DataFrame([OURS, slow, quick, MISSING], columns=[*peers.NEEDED, "machine"])

@@ -1,4 +1,4 @@
-"""The table of what is read off the velocities: numbers of known pulses, in print and as JSON."""
+"""The table of readings from velocities: numbers of known pulses, in print and as JSON."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""The page of made-up parts: what it says where something fails, is missing, or is odd text."""
+"""The page from synthetic parts: its text for failures, missing parts, and odd characters."""
 
 import base64
 import gzip
@@ -63,7 +63,7 @@ def section(tmp_path, figure):
 
 
 def shown(drawn, folded=False):
-    """Return a figure as it stands on the page."""
+    """Return a figure as shown on the page."""
     return Shown(drawn.title, drawn.caption, folded, drawn)
 
 

@@ -67,7 +67,7 @@ def part(text, name):
 
 
 def test_no_picture_and_no_numbers_stand_under_two_captions(report, text):
-    """Figures 7 and 8, 9 and 10 share their physics: what is the same is linked to."""
+    """Figures 7 and 8, 9 and 10 share their physics: equal parts are links."""
     drawn = dict.fromkeys(re.findall(r'<figure id="(fig-[a-z0-9-]+)-figure"', text))
     seen = {}
     for name in drawn:
@@ -101,7 +101,7 @@ def curve_ids(report, name):
 
 
 def test_the_first_screen_holds_every_engine_on_every_figure(report, browser):
-    """At 1280 by 800, with what the distances are and what a run takes."""
+    """At 1280 by 800, with the distances and the cost of a run."""
     page = browser.new_page(viewport={"width": 1280, "height": 800})
     page.goto(report.file.as_uri())
     box = page.locator("table.overview").bounding_box()
@@ -157,7 +157,7 @@ def test_every_scene_has_every_kind_of_picture(report, text, name):
 
 
 def test_rock_masses_stand_beside_the_studies(report, text):
-    """A scene with every kind of picture, and what joints reflect and pass, solver by solver."""
+    """A scene with every kind of figure, and scattering at joints, solver by solver."""
     assert "continuum-jointed" in part(text, "rock-masses")
     found = re.findall(r'<figure id="(one-joint-[a-z-]+)-figure"', part(text, "one-joint"))
     assert [name.removeprefix("one-joint-") for name in found][:2] == ["scene", "waveforms"]
@@ -256,7 +256,7 @@ def test_page_shows_what_each_study_found(name, text):
 
 
 def test_page_shows_other_codes_beside_the_free_pillar(text):
-    """Ratios, what each solves, the machine, and who is missing and why."""
+    """Ratios, equations of each code, the machine, and missing codes with reasons."""
     found = part(text, "peers")
     assert "36 (LAMMPS bonds)" in found and "a quiet one" in found
     assert "Yade spheres (cohesive spheres): missing, no apt here" in found

@@ -1,4 +1,4 @@
-"""The page of a rock mass: its pictures, its misfits and what is said of its engines."""
+"""The page of a rock mass: its figures, its misfits and the verdicts on its engines."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Which scenes a report is about, and what the page calls them."""
+"""The scenes of a report, and their names on the page."""
 
 from types import SimpleNamespace
 

@@ -1,4 +1,4 @@
-"""Files are whole or not there, and what stood there before survives a failure."""
+"""Files are complete or absent, and the previous file survives a failure."""
 
 import pytest
 import xarray as xr

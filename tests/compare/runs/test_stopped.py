@@ -1,4 +1,4 @@
-"""A run that cannot go on keeps what it has computed, and nothing of an earlier one is lost."""
+"""A stopped run saves its partial result, and an earlier result is not lost."""
 
 import pytest
 import xarray as xr

@@ -162,7 +162,7 @@ def test_an_order_is_not_read_off_errors_that_are_not_known(study):
 
 
 def test_no_point_is_the_cheapest_within_a_misfit_that_is_not_known():
-    """What errors are measured from must be known to a tenth of it."""
+    """The reference of errors must be known to a tenth of the misfit."""
     points = [("a", 0.05), ("b", 1e-4)]
     rows = [row(total=e, total_floor=3e-3, seconds=1.0, curve=name) for name, e in points]
     assert [c.misfit for c in cheapest(rows)] == [0.1]

@@ -1,4 +1,4 @@
-"""Fine runs that stand for exact solutions, and how well they are known."""
+"""Fine runs that replace exact solutions, and their accuracy."""
 
 import numpy as np
 import pytest

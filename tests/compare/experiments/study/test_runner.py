@@ -1,4 +1,4 @@
-"""Running studies: resumed, timed alone, failures and all."""
+"""Running studies: resuming, timing one at a time, failures."""
 
 import json
 import subprocess
@@ -14,13 +14,13 @@ TIMED = ("seconds", "spread", "setup", "compile")
 
 
 def counted(rows):
-    """Return what is the same in every run of a study."""
+    """Return the columns that are equal in every run of a study."""
     found = [{k: v for k, v in row._asdict().items() if k not in TIMED} for row in rows]
     return json.dumps(found)
 
 
 def test_an_interrupted_study_ends_with_the_same_table(study, tmp_path, monkeypatch):
-    """What was done is kept, seconds included; only the rest is run, to the same counts."""
+    """Completed points are kept, including seconds; only the rest is run, to the same counts."""
     whole, calls = run(study(), tmp_path / "whole"), []
 
     def until_third(point):
@@ -67,7 +67,7 @@ def test_timed_points_are_run_one_at_a_time_whatever_the_pool(study, tmp_path):
 
 
 def test_two_timed_studies_do_not_run_at_once(study, tmp_path):
-    """The second waits for what the first has locked."""
+    """The second waits for the lock of the first."""
     program = "from compare.experiments.pool import alone\nwith alone(): print('in')"
     with alone():
         waiting = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE)

@@ -1,4 +1,4 @@
-"""Files of studies, the command, and what it writes."""
+"""Files of studies, the command, and its output files."""
 
 import json
 import subprocess
@@ -30,7 +30,7 @@ order = 2
 
 
 def facts_of(*arguments, before=(), env=None):
-    """Return what a study's command prints as JSON."""
+    """Return the JSON output of a study's command."""
     command = [*before, sys.executable, "-m", "compare", "study", *map(str, arguments), "--json"]
     done = subprocess.run(command, capture_output=True, text=True, env=env)
     assert done.returncode == 0, done.stderr
@@ -90,7 +90,7 @@ def test_a_study_that_is_not_there_names_those_that_are(command):
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """Return the folder of a study that the command has run, and what it printed."""
+    """Return the folder of a study run by the command, and its output."""
     folder = tmp_path_factory.mktemp("study")
     (folder / "mine.toml").write_text(GOOD)
     return folder, facts_of(folder / "mine.toml", "--out", folder / "out", "--workers", 1)

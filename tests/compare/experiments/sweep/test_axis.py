@@ -1,4 +1,4 @@
-"""What `--sweep` takes: the values between two ends, or those that are listed."""
+"""Arguments of `--sweep`: values between two ends, or a list."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What the tests of moving pictures share: blocks of any cells, and a short pillar's simulated."""
+"""Shared by the tests of animations: blocks of any cells, and snapshots of a short pillar."""
 
 from functools import cache
 
@@ -51,5 +51,5 @@ def row():
 
 @pytest.fixture(scope="session")
 def simulated(scene_with):
-    """Return a function that gives so many snapshots of a short pillar by both engines."""
+    """Return a function that gives a number of snapshots of a short pillar by both engines."""
     return cache(lambda count=41: take(scene_with(**SHORT), count))

@@ -74,7 +74,7 @@ def test_flat_cells_are_seen_from_both_sides():
 
 
 def test_a_turned_block_shows_a_second_side_behind_the_first(row):
-    """About x, so that the side at its end faces the viewer, who stands at -z."""
+    """About x, so that the side at its end faces the viewer, at -z."""
     box = row(count=1)
     x, y, z = box.points.T
     turned = np.stack([x, y - 0.1 * z, z + 0.1 * y], axis=1)

@@ -66,7 +66,7 @@ def test_the_slider_moves_everything_to_its_time(stage, simulated):
 
 
 def test_numbers_and_title_of_the_colours_lie_beside_them(stage):
-    """VTK's own title lay over its numbers, and these told Pa in powers of ten."""
+    """VTK's own title overlaps its numbers, which are in Pa with powers of ten."""
     from compare.figures.animation.view3d import BAR, SIZE
 
     stage.plotter.render()

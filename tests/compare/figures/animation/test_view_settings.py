@@ -1,4 +1,4 @@
-"""From which side, how much exaggerated, in which colours: the rules, and what limits them."""
+"""Direction of view, exaggeration and colours: the rules and their limits."""
 
 import numpy as np
 import pytest

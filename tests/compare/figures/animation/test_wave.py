@@ -1,4 +1,4 @@
-"""What is drawn is what was computed: where the blocks are, what colour, and when."""
+"""The drawing agrees with the computation: positions of blocks, colours, and times."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What the tests of figures for papers share: comparisons of any size, solved by no engine."""
+"""Shared by the tests of print figures: comparisons of any size, without running an engine."""
 
 import numpy as np
 import pytest

@@ -125,7 +125,7 @@ def test_another_program_finds_every_font_of_a_pdf_embedded(written, language):
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_an_svg_holds_a_glyph_for_every_letter(written, language):
-    """Its fonts are in the file, and hold what its texts need: no other font has to."""
+    """Its fonts are embedded and contain all letters of its texts."""
     svg = written("svg", language).read_text(encoding="utf-8")
     held = {}
     for family, data in FACE.findall(svg):

@@ -1,4 +1,4 @@
-"""What the tests of kept runs share: real processes, and results compared bit for bit."""
+"""Shared by the tests of checkpoints: real processes, and results compared bit by bit."""
 
 import os
 import signal
@@ -167,7 +167,7 @@ def whole(once, start, finish, arguments, runs):
 
 @pytest.fixture
 def refuse_difference():
-    """Return a function that fails unless two results agree in every bit, but for their cost."""
+    """Return a function that fails unless two results are bit-identical, except for their cost."""
 
     def refuse(one, other):
         with xr.open_dataset(one) as a, xr.open_dataset(other) as b:

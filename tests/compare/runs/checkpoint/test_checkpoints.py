@@ -1,4 +1,4 @@
-"""Checkpoints bring back what they were given, or say in one line why they cannot."""
+"""Checkpoints restore the saved arrays, or report in one line why they cannot."""
 
 import hashlib
 import io
@@ -34,7 +34,7 @@ class Share(Processes):
 
 @pytest.fixture
 def parts():
-    """Return what an engine might show: nested, with parts that are absent, of several kinds."""
+    """Return a state such as an engine's: nested, with absent parts, of several types."""
     rng = np.random.default_rng(7)
     broken = np.array([True, False])
     return (rng.random((3, 2)), None, [np.arange(4, dtype=np.int32), broken], (np.zeros((0, 3)),))
@@ -76,7 +76,7 @@ def test_checkpoints_of_other_results_are_left_alone(tmp_path, parts):
 
 @pytest.mark.parametrize("key", ["scene", "program", "number of processes"])
 def test_checkpoint_of_another_run_is_refused(key, tmp_path, parts):
-    """The line says what differs, and the file stays; a run that does not resume replaces it."""
+    """The line names the differences, and the file is kept; a run without --resume replaces it."""
     Checkpoints(tmp_path / "dem.nc", SIGNATURE, ALONE).save(5, parts)
     other = Checkpoints(tmp_path / "dem.nc", SIGNATURE | {key: "2"}, ALONE)
     with pytest.raises(SceneError, match=f"is from another {key}: remove it"):
@@ -115,7 +115,7 @@ def test_any_flipped_bit_is_noticed(tmp_path, parts):
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(at=st.integers(0, 2000), new=st.binary(max_size=4), about=st.sampled_from(["", "1", "{}"]))
 def test_content_that_its_digest_fits_is_one_line(tmp_path_factory, at, new, about):
-    """Whoever writes a checkpoint can write its SHA-256, too: it comes back or is refused."""
+    """A forged checkpoint can have a valid SHA-256: it is restored or refused."""
     folder = tmp_path_factory.mktemp("checkpoint")
     files = Checkpoints(folder / "dem.nc", SIGNATURE, ALONE)
     parts = (np.arange(6.0).reshape(3, 2), np.array([True]))

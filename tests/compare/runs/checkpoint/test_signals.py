@@ -1,4 +1,4 @@
-"""Ctrl-C and its kin end every command cleanly, with what is there."""
+"""Ctrl-C and similar signals end every command cleanly, keeping completed results."""
 
 import os
 import signal
@@ -155,7 +155,7 @@ def test_workers_end_without_a_word(command, number, tmp_path, start, finish, un
 
 
 def test_second_signal_does_not_wait():
-    """The first waits for the next look; whoever asks again ends the program at once."""
+    """The first signal waits for the next check; a second one ends the program immediately."""
     signals = Signals(patient=True)
     signals._arrived(signal.SIGINT, None)
     assert signals.asked == signal.SIGINT
