@@ -56,7 +56,7 @@ def draw_snapshots(name: str, s: Snapshots) -> Figure:
 
 
 def exaggeration(s: Snapshots) -> float:
-    """Return the exaggeration that makes displacements visible: 1, 2 or 5 times a power of ten."""
+    """Return the exaggeration of displacements: 1, 2 or 5 times a power of ten; 1 without any."""
     largest = float(np.abs(s.displacement).max())
     return round_down(LARGEST * float(np.ptp(s.points[:, 0])) / largest) if largest else 1.0
 

@@ -117,6 +117,6 @@ def _given(comparisons: list[Comparison]) -> list[Entry]:
 
 
 def short(file: str) -> str:
-    """Return a file's name for a legend, with dollar signs escaped and shortened."""
+    """Return a file's name for a legend, shortened, with dollar signs escaped."""
     name = file if len(file) <= LONGEST else f"{file[:12]}…{file[-15:]}"
     return name.replace("$", r"\$")
