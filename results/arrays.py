@@ -5,14 +5,16 @@ from typing import Any
 
 import numpy as np
 
+NESTED = tuple, list  # implicit runs look at these in every iteration
+
 
 def arrays(parts: Any) -> Iterator[np.ndarray]:
     """Yield all arrays of nested tuples and lists, in their order; other entries are skipped."""
-    if isinstance(parts, tuple | list):
-        for part in parts:
+    for part in parts if isinstance(parts, NESTED) else (parts,):
+        if isinstance(part, np.ndarray):
+            yield part
+        elif isinstance(part, NESTED):
             yield from arrays(part)
-    elif isinstance(parts, np.ndarray):
-        yield parts
 
 
 def changed(parts: Any, change: Callable[[np.ndarray], np.ndarray]) -> Any:

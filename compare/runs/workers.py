@@ -1,5 +1,6 @@
 """Worker processes of this machine that end exactly when their parent does."""
 
+import os
 import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
@@ -13,7 +14,8 @@ class Workers(ProcessPoolExecutor):
     """The standard pool, of spawned processes.
 
     Ctrl-C reaches all processes of a terminal; the workers ignore it. If the program ends early,
-    they are terminated too.
+    they are terminated too. BLAS has one thread in each: with as many workers as cores its threads
+    would wait for one another, a millisecond for every small matrix.
     """
 
     def __init__(self, count: int) -> None:
@@ -21,7 +23,8 @@ class Workers(ProcessPoolExecutor):
 
     def submit(self, work: Callable[..., Any], /, *arguments: Any, **more: Any) -> Future:
         """Submit work to a worker, starting one if none is free."""
-        with _held_back(signal.SIGINT):  # also in workers started now, permanently
+        # Also in workers started now, permanently.
+        with _held_back(signal.SIGINT), _one_blas_thread():
             return super().submit(work, *arguments, **more)
 
     def __exit__(
@@ -43,3 +46,14 @@ def _held_back(number: signal.Signals) -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _one_blas_thread() -> Iterator[None]:
+    known = os.environ.get(name := "OPENBLAS_NUM_THREADS")
+    os.environ[name] = known or "1"
+    try:
+        yield
+    finally:
+        if known is None:
+            del os.environ[name]
