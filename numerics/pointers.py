@@ -44,13 +44,13 @@ def _pointer_type(kind: Any) -> Any:
 def _pointer(context, builder, kind, value):
     if not isinstance(kind, types.Array):
         return value
-    array = context.make_array(kind)(context, builder, value)
-    found = cgutils.create_struct_proxy(_pointer_type(kind))(context, builder)
-    found.data = array.data
-    for k, length in enumerate(cgutils.unpack_tuple(builder, array.shape)):
-        if k > 0:
-            setattr(found, f"length{k}", length)
-    return found._getvalue()
+    fields = context.data_model_manager[kind]._fields
+    found = context.get_value_type(_pointer_type(kind))(None)
+    found = builder.insert_value(found, builder.extract_value(value, fields.index("data")), 0)
+    for k in range(1, kind.ndim):
+        length = builder.extract_value(value, (fields.index("shape"), k))
+        found = builder.insert_value(found, length, k)
+    return found
 
 
 @intrinsic

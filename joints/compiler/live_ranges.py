@@ -41,7 +41,7 @@ def _rename(blocks: dict[int, ir.Block], several: dict[str, list[ir.Assign]]) ->
     for at, block in blocks.items():
         reaching = before[at]
         for one in block.body:
-            for name in _used(one).intersection(several):
+            for name in names_read(one).intersection(several):
                 seen = reaching.get(name)
                 if seen:
                     first, *others = seen
@@ -87,7 +87,7 @@ def _reaching(blocks, several) -> dict[int, dict[str, set]]:
     return before
 
 
-def _used(one: ir.Stmt) -> set[str]:
+def names_read(one: ir.Stmt) -> set[str]:
     """Return the names that a statement reads."""
     read = one.value if isinstance(one, ir.Assign) else one
     if isinstance(read, ir.Var):

@@ -16,7 +16,6 @@ from typing import ClassVar
 
 from numba._dynfunc import make_function
 from numba.core import (
-    cgutils,
     compiler,
     compiler_machinery,
     ir,
@@ -26,12 +25,12 @@ from numba.core import (
 )
 from numba.core.codegen import JITCodeLibrary
 from numba.core.imputils import lower_constant, lower_getattr_generic
-from numba.core.lowering import Lower
 from numba.core.rewrites.static_getitem import RewriteConstGetitems
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import models, register_model, typeof_impl
 
 from joints.compiler.live_ranges import LiveRanges
+from joints.compiler.lowering import Plainly
 
 
 class Flags(types.Opaque):
@@ -185,22 +184,6 @@ class Releases(typed_passes.IRLegalization):
         kinds = set(state.typemap.values())
         counted = any(models_of[kind].contains_nrt_meminfo() for kind in kinds)
         return counted and super().run_pass(state)
-
-
-class Plainly(Lower):
-    """Write code without what only debuggers read."""
-
-    def lower_inst(self, inst):
-        """Write one instruction."""
-        if isinstance(inst, ir.Assign):
-            name = inst.target.name
-            self.storevar(self.lower_assign(self.typeof(name), inst), name)
-        else:
-            super().lower_inst(inst)
-
-    def alloca_lltype(self, name, lltype, datamodel=None):
-        """Return the place of a variable."""
-        return cgutils.alloca_once(self.builder, lltype, name=name, zfill=False)
 
 
 class FormulaLibrary(JITCodeLibrary):
