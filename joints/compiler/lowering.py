@@ -49,6 +49,7 @@ class Plainly(Lower):
         once = {name: found[0] for name, found in places.items() if len(found) == 1}
         once = {name: found for name, found in once.items() if name not in early}
         first = min(self.blocks)
+        self._counts = any(isinstance(one, ir.Del) for found in uses.values() for _, one in found)
         self._singly_assigned_vars = {
             name
             for name, (here, _) in once.items()
@@ -140,6 +141,16 @@ class Plainly(Lower):
             self._alloca_var(name, self.typeof(name))
             self.builder.store(value, self.getvar(name))
 
+    def incref(self, typ, val):
+        """Count a reference, where one is released."""
+        if self._counts:
+            super().incref(typ, val)
+
+    def decref(self, typ, val):
+        """Release a reference, where one is counted."""
+        if self._counts:
+            super().decref(typ, val)
+
     def alloca_lltype(self, name, lltype, datamodel=None):
         """Return the place of a variable."""
         return cgutils.alloca_once(self.builder, lltype, name=name, zfill=False)
@@ -148,34 +159,29 @@ class Plainly(Lower):
 def _loop(name: str, once: dict, uses: dict) -> set[str]:
     """Return the variables of the loop over a range, if nothing else uses the range, its iterator
     or what that returns; all are assigned once."""
-    found, work = set(), [(name, ("getiter",))]
+    found: set[str] = set()
+    work: list[tuple[str, tuple[str, ...]]] = [(name, ("getiter",))]
     while work:
         name, allowed = work.pop()
         found.add(name)
         for at, one in uses[name]:
-            if isinstance(one, ir.Del):
-                continue
             value = one.value if isinstance(one, ir.Assign) else None
+            following: tuple[str, ...]
             if isinstance(value, ir.Var) and allowed == ("iternext",):
                 following = allowed
             elif isinstance(value, ir.Expr) and value.op in allowed:
-                following = NEXT[value.op]
+                following = NEXT.get(value.op, ())
             else:
                 return set()
-            if following is None:  # a number, or whether it is one: read where it is found
+            if not following:  # a number, or whether it is one: read where it is found
                 if at != once[name][0]:
                     return set()
-            elif one.target.name not in once:
-                return set()
-            else:
+            elif one.target.name in once:
                 work.append((one.target.name, following))
+            else:
+                return set()
     return found
 
 
 #: What may be done with the result of a step of a loop.
-NEXT = {
-    "getiter": ("iternext",),
-    "iternext": ("pair_first", "pair_second"),
-    "pair_first": None,
-    "pair_second": None,
-}
+NEXT = {"getiter": ("iternext",), "iternext": ("pair_first", "pair_second")}

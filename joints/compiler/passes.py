@@ -174,16 +174,42 @@ class TypeInference(typed_passes.NopythonTypeInference):
 
 @compiler_machinery.register_pass(mutates_CFG=False, analysis_only=True)
 class Releases(typed_passes.IRLegalization):
-    """Say where each variable ends, if any of them counts references."""
+    """Say where each variable ends, if any holds references of its own.
+
+    What a function is given its caller holds: arrays that it only reads and writes are not counted.
+    """
 
     _name = "releases"
 
     def run_pass(self, state):
         """Return whether one does."""
-        models_of = state.targetctx.data_model_manager
-        kinds = set(state.typemap.values())
-        counted = any(models_of[kind].contains_nrt_meminfo() for kind in kinds)
-        return counted and super().run_pass(state)
+        models_of, kinds = state.targetctx.data_model_manager, state.typemap
+
+        def counted(one):
+            return models_of[kinds[one.target.name]].contains_nrt_meminfo() and not borrowed(one)
+
+        blocks = state.func_ir.blocks.values()
+        owned = models_of[state.return_type].contains_nrt_meminfo() or any(
+            counted(one) for block in blocks for one in block.find_insts(ir.Assign)
+        )
+        if owned:
+            super().run_pass(state)
+            for block in blocks:
+                block.body = [
+                    one
+                    for one in block.body
+                    if not isinstance(one, ir.Del)
+                    or models_of[kinds[one.value]].contains_nrt_meminfo()
+                ]
+        return owned
+
+
+def borrowed(one: ir.Assign) -> bool:
+    """Return whether a statement only passes on what something else holds."""
+    value = one.value
+    return isinstance(value, ir.Arg | ir.Var) or (
+        isinstance(value, ir.Expr) and value.op == "build_tuple"
+    )
 
 
 class FormulaLibrary(JITCodeLibrary):
