@@ -44,11 +44,11 @@ def _pointer_type(kind: Any) -> Any:
 def _pointer(context, builder, kind, value):
     if not isinstance(kind, types.Array):
         return value
-    fields = context.data_model_manager[kind]._fields
+    place = context.data_model_manager[kind].get_field_position
     found = context.get_value_type(_pointer_type(kind))(None)
-    found = builder.insert_value(found, builder.extract_value(value, fields.index("data")), 0)
+    found = builder.insert_value(found, builder.extract_value(value, place("data")), 0)
     for k in range(1, kind.ndim):
-        length = builder.extract_value(value, (fields.index("shape"), k))
+        length = builder.extract_value(value, (place("shape"), k))
         found = builder.insert_value(found, length, k)
     return found
 
