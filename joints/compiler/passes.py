@@ -19,6 +19,8 @@ from numba.core import (
     compiler,
     compiler_machinery,
     ir,
+    postproc,
+    transforms,
     typed_passes,
     types,
     untyped_passes,
@@ -79,6 +81,23 @@ def flag(context, builder, kind, value, attribute):
 def nothing(context, builder, kind, value):
     """Return what is there of flags when a kernel runs."""
     return context.get_dummy_value()
+
+
+@compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
+class Canonical(untyped_passes.IRProcessing):
+    """Bring loops into their canonical form; which variables live where, only generators ask."""
+
+    _name = "canonical loops"
+
+    def run_pass(self, state):
+        """Return that the state has changed."""
+        found = state.func_ir
+        if found.is_generator:
+            return super().run_pass(state)
+        found.blocks = transforms.canonicalize_cfg(found.blocks)
+        found.variable_lifetime = postproc.VariableLifetime(found.blocks)
+        found.generator_info = None
+        return True
 
 
 @compiler_machinery.register_pass(mutates_CFG=False, analysis_only=False)
@@ -261,7 +280,7 @@ class Lowering(KernelLowering):
 BEFORE_LOWERING = (
     untyped_passes.TranslateByteCode,
     untyped_passes.FixupArgs,
-    untyped_passes.IRProcessing,
+    Canonical,
     KnownFlags,
     untyped_passes.RewriteSemanticConstants,
     untyped_passes.DeadBranchPrune,
