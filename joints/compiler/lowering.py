@@ -2,7 +2,7 @@
 
 numba turns a loop over a range into some sixty instructions, and keeps what several blocks read in
 memory. Here a loop takes fifteen, and what is assigned once, at the beginning of a function, is
-never stored: LLVM reads half as much, and the machine code stays the same.
+never stored. LLVM reads half as much, and its optimised code hardly differs.
 """
 
 from collections import defaultdict
