@@ -148,15 +148,11 @@ def _solved(
 
 def _untimed(out: Path, hard: bool, pool: Pool, part: Callable[[str], Progress]) -> _Untimed:
     """Return what is made beside the scenes: processors are busy, and no seconds are measured."""
-    tell, joints, folder = part("rock masses"), [], out / "studies"
-    with ThreadPoolExecutor(1) as beside:
-        # Their points keep the workers busy while the hard cases wait for their last and are drawn.
-        for name in scattering.TITLES:
-            beside.submit(scattering.run, name, folder / name, brief=True, pool=pool)
-        stability = make_hard_cases(folder, pool, False, part("hard cases")) if hard else None
+    stability = make_hard_cases(out / "studies", pool, False, part("hard cases")) if hard else None
     part("hard cases")(1.0)  # also where they are left out
+    tell, joints = part("rock masses"), []
     for i, name in enumerate(scattering.TITLES, start=1):
-        joints.append(scattering.make_study(name, folder, brief=True, pool=pool))
+        joints.append(scattering.make_study(name, out / "studies", brief=True, pool=pool))
         tell(i / len(scattering.TITLES))
     return _Untimed(stability, joints)
 
