@@ -6,6 +6,7 @@ precision, with as many bits of the mantissa as a screen can show: the rest are 
 compresses away (bit rounding, Kloewer et al. 2021, doi:10.1038/s43588-021-00156-2).
 """
 
+import re
 from base64 import b64decode, b64encode
 from math import log10
 from textwrap import wrap
@@ -22,9 +23,11 @@ INK, GRID = "#1c2126", "#e3e6e9"
 PIXELS = 95  # px per inch of a subplot in print
 LINE = 17  # px of a line of a heading
 NARROW = 39  # characters of such a line on a phone
+TOGETHER = re.compile("(?<==) | (?==|m\\b)")  # spaces of a heading at which no line ends
 TOP, BOTTOM, LEFT, RIGHT = 11, 58, 84, 16  # px around the subplots
 GAP = 20  # px between subplots, besides their headings
 SAMPLES = 800  # of a curve
+TICKS = 5  # at most; fewer could leave zero alone on a symmetric axis
 BITS = 14  # of the mantissa of a curve's values: a relative error of 3e-5
 
 
@@ -127,7 +130,12 @@ def axis_key(row: int) -> str:
 def layout(subplots: list[Subplot], abscissa: dict[str, Any]) -> dict[str, Any]:
     """Return the layout of subplots one below the other on one abscissa."""
     headings = [
-        [line for part in s.heading.split("\n") for line in wrap(part, NARROW)] for s in subplots
+        [
+            line
+            for part in TOGETHER.sub("\u00a0", s.heading).split("\n")
+            for line in wrap(part, NARROW)
+        ]
+        for s in subplots
     ]
     above = [LINE * max(1, len(lines)) for lines in headings]
     heights = [round(PIXELS * s.height) for s in subplots]
@@ -171,7 +179,7 @@ def _axis(label: str) -> dict[str, Any]:
 
 
 def _ordinate(subplot: Subplot) -> dict[str, Any]:
-    found: dict[str, Any] = {"nticks": 4} if subplot.is_minor else {}
+    found: dict[str, Any] = {"nticks": TICKS} if subplot.is_minor else {}
     if subplot.is_log:
         found |= {"type": "log", "exponentformat": "power"}
         if subplot.limits:

@@ -167,7 +167,7 @@ def _key(domain: list[float]) -> dict[str, Any]:
         "len": domain[1] - domain[0],
         "thickness": 10,
         "outlinewidth": 0,
-        "nticks": 4,
+        "nticks": interactive.TICKS,
         "tickfont": {"size": 11},
     }
 
