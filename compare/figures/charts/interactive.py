@@ -179,7 +179,8 @@ def _axis(label: str) -> dict[str, Any]:
 
 
 def _ordinate(subplot: Subplot) -> dict[str, Any]:
-    found: dict[str, Any] = {"nticks": TICKS} if subplot.is_minor else {}
+    few = 4 if subplot.is_log else TICKS
+    found: dict[str, Any] = {"nticks": few} if subplot.is_minor else {}
     if subplot.is_log:
         found |= {"type": "log", "exponentformat": "power"}
         if subplot.limits:
