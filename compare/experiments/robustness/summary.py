@@ -100,8 +100,8 @@ def _draw_drifts(ax: Axes, drifts: dict[str, Drift]) -> None:
         )
         line.set_gid(f"stability-energy-{k}")
     ax.set_xlabel("million steps at 0.9 of the critical one")
-    ax.set_ylabel("relative deviation of energy from its mean, 1e-13")
-    ax.legend(frameon=False, ncols=len(drifts), loc="upper left")
+    ax.set_ylabel("relative deviation\nof energy from its mean, 1e-13")
+    ax.legend(frameon=False, ncols=len(drifts), loc="lower right", bbox_to_anchor=(1, 0.98))
     ax.grid(color="#e4e7ea", linewidth=0.6)
 
 

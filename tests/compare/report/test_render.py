@@ -109,6 +109,16 @@ def test_rock_masses_stand_with_their_scenes_and_studies(page, section, figure):
     assert "rock-masses" not in page()
 
 
+def test_a_study_has_a_place_beside_a_scene_of_its_name(page, section, figure):
+    """The contents lead to each of them."""
+    study = Summary("fig-05", "Work", Table([], {}), [], [], [], {}, figure("work"), timed=True)
+    html = page(sections=[section([])], studies=[study])
+    places = re.findall(r'\bid="([^"]+)"', html)
+    assert len(set(places)) == len(places)
+    links = re.findall(r'href="#([^"]+)"', html.partition("</nav>")[0])
+    assert set(links) <= set(places) and {"fig-05", "study-fig-05"} <= set(links)
+
+
 def test_a_failed_claim_is_red_and_named_at_the_top(page, section):
     findings = [Finding("waves pass", "They do.", True), Finding("waves stop", "No.", False)]
     html = page(sections=[section(findings)])

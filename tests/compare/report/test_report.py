@@ -260,7 +260,7 @@ def test_page_shows_other_codes_beside_the_free_pillar(text):
     found = part(text, "peers")
     assert "36 (LAMMPS bonds)" in found and "a quiet one" in found
     assert "Yade spheres (cohesive spheres): missing, no apt here" in found
-    order = [text.index(f'<section id="{name}">') for name in ("free-pillar", "peers")]
+    order = [text.index(f'<section id="{name}">') for name in ("study-free-pillar", "peers")]
     assert order == sorted(order) and text.count("<section", *order) == 1
 
 
