@@ -19,6 +19,7 @@ NUMBERS = 0.55  # the same if a shared ordinate is labelled only once
 MOST = 6  # entries per line of a legend
 LEGEND, LEGEND_LINE = 0.16, 0.165  # inches of the legend, plus each of its lines
 SMALLER = 0.76  # of the height of a subplot, for more than two rows of cells
+LETTER = 0.55  # width of a letter on average, over its size
 MARK = "#5d6670"  # colour of vertical lines
 
 
@@ -40,7 +41,7 @@ def draw(name: str, chart: Chart) -> Figure:
                     if j == 0 or not subplot.share:
                         ax.set_ylabel(subplot.label)
                 if chart.is_lettered and (letter := next(letters, "")):
-                    axes[depth * i, j].set_title(f"({letter})  {cell[0].heading}", pad=4)
+                    _set_title(axes[depth * i, j], f"({letter})  {cell[0].heading}")
             for ax in axes[depth * i : depth * (i + 1), len(row) :].ravel():
                 ax.set_visible(False)
         for ax in (next(ax for ax in column[::-1] if ax.get_visible()) for column in axes.T):
@@ -82,11 +83,18 @@ def _heights(chart: Chart) -> list[float]:
     ]
 
 
+def _set_title(ax: Axes, heading: str) -> None:
+    """Set a title, in smaller letters if it is longer than the axes are wide."""
+    points = 72 * ax.get_position().width * WIDTH
+    size = min(ax.title.get_fontsize(), points / (LETTER * max(1, len(heading))))
+    ax.set_title(heading, pad=4, fontsize=size)
+
+
 def _draw(ax: Axes, subplot: Subplot, name: str, is_log: bool) -> None:
     if subplot.is_minor:
         ax.set_title(subplot.heading, pad=2, fontsize=8)
     else:
-        ax.set_title(subplot.heading, pad=4)
+        _set_title(ax, subplot.heading)
     if is_log:
         ax.set_xscale("log")
     if subplot.is_log:

@@ -108,7 +108,7 @@ def test_the_first_screen_holds_every_engine_on_every_figure(report, browser):
     assert box["y"] + box["height"] < 800 and box["x"] + box["width"] <= 1280
     rows = page.locator("table.overview tbody tr").all_inner_texts()
     assert len(rows) == len(FIGURES) and all(row.count("×") == 3 for row in rows)
-    lead = page.locator("ul.lead").inner_text().replace("\u00a0", " ")
+    lead = page.locator("#overview ul.lead").inner_text().replace("\u00a0", " ")
     assert "(rigid blocks): 0.22 to 4 % from the finest physics" in lead
     assert "the time of the cheapest" in lead and "a run." in lead
     page.close()
@@ -250,7 +250,7 @@ def test_report_leaves_no_half_written_files(report):
 @pytest.mark.parametrize("name", REPORTED)
 def test_page_shows_what_each_study_found(name, text):
     """Its diagram, and every point of its table."""
-    found = part(text, name)
+    found = part(text, f"study-{name}")
     assert "<svg" in found and "Failed points" not in found
     assert all(found.count(curve.label) >= 2 for curve in load(name).curves)
 
