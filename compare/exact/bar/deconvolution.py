@@ -22,7 +22,7 @@ from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
 from compare.exact.bar import equivalent_bar, jointed_bar
-from compare.exact.bar.transfer import Bar, end_of, transfer
+from compare.exact.bar.transfer import Bar, RockFrom, end_of, transfer
 from compare.exact.conditions import DAMPED, beyond
 
 HELD = (
@@ -87,9 +87,7 @@ def _column(scene: Scene) -> tuple[Bar, float]:
     etas, impedance = p.joint_time_constant, p.shear_impedance if load.is_across else p.impedance
     bar = Bar(
         length=scene.pillar.length,
-        density=p.density,
-        modulus=modulus,
-        time_constant=p.time_constant or 0.0,
+        rocks=(RockFrom(0.0, p.density, modulus, p.time_constant or 0.0),),
         joint_y=p.joint_y,
         joint_compliance=compliance,
         joint_time_constant=np.zeros_like(p.joint_y) if etas is None else etas,
@@ -101,10 +99,8 @@ def _column(scene: Scene) -> tuple[Bar, float]:
 
 def _crossing(bar: Bar) -> float:
     """Return the travel time of a wave through the rock of a bar, from end to end, s."""
-    if not bar.rocks:
-        return bar.length * sqrt(bar.density / bar.modulus)
-    lengths = np.diff([*(rock.y for rock in bar.every), bar.length])
-    slowness = [sqrt(rock.density / rock.modulus) for rock in bar.every]
+    lengths = np.diff([*(rock.y for rock in bar.rocks), bar.length])
+    slowness = [sqrt(rock.density / rock.modulus) for rock in bar.rocks]
     return float(lengths @ slowness)
 
 

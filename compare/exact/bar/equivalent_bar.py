@@ -13,7 +13,7 @@ import xarray as xr
 from cases.material.calibrate import calibrate, mechanisms_of
 from cases.schema.scene import Scene
 from compare.exact.bar.laplace import solved
-from compare.exact.bar.transfer import Bar, end_of, rock_eta, rocks
+from compare.exact.bar.transfer import Bar, end_of, rocks
 from compare.exact.conditions import DAMPED, holds
 from compare.solvers.record import BAR, Answer, Kind, Rock, Solver, Words, thin
 
@@ -45,16 +45,12 @@ def bar(scene: Scene) -> Bar:
     etas = p.joint_time_constant
     return Bar(
         length=scene.pillar.length,
-        density=p.at_start.density,
-        modulus=p.at_start.modulus,
-        time_constant=rock_eta(p.at_start, relaxation),
+        rocks=rocks(p, [one.modulus for one in p.each], relaxation),
         joint_y=p.joint_y,
         joint_compliance=p.excess_compliance,
         joint_time_constant=np.zeros_like(p.joint_y) if etas is None else etas,
         start=end_of(scene.ends.start, p.at_start.impedance),
         end=end_of(scene.ends.end, p.at_end.impedance),
-        rocks=rocks(p, [one.modulus for one in p.each], relaxation),
-        relaxation=relaxation,
     )
 
 

@@ -15,7 +15,7 @@ import xarray as xr
 from cases.material.calibrate import Properties, calibrate, mechanisms_of
 from cases.schema.scene import Scene
 from compare.exact.bar.laplace import solved
-from compare.exact.bar.transfer import Bar, End, end_of, rock_eta, rocks
+from compare.exact.bar.transfer import Bar, End, end_of, rocks
 from compare.exact.conditions import DAMPED, holds
 from compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, thin
 
@@ -44,21 +44,17 @@ def solve(scene: Scene) -> xr.Dataset:
 def bar(scene: Scene) -> Bar:
     """Return the scene's intact rock with its N - 1 joints."""
     p = calibrate(scene)
-    assert p.own_stiffness is not None and p.intact_modulus is not None
+    assert p.own_stiffness is not None
     relaxation = mechanisms_of(scene, "jointed")
     etas = p.own_time_constant
     return Bar(
         length=scene.pillar.length,
-        density=p.at_start.density,
-        modulus=p.at_start.intact_modulus or p.intact_modulus,
-        time_constant=rock_eta(p.at_start, relaxation),
+        rocks=rocks(p, [one.intact_modulus or 0.0 for one in p.each], relaxation),
         joint_y=p.joint_y,
         joint_compliance=1 / p.own_stiffness,
         joint_time_constant=np.zeros_like(p.joint_y) if etas is None else etas,
         start=_end(scene.ends.start, p.at_start),
         end=_end(scene.ends.end, p.at_end),
-        rocks=rocks(p, [one.intact_modulus or 0.0 for one in p.each], relaxation),
-        relaxation=relaxation,
     )
 
 

@@ -152,8 +152,8 @@ class Front(NamedTuple):
         self, load: LoadHistory, times: np.ndarray, stress_y: list[float], velocity_y: list[float]
     ) -> list[np.ndarray]:
         """Return its stress, velocity and displacement [receivers, n]."""
-        rock = self.bar
-        z = np.sqrt(rock.density * rock.modulus)
+        _, density, modulus, *_ = self.bar.rocks[0]
+        z = np.sqrt(density * modulus)
         found = []
         for signal, places, sign, scale in (
             (load.value, stress_y, 1, 1.0),
@@ -164,7 +164,7 @@ class Front(NamedTuple):
             shares = self.shares(y)
             ahead = shares > 0
             there, back = images(
-                signal, y[ahead], times, rock.length, z / rock.density, self.start, self.end
+                signal, y[ahead], times, self.bar.length, z / density, self.start, self.end
             )
             out[ahead] = shares[ahead, None] * self.enters / scale * (there + sign * back)
             found.append(out)
@@ -173,20 +173,21 @@ class Front(NamedTuple):
 
 def _front(bar: Bar, duration: float) -> Front | None:
     """Return the part of a bar in which kinks of the load travel to and fro, None without one."""
-    if bar.time_constant or bar.relaxation is not None:
+    first, *others = bar.rocks
+    if first.time_constant or first.relaxation is not None:
         return None
-    z = np.sqrt(bar.density * bar.modulus)
+    z = np.sqrt(first.density * first.modulus)
     joints = np.flatnonzero(bar.joint_compliance)
     length, far = bar.length, bar.end
     if len(joints):
         if bar.joint_time_constant[joints].any():
             return None
         length, far = float(bar.joint_y[joints[0]]), End(0.0)
-    if bar.rocks and bar.rocks[0].y < length * (1 - 1e-9):
-        behind = bar.rocks[0]
+    if others and others[0].y < length * (1 - 1e-9):
+        behind = others[0]
         stiff = np.inf if behind.time_constant else np.sqrt(behind.density * behind.modulus)
         length, far = behind.y, End(stiff)
-    if duration * z / bar.density > 2 * length * MOST_TRIPS:
+    if duration * z / first.density > 2 * length * MOST_TRIPS:
         return None
     near, far = (End(0.0) if end.compliance else end for end in (bar.start, far))
     none = np.zeros(0)
@@ -198,7 +199,7 @@ def _front(bar: Bar, duration: float) -> Front | None:
         joint_time_constant=none,
         start=near,
         end=far,
-        rocks=(),
+        rocks=(first,),
     )
     start, end = (
         1.0 if np.isinf(e.dashpot) else (e.dashpot - z) / (e.dashpot + z) for e in (near, far)

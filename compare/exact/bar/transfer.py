@@ -58,8 +58,8 @@ def end_of(kind: str, impedance: float, compliance: float = 0.0, time_constant: 
 
 
 class RockFrom(NamedTuple):
-    """The rock of a bar from y (m) on: density (kg/m3), modulus (Pa), Kelvin-Voigt eta (s), and
-    relaxation (`Bar.relaxation`)."""
+    """The rock of a bar from y (m) on: density (kg/m3), modulus (Pa), Kelvin-Voigt eta (s), and the
+    mechanisms that make its modulus depend on the Laplace variable, None without."""
 
     y: float
     density: float
@@ -78,17 +78,14 @@ class RockFrom(NamedTuple):
 def rocks(
     p: Properties, moduli: list[float], relaxation: Mechanisms | None
 ) -> tuple[RockFrom, ...]:
-    """Return the rocks behind the first of a pillar whose segments have these moduli (Pa)."""
-    starts = np.cumsum([one.block_count * one.spacing for one in p.each])
+    """Return the rocks of a pillar whose segments have these moduli (Pa); in relaxing rock only
+    joints have dashpots."""
+    starts = np.cumsum([0.0, *(one.block_count * one.spacing for one in p.each)])
+    etas = [one.time_constant or 0.0 if relaxation is None else 0.0 for one in p.each]
     return tuple(
-        RockFrom(float(y), one.density, modulus, rock_eta(one, relaxation), relaxation)
-        for y, one, modulus in zip(starts[:-1], p.each[1:], moduli[1:], strict=True)
+        RockFrom(float(y), one.density, modulus, eta, relaxation)
+        for y, one, modulus, eta in zip(starts[:-1], p.each, moduli, etas, strict=True)
     )
-
-
-def rock_eta(p: Properties, relaxation: Mechanisms | None) -> float:
-    """Return the Kelvin-Voigt eta of rock, s: 0 in relaxing rock (dashpots in joints only)."""
-    return p.time_constant or 0.0 if relaxation is None else 0.0
 
 
 @dataclass(frozen=True)
@@ -97,31 +94,19 @@ class Bar:
 
     Attributes
     ----------
-    length, density, modulus : m, kg/m3, Pa.
-    time_constant : Kelvin-Voigt eta of the rock, s.
-    rocks : other rocks behind the first, in order.
-    relaxation : mechanisms that make the modulus depend on the Laplace variable, None without.
+    length : m.
+    rocks : in order, the first from the start.
     joint_y, joint_compliance, joint_time_constant : float arrays [joints], sorted; m, m/Pa, s.
     start, end : supports of the ends; the start cannot be fixed.
     """
 
     length: float
-    density: float
-    modulus: float
-    time_constant: float
+    rocks: tuple[RockFrom, ...]
     joint_y: np.ndarray
     joint_compliance: np.ndarray
     joint_time_constant: np.ndarray
     start: End
     end: End
-    rocks: tuple[RockFrom, ...] = ()
-    relaxation: Mechanisms | None = None
-
-    @property
-    def every(self) -> tuple[RockFrom, ...]:
-        """All rocks of the bar, in order."""
-        first = self.density, self.modulus, self.time_constant, self.relaxation
-        return (RockFrom(0.0, *first), *self.rocks)
 
 
 class Cell(NamedTuple):
@@ -151,9 +136,8 @@ def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, n
     s : complex array of Laplace variables, 1/s, with positive real parts. Equal joints at equal
     spacings with no place among them are combined by doubling.
     """
-    every = bar.every
-    zs = [rock.impedance(s) for rock in every]
-    slowness = [s * rock.density / z for rock, z in zip(every, zs, strict=True)]
+    zs = [rock.impedance(s) for rock in bar.rocks]
+    slowness = [s * rock.density / z for rock, z in zip(bar.rocks, zs, strict=True)]
     R = _end_reflection(bar.end, s, zs[-1])
     stress, velocity = np.zeros((2, len(places), len(s)), dtype=complex)
     # Places from the far end on, each with the transmission from it to those farther on, and the
@@ -216,7 +200,7 @@ def _runs(bar: Bar, nodes: np.ndarray, joint_of: dict[int, int], places: np.ndar
     its own."""
     held = (np.abs(places[:, None] - nodes) < 1e-9 * bar.length).any(axis=0)
     h = np.append(0.0, np.diff(nodes)).round(12)
-    starts, close = [rock.y for rock in bar.rocks], 1e-9 * bar.length
+    starts, close = [rock.y for rock in bar.rocks[1:]], 1e-9 * bar.length
     before, behind = (np.searchsorted(starts, nodes + off) for off in (-close, close))
     kinds = []
     for i in range(len(nodes) - 1, -1, -1):
@@ -242,7 +226,7 @@ def nodes_of(bar: Bar, places: np.ndarray) -> tuple[np.ndarray, dict[int, int]]:
     near = np.abs(places[:, None] - np.concatenate([own, [0.0, bar.length]])).min(axis=1)
     apart = np.unique(places[near > 1e-9 * bar.length])
     nodes = np.sort(np.concatenate([[0.0, bar.length], own, apart]))
-    for rock in bar.rocks:
+    for rock in bar.rocks[1:]:
         if np.abs(nodes - rock.y).min() > 1e-9 * bar.length:
             nodes = np.insert(nodes, np.searchsorted(nodes, rock.y), rock.y)
     return nodes, dict(zip(np.searchsorted(nodes, own).tolist(), joints.tolist(), strict=True))

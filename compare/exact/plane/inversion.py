@@ -26,7 +26,7 @@ from numpy.polynomial.legendre import leggauss
 
 WINDOW = 2  # times the requested duration, in the coarser of the two inversions
 WRAPPED = 1e-11
-STEPS = 4096  # least number in the requested duration, of a pulse that is a function
+STEPS = 4096  # least number in the requested duration
 GAUSS = 10  # points per bin
 SLOPE = 16  # bins over which the path climbs
 CLIMB = 160  # points on the slope
@@ -35,8 +35,7 @@ SAFETY = 2.0  # factor on the difference of the two inversions
 FLOOR = 2e-10  # of the largest motion
 FAINT = 1e-9  # of a pulse's spectrum: the highest frequencies that `analytic_inverse` leaves out
 
-Transfer = Callable[[np.ndarray], np.ndarray]
-Velocity = Callable[[np.ndarray], np.ndarray] | np.ndarray
+Function = Callable[[np.ndarray], np.ndarray]
 
 
 class Window(NamedTuple):
@@ -54,68 +53,55 @@ class Window(NamedTuple):
 
 
 def inverse(
-    transfer: Transfer, pulse: Velocity, times: np.ndarray, earliest: float, causal: bool
+    transfer: Function, pulse: Function, times: np.ndarray, earliest: float, causal: bool
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return u [..., n] at `times` (s, equally spaced) and the bound on its root-mean-square error
     [...].
 
-    transfer : H [..., k] at complex omega [k] (rad/s). pulse : f, as a function of time or as
-    samples at `times`, zero before the first. earliest : delay of the first arrival, s.
+    transfer : H [..., k] at complex omega [k] (rad/s). pulse : f, taken as zero before the first of
+    the times. earliest : delay of the first arrival, s.
     """
     from scipy.ndimage import maximum_filter1d
 
-    require_equally_spaced(times)
-    if not callable(pulse) and np.shape(pulse) != times.shape:
-        raise ValueError(f"the pulse has {np.shape(pulse)} samples, the times are {times.shape}")
-    windows = [window_of(times, pulse, size, max(0.0, -earliest)) for size in (2 * WINDOW, WINDOW)]
+    windows = [window_of(times, size, max(0.0, -earliest)) for size in (2 * WINDOW, WINDOW)]
     found, rough = (
-        _inverse(transfer, sampled(pulse, window), window, len(times), skip, causal).real
+        _inverse(transfer, pulse, window, len(times), skip, causal).real
         for window, skip in zip(windows, (1, 2), strict=True)
     )
     stride = windows[0].stride
     off = maximum_filter1d(np.abs(found - rough), NEAR, axis=-1)[..., ::stride]
-    peak = max(np.abs(found).max(), np.abs(sampled(pulse, windows[0])).max())
+    peak = max(np.abs(found).max(), np.abs(pulse(windows[0].times)).max())
     error = SAFETY * np.sqrt(np.mean(off**2, axis=-1)) + FLOOR * peak
     return found[..., ::stride], error
 
 
 def analytic_inverse(
-    transfer: Transfer, pulse: Callable[[np.ndarray], np.ndarray], times: np.ndarray, causal: bool
+    transfer: Function, pulse: Function, times: np.ndarray, causal: bool
 ) -> np.ndarray:
     """Return (1/pi) int F H e^{-i omega t} d omega [..., n], whose real part is u, for a pulse that
     no arrival precedes; as `inverse`, but without a bound and without the frequencies at which the
     pulse's spectrum is below FAINT."""
-    require_equally_spaced(times)
-    window = window_of(times, pulse, 2 * WINDOW, 0.0)
-    found = _inverse(transfer, sampled(pulse, window), window, len(times), 1, causal, FAINT)
+    window = window_of(times, 2 * WINDOW, 0.0)
+    found = _inverse(transfer, pulse, window, len(times), 1, causal, FAINT)
     return found[..., :: window.stride]
 
 
-def require_equally_spaced(times: np.ndarray) -> None:
-    """Raise ValueError unless there are at least two times and they are equally spaced."""
-    steps = np.diff(times)
-    if times.ndim != 1 or len(times) < 2 or not steps[0] > 0:
-        raise ValueError("times must be at least two, ascending")
-    if np.abs(steps - steps[0]).max() > 1e-6 * steps[0]:
-        raise ValueError("times must be equally spaced")
-
-
-def window_of(times: np.ndarray, pulse: Velocity, size: float, lead: float) -> Window:
+def window_of(times: np.ndarray, size: float, lead: float) -> Window:
     """Return the window of `size` times the duration and the lead (s)."""
     from scipy.fft import next_fast_len
 
     n = len(times)
-    stride = -(-STEPS // n) if callable(pulse) else 1
+    stride = -(-STEPS // n)
     step = (times[-1] - times[0]) / (n - 1) / stride
     count = 4 * next_fast_len(int(np.ceil(size * (stride * n + lead / step) / 4)))
     decay = -np.log(WRAPPED) / (count * step)
     return Window(times[0] + step * np.arange(count), step, stride, float(decay))
 
 
-def _inverse(transfer, signal, window, n, skip, causal, least=0.0) -> np.ndarray:
+def _inverse(transfer, pulse, window, n, skip, causal, least=0.0) -> np.ndarray:
     """Return the complex motion whose real part is u, at the fine steps of n samples, from every
     `skip`-th fine sample of the pulse."""
-    signal, keep = signal[::skip], slice(0, n * window.stride)
+    signal, keep = pulse(window.times)[::skip], slice(0, n * window.stride)
     if causal:
         return _level(transfer, signal, window, skip, 0.5, 0, least)[..., keep]
     bins = (
@@ -123,13 +109,6 @@ def _inverse(transfer, signal, window, n, skip, causal, least=0.0) -> np.ndarray
         for node, weight in zip(*_gauss(GAUSS), strict=True)
     )
     return sum(bins) + _climb(transfer, signal, window, skip, keep)
-
-
-def sampled(pulse: Velocity, window: Window) -> np.ndarray:
-    """Return f at the fine times, zero where it is not given."""
-    if callable(pulse):
-        return np.asarray(pulse(window.times), dtype=float)
-    return np.pad(np.asarray(pulse, dtype=float), (0, len(window.times) - len(pulse)))
 
 
 def _level(

@@ -8,7 +8,7 @@ is interpolated in d (Trefethen, Approximation Theory and Approximation Practice
 that follows a pulse without delay is summed in time, with all its kinks.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,18 +48,16 @@ def motion(
     """Return velocity [m, 2, n] (m/s) and stress [m, 3, n] (Pa, tension positive), as
     `pulse_fields` does.
 
-    pulse : a function of time that is zero before 0 s. points : [m, 2], m. times : equally spaced.
+    pulse : zero before 0 s. points : [m, 2], m. times : equally spaced, s.
     """
-    if not callable(pulse.velocity):
-        raise ValueError("the pulse must be a function of time")
     t, places = np.asarray(times, dtype=float), np.atleast_2d(points) @ stack.axes.rows.T
     modes = modes_of(stack)
-    highest = _highest(pulse.velocity, t) if stack.is_evanescent else 0.0
+    highest = _highest(pulse, t) if stack.is_evanescent else 0.0
     waves = list(_waves_of(stack, places, highest))
     fine, stride = _fine_times(stack, waves, t)
     sharp = np.concatenate(stack.at_once, axis=-1)
     found = np.zeros((len(places), modes.shape[2], len(t)))
-    amplitudes = _amplitudes(pulse.velocity, stack, waves, fine)
+    amplitudes = _amplitudes(pulse, stack, waves, fine)
     for one, rows in zip(waves, amplitudes, strict=True):
         mode, share = modes[one.layer, one.wave][:, None], sharp[one.layer, one.wave]
         for k, (place, late) in enumerate(zip(one.members, one.delays, strict=True)):
@@ -67,7 +65,7 @@ def motion(
             if one.shares is None:
                 found[place] += mode.real * _read(rows[0].real, offset, stride, len(t))
                 if share:
-                    found[place] += share * mode.real * pulse.velocity(t - late)
+                    found[place] += share * mode.real * pulse(t - late)
             else:
                 if k % TOGETHER == 0:
                     near = one.shares[k : k + TOGETHER] @ rows
@@ -76,10 +74,10 @@ def motion(
     return found[:, :2], float(stack.rocks[0].p_impedance) * found[:, 2:]
 
 
-def _highest(velocity: Callable, t: np.ndarray) -> float:
+def _highest(pulse: Pulse, t: np.ndarray) -> float:
     """Return the frequency above which a pulse's spectrum is below FAINT of its peak, rad/s."""
     step = (t[-1] - min(t[0], 0.0)) / STEPS
-    spectrum = np.abs(np.fft.rfft(velocity(step * np.arange(STEPS))))
+    spectrum = np.abs(np.fft.rfft(pulse(step * np.arange(STEPS))))
     last = int(np.flatnonzero(spectrum >= FAINT * spectrum.max())[-1])
     return 2 * np.pi * last / (STEPS * step)
 
@@ -133,10 +131,7 @@ def _fine_times(stack: PulseStack, waves: list[LayerWave], t: np.ndarray) -> tup
 
 
 def _amplitudes(
-    velocity: Callable,
-    stack: PulseStack,
-    waves: list[LayerWave],
-    fine: np.ndarray,
+    pulse: Pulse, stack: PulseStack, waves: list[LayerWave], fine: np.ndarray
 ) -> Iterator[np.ndarray]:
     """Yield each wave's complex amplitude without the undelayed part (its real part is the motion),
     [1, samples], or those of an evanescent wave at its depths [d, samples]."""
@@ -156,7 +151,7 @@ def _amplitudes(
                 ]
             )
 
-        return analytic_inverse(transfer, velocity, fine, causal)
+        return analytic_inverse(transfer, pulse, fine, causal)
 
     parts = (inverted(rows[k : k + AT_ONCE]) for k in range(0, len(rows), AT_ONCE))
     each = (row for part in parts for row in part)

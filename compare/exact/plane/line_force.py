@@ -60,12 +60,10 @@ def motion(
     force, rate : f (N/m), continuous, and its rate (N/m/s), at times (s).
     breaks : ascending, s: f is 0 up to the first and from the last on (which may be inf), and
         smooth between them, about one cycle at most; a longer signal needs more of them.
-    offsets : of the places from the line, [m, 2], m.
+    offsets : of the places from the line, off it, [m, 2], m.
     times : s, in any order.
     """
-    x, t = _places(offsets), np.asarray(times, dtype=float)
-    if len(breaks) < 2 or not (np.diff(breaks) > 0).all():
-        raise ValueError(f"breaks are {breaks}, must be at least two, ascending")
+    x, t = np.atleast_2d(offsets), np.asarray(times)
     d = np.asarray(direction, dtype=float)
     found, rough = (
         np.array([_motion(rock, d, force, rate, breaks, place, t, points) for place in x])
@@ -75,14 +73,6 @@ def motion(
     off = np.split(SAFETY * np.abs(found - rough).max(axis=-1), [2, 4], axis=1)
     errors = [e + FLOOR * np.abs(part).max() for e, part in zip(off, parts, strict=True)]
     return LineForceMotion(*parts, *errors)
-
-
-def _places(offsets: np.ndarray) -> np.ndarray:
-    """Return offsets [m, 2] off the line."""
-    x = np.atleast_2d(np.asarray(offsets, dtype=float))
-    if not (np.hypot(*x.T) > 0).all():
-        raise ValueError("a point lies on the line of the force, where the motion is infinite")
-    return x
 
 
 def _motion(rock, d, force, rate, breaks, x, t, points) -> np.ndarray:

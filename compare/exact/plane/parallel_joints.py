@@ -25,14 +25,7 @@ from compare.exact.plane.oblique_joint import (
     picked,
     scattering,
 )
-from compare.exact.plane.pulse import (
-    Fields,
-    Layers,
-    Pulse,
-    PulseStack,
-    axes_of,
-    pulse_fields,
-)
+from compare.exact.plane.pulse import Layers, PulseStack, axes_of
 from compare.exact.plane.waves import Kind, slowness_along, slownesses_across, solve_pair
 
 
@@ -51,15 +44,16 @@ def coefficients(
     joints : in the order in which the wave meets them. spacings : between them, m, one less.
     """
     slowness = slowness_along(rock, incidence, angle)
-    R, behind = march(rock, joints, spacings, slowness, omega)
-    E, T = _phases(_each(rock, len(joints)), spacings, slowness, omega), behind[0]
+    rocks = [rock] * (len(joints) + 1)
+    R, behind = march(rocks, joints, spacings, slowness, omega)
+    E, T = _phases(rocks, spacings, slowness, omega), behind[0]
     for e, Y in zip(E, behind[1:], strict=True):
         T = Y @ (e[..., :, None] * T)
     return picked(R[0], T, incidence)
 
 
 def march(
-    rock: ElasticRock | Sequence[ElasticRock],
+    rocks: Sequence[ElasticRock],
     joints: list[Joint],
     spacings: np.ndarray,
     slowness: Values,
@@ -67,13 +61,8 @@ def march(
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Return R_i and Y_i of every joint, complex arrays [..., 2, 2].
 
-    rock : of all layers, or one for each, one more than joints. slowness : s/m.
+    rocks : of the layers, one more than joints. slowness : s/m.
     """
-    if not joints:
-        raise ValueError("joints is empty, must hold at least one")
-    if len(spacings) != len(joints) - 1 or not (np.asarray(spacings) > 0).all():
-        raise ValueError(f"{len(joints)} joints need {len(joints) - 1} positive spacings")
-    rocks = _each(rock, len(joints))
     R, T = scattering(rocks[-2], joints[-1], slowness, omega, rocks[-1])
     reflected, behind = [R], [T]
     E = _phases(rocks, spacings, slowness, omega)
@@ -90,52 +79,28 @@ def march(
     return reflected, behind
 
 
-def _each(rock: ElasticRock | Sequence[ElasticRock], joints: int) -> Sequence[ElasticRock]:
-    rocks = [rock] * (joints + 1) if isinstance(rock, ElasticRock) else rock
-    if len(rocks) != joints + 1:
-        raise ValueError(f"{joints} joints need {joints + 1} rocks, not {len(rocks)}")
-    return rocks
-
-
-def fields(
-    rock: ElasticRock | Sequence[ElasticRock],
-    joints: list[Joint],
-    pulse: Pulse,
-    point: np.ndarray,
-    dip: float,
-    offsets: np.ndarray,
-    points: np.ndarray,
-    times: np.ndarray,
-) -> Fields:
-    """Return particle velocity and stress of a plane pulse in front of, between and behind joints.
-
-    Parameters
-    ----------
-    rock : of all layers, or one for each in the order of `offsets`, [N + 1].
-    joints : in the order of `offsets`, [N].
-    pulse : its velocity is that of the incident wave at `point`.
-    point, dip : a place [2] (m), and the joints' angle from x, anticlockwise (rad).
-    offsets : of the joints from `point` along (-sin dip, cos dip), ascending, m, [N].
-    points : [m, 2], m; one on a joint belongs to the side from which the pulse comes.
-    times : equally spaced, s.
-    """
-    stack = stack_of(rock, joints, pulse, dip, offsets)
-    return pulse_fields(pulse, stack, np.subtract(points, point), times)
-
-
 def stack_of(
-    rock: ElasticRock | Sequence[ElasticRock],
+    rocks: Sequence[ElasticRock],
     joints: list[Joint],
-    pulse: Pulse,
+    kind: Kind,
+    direction: np.ndarray,
     dip: float,
     offsets: np.ndarray,
 ) -> PulseStack:
-    """Return the joints in the order in which the pulse meets them; arguments as for `fields`."""
-    depths, met = np.asarray(offsets, dtype=float), list(joints)
-    rocks = list(_each(rock, len(met)))
-    if np.asarray(pulse.direction) @ (-np.sin(dip), np.cos(dip)) < 0:
+    """Return the joints in the order in which a pulse meets them.
+
+    Parameters
+    ----------
+    rocks : of the layers in the order of `offsets`, [N + 1].
+    joints : in the order of `offsets`, [N].
+    kind, direction : of the pulse: "P" or "SV", and its travel [2].
+    dip : the joints' angle from x, anticlockwise (rad).
+    offsets : of the joints from the origin along (-sin dip, cos dip), ascending, m, [N].
+    """
+    depths, met = np.asarray(offsets, dtype=float), joints
+    if np.asarray(direction) @ (-np.sin(dip), np.cos(dip)) < 0:
         depths, met, rocks = -depths[::-1], met[::-1], rocks[::-1]
-    axes, spacings = axes_of(rocks[0], pulse, dip), np.diff(depths)
+    axes, spacings = axes_of(rocks[0], kind, direction, dip), np.diff(depths)
 
     def layers(omega: np.ndarray) -> Layers:
         R, Y = march(rocks, met, spacings, axes.slowness, omega)

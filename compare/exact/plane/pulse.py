@@ -7,7 +7,6 @@ every exponential of the sum decays. Points lie at (x, z) in the axes (t, n) of 
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -24,23 +23,9 @@ from compare.exact.plane.waves import (
     stress,
 )
 
-
-@dataclass(frozen=True)
-class Pulse:
-    """A plane pulse.
-
-    Attributes
-    ----------
-    kind : "P" or "SV".
-    direction : of travel, [2], of any length.
-    velocity : particle velocity at the solution's reference point, along `direction` (P) or along
-        `direction` rotated anticlockwise by a right angle (SV), m/s: a function of times (s), or
-        samples at the times of the result. It is taken as zero before the first of these times.
-    """
-
-    kind: Kind
-    direction: np.ndarray
-    velocity: Callable[[np.ndarray], np.ndarray] | np.ndarray
+#: Particle velocity (m/s) as a function of times (s), along the direction of travel (P) or along it
+#: rotated anticlockwise by a right angle (SV).
+Pulse = Callable[[np.ndarray], np.ndarray]
 
 
 class Fields(NamedTuple):
@@ -74,8 +59,8 @@ class PulseStack(NamedTuple):
     """Joints in the order in which a pulse meets them.
 
     depths : along n, ascending, m. layers : of omega (rad/s), for a unit incident wave at the first
-    joint. at_once : real amplitudes [layers, 2] that follow a pulse without delay; if the pulse is
-    a function they are summed in time, with all its kinks, and only the smoother rest is inverted.
+    joint. at_once : real amplitudes [layers, 2] that follow a pulse without delay; they are summed
+    in time, with all its kinks, and only the smoother rest is inverted.
     rocks : of the layers; where they differ no wave may be evanescent.
     """
 
@@ -101,33 +86,28 @@ class PulseStack(NamedTuple):
         return is_evanescent(self.rocks[0], self.axes.slowness)
 
 
-def axes_of(rock: ElasticRock, pulse: Pulse, dip: float) -> Axes:
-    """Return the axes of joints of this dip (rad) for a pulse."""
-    direction = np.asarray(pulse.direction, dtype=float)
-    if direction.shape != (2,) or not np.hypot(*direction) > 0:
-        raise ValueError(f"direction is {pulse.direction}, must be a vector of the plane, not 0")
-    if np.ndim(rock.p_impedance):
-        raise ValueError("a pulse needs one rock, not arrays of its properties")
-    direction = direction / np.hypot(*direction)
+def axes_of(rock: ElasticRock, kind: Kind, direction: np.ndarray, dip: float) -> Axes:
+    """Return the axes of joints of this dip (rad) for waves that travel in a direction [2], not
+    along the joints."""
+    direction = np.asarray(direction) / np.hypot(*direction)
     n = np.array([-np.sin(dip), np.cos(dip)])
     n = n if direction @ n > 0 else -n
     t = np.array([-n[1], n[0]])
-    if direction @ n < 1e-9:
-        raise ValueError("the pulse travels along the joint and never meets it")
-    slowness = direction @ t / speed_of(rock, pulse.kind)
-    return Axes(np.array([t, n]), float(slowness), np.eye(2)[KINDS.index(pulse.kind)])
+    slowness = direction @ t / speed_of(rock, kind)
+    return Axes(np.array([t, n]), float(slowness), np.eye(2)[KINDS.index(kind)])
 
 
 def pulse_fields(pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.ndarray) -> Fields:
-    """Return the fields of a pulse whose velocity is that at the origin.
+    """Return particle velocity and stress in front of, between and behind joints.
 
-    points : [m, 2], m. times : equally spaced, s.
+    pulse : at the origin, taken as zero before the first of the times. points : [m, 2], m; one on a
+    joint belongs to the side from which the pulse comes. times : equally spaced, s.
     """
     axes, depths, q = stack.axes, stack.depths, stack.axes.incident @ stack.slownesses[0]
     t, places = np.asarray(times, dtype=float), np.atleast_2d(points) @ axes.rows.T
     waves = [_waves(place, stack) for place in places]
     modes = modes_of(stack)[[layer for layer, _ in waves]]
-    sharp = np.concatenate(stack.at_once, axis=-1) * callable(pulse.velocity)
+    sharp = np.concatenate(stack.at_once, axis=-1)
 
     def transfer(omega: np.ndarray) -> np.ndarray:
         amplitudes = np.concatenate(stack.layers(omega), axis=-1) - sharp[:, None]
@@ -135,12 +115,11 @@ def pulse_fields(pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.
         return np.einsum("mkw,mwc->mck", np.array(found), modes)
 
     earliest = axes.slowness * places[:, 0] + q.real * np.minimum(places[:, 1], depths[0])
-    found, error = inverse(transfer, pulse.velocity, t, earliest.min(), not stack.is_evanescent)
-    if callable(pulse.velocity):
-        for each, mode, (layer, delays) in zip(found, modes, waves, strict=True):
-            at = t - delays.real[:, None]
-            passed = np.where(at < t[0], 0, pulse.velocity(at))  # zero before the first time
-            each += mode.real.T @ (sharp[layer][:, None] * passed)
+    found, error = inverse(transfer, pulse, t, earliest.min(), not stack.is_evanescent)
+    for each, mode, (layer, delays) in zip(found, modes, waves, strict=True):
+        at = t - delays.real[:, None]
+        passed = np.where(at < t[0], 0, pulse(at))  # zero before the first time
+        each += mode.real.T @ (sharp[layer][:, None] * passed)
     unit = float(stack.rocks[0].p_impedance)
     return Fields(found[:, :2], unit * found[:, 2:], error[:, :2], unit * error[:, 2:])
 

@@ -19,8 +19,10 @@ from cases.partition.outline import TOLERANCE, outline_of
 from cases.partition.regions import rocks_of, strata
 from cases.partition.scene import partition_of
 from cases.partition.subdivision import NO_SET
+from compare.exact.plane import parallel_joints
 from compare.exact.plane.oblique_joint import Joint
-from compare.exact.plane.waves import slownesses_across
+from compare.exact.plane.pulse import PulseStack
+from compare.exact.plane.waves import Kind, slownesses_across
 from compare.exact.rock_mass.conditions import (
     all_parallel,
     along,
@@ -63,6 +65,13 @@ class JointStack:
     def dip(self) -> float:
         """Angle of the joints from x, anticlockwise, rad."""
         return float(np.arctan2(self.direction[1], self.direction[0]))
+
+    def met_by(self, wave: PlaneWave) -> PulseStack:
+        """Return the joints in the order in which a wave meets them, from its point `through`."""
+        kind: Kind = "P" if abs(wave.direction @ wave.polarisation) > 0.5 else "SV"
+        offsets = self.offsets - wave.through @ self.normal
+        direction, dip = wave.direction, self.dip
+        return parallel_joints.stack_of(self.rocks, self.joints, kind, direction, dip, offsets)
 
 
 def stack_of(scene: RockMass) -> JointStack:

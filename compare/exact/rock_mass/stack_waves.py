@@ -16,8 +16,7 @@ from cases.partition.locate import block_at, contact_at
 from cases.partition.outline import TOLERANCE
 from cases.sampling import sample_times
 from cases.schema.rock_mass import RockMass
-from compare.exact.plane import parallel_joints
-from compare.exact.plane.pulse import Pulse
+from compare.exact.plane.pulse import pulse_fields
 from compare.exact.rock_mass.conditions import prestress_of
 from compare.exact.rock_mass.stack import JointStack, against, begun, stack_of
 from compare.solvers.record import YES, Answer, Kind, no
@@ -120,18 +119,9 @@ def motion_at(
     total = [np.zeros(shape) for shape in shapes]
     for one in scene.waves if m else ():
         wave = plane_wave(scene, one)
-        offsets = stack.offsets - wave.through @ stack.normal
+        met = stack.met_by(wave)
         by_value, by_integral = (
-            parallel_joints.fields(
-                stack.rocks,
-                stack.joints,
-                Pulse("P" if one.kind == "P" else "SV", wave.direction, signal),
-                wave.through,
-                stack.dip,
-                offsets,
-                places,
-                times,
-            )
+            pulse_fields(signal, met, places - wave.through, times)
             for signal in (wave.pulse.value, wave.pulse.impulse)
         )
         begin = wave.pulse.impulse(-wave.lateness(places))[:, None] * wave.polarisation

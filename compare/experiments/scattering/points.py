@@ -18,7 +18,7 @@ from cases.schema.rock_mass import RockMass
 from compare.engines import Progress, applies, solve
 from compare.exact.plane import parallel_joints
 from compare.exact.plane.oblique_joint import Coefficients, Joint
-from compare.exact.plane.pulse import Pulse, axes_of
+from compare.exact.plane.pulse import axes_of
 from compare.exact.plane.waves import KINDS, Kind
 from compare.experiments import store
 from compare.experiments.common import FAILURES, reason_of
@@ -164,8 +164,8 @@ def amplitudes(scene: RockMass, velocity: np.ndarray) -> Scattered:
     (x, y)] (m/s), at the frequency of its pulse."""
     wave, rock = scene.waves[0], elastic_rock(scene.rock)
     assert wave.period is not None
-    pulse = Pulse(_kind(scene), np.array(wave.direction), np.zeros(1))
-    axes = axes_of(rock, pulse, np.radians(scene.joint_sets[0].dip))
+    dip = np.radians(scene.joint_sets[0].dip)
+    axes = axes_of(rock, _kind(scene), np.array(wave.direction), dip)
     middle = np.mean([one.through or [0.0, 0.0] for one in scene.joint_sets], axis=0)
     places, omega = np.array(scene.record.points) - middle, 2 * np.pi / wave.period
     half = SPACING * (len(scene.joint_sets) - 1) / 2

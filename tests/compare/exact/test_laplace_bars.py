@@ -9,10 +9,10 @@ from cases import Scene
 from cases.histories import Recorded, Sine, Step
 from cases.material.calibrate import calibrate
 from compare.exact.bar import equivalent_bar, images, jointed_bar, kelvin_voigt, laplace
-from compare.exact.bar.transfer import Bar, End, transfer
+from compare.exact.bar.transfer import Bar, End, RockFrom, transfer
 
 NONE = np.zeros(0)
-ROCK = Bar(1000.0, 2400.0, 4e9, 0.0, NONE, NONE, NONE, End(0.0), End(0.0))
+ROCK = Bar(1000.0, (RockFrom(0.0, 2400.0, 4e9, 0.0),), NONE, NONE, NONE, End(0.0), End(0.0))
 Z = np.sqrt(2400.0 * 4e9)
 
 
@@ -52,7 +52,7 @@ def test_parallel_joints_transmit_as_tabulated(count, column, ratio):
 def test_a_damped_wave_decays_and_disperses_as_its_wavenumber():
     """Between two receivers of a bar so long that nothing comes back: e^{-i k (y2 - y1)}."""
     omega, eta = np.array([200.0, 2000.0]), 1e-3
-    bar = replace(ROCK, length=1e6, time_constant=eta)
+    bar = replace(ROCK, length=1e6, rocks=(RockFrom(0.0, 2400.0, 4e9, eta),))
     stress, _ = transfer(bar, 1j * omega, np.array([3.0, 10.0]))
     k = wavenumber(omega, np.sqrt(4e9 / 2400), eta)
     assert np.allclose(stress[1] / stress[0], np.exp(-7j * k), rtol=1e-12)

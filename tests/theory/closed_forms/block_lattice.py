@@ -36,14 +36,6 @@ class Lattice:
     shear_stiffness: float
     bending_stiffness: float
 
-    def __post_init__(self) -> None:
-        for name in ("side", "mass", "inertia"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name} is {getattr(self, name)}, must be positive")
-        for name in ("normal_stiffness", "shear_stiffness", "bending_stiffness"):
-            if not getattr(self, name) >= 0:
-                raise ValueError(f"{name} is {getattr(self, name)}, must not be negative")
-
 
 def dynamic_matrix(lattice: Lattice, wave_vectors: np.ndarray) -> np.ndarray:
     """Return D, Hermitian complex array [..., 3, 3]; wave_vectors [..., 2], rad/m."""

@@ -35,9 +35,8 @@ def displacements(
 
 
 def plane_modes(plane: Plane) -> Modes:
-    """Return the modes of a plane of the spatial row, whose ends are free or fixed."""
+    """Return the modes of a plane of the spatial row, undamped, whose ends are free or
+    fixed."""
     stiffness = plane.stiffness.diagonal()
-    if plane.viscosity.any() or plane.mass_damping:
-        raise ValueError("the plane is damped")
     relative = plane.relative[:, plane.blocks]
     return modes(plane.mass, np.sqrt(stiffness)[:, None] * relative)

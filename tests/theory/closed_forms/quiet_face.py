@@ -25,8 +25,6 @@ def coefficients(
     incidence : "P" or "SV". angle : of travel from the normal, rad, broadcasts with rock.
     dashpots : alpha and beta, 0 to inf.
     """
-    if not min(dashpots) >= 0:
-        raise ValueError(f"dashpots are {dashpots}, must not be negative")
     r = reflection(rock, slowness_along(rock, incidence, angle), dashpots)
     i = KINDS.index(incidence)
     return r[..., 0, i], r[..., 1, i]

@@ -157,29 +157,3 @@ def test_modes_have_unit_mass():
     unit = np.swapaxes(shapes.conj(), -2, -1) @ masses @ shapes
     np.testing.assert_allclose(unit, np.broadcast_to(np.eye(3), unit.shape), atol=1e-13)
     assert omega.shape == (5, 3) and (np.diff(omega) >= 0).all()
-
-
-@pytest.mark.parametrize(
-    "change, message",
-    [
-        (lambda: leapfrog(np.array([1.0, 3.0]), 1.0), "critical one, 0.666667 s"),
-        (lambda: Lattice(A, 0.0, 1.0, 1.0, 1.0, 1.0), "mass is 0"),
-        (lambda: Lattice(A, 1.0, 1.0, 1.0, -1.0, 1.0), "shear_stiffness is -1"),
-        (lambda: brickwork(1.0, 1.0, 1.0, 1.0, (1, 1), (1, 1)), "offset is 1.0"),
-        (
-            lambda: replace(
-                brickwork(1.0, 1.0, 0.5, 1.0, (1, 1), (1, 1)), normal=np.full((6, 2), 1.0)
-            ),
-            "unit vectors",
-        ),
-        (
-            lambda: replace(
-                brickwork(1.0, 1.0, 0.5, 1.0, (1, 1), (1, 1)), pair=np.ones((6, 2), dtype=int)
-            ),
-            "blocks 0 to 0",
-        ),
-    ],
-)
-def test_what_does_not_hold_is_refused(change, message):
-    with pytest.raises(ValueError, match=message):
-        change()

@@ -7,7 +7,7 @@ from cases.material.rock import ElasticRock
 from compare.exact.bar.transfer import Bar, End, RockFrom, transfer
 from compare.exact.plane import layer_pulses, parallel_joints
 from compare.exact.plane.oblique_joint import Joint, scattering
-from compare.exact.plane.pulse import Pulse
+from compare.exact.plane.pulse import pulse_fields
 from compare.exact.plane.waves import cosines
 
 OMEGA = 2 * np.pi * 100.0
@@ -117,15 +117,15 @@ def test_straight_on_they_are_a_bar_of_segments(kind):
     omega = OMEGA * np.linspace(0.3, 3, 20) + 30j
     moduli = [one.density * getattr(one, name) ** 2 for one in rocks]
     z = [one.density * getattr(one, name) for one in (rocks[0], rocks[-1])]
-    bar = Bar(
-        40.0, rocks[0].density, moduli[0], 0.0, offsets[1:], np.array([1 / stiffness]),
-        np.zeros(1), End(z[0]), End(z[1]),
-        (RockFrom(10.0, HARD.density, moduli[1], 0), RockFrom(25.0, SLAB.density, moduli[2], 0)),
-    )  # fmt: skip
+    parts = [
+        RockFrom(y, one.density, modulus, 0.0)
+        for y, one, modulus in zip((0.0, 10.0, 25.0), rocks, moduli, strict=True)
+    ]
+    joint = offsets[1:], np.array([1 / stiffness]), np.zeros(1)
+    bar = Bar(40.0, tuple(parts), *joint, End(z[0]), End(z[1]))
     places = np.array([4.0, 20.0, 33.0])
     exact = transfer(bar, -1j * omega, places)[1] * 2 * z[0]
-    pulse = Pulse(kind, np.array([0.0, 1.0]), np.zeros(1))
-    stack = parallel_joints.stack_of(rocks, joints, pulse, 0.0, offsets)
+    stack = parallel_joints.stack_of(rocks, joints, kind, np.array([0.0, 1.0]), 0.0, offsets)
     down, up = stack.layers(omega)
     k, lead = ["P", "SV"].index(kind), np.exp(1j * omega * stack.lead)
     found = []
@@ -142,12 +142,12 @@ def test_pulses_in_layers_agree_at_many_places_and_at_each(ricker, directed):
     """The two inversions, of all places and of one, to a billionth; the pulse comes from the far
     side of the normal, so that rocks are met in the other order."""
     rocks, joints, offsets = [SLAB, HARD, SOFT], [WELDED, Joint(8e9, 3e9)], [0.0, 6.0]
-    pulse, times = Pulse("P", directed(150), ricker), np.linspace(0, 0.05, 501)
+    times = np.linspace(0, 0.05, 501)
     points = np.random.default_rng(1).uniform(-15, 25, (9, 2))
-    stack = parallel_joints.stack_of(rocks, joints, pulse, 0.3, offsets)
+    stack = parallel_joints.stack_of(rocks, joints, "P", directed(150), 0.3, offsets)
     assert stack.rocks[0] == SOFT
-    found = layer_pulses.motion(pulse, stack, points, times)
-    exact = parallel_joints.fields(rocks, joints, pulse, np.zeros(2), 0.3, offsets, points, times)
+    found = layer_pulses.motion(ricker, stack, points, times)
+    exact = pulse_fields(ricker, stack, points, times)
     for one, other, unit in zip(found, exact, (1.0, HARD.p_impedance), strict=False):
         assert np.abs(one - other).max() < 2e-9 * unit
         assert np.abs(other).max() > 0.1 * unit

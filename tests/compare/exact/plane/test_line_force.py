@@ -250,16 +250,3 @@ def test_the_error_is_bounded(monkeypatch, points):
     found = of_gaussian([0.6, 0.8], PLACES, t)
     for one, exact, error in zip(found[:3], best[:3], found[3:], strict=True):
         assert (np.abs(one - exact).max(axis=-1) <= error).all()
-
-
-@pytest.mark.parametrize(
-    "change, message",
-    [
-        (lambda: motion(ROCK, [1, 0], np.sin, np.cos, [0, 1], [[0.0, 0.0]], [1.0]), "on the line"),
-        (lambda: motion(ROCK, [1, 0], np.sin, np.cos, [0.0], PLACES, [1.0]), "at least two"),
-        (lambda: motion(ROCK, [1, 0], np.sin, np.cos, [1.0, 0.0], PLACES, [1.0]), "ascending"),
-    ],
-)
-def test_what_does_not_hold_is_refused(change, message):
-    with pytest.raises(ValueError, match=message):
-        change()

@@ -96,12 +96,3 @@ def test_joints_far_apart_in_evanescent_waves(rock, joint):
     e = np.exp(1j * OMEGA * d * np.cos(angle) / rock.s_speed)
     found = coefficients("SV", angle, OMEGA, rock, [joint] * 2, [d])
     assert found.T_s == pytest.approx(T_s * e * T_s / (1 - (R_s * e) ** 2), rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    "joints, spacings, message",
-    [(0, [], "at least one"), (2, [], "1 positive"), (2, [0.0], "1 positive"), (1, [1.0], "0 pos")],
-)
-def test_what_does_not_hold_is_refused(rock, joint, joints, spacings, message):
-    with pytest.raises(ValueError, match=message):
-        coefficients("P", 0.0, OMEGA, rock, [joint] * joints, spacings)

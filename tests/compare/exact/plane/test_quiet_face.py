@@ -90,8 +90,3 @@ def test_dashpots_take_energy_at_every_angle():
         for kind in ("P", "SV"):
             found = coefficients(kind, ANGLES, rock, dashpots)
             assert energy_flux(kind, ANGLES, rock, found).sum(axis=0).max() < 1
-
-
-def test_negative_dashpots_are_refused(rock):
-    with pytest.raises(ValueError, match="not be negative"):
-        coefficients("P", 0.0, rock, (1.0, -1.0))

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from cases.incident import plane_wave
 from cases.sampling import sample_times
 from compare.engines import applies, solve
+from compare.exact.plane import parallel_joints
 from compare.exact.plane.oblique_joint import Joint
-from compare.exact.plane.parallel_joints import fields
-from compare.exact.plane.pulse import Pulse
+from compare.exact.plane.pulse import pulse_fields
 from compare.exact.rock_mass.stack import stack_of
 
 SPACED = {"spacing": 6.0, "through": [0.0, 3.0]}
@@ -245,16 +245,16 @@ def test_unlike_sets_and_scattered_spacings_are_the_formula(rock_mass, joint, wa
     laws = [Joint(1e10, 4e9) if x in stiff else Joint(3e9, 2e9) for x in offsets]
     assert stack_of(scene).offsets == pytest.approx(offsets, abs=1e-12)
     incident = plane_wave(scene, scene.waves[0])
-    expected = fields(
-        incident.rock,
+    stack = parallel_joints.stack_of(
+        [incident.rock] * (len(laws) + 1),
         laws,
-        Pulse("P", [0.28, 0.96], incident.pulse.value),
-        np.zeros(2),
+        "P",
+        np.array([0.28, 0.96]),
         np.radians(10),
         offsets,
-        scene.record.points,
-        sample_times(scene),
     )
+    points = np.array(scene.record.points)
+    expected = pulse_fields(incident.pulse.value, stack, points, sample_times(scene))
     found = solve("parallel-joints", scene)
     off = found.velocity.values.swapaxes(1, 2) - expected.velocity
     assert np.abs(off).max() < 1e-12 * np.abs(expected.velocity).max()
