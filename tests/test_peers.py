@@ -14,6 +14,8 @@ from closed_forms.leapfrog import displacements
 from compare.engines import solve
 from compare.exact.schemes.leapfrog import modes, of_modes
 from compare.misfit.metrics import relative_l2
+from compare.report.peers import read, table
+from compare.runs.output import write_csv
 
 TOOLS = Path(__file__).parents[1] / "tools" / "peers"
 #: Positions near 50 m are known to some 1e-14 m, their gaps of 1e-5 m to 1e-9; steps add to it.
@@ -221,14 +223,12 @@ def test_failed_installation_is_a_reason(peers, tmp_path, monkeypatch):
     assert "no package yade" in environment.yade(tmp_path).missing
 
 
-def test_missing_peer_is_in_the_table_and_in_the_output(peers, tmp_path, capsys):
-    import pandas
-
-    table = peers("table")
-    rows = [table.missing_row("Yade spheres", "cohesive spheres", "no apt here")]
-    table.show(rows)
-    assert "missing: no apt here" in capsys.readouterr().out
-    found = pandas.read_csv(table.write(tmp_path / "points.csv", rows))
+def test_missing_peer_is_in_the_table_and_says_why(peers, tmp_path):
+    own = peers("table")
+    rows = own.frame([own.missing_row("Yade spheres", "cohesive spheres", "no apt here")])
+    (shown,) = table(rows).groups.values()
+    assert shown[0][0] == "missing: no apt here"
+    found = read(write_csv(tmp_path / "points.csv", rows))
     assert found.loc[0, ["state", "message", "solves"]].tolist() == [
         *("missing", "no apt here", "cohesive spheres")
     ]
@@ -254,7 +254,7 @@ def test_runs_take_turns_after_one_that_is_not_timed(peers, command):
         (GOOD.replace("0 1 2", "0 nan 2"), "not 3 finite samples"),
     ],
 )
-def test_failed_run_is_listed_and_not_run_again(peers, command, capsys, program, message):
+def test_failed_run_is_listed_and_not_run_again(peers, command, program, message):
     measure = peers("measure")
     job = command(program)
     (turns,) = measure.take_turns([job], 3)
@@ -262,8 +262,8 @@ def test_failed_run_is_listed_and_not_run_again(peers, command, capsys, program,
     assert row["state"] == "failed" and message in row["message"]
     assert (job.folder / "count").read_text() == "x"
     assert measure.ratios(turns, turns) == {}
-    peers("table").show([row])
-    assert message in capsys.readouterr().out
+    (shown,) = table(peers("table").frame([row])).groups.values()
+    assert message in shown[0][0]
 
 
 def test_program_that_is_not_there_is_a_failure(peers, command):

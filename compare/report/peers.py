@@ -8,13 +8,13 @@ import io
 import json
 from math import isfinite
 from pathlib import Path
-from typing import NamedTuple
 
 import pandas as pd
 
 from cases.errors import SceneError
 from cases.files import read_text
-from compare.figures.export import Drawn, save
+from compare.experiments.summary import Summary
+from compare.figures.export import save
 from compare.figures.peers_diagram import draw
 from compare.report.tables import Table, percent
 from compare.runs.output import write_csv
@@ -38,16 +38,6 @@ HEADER = [
     "whole process (s)",
     "freedom-steps a second",
 ]
-
-
-class PeersSection(NamedTuple):
-    """The report's section: diagram, table, what it says, what is missing, and the machine."""
-
-    figure: Drawn
-    sentences: list[str]
-    table: Table
-    missing: list[str]
-    machine: str
 
 
 def read(file: Path | None) -> pd.DataFrame | None:
@@ -85,11 +75,11 @@ def _fault(table: pd.DataFrame) -> str:
     return ""
 
 
-def write_section(folder: Path, found: pd.DataFrame) -> PeersSection:
-    """Write peers.csv and the diagram into `folder`; return the section."""
-    write_csv(folder / f"{NAME}.csv", found)
+def write_section(folder: Path, found: pd.DataFrame, name: str = NAME) -> Summary:
+    """Write NAME.csv and the diagram into `folder`; return the section, `about` its machine."""
+    file = write_csv(folder / f"{name}.csv", found)
     title, rows = "The free pillar in other codes", found.to_dict("records")
-    figure = save(draw(NAME, title, rows), folder, NAME, title)
+    figure = save(draw(name, title, rows), folder, name, title)
     missing = [
         f"{row['curve']} ({row['solves']}): {row['state']}, {row['message']}"
         for row in rows
@@ -97,7 +87,10 @@ def write_section(folder: Path, found: pd.DataFrame) -> PeersSection:
     ]
     machines = found["machine"].dropna().unique() if "machine" in found else []
     machine = "; ".join(machines) or "an unnamed machine"
-    return PeersSection(figure, sentences(found), table(found), missing, machine)
+    files = [file, figure.file("svg")]
+    return Summary(
+        name, title, table(found), sentences(found), missing, files, rows, figure, about=machine
+    )
 
 
 def table(found: pd.DataFrame) -> Table:

@@ -16,7 +16,6 @@ from compare.figures.snapshots import SnapshotsSection
 from compare.figures.style import style
 from compare.report.findings import Finding
 from compare.report.overview import Overview, in_seconds, times
-from compare.report.peers import PeersSection
 from compare.report.section import Section
 from compare.report.tables import Table, percent
 
@@ -47,7 +46,7 @@ class Page:
     versions: dict[str, str]
     about: Finding | None = None
     studies: list[Summary] = field(default_factory=list)
-    peers: PeersSection | None = None
+    peers: Summary | None = None
     peers_file: str = ""
     effects: Summary | None = None
     stability: Summary | None = None

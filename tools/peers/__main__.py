@@ -18,8 +18,8 @@ from job import Job
 import cases
 from cases.schema.scene import Scene
 from compare.experiments.cost.scenes import PILLAR
-from compare.figures.export import save
-from compare.figures.peers_diagram import draw
+from compare.experiments.summary import show
+from compare.report.peers import write_section
 
 
 class Peer(NamedTuple):
@@ -99,12 +99,9 @@ def main() -> None:
     about = table.machine()  # its load before ours
     jobs, missing = written(options.peers or list(PEERS), scene, root)
     rows = rows_of(*beside(jobs, scene, root), options.rounds, ours.references(scene, root))
-    rows += missing
     print(f"{scene.title}; {options.rounds} rounds; {about}")
-    table.show(rows)
-    written_to = table.write(root / "points.csv", [row | {"machine": about} for row in rows])
-    save(draw("peers", scene.title, rows), root, "points", scene.title)
-    print(f"written: {written_to}, {written_to.with_suffix('.svg')}")
+    found = table.frame([row | {"machine": about} for row in (*rows, *missing)])
+    show(write_section(root, found, "points"), False)
 
 
 if __name__ == "__main__":

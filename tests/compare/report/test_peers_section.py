@@ -40,14 +40,14 @@ def test_every_row_is_in_the_table_and_the_missing_one_says_why(rows, tmp_path):
     assert [row[3] for row in groups["Code: points"]] == ["124", "5.81"]
     assert groups["Gone: spheres"][0][0] == "missing: no apt here"
     section = peers.write_section(tmp_path, rows)
-    assert section.missing == ["Gone (spheres): missing, no apt here"]
-    assert "unnamed machine" in section.machine
+    assert section.failed == ["Gone (spheres): missing, no apt here"]
+    assert "unnamed machine" in section.about
     assert peers.read(tmp_path / "peers.csv").shape == rows.shape
     assert "Code: points" in section.figure.svg and "Gone" not in section.figure.svg
 
 
 def test_machine_is_named(rows, tmp_path):
-    assert peers.write_section(tmp_path, rows.assign(machine="this one")).machine == "this one"
+    assert peers.write_section(tmp_path, rows.assign(machine="this one")).about == "this one"
 
 
 @pytest.mark.parametrize(
