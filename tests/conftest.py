@@ -3,6 +3,7 @@
 import ctypes
 import fcntl
 import gc
+import importlib
 import json
 import os
 import pickle
@@ -73,6 +74,22 @@ def pytest_collection_finish():
     """Take what has been imported and collected from the garbage that is looked through."""
     gc.collect()
     gc.freeze()
+
+
+@pytest.fixture
+def modules_of(monkeypatch):
+    """Return a function of a folder that returns what imports its modules, until the test ends."""
+    folders = []
+
+    def importer(folder):
+        monkeypatch.syspath_prepend(str(folder))
+        folders.append(str(folder))
+        return importlib.import_module
+
+    yield importer
+    for name, module in list(sys.modules.items()):
+        if str(getattr(module, "__file__", None) or "").startswith(tuple(folders)):
+            del sys.modules[name]
 
 
 @pytest.fixture(scope="module", autouse=True)

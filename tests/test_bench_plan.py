@@ -1,7 +1,5 @@
 """The full study that plans are held against: it leaves out only what costs more."""
 
-import importlib
-import sys
 from math import isnan
 from pathlib import Path
 
@@ -16,16 +14,12 @@ MISFITS = [0.01, 0.001]
 
 
 @pytest.fixture
-def tools(monkeypatch):
+def tools(modules_of, monkeypatch):
     """Return a function that imports one module of tools/plan; two families make its study."""
-    monkeypatch.syspath_prepend(str(TOOLS))
-    before = set(sys.modules)
-    study = importlib.import_module("full_study")
-    monkeypatch.setattr(study, "families_of", lambda scene: families.families_of(scene)[:4])
-    yield importlib.import_module
-    for name in set(sys.modules) - before:
-        if str(getattr(sys.modules[name], "__file__", "")).startswith(str(TOOLS)):
-            del sys.modules[name]
+    module = modules_of(TOOLS)
+    all_of = families.families_of
+    monkeypatch.setattr(module("full_study"), "families_of", lambda scene: all_of(scene)[:4])
+    return module
 
 
 @pytest.fixture

@@ -1,9 +1,7 @@
 """The documentation: complete where it is generated, its links lead somewhere, its Python runs."""
 
-import importlib
 import re
 import shlex
-import sys
 from pathlib import Path
 
 import pytest
@@ -33,27 +31,18 @@ def blocks(page):
     return BLOCK.findall(page.read_text(encoding="utf-8"))
 
 
-def is_in(module, folder):
-    return str(getattr(module, "__file__", None) or "").startswith(str(folder))
-
-
 @pytest.fixture
-def tools(monkeypatch):
+def tools(modules_of):
     """Return a function that imports one module of tools/docs."""
-    monkeypatch.syspath_prepend(str(TOOLS))
-    yield importlib.import_module
-    for name in [n for n, m in sys.modules.items() if is_in(m, TOOLS)]:
-        del sys.modules[name]
+    return modules_of(TOOLS)
 
 
 @pytest.fixture
-def folder(tmp_path, monkeypatch):
+def folder(tmp_path, monkeypatch, modules_of):
     """Return an empty folder, the current one, whose modules can be imported."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.syspath_prepend(str(tmp_path))
-    yield tmp_path
-    for name in [n for n, m in sys.modules.items() if is_in(m, tmp_path)]:
-        del sys.modules[name]
+    modules_of(tmp_path)
+    return tmp_path
 
 
 @pytest.mark.parametrize("page", [p for p in PAGES if "```python" in p.read_text()], ids=name_of)

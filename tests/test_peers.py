@@ -3,7 +3,6 @@
 A peer that is not installed (`make bench-peers` does) is skipped with the reason.
 """
 
-import importlib
 import sys
 from pathlib import Path
 
@@ -23,14 +22,9 @@ ROUND_OFF = 1e-8
 
 
 @pytest.fixture
-def peers(monkeypatch):
+def peers(modules_of):
     """Return a function that imports one module of tools/peers."""
-    monkeypatch.syspath_prepend(str(TOOLS))
-    before = set(sys.modules)
-    yield importlib.import_module
-    for name in set(sys.modules) - before:
-        if str(getattr(sys.modules[name], "__file__", "")).startswith(str(TOOLS)):
-            del sys.modules[name]
+    return modules_of(TOOLS)
 
 
 @pytest.fixture

@@ -5,13 +5,11 @@ only slows it. Where a process puts their machine code counts for as much as the
 several processes measure one after the other.
 """
 
-from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from math import inf
 from multiprocessing import get_context
-from statistics import median
 
-from kernels import SLIDES, rate
+from kernels import SLIDES, Timed, in_words, rate
 from rock import Engine, engine_of
 
 from compare.experiments.cost.scenes import changed
@@ -30,7 +28,6 @@ SCENES = {
     "space, Coulomb slip": SLIDES,
 }
 
-Timed = tuple[Callable[[], None], int]
 Rates = dict[str, tuple[float, float]]
 
 
@@ -81,10 +78,7 @@ def main() -> None:
         with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as process:
             found.append(process.submit(measured).result())
     for name in found[0]:
-        held, free = zip(*(rates[name] for rates in found), strict=True)
-        ratios = sorted(a / b for a, b in zip(held, free, strict=True))
-        spread = f"{median(ratios):.3f} ({ratios[0]:.3f} to {ratios[-1]:.3f})"
-        print(f"  {name:32s} {median(held):8.2e} over {median(free):8.2e}: {spread}", flush=True)
+        print(f"  {name:32s} {in_words([rates[name] for rates in found], 3)}", flush=True)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,8 @@ from compare.experiments.cost.step_cost import stretch
 ROUNDS = 9
 SHORTEST = 0.03  # s
 
+Timed = tuple[Callable[[], None], int]  # takes steps; block-steps of one call
+
 
 def rate(march: Callable[[], None], block_steps: int) -> float:
     """Return block-steps a second, from calls that take long enough to be timed."""
@@ -24,18 +26,20 @@ def rate(march: Callable[[], None], block_steps: int) -> float:
     return calls * block_steps / spent
 
 
-def side_by_side(
-    label: str, one: tuple[Callable[[], None], int], other: tuple[Callable[[], None], int]
-) -> float:
-    """Time two kernels in turn, print both rates and the ratio one / other, and return it."""
+def in_words(pairs: list[tuple[float, float]], digits: int = 2) -> str:
+    """Return the medians of two rates taken in turns and of their ratios, with least and most."""
+    one, other = (median(rates) for rates in zip(*pairs, strict=True))
+    ratios = [a / b for a, b in pairs]
+    least, middle, most = (f"{f(ratios):.{digits}f}" for f in (min, median, max))
+    return f"{one:8.2e} over {other:8.2e}: {middle} ({least} to {most})"
+
+
+def side_by_side(label: str, one: Timed, other: Timed) -> None:
+    """Time two kernels in turn and print both rates and the ratio one / other."""
     one[0]()
     other[0]()
     pairs = [(rate(*one), rate(*other)) for _ in range(ROUNDS)]
-    ratios = sorted(a / b for a, b in pairs)
-    rates = (median(column) for column in zip(*pairs, strict=True))
-    spread = f"{median(ratios):.2f} ({ratios[0]:.2f} to {ratios[-1]:.2f})"
-    print(f"  {label:42s} {next(rates):8.2e} over {next(rates):8.2e}: {spread}", flush=True)
-    return median(ratios)
+    print(f"  {label:42s} {in_words(pairs)}", flush=True)
 
 
 def axial() -> None:
@@ -47,7 +51,7 @@ def axial() -> None:
         side_by_side(f"{blocks:,} blocks", stretch(scene), bare_axial(scene, blocks))
 
 
-def bare_axial(scene, blocks: int) -> tuple[Callable[[], None], int]:
+def bare_axial(scene, blocks: int) -> Timed:
     """Return the bare loop of a damped row."""
     p = calibrate(scene)
     k = p.regular_stiffness * p.area
@@ -74,7 +78,7 @@ def spatial() -> None:
         side_by_side(f"{blocks:,} blocks, one thread", stretch(scene), bare_spatial(scene, blocks))
 
 
-def bare_spatial(scene, blocks: int) -> tuple[Callable[[], None], int]:
+def bare_spatial(scene, blocks: int) -> Timed:
     """Return the bare loop of a row that slides."""
     p = calibrate(scene)
     tiles, steps, dt = blocks // bare.LANES, max(1, 2_000_000 // blocks), 1e-5

@@ -38,9 +38,6 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=5.0, help="that a mutant's tests may take")
     parser.add_argument("--slowest", type=float, default=2.0, help="s, test that is not left out")
     parser.add_argument("--learned", type=Path, help="keeps what tests call for the next time")
-    parser.add_argument(
-        "--apart", default="", help="tests tried last, whose kills are counted apart"
-    )
     asked = parser.parse_args()
     modules = [m for path in asked.paths for m in _modules(ROOT / path)]
     packages = [p for p in TESTS if any(m.startswith(f"{p}/") for m in modules)]

@@ -134,23 +134,22 @@ class Mutants:
         return found
 
     def verdict(self, one: Mutant) -> str:
-        """Return what becomes of a mutant: killed, killed apart, survived or unusable."""
+        """Return what becomes of a mutant: killed, survived or unusable."""
         calls = [k for k, test in self.tests.items() if (one.path, one.scope) in test.called]
         calls.sort(key=lambda k: self.tests[k].seconds)
-        apart = [k for k in calls if self.asked.apart and self.asked.apart in k]
         some, total = [], 0.0
-        for k in [k for k in calls if k not in apart][:MOST_TESTS]:
+        for k in calls[:MOST_TESTS]:
             total += self.tests[k].seconds
             if some and total > self.asked.seconds:
                 break
             some.append(k)
-        if not some + apart:
+        if not some:
             return "survived"
-        found = _forked(lambda: self.tried(one, some, apart), 20 + 10 * total)
+        found = _forked(lambda: self.tried(one, some), 20 + 10 * total)
         return found if isinstance(found, str) else "killed"  # by the clock, or all of the process
 
-    def tried(self, one: Mutant, some: list[str], apart: list[str]) -> str:
-        """Return what becomes of a mutant under some tests, those apart the last."""
+    def tried(self, one: Mutant, some: list[str]) -> str:
+        """Return what becomes of a mutant under some tests."""
         name = str(self.root / one.path)
         try:
             code = _function(compile(one.tree, name, "exec"), one.scope)
@@ -158,10 +157,10 @@ class Mutants:
                 function.__code__ = code
         except (SyntaxError, ValueError, KeyError):
             return "unusable"
-        for k in some + apart:
+        for k in some:
             self.take(self.items[k], 5 + 5 * self.tests[k].seconds)
             if self.failed:
-                return "killed apart" if k in apart else "killed"
+                return "killed"
         return "survived"
 
 
