@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, kw_only=True)
 class Properties(Strength):
     """The properties of a scene shared by both engines and all exact solutions, with the
-    strength of its joints.
+    strength of its joints; where blocks or joints differ, one number for all of them is a mean.
 
     Attributes
     ----------
@@ -38,13 +38,22 @@ class Properties(Strength):
     time_constant : Kelvin-Voigt eta of rock and ordinary joints, s; None without dashpots.
     mass_damping : alpha of a force -alpha m v on every block, 1/s; None without.
     local_damping : Cundall's factor, 0 to 1; None without.
-    joint_y : float array [N - 1], m.
+    contact_y : float array [N + 1], start of each block and end of the last one, m.
     stiffness, shear_stiffness : float arrays [N - 1], K'_n, K'_s between rigid blocks, Pa/m.
     own_stiffness, own_shear_stiffness : float arrays [N - 1], the joints' own K_n and K_s, Pa/m;
         None without intact_modulus; K_s infinite where intact rock alone is too soft in shear.
     joint_time_constant : float array [N - 1], eta of each joint, s; None without any dashpot.
+    own_time_constant : the same of each joint by itself; between segments that of its halves.
     tension : bool array [N - 1], whether a joint carries tension.
     soft : int array, indices of the joints that [[soft_layers]] changes.
+    weld : bool array [N - 1], whether a contact is no joint, between blocks of intact segments.
+    regular : K'_n that the homogenised bar has at each joint, Pa/m: a number, or [N - 1].
+    rock_between : compliance of intact rock from centre to centre, m/Pa: a number, or [N - 1].
+    parts : the properties of each segment as if it were alone; none where all blocks are equal, and
+        all joints except the soft layers.
+    segment : int array [N], which of `each` the blocks belong to.
+    ordinary_time_constant : float array [N - 1], eta of each joint without soft layers, s; None
+        where that is time_constant.
     """
 
     block_count: int
@@ -66,78 +75,76 @@ class Properties(Strength):
     time_constant: float | None
     mass_damping: float | None
     local_damping: float | None
-    joint_y: np.ndarray
+    contact_y: np.ndarray
     stiffness: np.ndarray
     shear_stiffness: np.ndarray
     own_stiffness: np.ndarray | None
     own_shear_stiffness: np.ndarray | None
     joint_time_constant: np.ndarray | None
+    own_time_constant: np.ndarray | None
     tension: np.ndarray
     soft: np.ndarray
-
-    @property
-    def at_start(self) -> Properties:
-        """Those of the rock at the start; of one rock these."""
-        return self
-
-    @property
-    def at_end(self) -> Properties:
-        """Those of the rock at the end; of one rock these."""
-        return self
+    weld: np.ndarray
+    regular: float | np.ndarray
+    rock_between: float | np.ndarray
+    segment: np.ndarray
+    parts: tuple[Properties, ...] = ()
+    ordinary_time_constant: np.ndarray | None = None
 
     @property
     def is_uniform(self) -> bool:
         """Whether all blocks are equal, and all joints except the soft layers."""
-        return True
+        return not self.parts
 
     @property
     def each(self) -> tuple[Properties, ...]:
         """The properties of each segment; only these if there is one rock."""
-        return (self,)
+        return self.parts or (self,)
 
     @property
-    def segment(self) -> np.ndarray:
-        """Which of `each` the blocks belong to, int array [N]."""
-        return np.zeros(self.block_count, dtype=np.int64)
+    def at_start(self) -> Properties:
+        """Those of the rock at the start; of one rock these."""
+        return self.each[0]
 
     @property
-    def contact_y(self) -> np.ndarray:
-        """Start of each block and end of the last one, m [N + 1]."""
-        return self.spacing * np.arange(self.block_count + 1)
+    def at_end(self) -> Properties:
+        """Those of the rock at the end; of one rock these."""
+        return self.each[-1]
+
+    @property
+    def joint_y(self) -> np.ndarray:
+        """Places of the joints, m [N - 1]."""
+        return self.contact_y[1:-1]
 
     @property
     def centre_y(self) -> np.ndarray:
         """Centres of the blocks, m [N]."""
-        return self.contact_y[1:] - self.spacing / 2
+        y = self.contact_y
+        return y[1:] - self.spacing / 2 if self.is_uniform else (y[1:] + y[:-1]) / 2
 
     def travel_time(self, y: float) -> float:
         """Return the travel time along the homogenised bar from the start to y (m), s."""
-        return y / self.bar_speed
+        slowness = np.array([1 / one.bar_speed for one in self.each])[self.segment]
+        arrivals = np.append(0.0, np.cumsum(slowness * np.diff(self.contact_y)))
+        return float(np.interp(y, self.contact_y, arrivals))
 
     @property
     def masses(self) -> np.ndarray | None:
         """Mass of each block, kg [N]; None where all have `block_mass`."""
-        return None
-
-    @property
-    def own_time_constant(self) -> np.ndarray | None:
-        """eta of each joint by itself, s [N - 1]; None without any dashpot."""
-        return self.joint_time_constant
-
-    @property
-    def regular(self) -> float | np.ndarray:
-        """K'_n that the homogenised bar has at each joint, Pa/m: a number, or [N - 1]."""
-        return self.regular_stiffness
+        if self.is_uniform:
+            return None
+        density = np.array([one.density for one in self.parts])[self.segment]
+        return density * self.area * np.diff(self.contact_y)
 
     @property
     def resolved(self) -> np.ndarray:
         """The joints of the jointed rock, int array: all, but for welds of intact rock."""
-        return np.arange(self.block_count - 1)
+        return np.flatnonzero(~self.weld)
 
     @property
     def regular_stiffness(self) -> float:
-        """K'_n of an ordinary joint, Pa/m."""
-        return self.modulus / self.spacing
+        """K'_n of an ordinary joint, Pa/m; the least where they differ."""
+        return float(np.min(self.regular))
 
     @property
     def regular_shear_stiffness(self) -> float:
@@ -163,12 +170,7 @@ class Properties(Strength):
         billionth of it; None where no joint stiffens."""
         if self.maximum_closure is None:
             return None
-        return np.minimum(self._rock_between, (1 - 1e-9) / self.stiffness)
-
-    @property
-    def _rock_between(self) -> float | np.ndarray:
-        """Compliance of intact rock from centre to centre, m/Pa."""
-        return self.spacing / (self.intact_modulus or inf)
+        return np.minimum(self.rock_between, (1 - 1e-9) / self.stiffness)
 
     @property
     def excess_compliance(self) -> np.ndarray:
@@ -187,13 +189,11 @@ class Properties(Strength):
         """
         if self.joint_time_constant is None:
             return np.zeros_like(self.tension)
-        differs = self.joint_time_constant != self._regular_time_constant
+        usual = self.ordinary_time_constant
+        differs = self.joint_time_constant != (
+            (self.time_constant or 0.0) if usual is None else usual
+        )
         return differs & (self.excess_compliance == 0)
-
-    @property
-    def _regular_time_constant(self) -> float | np.ndarray:
-        """eta that a joint as stiff as the others has, s."""
-        return self.time_constant or 0.0
 
 
 def calibrate(scene: Scene) -> Properties:
@@ -207,6 +207,7 @@ def calibrate(scene: Scene) -> Properties:
     block_mass, mass = density * pillar.area * spacing, rock_mass(scene, spacing)
     soft = np.array([round(layer.y / spacing) - 1 for layer in scene.soft_layers], dtype=np.int64)
     springs = stiffness(scene, soft, spacing, mass)
+    eta = dashpots(scene, soft, mass.modulus / spacing, springs.stiffness)
     tension = np.full(count - 1, scene.joints.tension is not False)
     tension[soft] = [layer.tension is not False for layer in scene.layers]
     speed, shear_speed = sqrt(mass.modulus / density), sqrt(mass.shear_modulus / density)
@@ -226,12 +227,17 @@ def calibrate(scene: Scene) -> Properties:
         shear_impedance=density * shear_speed,
         mass_damping=scene.damping.alpha,
         local_damping=scene.damping.local or None,
-        joint_y=spacing * np.arange(1, count),
+        contact_y=spacing * np.arange(count + 1),
+        own_time_constant=eta.joint_time_constant,
         tension=tension,
         soft=soft,
+        weld=np.broadcast_to(False, count - 1),
+        regular=mass.modulus / spacing,
+        rock_between=spacing / (scene.rock.intact_modulus or inf),
+        segment=np.broadcast_to(0, count),
         **mass._asdict(),
         **springs._asdict(),
-        **dashpots(scene, soft, mass.modulus / spacing, springs.stiffness)._asdict(),
+        **eta._asdict(),
         **vars(strength(scene, soft)),
     )
 

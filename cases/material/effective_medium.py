@@ -15,7 +15,7 @@ Voigt's form in the order 11, 22, 12 or 11, 22, 33, 23, 13, 12: C takes engineer
 gamma_12 = 2 e_12, to stresses.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -131,35 +131,6 @@ def speeds(C: np.ndarray, density: float, directions: np.ndarray) -> tuple[np.nd
     if squares.min() < -1e-9 * squares.max():
         raise ValueError("the stiffness is not positive: no real waves in some direction")
     return np.sqrt(np.maximum(squares, 0.0)), shapes
-
-
-def plane_wave(
-    C: np.ndarray,
-    density: float,
-    direction: np.ndarray,
-    branch: int,
-    velocity: Callable[[np.ndarray], np.ndarray],
-    points: np.ndarray,
-    times: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return particle velocity [m, d, n] (m/s) and stress [m, Voigt, n] (Pa, tension positive).
-
-    Parameters
-    ----------
-    branch : 0 the slowest. Its polarisation g points along the travel or, for a shear wave, to
-        whatever side makes its largest component positive.
-    velocity : f(t) at the origin, m/s; v = g f(t - n.x/c), stress = -C:(n g) f / c.
-    points, times : [m, d] (m) and [n] (s).
-    """
-    n = np.asarray(direction, dtype=float) / np.linalg.norm(direction)
-    all_speeds, shapes = speeds(C, density, n)
-    c, g = all_speeds[branch], shapes[:, branch]
-    along = g @ n
-    g = g * np.sign(along if abs(along) > 0.5 else g[np.abs(g).argmax()])
-    f = velocity(np.asarray(times) - (np.asarray(points) @ n)[:, None] / c)
-    full = np.einsum("ijkl,k,l->ij", tensor(C), g, n) / c
-    stress = np.array([full[pair] for pair in PAIRS[len(n)]])
-    return f[:, None] * g[:, None], -f[:, None] * stress[:, None]
 
 
 def tensor(C: np.ndarray) -> np.ndarray:

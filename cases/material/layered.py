@@ -12,7 +12,6 @@ The pillar as a whole is known by its mean density and compliance: the uniform o
 long waves (Backus, J. Geophys. Res. 67, 1962). Only estimates and drawings use these.
 """
 
-from dataclasses import dataclass
 from math import inf, sqrt
 from typing import Any
 
@@ -26,138 +25,29 @@ from cases.schema.scene import Scene
 from cases.schema.segment import alone, regions
 
 
-@dataclass(frozen=True, kw_only=True)
-class LayeredProperties(Properties):
-    """The numbers of a pillar whose blocks or joints differ; one number for all of it is a mean.
-
-    Attributes
-    ----------
-    segments : the numbers of each segment as if it were alone. of_block : int array [N], `segment`.
-    contacts : float array [N + 1], where blocks begin and the last one ends, m.
-    half_rock : float array [N], half of each block's compliance S / E of intact rock, m/Pa.
-    ordinary, ordinary_constants : float arrays [N - 1], compliance (m/Pa) and eta (s) between rigid
-        blocks without soft layers.
-    weld : bool array [N - 1], whether a contact is no joint, between blocks of intact segments.
-    own_constants : float array [N - 1], `own_time_constant`; None without any dashpot.
-    """
-
-    segments: tuple[Properties, ...]
-    of_block: np.ndarray
-    contacts: np.ndarray
-    half_rock: np.ndarray
-    ordinary: np.ndarray
-    ordinary_constants: np.ndarray
-    weld: np.ndarray
-    own_constants: np.ndarray | None
-
-    @property
-    def is_uniform(self) -> bool:
-        """Whether all blocks are equal, and all joints except the soft layers."""
-        return False
-
-    @property
-    def at_start(self) -> Properties:
-        """Those of the first segment."""
-        return self.segments[0]
-
-    @property
-    def at_end(self) -> Properties:
-        """Those of the last segment."""
-        return self.segments[-1]
-
-    @property
-    def each(self) -> tuple[Properties, ...]:
-        """Those of each segment by itself."""
-        return self.segments
-
-    @property
-    def segment(self) -> np.ndarray:
-        """Which of `each` the blocks belong to, int array [N]."""
-        return self.of_block
-
-    @property
-    def contact_y(self) -> np.ndarray:
-        """Start of each block and end of the last one, m [N + 1]."""
-        return self.contacts
-
-    @property
-    def centre_y(self) -> np.ndarray:
-        """Centres of the blocks, m [N]."""
-        return (self.contacts[1:] + self.contacts[:-1]) / 2
-
-    def travel_time(self, y: float) -> float:
-        """Return the travel time along the homogenised bar from the start to y (m), s."""
-        slowness = np.array([1 / one.bar_speed for one in self.segments])[self.of_block]
-        arrivals = np.append(0.0, np.cumsum(slowness * np.diff(self.contacts)))
-        return float(np.interp(y, self.contacts, arrivals))
-
-    @property
-    def masses(self) -> np.ndarray:
-        """Mass of each block, kg [N]."""
-        density = np.array([one.density for one in self.segments])[self.of_block]
-        return density * self.area * np.diff(self.contacts)
-
-    @property
-    def own_time_constant(self) -> np.ndarray | None:
-        """eta of each joint by itself, s [N - 1]: between segments that of its halves."""
-        return self.own_constants
-
-    @property
-    def regular(self) -> np.ndarray:
-        """K'_n that the homogenised bar has at each joint, Pa/m [N - 1]."""
-        return 1 / self.ordinary
-
-    @property
-    def resolved(self) -> np.ndarray:
-        """The joints of the jointed rock, int array."""
-        return np.flatnonzero(~self.weld)
-
-    @property
-    def regular_stiffness(self) -> float:
-        """The least K'_n of an ordinary joint, Pa/m."""
-        return float(self.regular.min())
-
-    @property
-    def _rock_between(self) -> np.ndarray:
-        return _of_pairs(self.half_rock)
-
-    @property
-    def _regular_time_constant(self) -> np.ndarray:
-        return self.ordinary_constants
-
-
-def calibrate_layered(scene: Scene) -> LayeredProperties:
-    """Return the properties of a scene with segments."""
+def calibrate_layered(scene: Scene) -> Properties:
+    """Return the properties of a scene with segments or random joints."""
     parts = tuple(calibrate(alone(scene, one)) for one in regions(scene))
     segment = np.repeat(np.arange(len(parts)), [one.block_count for one in parts])
+    whole = _as_one(scene, parts)
+    return Properties(parts=parts, segment=segment, **_joints(scene, parts, segment), **whole)
+
+
+def _joints(scene: Scene, parts: tuple[Properties, ...], segment: np.ndarray) -> dict[str, Any]:
+    """Return what the properties have of each contact and joint."""
+    y, weld, eta = contacts(scene), welds(scene), _constants(parts)[segment]
     intact = np.array([one.intact_modulus or inf for one in parts])[segment]
-    half_rock = np.diff(contacts(scene)) / (2 * intact)
-    return LayeredProperties(
-        segments=parts,
-        of_block=segment,
-        contacts=contacts(scene),
-        half_rock=half_rock,
-        **_joints(scene, parts, segment, half_rock),
-        **_as_one(scene, parts),
-    )
-
-
-def _joints(
-    scene: Scene, parts: tuple[Properties, ...], segment: np.ndarray, half_rock: np.ndarray
-) -> dict[str, Any]:
-    """Return what the properties have of each joint; half_rock : of each block, m/Pa."""
-    inner, weld, eta = contacts(scene)[1:-1], welds(scene), _constants(parts)[segment]
-    half = _half_joints(parts)[segment]
+    half, half_rock = _half_joints(parts)[segment], np.diff(y) / (2 * intact)
     own, rock = _of_pairs(half) * _scattered(scene, segment), _of_pairs(half_rock)
     compliance = own + rock
     own_eta = _weighted(half, eta)
     joint_eta = _joined(own, own_eta, rock, _weighted(half_rock, eta))
-    ordinary = {"ordinary": compliance.copy(), "ordinary_constants": joint_eta.copy()}
+    ordinary = {"regular": 1 / compliance, "ordinary_time_constant": joint_eta.copy()}
     spacing, areal = (
         _of_pairs(np.array(of)[segment] / 2)
         for of in ([one.spacing for one in parts], [one.block_mass / one.area for one in parts])
     )
-    soft = np.array([np.abs(inner - one.y).argmin() for one in scene.layers], dtype=np.int64)
+    soft = np.array([np.abs(y[1:-1] - one.y).argmin() for one in scene.layers], dtype=np.int64)
     for j, given, layer in zip(soft, scene.soft_layers, scene.layers, strict=True):
         if k := given.own_stiffness(spacing[j]):
             own[j], compliance[j] = 1 / k, 1 / k + rock[j]
@@ -175,7 +65,8 @@ def _joints(
         own_stiffness = 1 / own
     shears = _shear(parts, segment, known)
     return {
-        "joint_y": inner,
+        "contact_y": y,
+        "rock_between": rock,
         "soft": soft,
         "weld": weld,
         **ordinary,
@@ -183,7 +74,7 @@ def _joints(
         "stiffness": 1 / compliance,
         "own_stiffness": own_stiffness if known else None,
         "joint_time_constant": joint_eta if damped else None,
-        "own_constants": own_eta if damped else None,
+        "own_time_constant": own_eta if damped else None,
         **shears,
         **vars(strength_of(laws, which)),
     }

@@ -11,12 +11,10 @@ never above the critical step and at most 30 % below it; in a square lattice whe
 fastest it is equal to it.
 """
 
-from math import inf, sqrt
-
 import numpy as np
 
 from cases.material.contact_points import ContactPoints
-from cases.material.rock_mass import Inertia, Stiffness
+from cases.material.rock_mass import Stiffness
 from cases.partition.blocks import Contacts
 
 
@@ -42,13 +40,3 @@ def jump(along: np.ndarray, arm: np.ndarray) -> np.ndarray:
     end of an arm [p, 2], m: rows [p, 3]."""
     turning = arm[:, 0] * along[:, 1] - arm[:, 1] * along[:, 0]
     return np.concatenate([along, turning[:, None]], axis=1)
-
-
-def critical_step(own: np.ndarray, inertia: Inertia) -> float:
-    """Return a lower bound of the critical step, s.
-
-    own : the stiffness of each block [n, 3, 3], with whatever holds it at the boundary.
-    """
-    scale = 1 / np.sqrt(np.stack([inertia.mass, inertia.mass, inertia.moment], axis=1))
-    largest = np.linalg.eigvalsh(scale[:, :, None] * own * scale[:, None, :])[:, -1].max()
-    return 2 / sqrt(2 * largest) if largest > 0 else inf

@@ -9,7 +9,6 @@ from cases.material.effective_medium import (
     compliance,
     intact,
     joint_set,
-    plane_wave,
     speeds,
     stiffness,
     tensor,
@@ -147,22 +146,6 @@ def test_long_waves_through_joints_travel_at_its_speeds(kind, degrees):
         s = np.array([p, one])
         gamma = np.einsum("ijkl,j,l->ik", C, s, s) / 2600.0
         assert abs(np.linalg.det(gamma - np.eye(2))) < (2 * np.pi / 500) ** 2
-
-
-def test_a_plane_wave_in_the_medium():
-    """Momentum: sigma n = -rho c v; it moves by c; the fast one moves the particles forward."""
-    C = stiffness(UNIT, random_sets(2))
-    n, points = normal_at(25.0), np.array([[0.0, 0.0], [3.0, -1.0]])
-    times = np.linspace(0, 5, 50)
-    for branch, c in enumerate(speeds(C, 1.0, n)[0]):
-        v, stress = plane_wave(C, 1.0, n, branch, np.sin, points, times)
-        xx, yy, xy = np.moveaxis(stress, 1, 0)
-        traction = np.stack([xx * n[0] + xy * n[1], xy * n[0] + yy * n[1]], axis=1)
-        np.testing.assert_allclose(traction, -c * v, atol=1e-13)
-        later = np.sin(times - points[1] @ n / c)
-        np.testing.assert_allclose(np.hypot(*v[1]), np.abs(later), atol=1e-13)
-        moved = v[0] @ np.sin(times)
-        assert moved @ n > 0 if branch else moved[np.abs(moved).argmax()] > 0
 
 
 def test_rigid_blocks_of_two_orthogonal_sets_by_hand():
