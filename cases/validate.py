@@ -9,9 +9,6 @@ from pydantic import ValidationError
 from cases.errors import SceneError, nearest
 from cases.schema.scene import Scene
 
-#: Keys that name a file, which lies below the scene's folder unless an override names it.
-FILE_KEYS = ("load.file", "numerics.continuum.mesh")
-FILE_KEYS_OF_ROCK_MASSES = ("waves.file", "loads.file")
 PLACE = re.compile(r"\.\d+(?=\.)")  # in a list of tables, as in `waves.0.file`
 
 #: Allowed values, by pydantic's type of error.
@@ -44,9 +41,7 @@ def validated(table: dict[str, Any], path: Path, given: frozenset[str]) -> Any:
 
     Raises SceneError, in one line, where it is none.
     """
-    keys = {PLACE.sub("", g) for g in given}
-    files = (*FILE_KEYS, *FILE_KEYS_OF_ROCK_MASSES)
-    asked = {key for key in files if any(f"{key}.".startswith(f"{g}.") for g in keys)}
+    asked = {PLACE.sub("", key) for key in given}
     where = f"{path} [{table['name']}]" if table.get("name") else str(path)
     model = _model_of(table, where)
     try:

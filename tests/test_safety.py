@@ -49,6 +49,13 @@ record = { stress = [1.0], velocity = [0.25] }
 numerics = { NUMERICS }
 """
 STEP = 'shape = "step", amplitude = 1.0'
+MASS = """
+title = "mass"
+domain = { mesh = "MESH" }
+rock = { density = 2600.0, intact_modulus = 5e10 }
+time = { duration = 0.001 }
+record = { points = [[0.5, 0.5]] }
+"""
 #: Calls that read a file whole, and the modules that may: the doors, which ask its size before, and
 #: those that read the program's own files or the system's.
 READS = {"read_bytes", "read_text", "load_dataset", "open_dataset", "read_csv", "loadtxt"}
@@ -193,6 +200,20 @@ def test_a_mesh_outside_the_scenes_folder_is_refused(scene, tmp_path):
     asked = {"numerics.continuum.mesh": str(tmp_path / "outside.msh")}
     found = load_variant(scene(mesh="below.msh"), "", asked)
     assert found.numerics.continuum.mesh_path == tmp_path / "outside.msh"
+
+
+def test_a_user_may_name_the_mesh_of_a_rock_mass_anywhere(tmp_path):
+    """It is opened then, and found to be no mesh; a scene's own must lie in its folder."""
+    folder, outside = tmp_path / "scenes", tmp_path / "outside.msh"
+    folder.mkdir()
+    outside.write_text("no mesh")
+    path = folder / "mass.toml"
+    path.write_text(MASS.replace("MESH", str(outside)))
+    with pytest.raises(SceneError, match=r"domain\.mesh.* is outside the scene's folder"):
+        load(path)
+    for asked in ({"domain.mesh": str(outside)}, {"domain": {"mesh": str(outside)}}):
+        with pytest.raises(SceneError, match=r"domain\.mesh.* cannot be read as a gmsh mesh"):
+            load_variant(path, "", asked)
 
 
 def test_a_user_may_name_a_load_anywhere(scene, tmp_path):

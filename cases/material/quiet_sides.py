@@ -6,9 +6,8 @@ a lattice has them at its sides, else those of the effective medium of the joint
 
 import numpy as np
 
-from cases.material.effective_medium import joint_set, speeds, stiffness
+from cases.material.effective_medium import compliant, speeds, stiffness
 from cases.material.rock import elastic_rock
-from cases.partition.joints import direction_of
 from cases.partition.regions import within
 from cases.schema.rock_mass import RockMass
 
@@ -34,18 +33,9 @@ def medium_impedances(
 
 def _of_one_rock(scene: RockMass, normals: np.ndarray, smeared: bool) -> np.ndarray:
     rock, density = elastic_rock(scene.rock), scene.rock.density
-    spaced = [one for one in scene.joint_sets if one.spacing]
-    if not smeared or not spaced or not len(normals):
+    sets = compliant(scene.joint_sets)
+    if not smeared or not sets or not len(normals):
         return np.tile([rock.p_impedance, rock.s_impedance], (len(normals), 1))
-    sets = [
-        joint_set(
-            direction_of(one.dip)[::-1] * [-1, 1],
-            one.spacing or 0.0,
-            one.normal_stiffness or 0.0,
-            one.shear_stiffness or 0.0,
-        )
-        for one in spaced
-    ]
     found, shapes = speeds(stiffness(rock, sets), density, normals)
     longitudinal = np.abs((shapes * normals[:, :, None]).sum(axis=1)).argmax(axis=1)
     at = np.arange(len(normals))

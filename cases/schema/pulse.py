@@ -15,6 +15,7 @@ from cases.schema.values import (
     Table,
     contradiction,
     contradiction_here,
+    folder_of,
     is_extreme,
 )
 
@@ -73,10 +74,9 @@ class Pulse(Table):
         if self.file is not None:
             from cases.schema.history import History  # with numpy
 
-            context = info.context or {}
-            anywhere = self.file_key in context.get("asked", ())
+            folder, anywhere = folder_of(info, self.file_key)
             try:
-                self._history = History.read(context.get("folder", "."), self.file, anywhere)
+                self._history = History.read(folder, self.file, anywhere)
             except ValueError as error:
                 raise contradiction_here("file", self.file, str(error)) from None
         return self

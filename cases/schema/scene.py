@@ -10,13 +10,11 @@ from typing import ClassVar
 from pydantic import PrivateAttr, model_validator
 
 from cases.schema.consistency import check
-from cases.schema.damping import Damping, Rayleigh
-from cases.schema.joint import JointLaw, Joints, SoftLayer
+from cases.schema.damping import Damping
+from cases.schema.joint import Joints, SoftLayer
 from cases.schema.pulse import NO_LOAD, Load, shortest_period
 from cases.schema.segment import Segment, regions
 from cases.schema.tables import (
-    ContinuumNumerics,
-    DemNumerics,
     Ends,
     Gravity,
     Motion,
@@ -29,29 +27,6 @@ from cases.schema.tables import (
     Time,
 )
 from cases.schema.values import Pair, Positive, Table, Words
-
-__all__ = [
-    "ContinuumNumerics",
-    "Damping",
-    "DemNumerics",
-    "Ends",
-    "Gravity",
-    "JointLaw",
-    "Joints",
-    "Load",
-    "Motion",
-    "Numerics",
-    "Pillar",
-    "Prestress",
-    "Rayleigh",
-    "Record",
-    "Rock",
-    "Scatter",
-    "Scene",
-    "Segment",
-    "SoftLayer",
-    "Time",
-]
 
 
 class Scene(Table):

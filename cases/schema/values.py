@@ -87,11 +87,19 @@ def contradiction(key: str, value: object, allowed: str) -> PydanticCustomError:
     )
 
 
+def folder_of(info: ValidationInfo, key: str) -> tuple[Path, bool]:
+    """Return the folder of the scene, and whether a file that a key names may lie elsewhere: where
+    the user gave this key, or a table that holds it, beside the scene."""
+    context = info.context or {}
+    asked = any(f"{key}.".startswith(f"{given}.") for given in context.get("asked", ()))
+    return Path(context.get("folder", ".")), asked
+
+
 def named_file(info: ValidationInfo, key: str, name: str) -> Path:
     """Return the path of the gmsh file that a key names, relative to the scene's folder."""
-    context = info.context or {}
+    folder, anywhere = folder_of(info, key)
     try:
-        path = beside(context.get("folder", "."), name, key in context.get("asked", ()))
+        path = beside(folder, name, anywhere)
         if not path.is_file():
             raise ValueError(
                 "must be a gmsh file" if path.exists() else "cannot be read: no such file"

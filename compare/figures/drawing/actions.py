@@ -3,7 +3,8 @@
 from matplotlib.axes import Axes
 
 from cases.schema.plane import GravityInPlane
-from cases.schema.scene import Gravity, Scene
+from cases.schema.scene import Scene
+from cases.schema.tables import Gravity
 from compare.figures.drawing import symbols
 from compare.figures.drawing.placement import HEIGHT, WIDTH, Placement
 from compare.figures.drawing.symbols import CHARACTER, SOFT

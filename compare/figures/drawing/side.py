@@ -13,7 +13,8 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.ticker import MaxNLocator
 
 from cases.material.contacts import contacts, welds
-from cases.schema.scene import Scene, SoftLayer
+from cases.schema.joint import SoftLayer
+from cases.schema.scene import Scene
 from cases.schema.segment import regions
 from compare.figures.drawing import symbols
 from compare.figures.drawing.actions import ASIDE, draw_forces, draw_load, gravity_at, gravity_words

@@ -10,7 +10,7 @@ import xarray as xr
 
 import dem
 from cases.errors import SceneError
-from cases.schema.scene import Prestress
+from cases.schema.tables import Prestress
 from compare.cli.program import main
 from compare.exact.blocks import lattice, spatial_lattice
 from compare.figures.charts.static import draw
