@@ -2,42 +2,26 @@
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from tempfile import gettempdir
 from typing import TypeVar
 
-from compare.engines import Progress
-from compare.runs.checkpoint.lock import exclusive, locked
-from compare.runs.processes import Processes, started
+from compare.runs.checkpoint.lock import exclusive
+from compare.runs.processes import Processes
 from compare.runs.workers import Workers
 
 T = TypeVar("T")
 Pool = Callable[[], Executor]
 
 
-def shared(
-    label: str, out: Path | None, workers: int, work: Callable[[Pool | None, Progress], T]
-) -> T | None:
-    """Return the result of `work(pool, progress)` while a folder is locked.
-
-    label : of the progress bar. out : the folder; None writes nothing. workers : processes of this
-    machine, if MPI has started none; 1: only this one. Of several MPI processes all but the first
-    return None when it is done.
-    """
-    from compare.cli import terminal
-
-    processes = started()
-    with ExitStack() as stack, terminal.progress(label) as advance:
-        if out is not None:
-            processes.by_first(lambda: stack.enter_context(locked(out)))
-        return _on_pool(processes, workers, lambda pool: work(pool, advance))
-
-
-def _on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]) -> T | None:
+def on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]) -> T | None:
     """Return the result of `work(pool)`; the first of several MPI processes uses the others as its
-    pool, and these return None when it is done."""
+    pool, and these return None when it is done.
+
+    workers : processes of this machine, if MPI has started none; 1: only this one.
+    """
     if processes.comm is None:
         return work(partial(Workers, workers) if workers > 1 else None)
     from mpi4py.futures import MPICommExecutor

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import ExitStack
 from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -9,13 +10,15 @@ from typing import Any, NamedTuple
 import pandas as pd
 import xarray as xr
 
-from compare.cli.terminal import print_json, say, show_numbers, show_table
+from compare.cli.terminal import print_json, progress, say, show_numbers, show_table
 from compare.engines import Progress
-from compare.experiments.pool import Pool, shared
+from compare.experiments.pool import Pool, on_pool
 from compare.experiments.store import plain
 from compare.figures.export import Drawn
 from compare.report.tables import Table
+from compare.runs.checkpoint.lock import locked
 from compare.runs.output import write, write_csv
+from compare.runs.processes import started
 
 
 class Summary(NamedTuple):
@@ -51,9 +54,17 @@ def run_and_show(
     work: Callable[[Pool | None, Progress], Summary],
     as_json: bool,
 ) -> None:
-    """Show the summary returned by `work(pool, progress)`, see `pool.shared`; of several MPI
-    processes only the first does."""
-    if (found := shared(label, out, workers, work)) is not None:
+    """Show the summary returned by `work(pool, progress)`; of several MPI processes only the first
+    does.
+
+    label : of the progress bar. out : a folder, locked meanwhile; None writes nothing.
+    """
+    processes = started()
+    with ExitStack() as held, progress(label) as advance:
+        if out is not None:
+            processes.by_first(lambda: held.enter_context(locked(out)))
+        found = on_pool(processes, workers, lambda pool: work(pool, advance))
+    if found is not None:
         show(found, as_json)
 
 

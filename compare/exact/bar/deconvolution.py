@@ -23,7 +23,7 @@ from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
 from compare.exact.bar import equivalent_bar, jointed_bar
 from compare.exact.bar.transfer import Bar, RockFrom, end_of, transfer
-from compare.exact.conditions import DAMPED, beyond
+from compare.exact.conditions import DAMPED, holds
 
 HELD = (
     *("spatial motion", "reversed load", "gravity", "prestress", "stiff layers", "soft layers"),
@@ -75,9 +75,8 @@ def _column(scene: Scene) -> tuple[Bar, float]:
         (load.is_across and bool(load.direction[1]), "the load is neither along nor across"),
         (load.is_across and slips, "a joint may slip"),
     ]
-    found = beyond(scene, *HELD, *DAMPED) or next((why for there, why in reasons if there), None)
-    if found:
-        raise SceneError(scene.where, "", None, f"cannot be deconvolved: {found}")
+    if not (answer := holds(scene, (*HELD, *DAMPED), *reasons)):
+        raise SceneError(scene.where, "", None, f"cannot be deconvolved: {answer.reason}")
     if not scene.is_uniform:
         known = p.own_stiffness is not None
         rock = (jointed_bar if known else equivalent_bar).bar(scene)

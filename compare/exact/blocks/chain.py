@@ -24,6 +24,7 @@ import numpy as np
 from cases.material.calibrate import Properties, calibrate
 from cases.sampling import interpolation
 from cases.schema.scene import Scene
+from compare.exact.conditions import static_stress
 
 
 class EndOfChain(NamedTuple):
@@ -96,7 +97,6 @@ def chain(scene: Scene) -> Chain:
     """Return the scene's chain of rigid blocks."""
     p, gravity = calibrate(scene), scene.gravity
     masses, contacts = p.masses, p.contact_y
-    prestress = scene.prestress.normal * p.area if scene.prestress else 0.0
     etas = p.joint_time_constant
     return Chain(
         mass=p.block_mass if masses is None else masses,
@@ -108,7 +108,7 @@ def chain(scene: Scene) -> Chain:
         tension=p.tension,
         start=_end(scene.ends.start, p.at_start),
         end=_end(scene.ends.end, p.at_end),
-        prestress=prestress,
+        prestress=static_stress(scene) * p.area,
         gravity=gravity.acceleration * gravity.direction[1] if gravity else 0.0,
         mass_damping=p.mass_damping or 0.0,
         shaken=scene.shakes_base,

@@ -20,7 +20,7 @@ from cases.schema.scene import Scene
 from compare.exact.blocks.lattice import HELD
 from compare.exact.blocks.spatial import PLANES, plane, row
 from compare.exact.blocks.spatial_system import SpatialSystem, at_rest, system
-from compare.exact.conditions import holds
+from compare.exact.conditions import holds, static_stress
 from compare.exact.drive import drive
 from compare.exact.linear import bound, twins
 from compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, no, thin
@@ -47,8 +47,7 @@ def applies(scene: Scene) -> Answer:
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, shear, velocity, displacement and rotation of the scene's row of blocks."""
     times, record = sample_times(scene), scene.record
-    area, blocks = scene.pillar.area, row(scene)
-    push, fall = drive_vector(scene), falling(scene)
+    blocks, push, fall = row(scene), drive_vector(scene), falling(scene)
     base = np.array([*scene.load.direction, 0.0, 0.0, 0.0]) if scene.shakes_base else None
     forces = np.zeros((2, len(record.stress), 6, len(times)))
     motion, rate = np.zeros((2, 2, len(record.velocity), 6, len(times)))
@@ -61,24 +60,18 @@ def solve(scene: Scene) -> xr.Dataset:
         found = _receivers(scene, parts, len(own), times)
         for field, part in zip((forces, motion, rate), found, strict=True):
             field[:, :, own] = part
-    tractions, turns, moves, rates = (
-        forces / area,
-        motion[:, :, 3:],
-        motion[:, :, :3],
-        rate[:, :, :3],
-    )
+    tractions = forces / scene.pillar.area
+    tractions[:, :, 1] += static_stress(scene)
     waves = {
         "stress": tractions[:, :, 1],
         "shear": tractions[:, :, [0, 2]],
-        "velocity": rates,
-        "displacement": moves,
-        "rotation": turns,
+        "velocity": rate[:, :, :3],
+        "displacement": motion[:, :, :3],
+        "rotation": motion[:, :, 3:],
     }
-    stress = tractions[0, :, 1]
-    if scene.prestress is not None:
-        stress += scene.prestress.normal
-    fields = {name: x[0].swapaxes(-1, -2) for name, x in waves.items() if name != "stress"}
     errors = {name: bound(*pair) for name, pair in waves.items()}
+    stress, _ = waves.pop("stress")
+    fields = {name: x[0].swapaxes(-1, -2) for name, x in waves.items()}
     return dataset(scene, SOLVER.name, times, stress, **fields, errors=errors)
 
 

@@ -14,7 +14,7 @@ Valid for one such joint in the homogenised bar, as `one_joint`, without dashpot
 joint in intact rock crossed by a P wave along a periodic strip.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -45,6 +45,11 @@ class ClosingJoint:
     maximum: float
     without: float = 0.0
     prestress: float = 0.0
+
+    def scaled(self, factor: float) -> "ClosingJoint":
+        """Return the joint for stresses and closures divided by this factor."""
+        maximum, prestress = self.maximum / factor, self.prestress / factor
+        return replace(self, maximum=maximum, prestress=prestress)
 
     def closure(self, stress: np.ndarray) -> np.ndarray:
         """Return e (m) at a stress (Pa)."""
@@ -86,8 +91,8 @@ def applies(scene: Scene) -> Answer:
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement on both sides of the joint that stiffens."""
     p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
-    joint, enters = the_joint(scene, p), ENTERS[scene.ends.start]
-    passed = (Passed(joint, p.impedance, load, times[-1], enters, each) for each in TOLERANCES)
+    joint = the_joint(scene, p).scaled(ENTERS[scene.ends.start])
+    passed = (Passed(joint, p.impedance, load, times[-1], each) for each in TOLERANCES)
     return behind_and_before(scene, SOLVER.name, joint.y, *passed)
 
 
@@ -106,8 +111,7 @@ def the_joint(scene: Scene, p: Properties) -> ClosingJoint:
 
 
 class Passed:
-    """sigma_T (Pa) and its impulse (Pa s), both divided by a factor, at any times up to `end` (s),
-    for an incident stress of factor times the load.
+    """sigma_T (Pa) and its impulse (Pa s) at any times up to `end` (s), under the incident `load`.
 
     impedance : Z, Pa s/m. tolerance : of each step, of the largest incident stress.
     """
@@ -118,22 +122,19 @@ class Passed:
         impedance: float,
         load: LoadHistory,
         end: float,
-        factor: float = 1.0,
         tolerance: float = TOLERANCES[0],
     ) -> None:
         from scipy.integrate import solve_ivp
 
-        self.joint, self.impedance, self.load, self.factor = joint, impedance, load, factor
+        self.joint, self.impedance, self.load = joint, impedance, load
 
         def rate(t: float, stress: np.ndarray) -> np.ndarray:
-            incident = factor * load.value(np.array([t]))
-            return (
-                2 * (incident - stress) / (impedance * joint.compliance(joint.prestress + stress))
-            )
+            off = 2 * (load.value(np.array([t])) - stress)
+            return off / (impedance * joint.compliance(joint.prestress + stress))
 
         first = load.breaks[0]
         edges = [*(t for t in load.breaks if t < end), max(end, first + SHORTEST)]
-        peak = np.abs(factor * load.value(np.linspace(first, edges[-1], SAMPLES))).max()
+        peak = np.abs(load.value(np.linspace(first, edges[-1], SAMPLES))).max()
         self._parts, now = [], np.zeros(1)
         for part in pairwise(edges):
             found = solve_ivp(
@@ -150,8 +151,7 @@ class Passed:
             if own.any():
                 stress[own] = solution(times[own])[0]
         moved = joint.closure(joint.prestress + stress) - joint.closure(np.array(joint.prestress))
-        impulse = self.load.impulse(times) - self.impedance * moved / (2 * self.factor)
-        return stress / self.factor, impulse
+        return stress, self.load.impulse(times) - self.impedance * moved / 2
 
 
 SOLVER = Solver(

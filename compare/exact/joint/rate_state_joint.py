@@ -127,21 +127,13 @@ class RateStateWave:
     def _rate(self, t: float, now: np.ndarray) -> np.ndarray:
         """Return the rates of S, ln theta and s (0 where 1/K = 0)."""
         joint, incident = self.joint, self.load.value(np.array([t]))[0]
-        stress = now[2]
+        stress, loads = now[2], 0.0
         if joint.compliance == 0:
             stress = joint.carries(incident, now[1], self.impedance)
-            # From the balance of stresses: no cancellation where the joint carries almost sigma_I.
-            slides = joint.slides(stress, now[1])
-            return np.array([slides, np.exp(-now[1]) - abs(slides) / joint.distance, 0.0])
-        slides = joint.slides(stress, now[1])
-        loaded = 2 * (incident - stress) / self.impedance
-        return np.array(
-            [
-                slides,
-                np.exp(-now[1]) - abs(slides) / joint.distance,
-                (loaded - slides) / joint.compliance,
-            ]
-        )
+        slides = joint.slides(stress, now[1])  # not what is left of sigma_I: that would cancel
+        if joint.compliance:
+            loads = (2 * (incident - stress) / self.impedance - slides) / joint.compliance
+        return np.array([slides, np.exp(-now[1]) - abs(slides) / joint.distance, loads])
 
     def __call__(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return both at times (s)."""

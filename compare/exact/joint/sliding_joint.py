@@ -178,8 +178,7 @@ def solve(scene: Scene) -> xr.Dataset:
 
     found, twin = waveforms(1), waveforms(2)
     errors = {name: _bound(found[name], twin[name]) for name in found}
-    normal = scene.prestress.normal if scene.prestress else 0.0
-    stress = np.full((len(scene.record.stress), len(times)), normal)
+    stress = np.full((len(scene.record.stress), len(times)), static_stress(scene))
     stress = stress + found.pop("stress", 0.0)
     rotation = np.zeros_like(found["velocity"])
     return dataset(scene, SOLVER.name, times, stress, **found, rotation=rotation, errors=errors)
@@ -224,8 +223,7 @@ def load_axis(scene: Scene) -> np.ndarray:
 
 def the_joint(scene: Scene, p: Properties) -> SlipJoint:
     """Return the only joint that can slip; its strength is Mohr-Coulomb's under the prestress."""
-    j = int(np.flatnonzero(_slips(p))[0])
-    normal = scene.prestress.normal if scene.prestress else 0.0
+    j, normal = int(np.flatnonzero(_slips(p))[0]), static_stress(scene)
     cohesion = 0.0 if p.cohesion is None else float(p.cohesion[j])
     friction = 0.0 if p.friction is None else float(p.friction[j])
     strength = max(cohesion + friction * normal, 0.0)

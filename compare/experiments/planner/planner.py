@@ -31,10 +31,9 @@ from compare.experiments.planner.trials import (
     FINEST,
     LONGEST,
     Trial,
-    first_trial,
     is_trusted,
     timed,
-    trial_at,
+    trial,
 )
 from compare.misfit.metrics import misfit as misfit_of
 
@@ -112,7 +111,7 @@ class PlanSearch:
         if own.least >= self.misfit and self.seconds is None:
             raise StoppedError(own.too_far(family))
         trials = self._run(family, asked, own)
-        self.choices += [measured(self.scene, family, trial, own) for trial in trials]
+        self.choices += [measured(self.scene, family, one, own) for one in trials]
         if len(trials) > 1:
             self.choices += predicted(self.scene, family, trials, own)
 
@@ -125,10 +124,9 @@ class PlanSearch:
         self.sizes.add(size)
 
     def _run(self, family: Family, asked: Effort, own: OwnModel) -> list[Trial]:
-        trials = [first_trial(self.scene, family, own)]
+        trials = [trial(self.scene, family, own, None)]
         while not self._is_enough(family, trials, self.misfit - own.least):
-            finer = 2 * trials[-1].per_sample
-            trials.append(trial_at(self.scene, family, finer, trials[0], own))
+            trials.append(trial(self.scene, family, own, trials[-1]))
         self.trials += len(trials)
         rates = [t.seconds / (asked.work * t.per_sample / asked.least) for t in trials]
         self.rates[family.name] = min(*rates, self.rates.get(family.name, inf))

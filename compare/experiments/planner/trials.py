@@ -56,22 +56,13 @@ def timed(name: str, scene: AnyScene) -> tuple[xr.Dataset, float]:
     return result, seconds
 
 
-def first_trial(scene: AnyScene, family: Family, own: OwnModel) -> Trial:
-    """Run a family at the coarsest of its steps."""
-    start: dict[str, Any] = {"step_fraction": COARSEST}
-    if family.is_implicit:
-        start = settings(scene, family, 1, scene.interval)
-    return _trial(scene, family, start, own)
-
-
-def trial_at(
-    scene: AnyScene, family: Family, per_sample: int, first: Trial, own: OwnModel
-) -> Trial:
-    """Run a family at `per_sample` steps per sample, after its first trial."""
-    return _trial(scene, family, settings(scene, family, per_sample, first.critical), own)
-
-
-def _trial(scene: AnyScene, family: Family, numerics: dict[str, Any], own: OwnModel) -> Trial:
+def trial(scene: AnyScene, family: Family, own: OwnModel, last: Trial | None) -> Trial:
+    """Run a family at half the step of its last trial; without one, at the coarsest."""
+    numerics: dict[str, Any] = {"step_fraction": COARSEST}
+    if last is not None:
+        numerics = settings(scene, family, 2 * last.per_sample, last.critical)
+    elif family.is_implicit:
+        numerics = settings(scene, family, 1, scene.interval)
     result, seconds = timed(family.name, configured(scene, family, numerics))
     per_sample = round(scene.interval / float(result.attrs["dt"]))
     waves = stacked(result, own.reference.result)

@@ -161,6 +161,7 @@ def test_its_axial_part_is_the_lattice_s(scene, misfit, start, end):
     spatial_one = spatial_lattice.solve(scene(**common, load={"direction": [0.6, 0.8, 0.0]}))
     axial = lattice.solve(scene(**common, load={"amplitude": 0.8e6}))
     assert misfit(spatial_one.stress, axial.stress) < 1e-11
+    assert (spatial_one.stress_error < 1e-9 * 1e6).all()  # the prestress is no error
     for variable in ("velocity", "displacement"):
         assert misfit(spatial_one[variable][..., 1], axial[variable][..., 0]) < 1e-11
 

@@ -1,7 +1,6 @@
 """Curves of others: read as stated, refused in one line, and put beside ours without loss."""
 
 import json
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +10,6 @@ import xarray as xr
 import dem
 from cases.errors import SceneError
 from cases.schema.tables import Prestress
-from compare.cli.program import main
 from compare.exact.blocks import lattice, spatial_lattice
 from compare.figures.charts.static import draw
 from compare.figures.charts.waveforms import by_solutions
@@ -402,21 +400,22 @@ FAULTS = {
 }
 
 
-def refused(arguments, monkeypatch, capsys):
-    """Run the command and return the one line that it says, having checked the exit status."""
-    monkeypatch.setattr(sys, "argv", ["jointwave", *arguments])
-    with pytest.raises(SystemExit) as end:
-        main()
-    said = capsys.readouterr()
-    assert end.value.code == 2 and said.out == "" and said.err.count("\n") == 1
-    assert said.err.startswith("jointwave: ")
-    return said.err
+@pytest.fixture
+def refused(jointwave):
+    """Return a function that gives the one line that a refused command says."""
+
+    def said(*arguments):
+        out, err = jointwave(*arguments, code=2)
+        assert out == "" and err.count("\n") == 1 and err.startswith("jointwave: ")
+        return err
+
+    return said
 
 
 @pytest.mark.parametrize(("text", "where", "allowed"), FAULTS.values(), ids=FAULTS)
-def test_fault_is_one_line_and_exit_2(text, where, allowed, written, monkeypatch, capsys):
+def test_fault_is_one_line_and_exit_2(text, where, allowed, written, refused):
     """File, row and requirement, before anything is solved."""
-    said = refused(["compare", SCENE, "--with", written(text)], monkeypatch, capsys)
+    said = refused("compare", SCENE, "--with", written(text))
     assert where in said and allowed in said and "curve.csv" in said
 
 
@@ -437,11 +436,10 @@ def test_fault_is_one_line_and_exit_2(text, where, allowed, written, monkeypatch
         (["--align"], "--align: needs --with"),
     ],
 )
-def test_wrong_option_is_one_line(arguments, words, tmp_path, monkeypatch, capsys):
+def test_wrong_option_is_one_line(arguments, words, tmp_path, refused):
     good = save(tmp_path / "good.csv", TIME, STRESS)
     arguments = [a.replace("GOOD", good) for a in arguments]
-    words = words.replace("GOOD", good)
-    assert words in refused(["compare", SCENE, *arguments], monkeypatch, capsys)
+    assert words.replace("GOOD", good) in refused("compare", SCENE, *arguments)
 
 
 def netcdf_faults():
@@ -460,10 +458,10 @@ def netcdf_faults():
 
 
 @pytest.mark.parametrize(("data", "words"), list(netcdf_faults()))
-def test_faulty_netcdf_is_one_line(data, words, tmp_path, monkeypatch, capsys):
+def test_faulty_netcdf_is_one_line(data, words, tmp_path, refused):
     path = tmp_path / "run.nc"
     data.to_netcdf(path)
-    said = refused(["compare", SCENE, "--with", str(path)], monkeypatch, capsys)
+    said = refused("compare", SCENE, "--with", path)
     assert words in said and "run.nc" in said
 
 
@@ -478,28 +476,18 @@ def test_file_cut_anywhere_is_one_line(scene, tmp_path):
             read_curves([str(cut)], [scene])
 
 
-def test_command_reads_what_run_wrote(tmp_path, monkeypatch, capsys):
+def test_command_reads_what_run_wrote(tmp_path, jointwave):
     """`run`, then `compare --with`: the same to the last bit, and said so in JSON and in words."""
     pytest.importorskip("dolfinx")
     short = [SCENE, "--variant", "", "--set", "time.duration=0.02"]
-    run = ["run", *short, "--engine", "exact", "--model", "lattice", "--out", str(tmp_path)]
-    given = ["--no-spectral", "--with", str(tmp_path / "exact-lattice.nc")]
-    said = []
-    for arguments in (
-        run,
-        ["compare", *short, *given, "--json"],
-        ["compare", *short, *given, "--all"],
-    ):
-        monkeypatch.setattr(sys, "argv", ["jointwave", *arguments])
-        with pytest.raises(SystemExit) as end:
-            main()
-        assert end.value.code == 0
-        said.append(capsys.readouterr().out)
-    (facts,) = json.loads(said[1])
+    jointwave("run", *short, "--engine", "exact", "--model", "lattice", "--out", tmp_path)
+    given = ["compare", *short, "--no-spectral", "--with", tmp_path / "exact-lattice.nc"]
+    (facts,) = json.loads(jointwave(*given, "--json").out)
+    said = jointwave(*given, "--all").out
     rows = {r["other"]: r for r in facts["rows"] if r["one"] == "exact-lattice.nc"}
     assert rows["lattice"]["misfit"] == 0 and rows["lattice"]["kind"] == "given curves"
     assert {"dem", "continuum-jointed", "jointed-bar"} < rows.keys()
     (curve,) = facts["curves"]
     assert curve["samples"] == 401 and curve["shift"] is None and curve["outside"] == 0
-    assert "exact-lattice.nc ~ dem" in said[2]
-    assert "exact-lattice.nc: at 401 of its own times, 0 to 20 ms; 0.0% of its" in said[2]
+    assert "exact-lattice.nc ~ dem" in said
+    assert "exact-lattice.nc: at 401 of its own times, 0 to 20 ms; 0.0% of its" in said

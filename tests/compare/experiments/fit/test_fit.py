@@ -1,7 +1,6 @@
 """Keys fitted to waveforms: known values are recovered, and intervals have their coverage."""
 
 import json
-from itertools import combinations
 
 import numpy as np
 import pytest
@@ -360,7 +359,7 @@ def test_one_solution_of_our_own_table_is_fitted(scene, tmp_path):
     assert found.estimates[0].value == pytest.approx(TRUE[LAYER], rel=1e-6)
 
 
-def test_figure_shows_everything_and_nothing_twice(scene):
+def test_figure_shows_everything_and_nothing_twice(scene, collisions):
     """No text is cut off or lies on another; residuals are drawn below, to their own scale."""
     places = (Place("stress", "", (1.0,)), AT_3, Place("velocity", "y", (3.25,)))
     curves = heard(scene, places=places, noise=lambda i, n: noise_of(i, (1e4, 1e4, 1e-3)[i])(i, n))
@@ -368,22 +367,4 @@ def test_figure_shows_everything_and_nothing_twice(scene):
         "a-rather-long-name-of-a-$-file-with-everything.csv", "x", curves.time, curves.waveforms
     )
     figure = draw(jointwave.fit(changed(scene, {LOAD: TRUE[LOAD]}), [long], [LAYER]))
-    figure.draw_without_rendering()
-    page = figure.bbox
-    texts = [
-        t for ax in figure.axes for t in (ax.title, ax._left_title, ax.xaxis.label, ax.yaxis.label)
-    ]
-    for axis in (axis for ax in figure.axes for axis in (ax.xaxis, ax.yaxis)):
-        low, high = sorted(axis.get_view_interval())
-        texts += [t.label1 for t in axis.get_major_ticks() if low <= t.get_loc() <= high]
-    texts += figure.legends[0].get_texts()
-    boxes = [t.get_window_extent() for t in texts if t.get_text() and t.get_visible()]
-    boxes = [b for b in boxes if b.width > 0]
-    assert len(figure.axes) == 6 and len(boxes) > 12
-    assert all(
-        b.x0 >= page.x0 - 1 and b.x1 <= page.x1 + 1 and b.y0 >= page.y0 and b.y1 <= page.y1
-        for b in boxes
-    )
-    assert not [
-        1 for a, b in combinations(boxes, 2) if a.shrunk(0.9, 0.8).overlaps(b.shrunk(0.9, 0.8))
-    ]
+    assert len(figure.axes) == 6 and not collisions(figure)
