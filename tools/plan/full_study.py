@@ -16,7 +16,7 @@ from compare.experiments.planner.choices import Choice, furthest_off, measured, 
 from compare.experiments.planner.families import Family, configured, effort, families_of
 from compare.experiments.planner.planner import Plan, options_of, plan
 from compare.experiments.planner.reference import OwnModel, References
-from compare.experiments.planner.trials import FINEST, Trial, first_trial, is_hopeless, trial_at
+from compare.experiments.planner.trials import FINEST, Trial, is_hopeless, trial
 
 #: A family ends where a run takes so many times the seconds of the cheapest that does, as finer
 #: steps cost more. It is not begun where it would even at half the seconds that a freedom-step has
@@ -53,23 +53,23 @@ class Study:
         first, own = None, self.references.own(family)
         if own.least >= max(self.misfits):
             raise SceneError(self.scene.where, "", None, own.too_far(family))
-        for trial in self._trials(family, own):
-            first = first or trial
-            each = trial.seconds / (work * trial.per_sample / first.per_sample)
+        for one in self._trials(family, own):
+            first = first or one
+            each = one.seconds / (work * one.per_sample / first.per_sample)
             rates[family.name] = min(rates.get(family.name, inf), each)
-            self.points.append(measured(self.scene, family, trial, own))
+            self.points.append(measured(self.scene, family, one, own))
 
     def _trials(self, family: Family, own: OwnModel) -> Iterator[Trial]:
         """Yield runs of a family from the coarsest on, until no finer one can be of use; what meets
         all misfits is followed by one finer run."""
-        first = last = first_trial(self.scene, family, own)
+        first = last = trial(self.scene, family, own)
         yield first
         wanted = [m - own.least for m in self.misfits if m > own.least]
         for n in steps(first.per_sample, FINEST * first.per_sample, 2)[1:]:
             missed = [m for m in wanted if last.misfit > m]
             if last.seconds > min(LONGEST, self._dear([m + own.least for m in missed or wanted])):
                 return
-            before, last = last, trial_at(self.scene, family, n, first, own)
+            before, last = last, trial(self.scene, family, own, first, n)
             yield last
             if all(is_hopeless([before, last], m) for m in missed):
                 return

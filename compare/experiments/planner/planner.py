@@ -124,9 +124,10 @@ class PlanSearch:
         self.sizes.add(size)
 
     def _run(self, family: Family, asked: Effort, own: OwnModel) -> list[Trial]:
-        trials = [trial(self.scene, family, own, None)]
+        trials = [trial(self.scene, family, own)]
         while not self._is_enough(family, trials, self.misfit - own.least):
-            trials.append(trial(self.scene, family, own, trials[-1]))
+            finer = 2 * trials[-1].per_sample
+            trials.append(trial(self.scene, family, own, trials[0], finer))
         self.trials += len(trials)
         rates = [t.seconds / (asked.work * t.per_sample / asked.least) for t in trials]
         self.rates[family.name] = min(*rates, self.rates.get(family.name, inf))

@@ -56,11 +56,13 @@ def timed(name: str, scene: AnyScene) -> tuple[xr.Dataset, float]:
     return result, seconds
 
 
-def trial(scene: AnyScene, family: Family, own: OwnModel, last: Trial | None) -> Trial:
-    """Run a family at half the step of its last trial; without one, at the coarsest."""
+def trial(
+    scene: AnyScene, family: Family, own: OwnModel, first: Trial | None = None, per_sample: int = 0
+) -> Trial:
+    """Run a family at `per_sample` steps per sample, after its first trial, itself the coarsest."""
     numerics: dict[str, Any] = {"step_fraction": COARSEST}
-    if last is not None:
-        numerics = settings(scene, family, 2 * last.per_sample, last.critical)
+    if first is not None:
+        numerics = settings(scene, family, per_sample, first.critical)
     elif family.is_implicit:
         numerics = settings(scene, family, 1, scene.interval)
     result, seconds = timed(family.name, configured(scene, family, numerics))
