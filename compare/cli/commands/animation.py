@@ -58,42 +58,35 @@ def animate(
     (one,) = load(scene, changes, variant, strict)
     path = out or Path(f"{_name(scene, one)}.mp4")
     video.refuse(path, frames)
-    simulated = _taken(one, frames)
+    simulated, settings = _simulate(one, frames, scale)
     with terminal.progress("pictures") as advance:
-        frame = _frame(simulated, scale, video.DOTS[path.suffix])
+        frame = _kind_of_frame(one)(simulated, settings, video.DOTS[path.suffix])
         video.write_video(path, frame.image, frames, seconds, advance)
-    _show(path, simulated, frame.scale, as_json)
+    _show(path, simulated, settings.scale, as_json)
 
 
-def _frame(simulated: "SceneSnapshots", scale: float | None, dots: int) -> "Frame | PlaneFrame":
-    """Return what draws each instant of a scene of either kind."""
+def _kind_of_frame(scene: "AnyScene") -> "type[Frame] | type[PlaneFrame]":
+    """Return what draws each instant of a scene of this kind."""
     from cases.schema.scene import Scene
 
-    if not isinstance(simulated.scene, Scene):
-        from compare.figures.animation.plane import PlaneFrame
+    if isinstance(scene, Scene):
+        from compare.figures.animation.frame import Frame
 
-        return PlaneFrame(simulated, scale, dots)
-    from compare.figures.animation.frame import Frame
-    from compare.figures.animation.view_settings import settings_for
+        return Frame
+    from compare.figures.animation.plane import PlaneFrame
 
-    settings = settings_for(simulated.scene, simulated.found, scale)
-    return Frame(simulated, settings, dots)
-
-
-def _taken(scene: "AnyScene", count: int) -> "SceneSnapshots":
-    from compare.cli import terminal
-    from compare.figures.animation.snapshots import take
-
-    with terminal.progress("both engines") as advance:
-        return take(scene, count, advance)
+    return PlaneFrame
 
 
 def _simulate(
     scene: "AnyScene", count: int, scale: float | None
 ) -> tuple["SceneSnapshots", "ViewSettings"]:
+    from compare.cli import terminal
+    from compare.figures.animation.snapshots import take
     from compare.figures.animation.view_settings import settings_for
 
-    simulated = _taken(scene, count)
+    with terminal.progress("both engines") as advance:
+        simulated = take(scene, count, advance)
     return simulated, settings_for(simulated.scene, simulated.found, scale)
 
 

@@ -1,8 +1,7 @@
 """Commands that put the solutions of a scene side by side: as distances, or drawn."""
 
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -112,28 +111,6 @@ def compare(
     comparison_view.show_comparisons(found, every, as_json, reads)
 
 
-class Style(StrEnum):
-    """Where a figure will stand."""
-
-    journal = "journal"
-    screen = "screen"
-
-
-class Format(StrEnum):
-    """What a figure can be written as."""
-
-    pdf = "pdf"
-    svg = "svg"
-    png = "png"
-
-
-class Language(StrEnum):
-    """What a figure can be labelled in."""
-
-    en = "en"
-    zh = "zh"
-
-
 @app.command()
 def figure(
     scene: SceneArgument,
@@ -143,16 +120,19 @@ def figure(
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,
     given: WithOption = [],  # noqa: B006
-    style: Annotated[Style, typer.Option(help="Style for print or for slides.")] = Style.journal,
+    style: Annotated[
+        Literal["journal", "screen"], typer.Option(help="Style for print or for slides.")
+    ] = "journal",
     columns: Annotated[
         int, typer.Option(min=1, max=2, help="Width in columns: 90 or 190 mm in print.")
     ] = 1,
     kind: Annotated[
-        Format | None, typer.Option("--format", help="File format (default: from the suffix).")
+        Literal["pdf", "svg", "png"] | None,
+        typer.Option("--format", help="File format (default: from the suffix)."),
     ] = None,
     language: Annotated[
-        Language, typer.Option(help="Language of labels; zh needs a Chinese font.")
-    ] = Language.en,
+        Literal["en", "zh"], typer.Option(help="Language of labels; zh needs a Chinese font.")
+    ] = "en",
     strict: StrictOption = False,
 ) -> None:
     """Draw the waveforms of a scene as a figure for a paper.
@@ -167,17 +147,16 @@ def figure(
     from compare.figures.print.make import FigureRequest, make, make_bands
     from compare.runs import jobs
 
+    request = FigureRequest(style, columns, kind, language, out)
     if Path(scene).is_dir():
         if model or changes or given or variant is not None:
             allowed = "is a folder of results: --model, --set, --variant and --with are of scenes"
             raise SceneError(scene, "", None, allowed)
-        request = FigureRequest(style.value, columns, kind and kind.value, language.value, out)
         terminal.say(f"wrote {make_bands(Path(scene), [e.value for e in engine], request)}")
         return
     scenes = load(scene, changes, variant, strict)
     runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []
     curves = _read_curves(given, scenes, False)
-    request = FigureRequest(style.value, columns, kind.value if kind else None, language.value, out)
     with terminal.progress(scenes[0].title) as advance:
         path = make(scenes, runs, curves, request, advance)
     terminal.say(f"wrote {path}")

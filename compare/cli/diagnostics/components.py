@@ -13,6 +13,10 @@ from collections.abc import Callable
 from importlib import import_module
 from importlib.metadata import version
 from importlib.util import find_spec
+from typing import NamedTuple
+
+from cases.gmsh_file import INSTALL as GMSH
+from compare.solvers.continuum import INSTALL
 
 CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 
@@ -108,29 +112,51 @@ def _font() -> str:
     return f"{font.name}, {font.fname}"
 
 
-#: By name; each returns what is found, and raises Missing or whatever goes wrong.
-PROBES: dict[str, Callable[[], str]] = {
-    **{
-        name: _imported(name)
-        for name in ("numpy", "numba", "scipy", "pydantic", "xarray", "matplotlib", "obspy")
-    },
-    "threads": _threads,
-    **{name: _imported(name) for name in ("basix", "gmsh")},
-    "dolfinx": _of_fenicsx("dolfinx"),
-    "PETSc": _petsc,
-    "MPI": _mpi,
-    "ADIOS2": _adios,
-    "pyvista": _imported("pyvista"),
-    "ffmpeg": _ffmpeg,
-    "Chinese font": _font,
-    "chromium": lambda: _on_path(*CHROMIUM),
+class Probe(NamedTuple):
+    """A part that is looked for: its group in the report, what returns what is found (raises
+    Missing or whatever goes wrong), and how to get it."""
+
+    group: str
+    look: Callable[[], str]
+    hint: str = ""
+
+
+LIBRARIES = ("numpy", "numba", "scipy", "pydantic", "xarray", "matplotlib", "obspy")
+PROBES = {name: Probe("program", _imported(name)) for name in LIBRARIES} | {
+    "basix": Probe("continuum", _imported("basix"), f"make setup; or {INSTALL}"),
+    "PETSc": Probe(
+        "continuum", _petsc, "comes with dolfinx; needed for implicit steps and static states"
+    ),
+    "gmsh": Probe(
+        "continuum", _imported("gmsh"), f"{GMSH}; needed for triangles and tetrahedra only"
+    ),
+    "MPI": Probe("continuum", _mpi, "comes with dolfinx; or pip install mpi4py"),
+    "dolfinx": Probe(
+        "continuum",
+        _of_fenicsx("dolfinx"),
+        "apt install python3-dolfinx; needed for --vtx and the plain dolfinx loop only",
+    ),
+    "ADIOS2": Probe(
+        "continuum", _adios, "needed for --vtx only; included in dolfinx of conda-forge"
+    ),
+    "threads": Probe("machine", _threads),
+    "pyvista": Probe("optional", _imported("pyvista"), "pip install pyvista"),
+    "ffmpeg": Probe("optional", _ffmpeg, "apt install ffmpeg; or pip install imageio-ffmpeg"),
+    "Chinese font": Probe(
+        "optional", _font, "apt install fonts-wqy-microhei (or fonts-noto-cjk, for SVG and PNG)"
+    ),
+    "chromium": Probe(
+        "optional",
+        lambda: _on_path(*CHROMIUM),
+        "apt install chromium; needed for tests of the report page only",
+    ),
 }
 
 
 def probe(name: str) -> dict[str, str]:
     """Return the state of a part, "found", "missing" or "broken", and what there is to say."""
     try:
-        return {"part": name, "state": "found", "found": PROBES[name]()}
+        return {"part": name, "state": "found", "found": PROBES[name].look()}
     except Missing as reason:
         return {"part": name, "state": "missing", "found": str(reason)}
     except BaseException as error:

@@ -15,9 +15,8 @@ from pathlib import Path
 from shutil import which
 from typing import NamedTuple
 
-from cases.gmsh_file import INSTALL as GMSH
 from compare.cli.diagnostics.accuracy import PAIRS, Check, bound_of
-from compare.solvers.continuum import INSTALL
+from compare.cli.diagnostics.components import PROBES
 
 PATIENCE = 120.0  # s, for what only looks
 COMPILING = 1200.0  # s, for the self-check, which compiles where the cache is empty
@@ -28,29 +27,6 @@ ranks = MPI.COMM_WORLD.allreduce(1)
 if MPI.COMM_WORLD.rank == 0:  # one speaks: lines of several ranks may run into each other
     print(ranks)
 """
-
-GROUPS = {
-    "program": ("numpy", "numba", "scipy", "pydantic", "xarray", "matplotlib", "obspy"),
-    "continuum": ("basix", "PETSc", "gmsh", "MPI", "dolfinx", "ADIOS2"),
-    "machine": ("threads",),
-    "optional": ("pyvista", "ffmpeg", "Chinese font", "chromium"),
-}
-
-#: How to get what is not there.
-HINTS = {
-    "basix": f"make setup; or {INSTALL}",
-    "dolfinx": "apt install python3-dolfinx; needed for --vtx and the plain dolfinx loop only",
-    "PETSc": "comes with dolfinx; needed for implicit steps and static states",
-    "gmsh": f"{GMSH}; needed for triangles and tetrahedra only",
-    "MPI": "comes with dolfinx; or pip install mpi4py",
-    "ADIOS2": "needed for --vtx only; included in dolfinx of conda-forge",
-    "mpiexec": "apt install openmpi-bin; or conda install -c conda-forge mpich",
-    "pyvista": "pip install pyvista",
-    "ffmpeg": "apt install ffmpeg; or pip install imageio-ffmpeg",
-    "Chinese font": "apt install fonts-wqy-microhei (or fonts-noto-cjk, for SVG and PNG)",
-    "chromium": "apt install chromium; needed for tests of the report page only",
-}
-
 
 #: What a self-check needs that an installation may be without.
 NEEDS = {PAIRS[1]: "basix"}
@@ -90,21 +66,22 @@ def examine(progress: Callable[[float], None]) -> Health:
     for i, pair in enumerate(pairs):
         checks.append(_check(pair))
         progress(0.5 + 0.5 * (i + 1) / len(pairs))
-    return Health(sorted(parts, key=lambda part: list(GROUPS).index(part.group)), checks)
+    groups = [one.group for one in PROBES.values()]
+    return Health(sorted(parts, key=lambda part: groups.index(part.group)), checks)
 
 
 def _libraries() -> list[Component]:
     """Return what the probes find; one that ends its process is broken, and the next go on."""
-    group_of = {name: group for group, names in GROUPS.items() for name in names}
-    left, parts = list(group_of), []
+    left, parts = list(PROBES), []
     while left:
         done = _run([sys.executable, "-m", f"{__package__}.components", *left], PATIENCE)
         found = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
         if len(found) < len(left):
             found.append({"part": left[len(found)], "state": "broken", "found": _end(done)})
         for one in found:
-            hint = HINTS.get(one["part"], "") if one["state"] != "found" else ""
-            parts.append(Component(group_of[one["part"]], **one, hint=hint))
+            probe = PROBES[one["part"]]
+            hint = probe.hint if one["state"] != "found" else ""
+            parts.append(Component(probe.group, **one, hint=hint))
         left = left[len(found) :]
     return parts
 
@@ -114,7 +91,8 @@ def _mpiexec() -> Component:
     own = str(Path(sys.executable).parent)  # of this Python's own environment, if it has one
     launcher, cores = which("mpiexec", path=own) or which("mpiexec"), min(_cores(), MOST_RANKS)
     if launcher is None:
-        return Component("continuum", "mpiexec", "missing", "is not on the PATH", HINTS["mpiexec"])
+        hint = "apt install openmpi-bin; or conda install -c conda-forge mpich"
+        return Component("continuum", "mpiexec", "missing", "is not on the PATH", hint)
     for ranks in sorted({cores, min(2, cores), 1}, reverse=True):
         done = _run([launcher, "-n", str(ranks), sys.executable, "-c", COUNT_RANKS], PATIENCE)
         if done.stdout.strip() == str(ranks):

@@ -41,7 +41,7 @@ class Frame:
     """The frame of every instant, as pixels; static parts are drawn once."""
 
     def __init__(self, simulated: SceneSnapshots, settings: ViewSettings, dots: int = 100) -> None:
-        self.simulated, self.settings, self.scale = simulated, settings, settings.scale
+        self.simulated, self.settings = simulated, settings
         side = simulated.scene.pillar.side
         self.waves = {name: Wave(s, settings, side) for name, s in simulated.found.items()}
         self.time = simulated.time

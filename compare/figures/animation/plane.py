@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from compare.figures import fonts
 from compare.figures.animation.snapshots import SceneSnapshots
-from compare.figures.animation.view_settings import scale_of
+from compare.figures.animation.view_settings import ViewSettings
 from compare.figures.style import RC, UNSIGNED, style
 from compare.figures.units import unit_for
 from results.snapshots import Snapshots
@@ -25,16 +25,10 @@ LOUDEST = 99.8  # percentile of speeds shown by the last colour
 
 
 class PlaneFrame:
-    """The frame of every instant, as pixels.
+    """The frame of every instant, as pixels."""
 
-    scale : exaggeration of displacements; None for a visible one.
-    """
-
-    def __init__(
-        self, simulated: SceneSnapshots, scale: float | None = None, dots: int = 100
-    ) -> None:
-        self.simulated, self.time = simulated, simulated.time
-        self.scale = scale or scale_of(simulated.found)
+    def __init__(self, simulated: SceneSnapshots, settings: ViewSettings, dots: int = 100) -> None:
+        self.simulated, self.time, self.scale = simulated, simulated.time, settings.scale
         self.speeds = {name: speeds(s) for name, s in simulated.found.items()}
         peak = max(float(np.percentile(x, LOUDEST)) for x in self.speeds.values()) or 1.0
         self.unit = unit_for("m/s", 1.001 * peak)

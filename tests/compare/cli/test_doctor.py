@@ -10,7 +10,8 @@ import pytest
 
 from compare.cli.diagnostics import doctor
 from compare.cli.diagnostics.accuracy import PAIRS, Check, bound_of, check
-from compare.cli.diagnostics.doctor import GROUPS, Component, Health
+from compare.cli.diagnostics.components import PROBES
+from compare.cli.diagnostics.doctor import Component, Health
 
 
 def run():
@@ -43,8 +44,9 @@ def test_everything_is_a_line_and_all_is_well_here():
     facts = json.loads(done.stdout)
     assert done.returncode == 0 and facts["well"]
     lines = {part["part"]: part for part in facts["parts"]}
-    looked_at = {name for names in GROUPS.values() for name in names}
-    assert looked_at | {"jointwave", "mpiexec", "cores", "memory", "kernel cache"} == lines.keys()
+    assert (
+        PROBES.keys() | {"jointwave", "mpiexec", "cores", "memory", "kernel cache"} == lines.keys()
+    )
     assert lines["basix"]["state"] == lines["threads"]["state"] == "found"
     assert "rm -r" in lines["kernel cache"]["found"]
     for part in facts["parts"]:
@@ -86,7 +88,7 @@ def test_what_breaks_is_a_line_and_fails_the_check_that_needs_it_alone(broken):
 
 def test_rigid_blocks_alone_are_well(monkeypatch):
     """Without FEniCSx the table says how to get it, and its engine is not checked."""
-    hint = doctor.HINTS["basix"]
+    hint = PROBES["basix"].hint
     absent = Component("continuum", "basix", "missing", "is not installed", hint)
     monkeypatch.setattr(doctor, "_libraries", lambda: [absent])
     health = doctor.examine(lambda fraction: None)

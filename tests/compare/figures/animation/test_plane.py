@@ -51,7 +51,8 @@ def test_displacements_are_drawn_as_they_can_be_seen(simulated):
 
 
 def test_the_picture_shows_the_block_that_moves_where_it_is(simulated):
-    frame = PlaneFrame(simulated, scale=1000.0, dots=50)
+    settings = settings_for(simulated.scene, simulated.found, 1000.0)
+    frame = PlaneFrame(simulated, settings, dots=50)
     start, end = frame.image(0).astype(int), frame.image(1).astype(int)
     assert start.shape == (360, 640, 4)
     (ax,) = (ax for ax in frame.figure.axes if ax.get_title() or ax.get_xlabel() == "x (m)")
