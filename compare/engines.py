@@ -112,7 +112,7 @@ def solve(
     answer = applies(name, scene)
     if not answer:
         raise SceneError(scene.title, "", None, f"{name} does not apply: {answer.reason}")
-    if one.is_engine:
+    if name in ENGINES:
         return one.run(scene, progress, comm, keeper)
     try:
         refuse_beyond_memory(scene, {"record.interval": waveform_bytes(scene)})

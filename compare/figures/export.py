@@ -55,14 +55,13 @@ class Drawn(NamedTuple):
     """A written figure: NAME.svg, NAME.pdf and, if requested, NAME.png; its numbers NAME.csv.
 
     svg : the element's text for a page, with unique ids.
-    caption : its description. plot : the figure for plotly.js as JSON, "" without.
+    plot : the figure for plotly.js as JSON, "" without.
     """
 
     name: str
     title: str
     folder: Path
     svg: str
-    caption: str = ""
     plot: str = ""
 
     def file(self, kind: str) -> Path:
@@ -81,7 +80,6 @@ def save(
     name: str,
     title: str,
     table: DataFrame | None = None,
-    caption: str = "",
     plot: dict[str, Any] | None = None,
     png: bool = True,
 ) -> Drawn:
@@ -93,7 +91,7 @@ def save(
         write_csv(folder / f"{name}.csv", table, DIGITS)
     svg = _write_drawings(figure, folder, name, title, png)
     text = "" if plot is None else json.dumps(plot, separators=(",", ":"), allow_nan=False)
-    return Drawn(name, title, folder, svg, caption, text)
+    return Drawn(name, title, folder, svg, text)
 
 
 def _write_drawings(figure: Figure, folder: Path, name: str, title: str, png: bool) -> str:

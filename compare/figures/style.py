@@ -8,7 +8,7 @@ all kinds of colour blindness.
 from functools import cache
 from typing import Any, NamedTuple
 
-from compare.engines import ENGINES, names, solver, solvers
+from compare.engines import names, solver, solvers
 from compare.solvers.record import HEADINGS, Line
 
 WIDTH = 11.0  # inches of every figure; the page shows it at the width of its column
@@ -123,8 +123,3 @@ def in_order(drawn: set[str]) -> list[str]:
     """Return names in the order of the legend, those without a style last."""
     known = [name for family in families().values() for name in family if name in drawn]
     return known + sorted(drawn - set(known))
-
-
-def is_engine(name: str) -> bool:
-    """Return whether a curve is an engine's, not an exact solution's."""
-    return name in ENGINES

@@ -12,7 +12,8 @@ import xarray as xr
 from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
-from compare.figures.style import in_order, is_engine
+from compare.engines import ENGINES
+from compare.figures.style import in_order
 from compare.misfit.metrics import mean_period
 from compare.misfit.pairs import Comparison
 
@@ -22,7 +23,7 @@ def waveforms(comparison: Comparison, quantity: str, index: int) -> dict[str, pd
     return {
         name: _along_axis(comparison.results[name], quantity, index)
         for name in in_order(set(comparison.results))
-        if is_engine(name)
+        if name in ENGINES
     }
 
 

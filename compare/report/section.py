@@ -124,7 +124,7 @@ def make_section(
 def draw(folder: Path, picture: SceneFigure) -> Drawn:
     """Write a picture's files: those that the page offers."""
     p = picture
-    return save(p.static, folder, p.name, p.title, p.table, p.caption, p.plot, png=False)
+    return save(p.static, folder, p.name, p.title, p.table, p.plot, png=False)
 
 
 def begin(

@@ -196,14 +196,9 @@ class Solver:
     libraries: Callable[[], dict[str, str]] = dict
 
     @property
-    def is_engine(self) -> bool:
-        """Whether it steps through time, so that its error falls with its step."""
-        return self.form is Form.RUN
-
-    @property
     def exact(self) -> bool:
         """Whether it solves its model exactly, not by an engine's steps."""
-        return not self.is_engine
+        return self.form is not Form.RUN
 
     @property
     def has_rigid_blocks(self) -> bool:

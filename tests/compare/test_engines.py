@@ -16,7 +16,7 @@ from compare.solvers.record import HEADINGS, Form
 def test_each_name_is_that_of_its_record():
     assert [one.name for one in solvers()] == [*names()]
     assert all(solver(name).exact and solver(name).form > Form.RUN for name in EXACT)
-    assert all(one.is_engine and not one.exact for one in ENGINES.values())
+    assert all(not one.exact for one in ENGINES.values())
 
 
 def test_records_name_solvers_headings_and_arguments_that_there_are():

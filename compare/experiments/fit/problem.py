@@ -10,7 +10,7 @@ from cases.errors import SceneError, UnstableError
 from cases.kinds import AnyScene
 from cases.schema.pulse import shortest_period
 from cases.schema.scene import Scene
-from compare.engines import applies, solve, solver
+from compare.engines import ENGINES, applies, solve
 from compare.exact.blocks import lattice
 from compare.experiments.common import FAILURES
 from compare.experiments.fit.keys import CLOCK, changed
@@ -75,7 +75,7 @@ class Problem:
     @property
     def step(self) -> float:
         """The increment of an unknown for finite differences."""
-        return COMPUTED_STEP if solver(self.solver).is_engine else EXACT_STEP
+        return COMPUTED_STEP if self.solver in ENGINES else EXACT_STEP
 
     def _stepped(self, scene: AnyScene) -> AnyScene:
         if not self.steps:

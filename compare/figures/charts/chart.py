@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.figures.style import Style, families, given_style, in_order, is_engine, style
+from compare.engines import ENGINES
+from compare.figures.style import Style, families, given_style, in_order, style
 from compare.misfit.pairs import Comparison
 
 LONGEST = 28  # letters of a file's name in a legend
@@ -104,7 +105,7 @@ def solutions_legend(comparisons: list[Comparison], given: bool = True) -> dict[
 
 
 def _entries(names: Iterable[str]) -> list[Entry]:
-    return [Entry(n, f"{n} ({'engine' if is_engine(n) else 'exact'})", style(n)) for n in names]
+    return [Entry(n, f"{n} ({'engine' if n in ENGINES else 'exact'})", style(n)) for n in names]
 
 
 def _given(comparisons: list[Comparison]) -> list[Entry]:

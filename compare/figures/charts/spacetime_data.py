@@ -9,7 +9,8 @@ import pandas as pd
 import xarray as xr
 
 from cases.schema.scene import Scene
-from compare.figures.style import DIFFERENCE, FIELD, in_order, is_engine
+from compare.engines import ENGINES
+from compare.figures.style import DIFFERENCE, FIELD, in_order
 from compare.figures.subplots import FORCES, MOTION, ROTATION, UNITS, axis_of, loudest
 from compare.figures.units import Unit, unit_for
 from compare.misfit.metrics import motion
@@ -90,7 +91,7 @@ def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
 
     Empty without motion. fields : of one variant, by name, as returned by `along_pillar`.
     """
-    engines = [name for name in in_order(set(fields)) if is_engine(name)]
+    engines = [name for name in in_order(set(fields)) if name in ENGINES]
     if not engines:
         return []
     first = fields[engines[0]]

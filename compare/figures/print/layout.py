@@ -137,11 +137,6 @@ def arrange(
     legend += appearance.small * POINT / 2
     panels = min(rows * appearance.panel + extra, appearance.tallest - legend)
     figure.set_figheight((panels + legend) * MM)
-    place(figure, panels, legend)
-
-
-def place(figure: Figure, panels: float, legend: float) -> None:
-    """Place the panels below the legend; both heights in mm."""
     top = panels / (panels + legend)
     figure.tight_layout(rect=(0, 0, 1, top), pad=0.3, h_pad=0.6, w_pad=0.8)
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from compare.engines import names
+from compare.engines import ENGINES, names
 from compare.figures.charts.spacetime_data import DIFFERENCE, FIELD
 from compare.figures.overlays import variant_styles
-from compare.figures.style import TERMS, is_engine, style
+from compare.figures.style import TERMS, style
 
 #: Of linear RGB, at full severity; normal sight first.
 SIGHTS = {
@@ -71,15 +71,15 @@ def test_red_and_green_of_one_lightness_meet_in_deuteranopia():
 
 @pytest.mark.parametrize("sight", SIGHTS)
 def test_engines_stay_apart(sight):
-    engines = [style(name).colour for name in names() if is_engine(name)]
+    engines = [style(name).colour for name in ENGINES]
     assert len(engines) == 3
     assert least_distance(engines, sight) > 15
 
 
 @pytest.mark.parametrize("sight", SIGHTS)
 def test_an_engine_and_an_exact_solution_stay_apart(sight):
-    engines = [style(name).colour for name in names() if is_engine(name)]
-    exact = [style(name).colour for name in names() if not is_engine(name)]
+    engines = [style(name).colour for name in ENGINES]
+    exact = [style(name).colour for name in names() if name not in ENGINES]
     assert min(least_distance([a, b], sight) for a in engines for b in exact) > 15
 
 

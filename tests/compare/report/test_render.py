@@ -30,7 +30,7 @@ def figure(tmp_path):
         for kind in ("pdf", "csv", "nc"):
             (tmp_path / f"{name}.{kind}").write_text("x")
         (tmp_path / f"{name}-map.csv").write_text("x")
-        return Drawn(name, "A figure", tmp_path, "<svg></svg>", "What is seen.")
+        return Drawn(name, "A figure", tmp_path, "<svg></svg>")
 
     return make
 
@@ -64,7 +64,7 @@ def section(tmp_path, figure):
 
 def shown(drawn, folded=False):
     """Return a figure as shown on the page."""
-    return Shown(drawn.title, drawn.caption, folded, drawn)
+    return Shown(drawn.title, "What is seen.", folded, drawn)
 
 
 def done(result):

@@ -17,14 +17,14 @@ from matplotlib.image import imread
 from matplotlib.text import Text
 
 from cases.errors import SceneError
-from compare.engines import names
+from compare.engines import ENGINES, names
 from compare.exact.blocks import lattice
 from compare.figures import fonts
 from compare.figures.print.appearance import MM, STYLES
 from compare.figures.print.draw import draw
 from compare.figures.print.make import FigureRequest, make, save
 from compare.figures.print.text import CHINESE, WORDS
-from compare.figures.style import is_engine, style
+from compare.figures.style import style
 from compare.misfit.pairs import Comparison
 
 SCENE = "guo-li-2002/fig-03"
@@ -192,7 +192,7 @@ def test_every_solution_has_words_and_a_line_of_its_own():
     for name, line in lines.items():
         assert line["color"] == style(name).colour
         grey = np.dot(to_rgb(line["color"]), (0.299, 0.587, 0.114))
-        assert (grey > 0.55 and line["linewidth"] > 1) if is_engine(name) else grey < 0.5
+        assert (grey > 0.55 and line["linewidth"] > 1) if name in ENGINES else grey < 0.5
 
 
 def test_panels_stand_beside_each_other_in_two_columns(comparison):
