@@ -65,6 +65,9 @@ TENSILE = "tensile_strength = 1e5\nfracture_energy = 1.0"
 RAYLEIGH = "rayleigh = { frequencies = [10.0, 20.0], ratios = [0.02, 0.02] }"
 RATED = "direct_effect = 0.01\nevolution_effect = 0.015\ncritical_slip_distance = 1e-4\n"
 RATED += "reference_rate = 1e-6"
+STIFFNESS = "spacing_stiffness = 4.375e8"
+CONTINUUM = "[numerics.continuum]\n"
+MESH = 'mesh = "pillar.msh"\n'
 LAYER = "[[soft_layers]]\ny = 20.0\nspacing_stiffness = 4.375e8\n"
 
 SEGMENT = "[[segments]]\ny = [10.0, 30.0]\n"
@@ -585,7 +588,87 @@ MISTAKES = {
     ),
     "a quoted key of many parts": ("side = 0.5", '"a" . ' * 70 + "b = 1", ["more than 64 parts"]),
     "nested too deep": ("side = 0.5", "side = " + "[" * 5000 + "]" * 5000, ["not valid TOML"]),
+    "a layer of no stiffness": (
+        STIFFNESS,
+        "thickness = 0.1",
+        ["soft_layers[0].thickness = 0.1", "needs a spacing_stiffness or normal_stiffness"],
+    ),
 }
+
+#: How the continuum is meshed and stepped: lines of its table of [numerics].
+MESHED = {
+    # the elements
+    "simplices of third order": (
+        'order = 3\ncell = "simplex"\n',
+        ["numerics.continuum.order = 3", "1 or 2", "'simplex'"],
+    ),
+    "consistent mass of hexahedra": (
+        'mass = "consistent"\n',
+        ["numerics.continuum.mass = 'consistent'", "needs cell 'simplex'"],
+    ),
+    "consistent mass in explicit steps": (
+        'mass = "consistent"\ncell = "simplex"\nscheme = "explicit"\n',
+        ["numerics.continuum.mass = 'consistent'", "'implicit' or 'auto'"],
+    ),
+    "unknown cell": ('cell = "cube"\n', ["numerics.continuum.cell = 'cube'", "'simplex'"]),
+    "four dimensions": ("dim = 4\n", ["numerics.continuum.dim = 4", "at most 3"]),
+    "no element across": (
+        "elements_across = 0\n",
+        ["numerics.continuum.elements_across = 0", "at least 1"],
+    ),
+    # a file
+    "a file that is not there": (
+        'mesh = "gone.msh"\n',
+        ["numerics.continuum.mesh = 'gone.msh'", "no such file"],
+    ),
+    "a folder": ('mesh = ""\n', ["numerics.continuum.mesh = ''", "must be a gmsh file"]),
+    "a pipe": ('mesh = "pipe"\n', ["numerics.continuum.mesh = 'pipe'", "must be a gmsh"]),
+    "a bar from a file": (
+        MESH + "dim = 1\n",
+        ["numerics.continuum.dim = 1", "is a bar"],
+    ),
+    "a cell beside a file": (
+        MESH + 'cell = "simplex"\n',
+        ["numerics.continuum.cell = 'simplex'", "no meaning with numerics.continuum.mesh"],
+    ),
+    "elements beside a file": (
+        MESH + "elements_per_block = 2\n",
+        ["numerics.continuum.elements_per_block = 2", "no meaning"],
+    ),
+    "elements across beside a file": (
+        MESH + "elements_across = 1\n",
+        ["numerics.continuum.elements_across = 1", "no meaning"],
+    ),
+}
+
+#: A soft layer with a thickness: further lines of its table.
+THICK = {
+    "a layer as thick as a block": (
+        "thickness = 0.5\n",
+        ["soft_layers[0].thickness = 0.5", "less than pillar.block = 0.5"],
+    ),
+    "a layer with friction": (
+        "thickness = 0.1\nfriction_angle = 30.0\n",
+        ["soft_layers[0].friction_angle = 30.0", "a layer with thickness is rock"],
+    ),
+    "a layer with cohesion": (
+        "thickness = 0.1\ncohesion = 0.0\n",
+        ["soft_layers[0].cohesion = 0.0", "a layer with thickness is rock"],
+    ),
+    "a layer that opens": (
+        "thickness = 0.1\ntension = false\n",
+        ["soft_layers[0].tension = false", "a layer with thickness is rock"],
+    ),
+    "a layer that breaks": (
+        "thickness = 0.1\ntensile_strength = 1e5\nfracture_energy = 100.0\n",
+        ["soft_layers[0].tensile_strength = 100000.0", "a layer with thickness is rock"],
+    ),
+}
+
+MISTAKES |= {
+    name: ("[time]", f"{CONTINUUM}{lines}[time]", w) for name, (lines, w) in MESHED.items()
+}
+MISTAKES |= {name: (STIFFNESS, f"{STIFFNESS}\n{lines}", w) for name, (lines, w) in THICK.items()}
 
 HISTORIES = {
     "empty history": ("", ["at least two rows"]),
@@ -664,9 +747,38 @@ def test_there_are_at_least_forty_distinct_mistakes():
 
 @pytest.mark.parametrize("name", MISTAKES)
 def test_mistake_is_one_line(name, tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "pillar.msh").touch()
     message = line_of(write(tmp_path / "scene.toml", mistaken(name)))
     for word in MISTAKES[name][2]:
         assert word in message
+
+
+def meshed(folder: Path, text: str = GOOD) -> Path:
+    """Write a scene whose continuum has its mesh from a file, which is empty."""
+    (folder / "pillar.msh").touch()
+    return write(folder / "scene.toml", text.replace("[time]", f"{CONTINUUM}{MESH}[time]"))
+
+
+def test_a_layer_beside_a_file_is_one_line(tmp_path):
+    thick = GOOD.replace(STIFFNESS, f"{STIFFNESS}\nthickness = 0.1")
+    message = line_of(meshed(tmp_path, thick))
+    assert "soft_layers[0].thickness = 0.1: cannot be meshed with numerics" in message
+
+
+def test_the_mesh_is_found_beside_the_scene(tmp_path, monkeypatch):
+    """Whatever the folder that the command runs in, also as the scene is passed on."""
+    path = meshed(tmp_path)
+    monkeypatch.chdir(tmp_path.parent)
+    numerics = load(path.relative_to(tmp_path.parent))[0].numerics.continuum
+    assert numerics.mesh == "pillar.msh"
+    assert numerics.mesh_path == tmp_path / "pillar.msh"
+    assert numerics.model_copy().mesh_path == tmp_path / "pillar.msh"
+
+
+def test_a_scene_without_a_mesh_has_no_path(tmp_path):
+    scene, _ = load(write(tmp_path / "scene.toml", GOOD))
+    assert scene.numerics.continuum.mesh_path is None
 
 
 @pytest.mark.parametrize("name", HISTORIES)

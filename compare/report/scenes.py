@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future, as_completed
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
 from cases.kinds import AnyScene
@@ -21,10 +20,6 @@ from compare.misfit.pairs import Comparison, compare
 from compare.report.section import PAPER, SceneRequest, Section, begin, finish, make_section
 from compare.scenes import find, load
 from results.dataset import scene_hash
-
-if TYPE_CHECKING:
-    pass
-
 
 #: The shipped scenes of rock masses that the page shows beside the paper's figures.
 ROCK_MASSES = ("rock-mass/one-joint",)

@@ -18,7 +18,7 @@ import plain
 ROOT = Path(__file__).parents[2]
 #: The tests of each package, as plain Python in a few minutes.
 TESTS = {
-    "cases": ["tests/cases", "tests/test_bad_scenes.py", "tests/test_bad_continuum.py"],
+    "cases": ["tests/cases", "tests/test_bad_scenes.py"],
     "results": ["tests/results"],
     "numerics": ["tests/numerics"],
     "joints": ["tests/joints", "tests/numerics"],
