@@ -22,9 +22,10 @@ class Style(NamedTuple):
     dashes: Any
     order: int
 
-    def of_line(self) -> dict[str, Any]:
-        """Return the arguments of matplotlib's plot."""
-        return {
+    def of_line(self, marker: str = "") -> dict[str, Any]:
+        """Return the arguments of matplotlib's plot; marker : of samples, if any."""
+        marked = {"marker": marker, "markersize": 3.0, "markerfacecolor": "none"}
+        return (marked if marker else {}) | {
             "color": self.colour,
             "linewidth": self.width,
             "linestyle": self.dashes,

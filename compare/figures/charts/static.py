@@ -1,7 +1,6 @@
 """A chart as a figure of matplotlib, for print."""
 
 from string import ascii_lowercase
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -109,18 +108,11 @@ def _draw(ax: Axes, subplot: Subplot, name: str, is_log: bool) -> None:
     for level in subplot.levels:
         ax.axhline(level, color="#bbbbbb", linewidth=0.6, zorder=1)
     for line in subplot.lines:
-        (drawn,) = ax.plot(line.x, line.y, **properties(line.style, line.marker))
+        (drawn,) = ax.plot(line.x, line.y, **line.style.of_line(line.marker))
         drawn.set_gid(f"{name}-{line.part}" if line.part else None)
     for mark in subplot.marks:
         _add_mark(ax, mark)
     ax.margins(x=0)
-
-
-def properties(style: Style, marker: str = "") -> dict[str, Any]:
-    """Return the arguments of matplotlib's plot; samples have a marker if one is given."""
-    if not marker:
-        return style.of_line()
-    return style.of_line() | {"marker": marker, "markersize": 3.0, "markerfacecolor": "none"}
 
 
 def _add_mark(ax: Axes, mark: Mark) -> None:
@@ -167,4 +159,4 @@ def _add_legend(figure: Figure, legend: dict[str, list[Entry]]) -> None:
 
 
 def _handles(entries: list[Entry]) -> list[Line2D]:
-    return [Line2D([], [], label=e.label, **properties(e.style, e.marker)) for e in entries]
+    return [Line2D([], [], label=e.label, **e.style.of_line(e.marker)) for e in entries]
