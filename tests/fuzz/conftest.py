@@ -5,19 +5,31 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, given, settings
 
 import cases
 
-TARGETS = Path(__file__).parents[2] / "tools" / "fuzz" / "targets.py"
+TOOLS = Path(__file__).parents[2] / "tools" / "fuzz"
+
+
+def module(name):
+    """Return a module of tools/fuzz."""
+    spec = importlib.util.spec_from_file_location(f"fuzz_{name}", TOOLS / f"{name}.py")
+    found = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(found)
+    return found
 
 
 @pytest.fixture(scope="session")
 def targets():
     """Return the module of the targets."""
-    spec = importlib.util.spec_from_file_location("fuzz_targets", TARGETS)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return module("targets")
+
+
+@pytest.fixture(scope="session")
+def meshes():
+    """Return gmsh files of a pillar of three blocks, of every version and form."""
+    return module("seeds").meshes()
 
 
 @pytest.fixture(scope="module")
@@ -32,3 +44,22 @@ def meet(targets, tmp_path_factory):
     del os.environ["JOINTWAVE_MEMORY"]
     if before is not None:
         os.environ["JOINTWAVE_MEMORY"] = before
+
+
+@pytest.fixture
+def meets(meet):
+    """Return a function that lets a target meet so many inputs and asserts that some were read and
+    some refused."""
+
+    def found(target, inputs, count):
+        outcomes = set()
+
+        @settings(max_examples=count, suppress_health_check=list(HealthCheck))
+        @given(inputs)
+        def check(data):
+            outcomes.add(meet(target, data))
+
+        check()
+        assert outcomes == {"read", "refused"}
+
+    return found
