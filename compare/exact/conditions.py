@@ -6,15 +6,16 @@ from cases.schema.joint import PARTS
 from cases.schema.scene import Scene
 from compare.solvers.record import YES, Answer, no
 
-#: Physics in groups, as `beyond` names them.
+#: Physics in groups, as `holds` names them.
 DAMPED = ("damped joints", "damped rock")
 LAYERS = ("thick layers", "soft layers", "stiff layers")
 
 
-def beyond(scene: Scene, *held: str) -> str | None:
-    """Return why a solution is not valid for a scene, None if it is.
+def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> Answer:
+    """Return whether a solution applies to a scene, or the first reason why not.
 
-    held : physics that the solution covers, of the names below.
+    held : physics that the solution covers, of the names below. against : other conditions that
+    exclude it, each with its reason.
     """
     p, laws = calibrate(scene), (scene.joints, *scene.layers)
     physics = {part.name: (any(map(part.of, laws)), part.words) for part in PARTS} | {
@@ -38,18 +39,8 @@ def beyond(scene: Scene, *held: str) -> str | None:
         ),
         "fixed start": (scene.ends.start == "fixed", "the loaded end is fixed"),
     }
-    reasons = (why for name, (there, why) in physics.items() if there and name not in held)
-    return next(reasons, None)
-
-
-def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> Answer:
-    """Return whether a solution valid for the physics `held` applies to a scene.
-
-    against : conditions that exclude it, each with its reason; the first true one is reported.
-    """
-    if reason := beyond(scene, *held):
-        return no(reason)
-    return next((no(reason) for there, reason in against if there), YES)
+    beyond = (one for name, one in physics.items() if name not in held)
+    return next((no(why) for there, why in (*beyond, *against) if there), YES)
 
 
 def is_free(scene: Scene) -> bool:

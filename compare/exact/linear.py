@@ -13,8 +13,8 @@ from math import ceil
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 
+from cases.histories import LoadHistory
 from cases.size import require
-from compare.exact.drive import Signal
 
 NEGLIGIBLE = 1e-18  # of a propagator whose largest entries are about 1: below round-off
 NOISE = 64 * float(np.finfo(float).eps)  # of the twin, in each interval
@@ -27,7 +27,7 @@ def twins(
     matrix: np.ndarray,
     vector: np.ndarray,
     output: np.ndarray,
-    load: Signal,
+    load: LoadHistory,
     times: np.ndarray,
 ) -> np.ndarray:
     """Return output @ x at `times`, and that of a twin whose difference shows the error, [2, n,

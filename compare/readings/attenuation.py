@@ -36,9 +36,9 @@ def waveforms(
     return found.assign_coords(distance=("receiver", np.hypot.reduce(along, axis=0)))
 
 
-def sampling(row: xr.DataArray) -> float:
+def sampling(of: xr.DataArray | xr.Dataset) -> float:
     """Return the time between samples, s."""
-    time = row["time"].values
+    time = of["time"].values
     return float(time[-1] - time[0]) / (len(time) - 1)
 
 

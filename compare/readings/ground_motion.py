@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from cases.errors import SceneError
+from compare.readings.attenuation import sampling
 
 GRAVITY = 9.81  # m/s2
 
@@ -45,7 +46,7 @@ def arias_intensity(result: xr.Dataset, gravity: float = GRAVITY) -> xr.DataArra
 
     gravity : g, m/s2.
     """
-    velocity, dt = result["velocity"], _interval(result)
+    velocity, dt = result["velocity"], sampling(result)
     found = pi / (2 * gravity) * (velocity.diff("time") ** 2).sum("time") / dt
     return found.rename("arias_intensity").assign_attrs(long_name="Arias intensity", units="m/s")
 
@@ -64,7 +65,7 @@ def response_spectrum(
     """
     from scipy.signal import cont2discrete, lfilter
 
-    velocity, dt = result["velocity"].transpose(..., "time"), _interval(result)
+    velocity, dt = result["velocity"].transpose(..., "time"), sampling(result)
     later = ceil(max(periods) / dt)
     ground = np.pad(velocity.values, [(0, 0)] * (velocity.ndim - 1) + [(0, later)], mode="edge")
     peaks = []
@@ -88,9 +89,3 @@ def response_spectrum(
         },
         attrs={"damping": damping},
     )
-
-
-def _interval(result: xr.Dataset) -> float:
-    """Return the time between samples, s."""
-    time = result["time"].values
-    return float(time[-1] - time[0]) / (len(time) - 1)

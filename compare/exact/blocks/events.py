@@ -17,10 +17,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts1
 
+from cases.histories import LoadHistory
 from cases.size import require
 from compare.exact.blocks.bernstein import of_powers, sign_changes
 from compare.exact.blocks.chain import Chain, contact_forces, rates, reaction
-from compare.exact.drive import Signal
 
 ORDER = 24
 STEP = 2.0  # over the norm of A: the last term is 2^24 / 24! = 3e-17
@@ -65,7 +65,7 @@ class _Contacts:
 
 def integrate(
     chain: Chain,
-    load: Signal,
+    load: LoadHistory,
     times: np.ndarray,
     rest: np.ndarray | None = None,
     period: float | None = None,

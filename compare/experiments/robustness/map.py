@@ -21,15 +21,8 @@ from compare.experiments.robustness.case import SHORT
 from compare.scenes import find
 from compare.solvers.record import Solver
 
-
-class FreeMotion(NamedTuple):
-    """A body in motion.
-
-    v : float array [freedoms], m/s. advance : takes a number of steps.
-    """
-
-    v: np.ndarray
-    advance: Callable[[int], None]
+#: Velocities [freedoms], m/s, and what takes a number of steps, in which they change.
+FreeMotion = tuple[np.ndarray, Callable[[int], None]]
 
 
 class Unloaded(NamedTuple):
@@ -62,7 +55,7 @@ def _blocks(scene: Scene) -> Unloaded:
         state.v[:] = v
         if state.gap_rate is not None:
             state.gap_rate[:] = np.diff(v)
-        return FreeMotion(state.v, lambda steps: march(model, state, 0, steps))
+        return state.v, lambda steps: march(model, state, 0, steps)
 
     return Unloaded(np.ones(p.block_count), np.array([1]), begin)
 
@@ -81,7 +74,7 @@ def _rock(scene: Scene, kind: str) -> Unloaded:
         state.v[:] = state.v_before[:] = v
         samples = empty_samples(model, state, 2)
         # None of these steps is a sample.
-        return FreeMotion(state.v, lambda n: run(model, state, samples, n + 2, 1, n + 1))
+        return state.v, lambda n: run(model, state, samples, n + 2, 1, n + 1)
 
     heights = body.corners[:, :, 0].mean(axis=1)
     nodes = np.unique(body.cells[(heights > d) & (heights < 2 * d)])
@@ -161,8 +154,8 @@ def _is_stable(body: Unloaded, dt: float) -> bool:
 
 def _growth(body: Unloaded, dt: float, steps: int) -> float:
     """Return the largest speed after `steps` steps dt (s), from random ones of 1 m/s at most."""
-    v, moves = np.zeros(body.mass.size), body.mass > 0
-    v[moves] = np.random.default_rng(0).uniform(-1, 1, moves.sum())
-    motion = body.begin(dt, v)
-    motion.advance(steps)
-    return float(np.nan_to_num(np.abs(motion.v).max(), nan=np.inf))
+    start, moves = np.zeros(body.mass.size), body.mass > 0
+    start[moves] = np.random.default_rng(0).uniform(-1, 1, moves.sum())
+    v, advance = body.begin(dt, start)
+    advance(steps)
+    return float(np.nan_to_num(np.abs(v).max(), nan=np.inf))

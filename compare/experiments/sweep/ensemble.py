@@ -4,9 +4,8 @@ Members 1, 2, ... have the scene's own seed, the next one, ...; in a rock mass t
 set. They are points of a sweep, whose key is `member`.
 """
 
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -63,18 +62,11 @@ def _of(values: np.ndarray) -> dict[str, float]:
     return dict(zip(STATISTICS, map(float, every), strict=True))
 
 
-class Members(NamedTuple):
-    """The results of all members of one scene by one solver: the file of their statistics, and
-    their own files."""
-
-    out: Path
-    files: list[Path]
-
-
 def members_of(
     cases: list[SweepCase], outcomes: list[SweepOutcome], out: Path
-) -> Iterator[Members]:
-    """Yield the completed results of members that belong together."""
+) -> dict[Path, list[Path]]:
+    """Return the completed results of the members of one scene by one solver, by the file of their
+    statistics."""
     found: dict[Path, list[Path]] = {}
     for case, one in zip(cases, outcomes, strict=True):
         rest = ",".join(f"{k}={v}" for k, v in case.settings.items() if k != MEMBER)
@@ -82,14 +74,16 @@ def members_of(
         for path in map(Path, dict.fromkeys(str(file) for file in named if file)):
             within = path.relative_to(case.folder).with_name(f"{path.stem}-{ENSEMBLE}.nc")
             found.setdefault(out / rest / within, []).append(path)
-    for place, files in found.items():
-        yield Members(place, files)
+    return found
 
 
-def waveforms(members: Members) -> Path:
+def waveforms(out: Path, files: list[Path]) -> Path:
     """Write mean and percentiles over the members of every waveform, at the same times and
-    receivers in all, with `statistic` as their first dimension; return the file."""
-    results = [load_netcdf(file) for file in members.files]
+    receivers in all, with `statistic` as their first dimension; return the file.
+
+    files : the results of the members.
+    """
+    results = [load_netcdf(file) for file in files]
     first = results[0]
     shared = [name for name in map(str, first.data_vars) if _is_wave(results, name)]
     found = {}
@@ -107,7 +101,7 @@ def waveforms(members: Members) -> Path:
     coords["statistic"] = ("statistic", list(STATISTICS))
     about = {key: first.attrs[key] for key in ("engine", "model") if key in first.attrs}
     data = xr.Dataset(found, coords, {**about, "members": len(results)})
-    return write_fields(members.out, fields_of(data))
+    return write_fields(out, fields_of(data))
 
 
 def _is_wave(results: list[xr.Dataset], name: str) -> bool:

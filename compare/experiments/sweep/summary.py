@@ -97,15 +97,16 @@ def with_statistics(
 ) -> Summary:
     """Return the summary of an ensemble: mean and percentiles of each number over the members;
     write ensemble.csv and the waveforms' statistics."""
-    numbers, shows = (OF_PAIRS, "misfit") if "one" in done else (OF_RECEIVERS, "peak")
+    numbers, shows, form = (
+        (OF_PAIRS, "misfit", ".3%") if "one" in done else (OF_RECEIVERS, "peak", ".4g")
+    )
+    rest = [key for key in asked.axes if key != MEMBER]
     rows = statistics(done, list(asked.axes), list(numbers))
     files = list(summary.files)
     if asked.out is not None:
         files += write_tables(asked.out, ENSEMBLE, rows)
-        waves = [waveforms(one) for one in members_of(asked.cases, found, asked.out)]
-        rest = [key for key in asked.axes if key != MEMBER]
+        waves = [waveforms(*one) for one in members_of(asked.cases, found, asked.out).items()]
         files += [*waves, *_drawn(waves, done, rest, asked.out)]
-    rest, form = [key for key in asked.axes if key != MEMBER], ".3%" if "one" in done else ".4g"
 
     def cells(row: dict[str, Any]) -> list[str]:
         every = [number(float(row[name]), form, "-") for name in STATISTICS]

@@ -20,7 +20,7 @@ from cases.sampling import sample_times
 from cases.schema.scene import Scene
 from compare.exact.blocks.chain import chain, contact_forces
 from compare.exact.blocks.lattice import at_rest, state_space
-from compare.exact.drive import Signal, drive
+from compare.exact.drive import drive
 from compare.exact.linear import _gauss, _load_on_nodes, twins
 
 PLACES, TIMES = 2001, 6001  # at which the tension in a bar is looked at
@@ -55,7 +55,12 @@ def spall(
 
 
 def advance(
-    matrix: np.ndarray, vector: np.ndarray, state: np.ndarray, load: Signal, start: float, h: float
+    matrix: np.ndarray,
+    vector: np.ndarray,
+    state: np.ndarray,
+    load: LoadHistory,
+    start: float,
+    h: float,
 ) -> np.ndarray:
     """Return the state [m] that `state` at `start` (s) becomes a time h (s) later."""
     from scipy.sparse import csr_array

@@ -54,15 +54,15 @@ def _peaks(trial: CaseTrial, stride: int) -> np.ndarray:
     body = unloaded(trial.engine, trial.scene)
     loose, start = body.second, np.zeros(body.mass.size)
     start[loose] = 1.0
-    motion, mass = body.begin(trial.dt, start), body.mass[loose]
+    (moving, advance), mass = body.begin(trial.dt, start), body.mass[loose]
 
     def speed() -> float:
-        return float(mass @ motion.v[loose] / mass.sum())
+        return float(mass @ moving[loose] / mass.sum())
 
     peaks: list[float] = []
     largest, sign = abs(speed()), 1.0
     while len(peaks) <= IMPACTS:
-        motion.advance(stride)
+        advance(stride)
         v = speed()
         if not isfinite(v):
             said = f"the loose block's velocity is not finite after {len(peaks):,} impacts"

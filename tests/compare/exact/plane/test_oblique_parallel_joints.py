@@ -25,22 +25,6 @@ def test_numbers_at_thirty_degrees(rock, joint, count, T_p, T_s):
     assert np.abs([found.T_p, found.T_s]) == pytest.approx([T_p, T_s], abs=5.1e-5)
 
 
-@pytest.mark.parametrize(
-    "count, moduli",
-    [
-        (2, [0.7822, 0.8890, 0.9864]),
-        (3, [0.7927, 0.9995, 0.9138]),
-        (5, [0.9963, 0.8840, 0.9468]),
-    ],
-)
-def test_nine_numbers_at_normal_incidence(rock, joint, count, moduli):
-    """|T| at kappa = 1, 0.05, 0.1 and 0.2 wavelengths apart, to the digits given."""
-    for spacing, modulus in zip((0.05, 0.1, 0.2), moduli, strict=True):
-        spacings = [spacing * rock.p_speed / 100] * (count - 1)
-        found = coefficients("P", 0.0, OMEGA, rock, [joint] * count, spacings)
-        assert abs(found.T_p) == pytest.approx(modulus, abs=5.1e-5)
-
-
 @KINDS
 @pytest.mark.parametrize("count", [2, 3, 5, 40])
 @pytest.mark.parametrize("spacing", [0.05, 0.1, 0.2])

@@ -7,6 +7,7 @@ import xarray as xr
 import dem
 from cases.effects import active_effects
 from cases.errors import SceneError
+from cases.schema.joint import PARTS
 from compare.experiments.ablation import ablation
 from compare.experiments.ablation.ablation import ablate, prepare
 from compare.experiments.ablation.variants import NEEDS, WITHOUT, left_out, only
@@ -16,10 +17,17 @@ from compare.misfit.metrics import relative_l2
 LAYER = [{"y": 20.0, "spacing_stiffness": 4e8, "damping_ratio": 0.05, "tension": False}]
 ACROSS = {"load__direction": [0.6, 0.8, 0.0]}
 FALL = {"direction": [0, 1, 0], "static": False}
-CALLS = {
+
+
+def law(part):
+    """Return the keys of a part of the joint law, of a pillar struck across where it is of slip."""
+    slides = ACROSS | {"joints__friction_angle": 30.0} if part.along else {}
+    return slides | {f"joints__{key}": value for key, value in part.sample.items()}
+
+
+CALLS = {part.name: law(part) for part in PARTS} | {
     "dashpots": {"joints__damping_ratio": 0.02, "soft_layers": LAYER},
     "no tension": {"joints__tension": False, "soft_layers": LAYER},
-    "closure": {"joints__maximum_closure": 1e-3},
     "segments": {"segments": [{"y": [10.0, 20.0], "density": 2600.0}]},
     "scatter": {"scatter": {"spacing": 0.2, "seed": 1}},
     "joints that differ": {"soft_layers": LAYER},
@@ -30,27 +38,6 @@ CALLS = {
     "field output": {"record__fields": 0.01},
     "finite rotation": {**ACROSS, "motion__rotation": "finite"},
     "slip": {**ACROSS, "joints__friction_angle": 30.0, "joints__cohesion": 1e4},
-    "weakening": {
-        **ACROSS,
-        "joints__friction_angle": 30.0,
-        "joints__dynamic_friction_angle": 20.0,
-        "joints__weakening_distance": 1e-3,
-    },
-    "dilation": {
-        **ACROSS,
-        "joints__friction_angle": 30.0,
-        "joints__dilation_angle": 5.0,
-        "joints__dilation_distance": 1e-2,
-    },
-    "rate and state": {
-        **ACROSS,
-        "joints__friction_angle": 30.0,
-        "joints__direct_effect": 0.01,
-        "joints__evolution_effect": 0.015,
-        "joints__critical_slip_distance": 1e-4,
-        "joints__reference_rate": 1e-6,
-    },
-    "softening": {"joints__tensile_strength": 1e5, "joints__fracture_energy": 10.0},
     "mass damping": {"damping__mass_proportional": 5.0},
     "local damping": {"damping": {"local": 0.5}},
     "constant Q": {"rock__quality_factor": 20.0},

@@ -6,6 +6,7 @@ import pytest
 from cases.effects import active_effects, effects
 from cases.errors import SceneError
 from cases.read import load_tables
+from cases.schema.joint import PARTS
 from compare.engines import solve
 from compare.experiments.ablation import ablation
 from compare.experiments.ablation.ablation import ablate, prepare
@@ -18,19 +19,18 @@ COLUMNS = ROWS | {"name": "columns", "dip": 90.0}
 PRESS = {"kind": "pressure", "side": "top", "shape": "ricker", "amplitude": 1e6, "period": 0.004}
 WAVE = {"kind": "P", "direction": [0.0, 1.0], "shape": "step", "amplitude": 1e6}
 ACTS = {"loads", "incident waves", "shaken base"}
-WEAKENS = {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3}
-DILATES = {"dilation_angle": 5.0, "dilation_distance": 1e-2}
-RATED = {"direct_effect": 0.01, "evolution_effect": 0.015}
-RATED |= {"critical_slip_distance": 1e-4, "reference_rate": 1e-6}
-CALLS = {
+
+
+def law(part):
+    """Return the joints of a part of the joint law."""
+    slides = {"friction_angle": 30.0} if part.along else {}
+    return {"joint_sets": [ROWS | slides | part.sample, COLUMNS]}
+
+
+CALLS = {part.name: law(part) for part in PARTS} | {
     "dashpots": {"joint_sets": [ROWS | {"damping_ratio": 0.02}, COLUMNS]},
     "no tension": {"joint_sets": [ROWS | {"tension": False}, COLUMNS]},
-    "closure": {"joint_sets": [ROWS | {"maximum_closure": 1e-3}, COLUMNS]},
     "slip": {"joint_sets": [ROWS | {"friction_angle": 30.0, "cohesion": 1e4}, COLUMNS]},
-    "weakening": {"joint_sets": [ROWS | {"friction_angle": 30.0} | WEAKENS, COLUMNS]},
-    "dilation": {"joint_sets": [ROWS | {"friction_angle": 30.0} | DILATES, COLUMNS]},
-    "rate and state": {"joint_sets": [ROWS | {"friction_angle": 30.0} | RATED, COLUMNS]},
-    "softening": {"joint_sets": [ROWS | {"tensile_strength": 1e5, "fracture_energy": 10.0}]},
     "quiet sides": {"boundaries": {"bottom": "quiet"}},
     "fixed sides": {"boundaries": {"bottom": "fixed"}},
     "periodic sides": {"boundaries": {"left": "periodic", "right": "periodic"}},
