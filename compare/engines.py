@@ -48,11 +48,6 @@ EXACT = {
 Progress = Callable[[float], None]
 
 
-def exact_names() -> tuple[str, ...]:
-    """Return the names of all exact solutions."""
-    return tuple(EXACT)
-
-
 def names(kind: str | None = None) -> tuple[str, ...]:
     """Return the names of everything that can solve a scene, of this kind alone where it is given:
     a pillar imports nothing of rock masses, whose solutions have a folder of their own."""

@@ -112,10 +112,10 @@ def test_a_check_without_words_is_refused():
 
 def test_every_exact_solution_is_explained():
     """Theory has a heading for each exact solution, by the name that users type."""
-    from compare.engines import exact_names
+    from compare.engines import EXACT
 
     headings = re.findall(r"^#+ .*", (DOCS / "theory" / "exact.md").read_text(), re.MULTILINE)
-    assert not [name for name in exact_names() if not any(f"`{name}`" in h for h in headings)]
+    assert not [name for name in EXACT if not any(f"`{name}`" in h for h in headings)]
 
 
 def test_every_term_and_quantity_of_a_result_is_explained():

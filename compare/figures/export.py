@@ -102,19 +102,20 @@ def _write_drawings(figure: Figure, folder: Path, name: str, title: str, png: bo
         figure.set_layout_engine(None)
         figure.savefig(buffer, format="svg", metadata={"Title": title, "Date": None})
         about = {"Title": title, "CreationDate": None}
-        _write_bytes(folder / f"{name}.pdf", figure, metadata=about)
+        write_drawing(folder / f"{name}.pdf", figure, metadata=about)
         if png:
-            _write_bytes(folder / f"{name}.png", figure, dpi=DOTS)
+            write_drawing(folder / f"{name}.png", figure, dpi=DOTS)
     svg = compact(buffer.getvalue(), name)
     write_text(folder / f"{name}.svg", svg)
     return svg[svg.index("<svg") :]
 
 
-def _write_bytes(path: Path, figure: Figure, **options: Any) -> None:
-    """Write a figure created in memory: matplotlib's writers fail in many ways on a full disk."""
+def write_drawing(path: Path, figure: Figure, **options: Any) -> Path:
+    """Write a figure created in memory, in the format of the suffix: matplotlib's writers fail in
+    many ways on a full disk."""
     content = io.BytesIO()
     figure.savefig(content, format=path.suffix[1:], **options)
-    write(path, lambda place: place.write_bytes(content.getbuffer()))
+    return write(path, lambda place: place.write_bytes(content.getbuffer()))
 
 
 def compact(svg: str, name: str) -> str:

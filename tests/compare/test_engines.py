@@ -8,7 +8,7 @@ import pytest
 
 from cases.errors import SceneError
 from cases.read import load_tables
-from compare.engines import ENGINES, EXACT, exact_names, names, selection, solver, solvers
+from compare.engines import ENGINES, EXACT, names, selection, solver, solvers
 from compare.misfit.pairs import pairs
 from compare.solvers.record import HEADINGS, Form
 
@@ -31,7 +31,7 @@ def test_records_name_solvers_headings_and_arguments_that_there_are():
 def test_every_solver_is_selected_by_one_engine_and_model():
     every = [name for models in selection().values() for name in models.values()]
     assert sorted(every) == sorted(names())
-    assert [*selection()["exact"]] == [*exact_names()]
+    assert [*selection()["exact"]] == [*EXACT]
 
 
 def test_an_unknown_name_is_an_error():

@@ -48,7 +48,7 @@ def job(scene: Scene, dim: int, n: int, place: Place, root: Path) -> Job:
         curve=CURVES[dim],
         method="linear elements, lumped mass, central differences",
         solves=SOLVES[dim],
-        own=OWN[dim],
+        reference=OWN[dim],
         settings={"elements_per_block": n, "stride": stride},
         freedoms=freedoms,
         steps=p.steps,

@@ -31,7 +31,7 @@ class Job:
     """A run whose input is written, in a folder of its own.
 
     curve : the code and its method, a line in the diagram. method : how it steps.
-    solves : what it takes the pillar for. own : the exact solution of that model.
+    solves : what it takes the pillar for. reference : the exact solution of that model.
     settings : of this point. freedoms, steps : how many. work : degree-of-freedom-steps, for
     codes of bodies body-steps. twin : what of ours it is held beside, None for ours.
     """
@@ -39,7 +39,7 @@ class Job:
     curve: str
     method: str
     solves: str
-    own: str
+    reference: str
     settings: dict
     freedoms: int
     steps: int

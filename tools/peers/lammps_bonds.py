@@ -98,7 +98,7 @@ def job(p: Pillar, style: Style, place: Place, root: Path) -> Job:
         curve=style.curve,
         method="velocity Verlet",
         solves=style.solves,
-        own="lattice",
+        reference="lattice",
         settings={"stride": p.stride},
         freedoms=style.freedoms * p.blocks,
         steps=p.steps,

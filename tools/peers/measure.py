@@ -13,6 +13,8 @@ from compare.misfit.metrics import relative_l2
 
 FINEST = "jointed-bar"  # intact rock with every joint resolved
 LONGEST = 600  # s
+#: What of a job is in its row.
+ABOUT = ("curve", "method", "solves", "settings", "reference", "freedoms", "steps", "work")
 
 
 class Turn(NamedTuple):
@@ -84,32 +86,20 @@ def take_turns(jobs: list[Job], rounds: int) -> list[list[Turn]]:
 def row(job: Job, turns: list[Turn], exact: dict[str, np.ndarray]) -> dict:
     """Return a job's row of the table."""
     failure = next((turn.failure for turn in turns if turn.failure), "")
-    found = {**_about(job), "state": "failed" if failure else "done", "message": failure}
+    about = {name: getattr(job, name) for name in ABOUT}
+    found = {**about, "state": "failed" if failure else "done", "message": failure}
     if failure:
         return found
     stepping, whole = ([getattr(t, name) for t in turns] for name in ("stepping", "whole"))
     return {
         **found,
-        "misfit": relative_l2(turns[-1].stress, exact[job.own]),
+        "misfit": relative_l2(turns[-1].stress, exact[job.reference]),
         "total_misfit": relative_l2(turns[-1].stress, exact[FINEST]),
         "seconds": median(stepping),
         "spread": half_range(stepping),
         "whole": median(whole),
         "whole_spread": half_range(whole),
         "rate": job.freedoms * job.steps / median(stepping),
-    }
-
-
-def _about(job: Job) -> dict:
-    return {
-        "curve": job.curve,
-        "method": job.method,
-        "solves": job.solves,
-        "settings": job.settings,
-        "reference": job.own,
-        "freedoms": job.freedoms,
-        "steps": job.steps,
-        "work": job.work,
     }
 
 

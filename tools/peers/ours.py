@@ -104,7 +104,7 @@ def job(scene: Scene, twin: Twin, root: Path) -> Job:
         curve=kind.curve,
         method=f"elements of order {order}, lumped mass, leapfrog" if order else "leapfrog",
         solves=kind.solves,
-        own=kind.own,
+        reference=kind.own,
         settings=settings,
         freedoms=freedoms,
         steps=p.steps,

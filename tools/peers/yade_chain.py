@@ -32,7 +32,7 @@ def job(p: Pillar, place: Place, root: Path) -> Job:
         curve=CURVE,
         method="leapfrog",
         solves=SOLVES,
-        own="lattice",
+        reference="lattice",
         settings={"stride": p.stride},
         freedoms=6 * p.blocks,
         steps=p.steps,

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from cases.kinds import AnyScene
-from compare.engines import ENGINES, applies, exact_names, solve, solver
+from compare.engines import ENGINES, EXACT, applies, solve, solver
 from compare.experiments.common import ErrorReference
 from compare.experiments.study.methods import METHODS
 from compare.experiments.study.study import FINEST, NONE, FineRun, Study, StudyPoint
@@ -44,7 +44,7 @@ def own_of(point: StudyPoint) -> str | FineRun | None:
         return finest_of(study) if own == FINEST else None if own == NONE else own
     scene, method = point.scene, point.curve.method
     engine = METHODS[method].ENGINE if method in METHODS else method
-    exact = own_exact(engine, [n for n in exact_names() if applies(n, scene)], scene)
+    exact = own_exact(engine, [n for n in EXACT if applies(n, scene)], scene)
     return exact or _as_fine(engine, study.finest)
 
 

@@ -15,14 +15,15 @@ from matplotlib.text import Text
 
 from cases.errors import SceneError
 from cases.kinds import AnyScene
-from compare.engines import Progress, applies, exact_names, names, solve
+from compare.engines import EXACT, Progress, applies, names, solve
 from compare.figures import fonts
+from compare.figures.export import write_drawing
 from compare.figures.print.appearance import MM, STYLES
 from compare.figures.print.draw import draw, families_of
 from compare.misfit.alignment import lay_beside
 from compare.misfit.pairs import Comparison
 from compare.runs.jobs import names_of
-from compare.runs.output import refuse_foreign, write
+from compare.runs.output import refuse_foreign, write_text
 
 #: First bytes of a file of each kind: only such a file is overwritten.
 BEGINS = {"pdf": (b"%PDF",), "svg": (b"<?xml", b"<svg"), "png": (b"\x89PNG",)}
@@ -37,15 +38,12 @@ def save(figure: Figure, path: Path, kind: str, title: str, dpi: int) -> Path:
     about = {"Title": title, "Creator": f"jointwave {version('jointwave')}"}
     with matplotlib.rc_context({"pdf.fonttype": 42, "svg.fonttype": "none", "svg.hashsalt": title}):
         if kind == "svg":
-            return write(path, lambda place: place.write_text(_svg(figure, about), "utf-8"))
+            return write_text(path, _svg(figure, about))
         if kind == "pdf":
             _refuse_postscript(figure)
-            dated = {**about, "CreationDate": None}
-            return write(path, lambda place: figure.savefig(place, format="pdf", metadata=dated))
+            return write_drawing(path, figure, metadata={**about, "CreationDate": None})
         named = {"Title": title, "Software": about["Creator"]}
-        return write(
-            path, lambda place: figure.savefig(place, format="png", dpi=dpi, metadata=named)
-        )
+        return write_drawing(path, figure, dpi=dpi, metadata=named)
 
 
 def _svg(figure: Figure, about: dict[str, str]) -> str:
@@ -147,9 +145,7 @@ def make_bands(folder: Path, engines: list[str], request: FigureRequest) -> Path
     from compare.experiments.sweep.diagram import WAVEFORMS, bands, statistics_in
 
     kind, appearance = request.format, STYLES[request.style]
-    starts = tuple(
-        one for name in engines for one in (exact_names() if name == "exact" else [name])
-    )
+    starts = tuple(one for name in engines for one in (EXACT if name == "exact" else [name]))
     found = {k: v for k, v in statistics_in(folder).items() if not engines or k.startswith(starts)}
     if not found:
         raise SceneError("--engine", ", ".join(engines), None, f"has no results in {folder}")
