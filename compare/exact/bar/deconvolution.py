@@ -46,7 +46,6 @@ def deconvolve(scene: Scene, surface: xr.DataArray, water_level: float = 1e-3) -
 
     Raises SceneError if the column is not linear.
     """
-    import xarray as xr
     from scipy.fft import next_fast_len
 
     bar, impedance = _column(scene)

@@ -17,30 +17,18 @@ which gives strains and stresses. Valid at every place off the line; stress tens
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from cases.material.rock import ElasticRock
+from compare.exact.plane.waves import PlaneMotion
 
 POINTS = 64  # of integration between two breaks
 SAFETY = 2.0  # factor on the difference from half of them
 FLOOR = 1e-13  # of the largest value
 
 Signal = Callable[[np.ndarray], np.ndarray]
-
-
-class LineForceMotion(NamedTuple):
-    """Motion at m places, arrays [m, components, times], and bounds [m, components] on its error at
-    any time: x, y of displacement (m) and velocity (m/s); xx, yy, xy of stress (Pa, tension +)."""
-
-    displacement: np.ndarray
-    velocity: np.ndarray
-    stress: np.ndarray
-    displacement_error: np.ndarray
-    velocity_error: np.ndarray
-    stress_error: np.ndarray
 
 
 def motion(
@@ -51,8 +39,8 @@ def motion(
     breaks: Sequence[float],
     offsets: np.ndarray,
     times: np.ndarray,
-) -> LineForceMotion:
-    """Return the motion caused by a force per length of line.
+) -> PlaneMotion:
+    """Return the motion caused by a force per length of line, with bounds at any time.
 
     Parameters
     ----------
@@ -72,7 +60,7 @@ def motion(
     parts = [found[:, rows] for rows in (slice(0, 2), slice(2, 4), slice(4, 7))]
     off = np.split(SAFETY * np.abs(found - rough).max(axis=-1), [2, 4], axis=1)
     errors = [e + FLOOR * np.abs(part).max() for e, part in zip(off, parts, strict=True)]
-    return LineForceMotion(*parts, *errors)
+    return PlaneMotion(*parts, *errors)
 
 
 def _motion(rock, d, force, rate, breaks, x, t, points) -> np.ndarray:

@@ -136,8 +136,6 @@ def _shifted(coefficients: np.ndarray, s: float) -> np.ndarray:
 
 def _assembled(rows: np.ndarray, blocks: np.ndarray, weights: np.ndarray, count: int) -> csr_array:
     """Return the sum of weight row^T row over points in the freedoms of blocks [p, b]."""
-    from scipy.sparse import csr_array
-
     column = (3 * blocks[:, :, None] + np.arange(3)).reshape(len(rows), -1)
     place = np.repeat(np.arange(len(rows)), column.shape[1])
     B = csr_array((rows.ravel(), (place, column.ravel())), shape=(len(rows), 3 * count))

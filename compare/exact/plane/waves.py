@@ -34,6 +34,18 @@ class Face(NamedTuple):
     shear_velocity: np.ndarray
 
 
+class PlaneMotion(NamedTuple):
+    """Motion at m places, arrays [m, components, times], and bounds [m, components] on its error:
+    x, y of displacement (m) and velocity (m/s); xx, yy, xy of stress (Pa, tension positive)."""
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+    stress: np.ndarray
+    displacement_error: np.ndarray
+    velocity_error: np.ndarray
+    stress_error: np.ndarray
+
+
 def speed_of(rock: ElasticRock, kind: Kind) -> Values:
     """Return the speed of a kind of wave, m/s."""
     return rock.p_speed if kind == "P" else rock.s_speed

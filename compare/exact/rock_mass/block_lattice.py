@@ -68,8 +68,6 @@ def applies(scene: RockMass) -> Answer:
 
 def solve(scene: RockMass) -> xr.Dataset:
     """Return velocity and displacement at the points of a scene."""
-    import xarray as xr
-
     partition, times = partition_of(scene), sample_times(scene)
     quiet = _quiet(scene, partition)
     impedance = impedances(scene, quiet.normal, partition.region[quiet.block])

@@ -120,8 +120,6 @@ def applies(scene: RockMass) -> Answer:
 
 def solve(scene: RockMass) -> xr.Dataset:
     """Return velocity, displacement and stress at the points of a scene."""
-    import xarray as xr
-
     times, points = sample_times(scene), np.array(scene.record.points).reshape(-1, 2)
     field = medium_field(scene)
     velocity, stress = field(points, times)

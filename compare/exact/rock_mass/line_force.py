@@ -17,6 +17,7 @@ from cases.partition.outline import outline_of
 from cases.sampling import sample_times
 from cases.schema.rock_mass import RockMass
 from compare.exact.plane.line_force import motion
+from compare.exact.plane.waves import PlaneMotion
 from compare.exact.rock_mass.conditions import beyond_linear_rock, prestress_of
 from compare.solvers.record import JOINTED, YES, Answer, Kind, Rock, Solver, Words, no, thin
 from results.plane import plane_fields
@@ -54,8 +55,6 @@ def applies(scene: RockMass) -> Answer:
 
 def solve(scene: RockMass) -> xr.Dataset:
     """Return velocity, displacement and stress at the points of a scene."""
-    import xarray as xr
-
     rock, times = elastic_rock(scene.rock), sample_times(scene)
     points, total = np.array(scene.record.points), []
     for load, history in zip(scene.loads, _histories(scene), strict=True):
@@ -63,14 +62,13 @@ def solve(scene: RockMass) -> xr.Dataset:
         offsets, breaks = points - np.array(load.at), _breaks(history)
         direction = np.array(load.direction)
         total.append(motion(rock, direction, history.value, history.rate, breaks, offsets, times))
-    sums = [np.sum(parts, axis=0) for parts in zip(*total, strict=True)]
-    u, v, stress, u_error, v_error, stress_error = sums
+    found = PlaneMotion(*(np.sum(parts, axis=0) for parts in zip(*total, strict=True)))
     values = {
-        "velocity": v.swapaxes(1, 2),
-        "displacement": u.swapaxes(1, 2),
-        "stress": prestress_of(scene) - stress.swapaxes(1, 2),
+        "velocity": found.velocity.swapaxes(1, 2),
+        "displacement": found.displacement.swapaxes(1, 2),
+        "stress": prestress_of(scene) - found.stress.swapaxes(1, 2),
     }
-    errors = {"velocity": v_error, "displacement": u_error, "stress": stress_error}
+    errors = {name: getattr(found, f"{name}_error") for name in values}
     known = known_until(scene)
     until: dict[str, Any] = {"known_until": known} if known < times[-1] else {}
     return xr.Dataset(*plane_fields(scene, SOLVER.name, times, values, errors=errors, **until))

@@ -14,6 +14,7 @@ from cases.schema.rock_mass import RockMass
 from compare.exact.joint.closing_joint import TOLERANCES, ClosingJoint, Passed
 from compare.exact.joint.one_joint import around
 from compare.exact.linear import bound
+from compare.exact.plane.waves import PlaneMotion
 from compare.exact.rock_mass import stack_waves
 from compare.exact.rock_mass.conditions import along, prestress_of
 from compare.exact.rock_mass.stack import JointStack, stack_of
@@ -94,7 +95,7 @@ class ClosingField:
 
 def _motion(
     scene: RockMass, stack: JointStack, places: np.ndarray, times: np.ndarray
-) -> stack_waves.StackMotion:
+) -> PlaneMotion:
     """Return the motion at places [m, 2] (m), displacement relative to the start of the scene."""
     found = []
     for tolerance in TOLERANCES:
@@ -103,9 +104,9 @@ def _motion(
         velocity, moved = (
             (there - back)[:, :, None] / field.impedance * field.wave.direction[:, None]
         )
-        found.append((velocity, moved - moved[..., :1], field.stress(there[0] + back[0])))
+        found.append((moved - moved[..., :1], velocity, field.stress(there[0] + back[0])))
     errors = (bound(one, twin) for one, twin in zip(*found, strict=True))
-    return stack_waves.StackMotion(*found[0], *errors)
+    return PlaneMotion(*found[0], *errors)
 
 
 SOLVER = Solver(

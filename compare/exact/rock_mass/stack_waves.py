@@ -17,6 +17,7 @@ from cases.partition.outline import TOLERANCE
 from cases.sampling import sample_times
 from cases.schema.rock_mass import RockMass
 from compare.exact.plane.pulse import pulse_fields
+from compare.exact.plane.waves import PlaneMotion
 from compare.exact.rock_mass.conditions import prestress_of
 from compare.exact.rock_mass.stack import JointStack, against, begun, stack_of
 from compare.solvers.record import YES, Answer, Kind, no
@@ -33,20 +34,8 @@ DISTANCES = {
 BESIDE = 1e-13  #: relative to the domain's size: far above round-off, far below any wavelength
 
 
-class StackMotion(NamedTuple):
-    """Motion [points, components, times] and bounds [points, components] on its root-mean-square
-    error: (x, y) of velocity (m/s) and displacement (m), (xx, yy, xy) of stress (Pa, tension +)."""
-
-    velocity: np.ndarray
-    displacement: np.ndarray
-    stress: np.ndarray
-    velocity_error: np.ndarray
-    displacement_error: np.ndarray
-    stress_error: np.ndarray
-
-
 #: Of (scene, stack, places [m, 2] (m), times (s)).
-Motion = Callable[["RockMass", JointStack, np.ndarray, np.ndarray], StackMotion]
+Motion = Callable[["RockMass", JointStack, np.ndarray, np.ndarray], PlaneMotion]
 
 
 class JointReceivers(NamedTuple):
@@ -73,8 +62,6 @@ def holds(scene: RockMass, one: bool) -> Answer:
 
 def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Dataset:
     """Return the records of a scene's receivers; motion : in place of `motion_at`."""
-    import xarray as xr
-
     stack, times = stack_of(scene), sample_times(scene)
     points, joints = point_receivers(scene, stack), joint_receivers(scene, stack)
     beside = _beside(stack) * joints.axes[:, 0]
@@ -82,7 +69,7 @@ def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Datase
     found = (motion or motion_at)(scene, stack, places, times)
     m, k = len(points), len(points) + len(joints.places)
     at_points, here, there = (
-        StackMotion(*(x[part] for x in found))
+        PlaneMotion(*(x[part] for x in found))
         for part in (slice(0, m), slice(m, k), slice(k, None))
     )
     pressed = prestress_of(scene)[:, None]
@@ -112,7 +99,7 @@ def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Datase
 
 def motion_at(
     scene: RockMass, stack: JointStack, places: np.ndarray, times: np.ndarray
-) -> StackMotion:
+) -> PlaneMotion:
     """Return the motion of all waves at places [m, 2] (m), relative to the start of the scene."""
     m, n = len(places), len(times)
     shapes = (m, 2, n), (m, 2, n), (m, 3, n), (m, 2), (m, 2), (m, 3)
@@ -133,10 +120,10 @@ def motion_at(
             np.abs(x[..., 0] - y[..., 0])
             for x, y in ((velocity, free.velocity), (stress, free.stress))
         )
-        errors = v_error + v_early, by_integral.velocity_error + early, s_error + s_early
-        for sum_, part in zip(total, (velocity, moved, stress, *errors), strict=True):
+        errors = by_integral.velocity_error + early, v_error + v_early, s_error + s_early
+        for sum_, part in zip(total, (moved, velocity, stress, *errors), strict=True):
             sum_ += part
-    return StackMotion(*total)
+    return PlaneMotion(*total)
 
 
 def point_receivers(scene: RockMass, stack: JointStack) -> np.ndarray:
