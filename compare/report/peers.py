@@ -6,18 +6,25 @@ Every row is a run of a whole process on one core; ours are among them, taken in
 
 import io
 import json
-from math import isfinite
+from math import isfinite, nan
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pandas as pd
+from matplotlib.figure import Figure
 
 from cases.errors import SceneError
 from cases.files import read_text
+from compare.experiments.study.diagram import draw as draw_study
+from compare.experiments.study.pareto import assured
+from compare.experiments.study.study import Curve, Study
 from compare.experiments.summary import Summary
 from compare.figures.export import save
-from compare.figures.peers_diagram import draw
 from compare.report.tables import Table, percent
 from compare.runs.output import write_csv
+from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
+from compare.solvers.dem import DEM
 
 PLACE = Path("out/peers/points.csv")  # where `make bench-peers` writes
 NAME = "peers"
@@ -38,6 +45,15 @@ HEADER = [
     "whole process (s)",
     "freedom-steps a second",
 ]
+COSTS = {"seconds": "seconds of stepping", "whole": "seconds of the whole process"}
+OURS = {  # jointwave's curves have the colours of their engines
+    "jointwave blocks": DEM.name,
+    "jointwave blocks in space": DEM.name,
+    "jointwave bar": EQUIVALENT_ROCK.name,
+    "jointwave hexahedra": EQUIVALENT_ROCK.name,
+    "jointwave hexahedra of order 2": EQUIVALENT_ROCK.name,
+    "jointwave jointed bar": JOINTED_ROCK.name,
+}
 
 
 def read(file: Path | None) -> pd.DataFrame | None:
@@ -99,7 +115,7 @@ def table(found: pd.DataFrame) -> Table:
     for row in found.to_dict("records"):
         undone = [f"{row['state']}: {row['message']}", *[""] * (len(HEADER) - 1)]
         cells = _cells(row) if row["state"] == "done" else undone
-        groups.setdefault(f"{row['curve']}: {row['solves']}", []).append(cells)
+        groups.setdefault(_label(row), []).append(cells)
     return Table(HEADER, groups)
 
 
@@ -146,3 +162,36 @@ def sentences(found: pd.DataFrame) -> list[str]:
 def _span(values: pd.Series) -> str:
     low, high = (f"{x:.3g}" if x >= 100 else f"{x:.2g}" for x in (values.min(), values.max()))
     return low if low == high else f"{low} to {high}"
+
+
+def draw(name: str, title: str, rows: list[dict[str, Any]]) -> Figure:
+    """Return the diagram of the completed rows, each curve with its equations."""
+    done = [row for row in rows if row["state"] == "done"]
+    methods = {_label(row): OURS.get(row["curve"], row["curve"]) for row in done}
+    curves = [Curve(label=label, method=method) for label, method in methods.items()]
+    study = Study(title=title, scene="", timed=True, curves=curves)
+    points: Any = [_point(row) for row in done]
+    for point, error in zip(points, assured(points, "total"), strict=True):
+        point.held = error
+    return draw_study(name, study, points, COSTS)
+
+
+def _label(row: dict[str, Any]) -> str:
+    return f"{row['curve']}: {row['solves']}"
+
+
+def _point(row: dict[str, Any]) -> SimpleNamespace:
+    """Return a row of the table as a row of a study, for the diagram."""
+    counted = ("freedoms", "steps", "seconds", "whole", "work")
+    return SimpleNamespace(
+        curve=_label(row),
+        state="done",
+        settings={},
+        numerical=float(row.get("misfit", nan)),
+        total=float(row.get("total_misfit", nan)),
+        measured=nan,
+        cancels=False,
+        numerical_floor=0.0,
+        total_floor=0.0,
+        **{name: float(row.get(name, nan)) for name in counted},
+    )
