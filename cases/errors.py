@@ -60,7 +60,9 @@ class StoppedError(UnstableError):
 
 
 class InterruptedRun(StoppedError):
-    """A run stopped by the user or the system."""
+    """A run stopped by the user or the system. code : exit code of the program."""
+
+    code: int = 1
 
 
 class _Found(reprlib.Repr):

@@ -47,7 +47,7 @@ def main() -> None:
     except SceneError as error:
         _fail(processes, str(error), 2)
     except InterruptedRun as error:
-        _fail(processes, str(error), getattr(error, "code", 1))
+        _fail(processes, str(error), error.code)
     except UnstableError as error:
         _fail(processes, str(error), 3)
     except UsageError as error:

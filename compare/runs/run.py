@@ -46,7 +46,7 @@ def execute(
         files, and is the only one to return what was done.
     keeping : checkpoint settings of the runs; None: no checkpoints.
     Raises SceneError if a run fails, its file or a VTX file cannot be written, or its checkpoint
-    cannot be used; Interrupted if a signal has stopped a run.
+    cannot be used; InterruptedRun if a signal has stopped a run.
     """
     done: list[Done] = []
     if vtx:

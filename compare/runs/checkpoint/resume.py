@@ -18,15 +18,6 @@ from compare.runs.processes import Processes
 from results.dataset import Fields
 
 
-class Interrupted(InterruptedRun):
-    """A run that a signal has stopped.
-
-    code : exit code of the program.
-    """
-
-    code: int = 1
-
-
 class RunKeeper:
     """Keeps one run, see `numerics.checkpoint.Keeper`.
 
@@ -51,7 +42,7 @@ class RunKeeper:
         self._say(f"{self.files.result} continues at t = {self._time(self.done):.4g} s")
 
     def look(self, samples: int, parts: Any) -> None:
-        """Save the parts of a run when due; raises Interrupted if a signal is pending."""
+        """Save the parts of a run when due; raises InterruptedRun if a signal is pending."""
         if samples >= self._total:
             self.relax()
             return
@@ -87,7 +78,8 @@ class RunKeeper:
     def _stop(self, number: int, samples: int, parts: Any) -> None:
         can_go_on = self._every > 0 and self._save(samples, parts)
         message = f"{word(number)} at t = {self._time(samples):.4g} s"
-        error = Interrupted(f"{message}, --resume continues from there" if can_go_on else message)
+        message += ", --resume continues from there" if can_go_on else ""
+        error = InterruptedRun(message)
         error.code = exit_code(number)
         raise error
 
