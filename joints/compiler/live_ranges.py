@@ -9,6 +9,7 @@ from collections import defaultdict
 
 from numba.core import compiler_machinery, ir, ir_utils
 
+NESTED = "call", "build_map"  # expressions that hold pairs of names and values
 LOCKED = ir.Const, ir.Global, ir.FreeVar  # their targets take the type of this very value
 
 
@@ -65,25 +66,21 @@ def _rename(blocks: dict[int, ir.Block], several: dict[str, list[ir.Assign]]) ->
 
 def _reaching(blocks, several) -> dict[int, dict[str, set]]:
     """Return which assignments of a name may have been the last at the beginning of each block."""
-    left = {
-        at: {one.target.name: {one} for one in block.find_insts(ir.Assign)}
+    before: dict[int, dict[str, set]] = {at: defaultdict(set) for at in blocks}
+    targets = {at: block.terminator.get_targets() for at, block in blocks.items()}
+    last = {
+        at: {one.target.name: one for one in block.find_insts(ir.Assign)}
         for at, block in blocks.items()
     }
-    for known in left.values():
-        for name in known.keys() - several.keys():
-            del known[name]
-    before: dict[int, dict[str, set]] = {at: {} for at in blocks}
-    work = list(blocks)
-    while work:
-        at = work.pop()
-        after = before[at] | left[at]
-        for target in blocks[at].terminator.get_targets():
-            known, grown = before[target], False
-            for name, found in after.items():
-                if not found <= known.get(name, set()):
-                    known[name], grown = known.get(name, set()) | found, True
-            if grown:
-                work.append(target)
+    for at, found in last.items():
+        for name in found.keys() & several.keys():
+            one, work = found[name], list(targets[at])
+            while work:
+                here = work.pop()
+                if one not in before[here][name]:
+                    before[here][name].add(one)
+                    if name not in last[here]:
+                        work += targets[here]
     return before
 
 
@@ -92,6 +89,10 @@ def names_read(one: ir.Stmt) -> set[str]:
     read = one.value if isinstance(one, ir.Assign) else one
     if isinstance(read, ir.Var):
         return {read.name}
+    if isinstance(read, ir.Expr) and read.op not in NESTED:
+        parts = read._kws.values()
+        several = (one for part in parts if isinstance(part, tuple | list) for one in part)
+        return {one.name for one in (*parts, *several) if isinstance(one, ir.Var)}
     return {var.name for var in read.list_vars()} if isinstance(read, ir.Inst) else set()
 
 

@@ -2,19 +2,40 @@
 
 numba turns a loop over a range into some sixty instructions, and keeps what several blocks read in
 memory. Here a loop takes fifteen, and what is assigned once, at the beginning of a function, is
-never stored. LLVM reads half as much, and its optimised code hardly differs.
+never stored. LLVM reads half as much, and its optimised code hardly differs. Arithmetic, fields of
+NamedTuples and flags are written at once: numba would search all its overloads for each of them.
 """
 
+import operator
 from collections import defaultdict
 from typing import Any, NamedTuple
 
 from llvmlite.ir import IntType
 from numba.core import cgutils, ir, types
 from numba.core.lowering import Lower
+from numba.core.types.containers import BaseNamedTuple
 
 from joints.compiler.live_ranges import names_read
 
 WORD = IntType(64)
+SIGNS = {operator.lt: "<", operator.le: "<=", operator.gt: ">", operator.ge: ">="}
+SIGNS |= {operator.eq: "==", operator.ne: "!="}
+#: LLVM's instructions for two numbers of one type; an unordered number differs from all.
+INSTRUCTIONS: dict[types.Type, dict[Any, tuple[str, ...]]] = {
+    types.int64: {
+        operator.add: ("add",),
+        operator.sub: ("sub",),
+        operator.mul: ("mul",),
+        **{op: ("icmp_signed", sign) for op, sign in SIGNS.items()},
+    },
+    types.float64: {
+        operator.add: ("fadd",),
+        operator.sub: ("fsub",),
+        operator.mul: ("fmul",),
+        **{op: ("fcmp_ordered", sign) for op, sign in SIGNS.items()},
+        operator.ne: ("fcmp_unordered", "!="),
+    },
+}
 
 
 class Range(NamedTuple):
@@ -31,8 +52,29 @@ class Counter(NamedTuple):
     left: Any
 
 
+class Unoptimised(NamedTuple):
+    """A library whose modules LLVM only translates: its passes gain nothing in what unpacks the
+    arguments that Python gives a kernel, and there are hundreds."""
+
+    library: Any
+
+    def add_ir_module(self, module):
+        """Add a module."""
+        for one in module.functions:
+            if not one.is_declaration:
+                one.attributes.add("noinline")
+                one.attributes.add("optnone")
+        self.library.add_ir_module(module)
+
+
 class Plainly(Lower):
     """Write code without what only debuggers read."""
+
+    def create_cpython_wrapper(self, release_gil=False):
+        """Write the function by which Python calls a kernel."""
+        self.context.create_cpython_wrapper(
+            Unoptimised(self.library), self.fndesc, self.env, self.call_helper, release_gil
+        )
 
     def _find_singly_assigned_variable(self):
         """Find variables that need no place in memory, and loops over ranges."""
@@ -95,7 +137,40 @@ class Plainly(Lower):
         """Return the value of an expression."""
         if expr.op in ("pair_first", "pair_second") and expr.value.name in self._of_loops:
             return self._state[expr.value.name][expr.op == "pair_second"]
+        kind = self.typeof(expr.value.name) if expr.op == "getattr" else None
+        if isinstance(kind, BaseNamedTuple):
+            return self._field(resty, kind, expr)
         return super().lower_expr(resty, expr)
+
+    def _field(self, resty, kind, expr):
+        """Return a field of a NamedTuple."""
+        at = kind.fields.index(expr.attr)
+        value = self.builder.extract_value(self.loadvar(expr.value.name), at)
+        self.incref(kind[at], value)
+        return self.context.cast(self.builder, value, kind[at], resty)
+
+    def lower_binop(self, resty, expr, op):
+        """Return the result of an operator: of two numbers of one type, without a search."""
+        kinds = self.fndesc.calltypes[expr].args
+        instruction = INSTRUCTIONS.get(kinds[0], {}).get(op) if kinds[0] == kinds[1] else None
+        if instruction is None:
+            return super().lower_binop(resty, expr, op)
+        left, right = (
+            self.context.cast(self.builder, self.loadvar(one.name), self.typeof(one.name), kind)
+            for one, kind in zip((expr.lhs, expr.rhs), kinds, strict=True)
+        )
+        name, *sign = instruction
+        value = getattr(self.builder, name)(*sign, left, right)
+        return self.context.cast(
+            self.builder, value, self.fndesc.calltypes[expr].return_type, resty
+        )
+
+    def _cast_var(self, var, ty):
+        """Return a variable's value as one of this type: a flag's is known."""
+        kind = self.typeof(var.name) if isinstance(var, ir.Var) else None
+        if isinstance(kind, types.BooleanLiteral) and ty == types.boolean:
+            return cgutils.true_bit if kind.literal_value else cgutils.false_bit
+        return super()._cast_var(var, ty)
 
     def _step_of_loop(self, value):
         """Return the state of a variable of a loop: a range, a counter, or a number and whether it

@@ -18,6 +18,7 @@ from numba._dynfunc import make_function
 from numba.core import (
     compiler,
     compiler_machinery,
+    interpreter,
     ir,
     postproc,
     transforms,
@@ -81,6 +82,33 @@ def flag(context, builder, kind, value, attribute):
 def nothing(context, builder, kind, value):
     """Return what is there of flags when a kernel runs."""
     return context.get_dummy_value()
+
+
+class Bytecode(interpreter.Interpreter):
+    """Translation of bytecode: what follows it concerns only some instructions."""
+
+    def post_process(self, peepholes, func_ir):
+        """Return numba's IR of a function."""
+        found = {one.opname for one in self.bytecode}
+        if found & UNUSUAL or any("EXCEPT" in one for one in found):
+            return super().post_process(peepholes, func_ir)
+        return func_ir
+
+
+#: Instructions with lists and dictionaries of arguments, and with contexts.
+UNUSUAL = {"BEFORE_WITH", "CALL_FUNCTION_EX", "DICT_MERGE", "DICT_UPDATE", "LIST_EXTEND"}
+
+
+@compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
+class Translation(untyped_passes.TranslateByteCode):
+    """Translate bytecode to numba's IR."""
+
+    _name = "translation"
+
+    def run_pass(self, state):
+        """Return that the state has changed."""
+        state.func_ir = Bytecode(state.func_id).interpret(state.bc)
+        return True
 
 
 @compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
@@ -278,7 +306,7 @@ class Lowering(KernelLowering):
 
 
 BEFORE_LOWERING = (
-    untyped_passes.TranslateByteCode,
+    Translation,
     untyped_passes.FixupArgs,
     Canonical,
     KnownFlags,

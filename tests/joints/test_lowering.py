@@ -1,16 +1,21 @@
-"""Loops over ranges, and arrays that a function is given, as our lowering writes them.
+"""Loops, arithmetic, fields, flags and arrays given to a function, as our lowering writes them.
 
 Each loop must count as Python's does, also where the range is empty, has steps, is used twice or
-is not all of a loop; arrays must keep as many references as they had.
+is not all of a loop; operators must give what numpy gives, also of NaN, infinity, -0 and whole
+numbers that overflow; arrays must keep as many references as they had.
 """
 
+import operator
 import sys
+from itertools import product
+from typing import NamedTuple
 
 import numba
 import numpy as np
 import pytest
 from numba.core.runtime import _nrt_python, rtsys
 
+from joints.compiler.lowering import INSTRUCTIONS
 from joints.formula import formula, kernel_options
 
 
@@ -138,3 +143,94 @@ def test_references_are_kept_and_released(function):
         _nrt_python.memsys_disable_stats()
     assert (sys.getrefcount(a), sys.getrefcount(b)) == before
     assert kept.mi_alloc == kept.mi_free > 0
+
+
+REALS = np.nan, np.inf, -np.inf, 0.0, -0.0, 1.5, -2.5, 5e-324, 1.7e308
+WHOLES = 0, 1, -1, 7, 2**62, -(2**63), 2**63 - 1
+
+
+@pytest.mark.parametrize("op", sorted(INSTRUCTIONS[numba.int64], key=lambda op: op.__name__))
+def test_operators_give_what_numpy_gives(op):
+    part = formula(lambda a, b: op(a, b))
+
+    @numba.njit(**kernel_options)
+    def kernel(a, b):
+        return part(a, b)
+
+    with np.errstate(all="ignore"):
+        for kind, numbers in ((np.float64, REALS), (np.int64, WHOLES)):
+            for a, b in product(map(kind, numbers), repeat=2):
+                found, expected = kernel(a, b), op(a, b)
+                assert isinstance(found, bool) == isinstance(expected, np.bool_)
+                np.testing.assert_equal(found, expected)
+                assert np.signbit(found) == np.signbit(expected) or np.isnan(expected)
+
+
+def test_numbers_of_two_types_meet_as_in_python():
+    part = formula(lambda a, b: (a - b, a * b, a < b, a == b, a != b))
+
+    @numba.njit(**kernel_options)
+    def kernel(a, b):
+        return part(a, b)
+
+    for a, b in ((2, 2.0), (2.5, 2), (True, 1), (True, 0.5), (3, False)):
+        assert kernel(a, b) == (a - b, a * b, a < b, a == b, a != b)
+
+
+class Both(NamedTuple):
+    array: np.ndarray
+    number: float
+    pair: tuple[int, float]
+
+
+def test_fields_are_those_of_the_tuple_and_keep_their_references():
+    part = formula(lambda both: (both.array, both.number * both.pair[1], both.pair[0]))
+
+    @numba.njit(**kernel_options)
+    def kernel(both):
+        return part(both)
+
+    both = Both(np.arange(3.0), 0.5, (4, 8.0))
+    before = sys.getrefcount(both.array)
+    array, product_of_two, first = kernel(both)
+    np.testing.assert_equal(array, both.array)
+    assert (product_of_two, first) == (4.0, 4)
+    del array
+    after = sys.getrefcount(both.array)
+    assert after == before
+
+
+def test_a_flag_is_known_where_it_is_given_and_where_it_is_a_variable():
+    inner = formula(lambda x, flag: x + 1.0 if flag else x - 1.0)
+    part = formula(lambda x, flag: (inner(x, True), inner(x, False), inner(x, flag)))
+
+    @numba.njit(**kernel_options)
+    def kernel(x, flag):
+        return part(x, flag)
+
+    assert kernel(2.0, True) == (3.0, 1.0, 3.0)
+    assert kernel(2.0, False) == (3.0, 1.0, 1.0)
+
+
+def test_what_unpacks_arguments_is_not_optimised_but_the_kernel_is():
+    @numba.njit(**kernel_options)
+    def kernel(a):
+        return a[0] + operator.mul(a[1], 2.0)
+
+    assert kernel(np.array([1.0, 2.0])) == 5.0
+    code = next(iter(kernel.inspect_llvm().values()))
+    marks = dict(
+        line.split("attributes ")[1].split(" = ")
+        for line in code.splitlines()
+        if line.startswith("attributes")
+    )
+    heads = [line for line in code.splitlines() if line.startswith("define")]
+    unpacks = [head for head in heads if "7cpython" in head]
+    others = [head for head in heads if "kernel" in head and head not in unpacks]
+    assert unpacks and others
+
+    def optimised(head):
+        return not any("optnone" in marks[name] for name in marks if f" {name} " in f"{head} ")
+
+    assert not any(map(optimised, unpacks))
+    assert all(map(optimised, others))
