@@ -5,21 +5,12 @@ those of an end stress, Pa and Pa s; the motion of a shaken base has m/s and m, 
 their place.
 """
 
-from typing import Protocol
-
 import numpy as np
 
 from cases.histories import Integrated, LoadHistory, Recorded, Shape, Step, periodic, triangle
 from cases.sampling import Interpolation
 from cases.schema.pulse import Pulse
 from cases.schema.scene import Scene
-
-
-class Integral(Protocol):
-    """A load by its integral over time."""
-
-    def impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the stress from minus infinity to t (Pa s)."""
 
 
 def load_history(scene: Scene) -> LoadHistory:
@@ -60,13 +51,14 @@ def history_of(pulse: Pulse, amplitude: float) -> Shape:
     return periodic(pulse.shape, amplitude, pulse.period, pulse.cycles)
 
 
-def step_means(load: Integral, dt: float, count: int) -> np.ndarray:
-    """Return the mean stress over [(n - 1/2) dt, (n + 1/2) dt] for n = 0 .. count - 1, Pa.
+def step_means(load: LoadHistory, dt: float, count: int, first: int = 0) -> np.ndarray:
+    """Return the mean stress over [(n - 1/2) dt, (n + 1/2) dt] for `count` steps n from the first
+    on, Pa.
 
     This is the load that makes leapfrog exact for the bar at c dt = d: the momentum that enters
     between two half steps is the true one.
     """
-    edges = dt * (np.arange(count + 1) - 0.5)
+    edges = dt * (np.arange(count + 1) - 0.5) + first * dt
     return np.diff(load.impulse(edges)) / dt
 
 
@@ -89,23 +81,14 @@ def with_load_itself(
     return found
 
 
-def base_steps(scene: Scene, dt: float, count: int) -> np.ndarray:
-    """Return a shaken base's displacement in each step [n dt, (n + 1) dt], n = 0 .. count - 1, m.
+def base_steps(pulse: Pulse, dt: float, count: int) -> np.ndarray:
+    """Return the displacement of the base that a pulse shakes in each step [n dt, (n + 1) dt],
+    n = 0 .. count - 1, m; of an extreme load over its scale.
 
     A velocity history is integrated exactly over the step. An acceleration history gives, as
-    leapfrog does, dt times the velocity at the half step. Zero for a base that is not shaken.
+    leapfrog does, dt times the velocity at the half step.
     """
-    return _base_steps(load_history(scene), scene.load.quantity, dt, count)
-
-
-def base_motion(pulse: Pulse, dt: float, count: int) -> np.ndarray:
-    """Return the same of any pulse that shakes a base."""
-    return _base_steps(history_of(pulse, pulse.amplitude), pulse.quantity, dt, count)
-
-
-def _base_steps(load: LoadHistory, quantity: str, dt: float, count: int) -> np.ndarray:
-    if quantity == "velocity":
-        return np.diff(load.impulse(dt * np.arange(count + 1)))
-    if quantity == "acceleration":
-        return dt * load.impulse(dt * (np.arange(count) + 0.5))
-    return np.zeros(count)
+    history = history_of(pulse, pulse.amplitude / pulse.scale)
+    if pulse.quantity == "velocity":
+        return np.diff(history.impulse(dt * np.arange(count + 1)))
+    return dt * history.impulse(dt * (np.arange(count) + 0.5))

@@ -16,7 +16,7 @@ from compare.solvers.record import Answer, Solver, no
 if TYPE_CHECKING:
     import xarray as xr
 
-    from numerics.checkpoint import Keeper
+    from numerics.time_loop import Keeper
     from results.dataset import Fields
 
 #: The engines by name; their packages are imported when they run.

@@ -147,7 +147,7 @@ def fixed_ends(scene: Scene, body: Body, time: Clock | None = None) -> Fixed | N
         return None
     step = None
     if scene.shakes_base and time is not None:
-        step = base_steps(scene, time.dt, time.steps + 1)
+        step = base_steps(scene.load, time.dt, time.steps + 1)
     return Fixed(np.concatenate(freedoms), np.concatenate(directions).astype(float), step)
 
 

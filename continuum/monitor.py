@@ -116,7 +116,7 @@ def _prestressed(run: Run, pushing: float) -> float:
     memory = run.model.rock.memory
     relaxed = 1.0 if memory is None else memory.relaxed
     if run.scene.kind == "rock mass":
-        from continuum.plane.prestress import prestressed
+        from continuum.plane.rock import prestressed
 
         return prestressed(run.scene, run.discrete, pushing, relaxed)
     p, prestress = run.discrete.properties, abs(run.scene.prestress.normal)

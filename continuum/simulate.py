@@ -24,8 +24,7 @@ from continuum.space.kinematics import refuse
 from continuum.state import State
 from continuum.validity import applies
 from continuum.waveforms import energy_terms, waveforms
-from numerics.checkpoint import Keeper
-from numerics.time_loop import run_in_stretches
+from numerics.time_loop import Keeper, run_in_stretches
 from results.arrays import changed, size_of
 from results.dataset import Fields, fields
 
@@ -58,7 +57,7 @@ def simulate(
     progress : called with the finished fraction.
     comm : mpi4py's communicator of processes that share the run: all call this alike, each steps
         its part of the rock, and all get the whole result. None: this one alone.
-    keeper : of checkpoints, `numerics.checkpoint`; each process has its own.
+    keeper : of checkpoints, `numerics.time_loop`; each process has its own.
     incident : of the waves of a rock mass, as if it had no sides; None: in rock without joints.
 
     Raises SceneError for what this model cannot simulate; StoppedError, an UnstableError with the

@@ -16,14 +16,7 @@ from continuum.space.evaluation import at_reference, matrix_of
 from continuum.space.receivers import section_tractions
 from continuum.state import State
 from results.dataset import Fields
-from results.snapshots import (
-    Film,
-    Snapshots,
-    refuse_beyond_room,
-    samples_between,
-    snapshots,
-    with_snapshots,
-)
+from results.snapshots import Film, Snapshots, snapshots, with_snapshots
 from results.subcells import KINDS, linear_cells
 
 if TYPE_CHECKING:
@@ -41,8 +34,7 @@ class RockFilm(Film):
         self.cell = np.flatnonzero(body.cells[:, 0] >= 0)
         self.nodes, numbers = np.unique(body.cells[self.cell], return_inverse=True)
         self.table = numbers.reshape(self.cell.size, -1)
-        refuse_beyond_room(scene, int(body.communicator.sum(self.nodes.size)))
-        super().__init__(samples_between(scene) or 1, self.shot)
+        super().__init__(scene, int(body.communicator.sum(self.nodes.size)), self.shot)
         self.discrete, self.state, self.ahead = discrete, state, ahead
         self.freedoms = body.freedom(self.nodes[:, None], np.arange(body.section.components))
         self.parts = linear_cells(

@@ -25,18 +25,19 @@ def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, A
     motion = {"velocity": samples.velocity, "displacement": samples.displacement}
     if components == 1:
         return {"stress": stress, **motion}
-    found = {"stress": stress, "shear": _vectors(force[1:], components - 1, 2)}
-    found |= {name: _vectors(wave, components, 3) for name, wave in motion.items()}
+    found = {"stress": stress, "shear": vectors(force[1:], components - 1, 2)}
+    found |= {name: vectors(wave, components, 3) for name, wave in motion.items()}
     if samples.turn.size:
-        found["rotation"] = _vectors(samples.turn, 3, 3)
+        found["rotation"] = vectors(samples.turn, 3, 3)
     return found
 
 
-def _vectors(waves: np.ndarray, components: int, size: int) -> np.ndarray:
-    """Return [place, sample, size] of rows that hold all places of one component together, with
-    zeros for components that are not there."""
+def vectors(waves: np.ndarray, components: int, size: int | None = None) -> np.ndarray:
+    """Return [place, sample, component] of rows that hold all places of one component together, up
+    to `size` with zeros for components that are not there."""
     found = waves.reshape(components, -1, waves.shape[-1])
-    return np.moveaxis(np.pad(found, ((0, size - components), (0, 0), (0, 0))), 0, 2)
+    beyond = (size or components) - components
+    return np.moveaxis(np.pad(found, ((0, beyond), (0, 0), (0, 0))), 0, 2)
 
 
 def _prestress(scene: Scene, discrete: Discrete) -> np.ndarray:

@@ -9,7 +9,7 @@ from cases.effects import is_spatial
 from cases.errors import SceneError, StoppedError
 from cases.kinds import AnyScene
 from cases.schema.scene import Scene
-from numerics.checkpoint import Keeper
+from numerics.time_loop import Keeper
 from results.dataset import Fields
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def simulate(
     """Simulate a scene with rigid blocks.
 
     progress : called with the finished fraction. keeper : of checkpoints,
-    `numerics.checkpoint`. incident : of a rock mass, the field that enters through quiet sides;
+    `numerics.time_loop`. incident : of a rock mass, the field that enters through quiet sides;
     absent: that of its waves in rock without joints.
 
     Raises SceneError for an unstable step, a static state that does not exist, rotations too

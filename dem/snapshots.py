@@ -13,14 +13,7 @@ from cases.sampling import interpolation
 from cases.schema.scene import Scene
 from dem.static import prestressed
 from results.dataset import Fields
-from results.snapshots import (
-    Film,
-    in_space,
-    refuse_beyond_room,
-    samples_between,
-    snapshots,
-    with_snapshots,
-)
+from results.snapshots import Film, in_space, snapshots, with_snapshots
 from results.subcells import CORNERS
 
 CORNERS_OF_A_BLOCK = 8
@@ -49,8 +42,7 @@ class BlockFilm(Film):
     def __init__(
         self, scene: Scene, p: Properties, shoot: Callable[[int], Shot], step: float | None
     ) -> None:
-        refuse_beyond_room(scene, CORNERS_OF_A_BLOCK * p.block_count)
-        super().__init__(samples_between(scene) or 1, shoot)
+        super().__init__(scene, CORNERS_OF_A_BLOCK * p.block_count, shoot)
         self.scene, self.p, self.step = scene, p, step
         self.at_rest = prestressed(scene, p) if scene.prestress else None
 

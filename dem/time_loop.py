@@ -11,11 +11,11 @@ import numba
 import numpy as np
 
 from cases.errors import StoppedError
+from cases.kinds import AnyScene
 from cases.sampling import Clock
-from numerics.checkpoint import Keeper
 from numerics.divergence import ENERGY, Guard
-from numerics.instability import Sighting
-from numerics.time_loop import run_in_stretches
+from numerics.instability import Sighting, stopped
+from numerics.time_loop import Keeper, run_in_stretches
 from results.dataset import Fields
 
 if TYPE_CHECKING:
@@ -65,20 +65,27 @@ def followed(
     return result(run.time.samples)
 
 
-def sighting(guard: Guard, speed: np.ndarray, centre_y: np.ndarray) -> Sighting | None:
-    """Return the finding of a guard, None without; speed : of each block, m/s; centre_y : of
-    them, m."""
-    fastest = int(np.nan_to_num(speed, nan=np.inf).argmax())
-    return sighting_at(guard, float(centre_y[fastest]))
+def refuse_beyond_bounds(
+    scene: AnyScene,
+    time: Clock,
+    critical: float,
+    guard: Guard,
+    speed: np.ndarray,
+    places: np.ndarray,
+) -> None:
+    """Raise StoppedError where a guard has found a run out of its bounds.
 
-
-def sighting_at(guard: Guard, place: float | tuple[float, float]) -> Sighting | None:
-    """Return the finding of a guard, None without; place : of the fastest block, m."""
+    critical : step, s. speed : of each block [N], in any unit. places : of the blocks, y [N], or x
+    and y [N, 2], m.
+    """
     step, what, sound = guard.found.tolist()
     if step < 0:
-        return None
+        return
+    at = places[int(np.nan_to_num(speed, nan=np.inf).argmax())].tolist()
+    place = tuple(at) if isinstance(at, list) else at
     key = "numerics.dem.step_fraction"
-    return Sighting("the rigid blocks", key, step, sound, what == ENERGY, place)
+    seen = Sighting("the rigid blocks", key, step, sound, what == ENERGY, place)
+    raise stopped(scene, time, critical, seen)
 
 
 def thread_count(asked: int | None, blocks: int) -> int:

@@ -1,1 +1,1 @@
-"""Compilation, array alignment, checkpoints and divergence monitoring, shared by all kernels."""
+"""Compilation, array alignment, time loop and divergence monitor, shared by all kernels."""

@@ -15,7 +15,6 @@ EVERY = 96  # steps, at most, between two checks of the speeds
 RUNAWAY = 100.0  # over the speed that forces can cause: leapfrog overshoots at the critical step
 CREATED = 0.1  # of the largest term of the ledger: more than any bounded run of any scheme gains
 LAST_DIGITS = 1e-9  # of the ledger's initial terms, from which small changes are differences
-MAGNITUDE = 0x7FFF_FFFF_FFFF_FFFF  # all bits of a number but its sign
 
 SPEED, ENERGY = 0, 1  # the exceeded bound
 
@@ -79,28 +78,6 @@ def out_of_bounds(v, limit):
     for i in range(v.size):
         found += not abs(v[i]) <= limit
     return found > 0
-
-
-@formula
-def exceeds(v, limit):
-    """Return whether a magnitude exceeds the limit, given by its bits, or is NaN.
-
-    As integers the bits of magnitudes are ordered like the magnitudes, with infinity and NaN
-    above all others. The sign of a difference is one bit, which is collected.
-    """
-    bits, signs = v.view(np.int64), 0
-    for i in range(bits.size):
-        signs |= limit - (bits[i] & MAGNITUDE)
-    return signs < 0
-
-
-@formula
-def creates_energy(guard, energy, s, n):
-    """Return whether sample s, at step n, of a ledger [term, sample] has gained energy."""
-    if guard is not None and energy is not None and gains_energy(guard.peak, energy, s):
-        note(guard.found, n, ENERGY, n - EVERY - 1)
-        return True
-    return False
 
 
 @formula

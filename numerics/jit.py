@@ -70,14 +70,6 @@ def jitted_for(*effects: Any) -> Callable:
     return compiled
 
 
-def apart(function: Callable) -> Callable:
-    """Compile a kernel, as `jitted` does, that stays a function of its own in all its callers.
-
-    So its machine code, and its speed, is the same whatever they do besides.
-    """
-    return _compiled(function, forceinline=False)
-
-
 def inlined(function: Callable) -> Callable:
     """Compile a part of kernels, as `jitted` does, that only kernels call.
 

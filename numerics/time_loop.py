@@ -1,12 +1,44 @@
-"""The time loop: a run in intervals, after each of which it is checked, saved and reported."""
+"""The time loop: a run in intervals, after each of which it is checked, saved and reported.
+
+Engines write no files and handle no signals. They pass their state to a keeper, as nested tuples
+of arrays (`results.arrays`), between intervals of steps.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
-from typing import Any
+from typing import Any, Protocol
 
-from numerics.checkpoint import Film, Keeper, begin, show
+from cases.errors import InterruptedRun
+
+
+class Film(Protocol):
+    """Snapshots of every `every`-th sample; those of an earlier part of the run may be present.
+
+    shots : the recorded arrays of each.
+    """
+
+    every: int
+    shots: list[Any]
+
+    def expect(self, samples: int) -> None:
+        """Count the snapshots of so many samples as taken."""
+
+
+class Keeper(Protocol):
+    """Saves and restores the state of one run.
+
+    done : number of samples of an earlier run of the same scene; 0 for a new run.
+    """
+
+    done: int
+
+    def restore(self, parts: Any) -> None:
+        """Copy the state after `done` samples into `parts`."""
+
+    def look(self, samples: int, parts: Any) -> None:
+        """Save the parts after so many samples, or raise InterruptedRun."""
 
 
 def run_in_stretches(
@@ -26,14 +58,22 @@ def run_in_stretches(
     film : snapshots at ends of intervals, of the sample before (`snapshot_at` 1) or after
     (`snapshot_at` 0); None without.
     """
-    stops = {samples, *range(0, samples, max(1, chunk))}
+    stops, done = {samples, *range(0, samples, max(1, chunk))}, 0
     if film is not None:
         stops.update(range(snapshot_at, samples, film.every))
         parts = (parts, film.shots)
-    done = begin(keeper, film, parts)
+    if keeper is not None and keeper.done:
+        done = keeper.done
+        if film is not None:
+            film.expect(done)
+        keeper.restore(parts)
     for first, last in pairwise(sorted({done, *(stop for stop in stops if stop > done)})):
         march(first, last)
         if keeper is not None:
-            show(keeper, last, parts)
+            try:
+                keeper.look(last, parts)
+            except InterruptedRun as error:
+                error.samples = last
+                raise
         if progress:
             progress(last / samples)

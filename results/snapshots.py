@@ -64,8 +64,10 @@ class Snapshots(NamedTuple):
 class Film:
     """The return values of `shoot(sample)` at every `every`-th sample of a run, in `shots`."""
 
-    def __init__(self, every: int, shoot: Callable[[int], Any]) -> None:
-        self.every, self.shoot = every, shoot
+    def __init__(self, scene: AnyScene, nodes: int, shoot: Callable[[int], Any]) -> None:
+        """nodes : of a snapshot; raises SceneError for too many snapshots of them."""
+        refuse_beyond_room(scene, nodes)
+        self.every, self.shoot = samples_between(scene) or 1, shoot
         self.shots: list[Any] = []
 
     def look(self, sample: int) -> None:

@@ -8,11 +8,11 @@ import dem
 from cases.errors import StoppedError
 from cases.material.calibrate import calibrate
 from continuum.run import discrete_and_steps
-from dem.axial.bound import highest_speed
 from dem.axial.leapfrog import run
 from dem.axial.model import build
 from dem.axial.samples import buffers
 from dem.axial.simulate import scheme_of
+from dem.axial.stability import highest_speed
 from dem.spatial.simulate import critical_step_of
 from numerics.divergence import ENERGY, EVERY, RUNAWAY, SPEED, guard
 

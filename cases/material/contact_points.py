@@ -34,7 +34,7 @@ def contact_points(
     partition: Partition,
     contacts: Contacts,
     sets: Sequence[JointSet],
-    shift: tuple[float, float] = (0.0, 0.0),
+    shift: np.ndarray | tuple[float, float] = (0.0, 0.0),
 ) -> ContactPoints:
     """Return the points of contacts of a partition, by the rules of their joint sets.
 

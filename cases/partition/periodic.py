@@ -1,13 +1,40 @@
 """Contacts across a periodic boundary: of the blocks at one side with those at the other."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
 import numpy as np
 
 from cases.partition.blocks import BoundaryEdges, Contacts, Partition
 from cases.partition.faults import PartitionError
 from cases.partition.subdivision import NO_SET
 
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+
 #: The sides that a periodic domain joins, and the axis across them.
 PAIRS = {"left": ("right", 0), "bottom": ("top", 1)}
+
+
+class Across(NamedTuple):
+    """Contacts across a pair of periodic sides. shift : [2], m, offset of blocks j. sides : names
+    of the pair."""
+
+    contacts: Contacts
+    shift: np.ndarray
+    sides: tuple[str, str]
+
+
+def across_periodic(scene: RockMass, partition: Partition) -> list[Across]:
+    """Return the contacts across the periodic sides of a scene; raises PartitionError where they do
+    not fit each other."""
+    size = np.ptp(partition.corners, axis=0)
+    return [
+        Across(periodic_contacts(partition, side), size * np.eye(2)[axis], (side, other))
+        for side, (other, axis) in PAIRS.items()
+        if getattr(scene.boundaries, side) == "periodic"
+    ]
 
 
 def periodic_contacts(partition: Partition, side: str) -> Contacts:

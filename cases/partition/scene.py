@@ -14,7 +14,7 @@ from cases.partition.given import subdivision_of
 from cases.partition.joints import cut_by_sets, direction_of
 from cases.partition.openings import check_convex, taken_out
 from cases.partition.outline import SIDES, Outline, outline_of
-from cases.partition.periodic import PAIRS, periodic_contacts
+from cases.partition.periodic import across_periodic
 from cases.partition.polygons import moments
 from cases.partition.regions import cut_into_regions
 from cases.partition.slivers import without_slivers
@@ -133,9 +133,7 @@ def partition_of(scene: RockMass, further: Sequence[JointSet] = ()) -> Partition
     refuse_too_many(scene, further)
     try:
         found = cut(scene.domain, scene.joint_sets, further, scene.regions)
-        for side in PAIRS:
-            if getattr(scene.boundaries, side) == "periodic":
-                periodic_contacts(found, side)  # whether its sides fit each other
+        across_periodic(scene, found)  # whether its sides fit each other
         return found
     except PartitionError as error:
         raise SceneError(scene.where, error.key, None, str(error)) from None

@@ -94,6 +94,15 @@ class Pulse(Table):
             return 2 * (self.rise + self.decay)
         return self.period
 
+    @property
+    def scale(self) -> float:
+        """A power of two that an extreme load is divided by and its result multiplied; else 1.
+
+        The motion of such a load would be below or above all numbers; scaled by a power of two it
+        is that of a load near 1, digit by digit.
+        """
+        return 2.0 ** frexp(self.amplitude)[1] if is_extreme(self.amplitude) else 1.0
+
 
 def shortest_period(pulses: Iterable[Pulse]) -> float | None:
     """Return the shortest time scale of pulses, s; None without any."""
@@ -123,15 +132,6 @@ class Load(Pulse):
                         f"load.{key}", value, f"has no meaning for load.quantity '{self.quantity}'"
                     )
         return self
-
-    @property
-    def scale(self) -> float:
-        """A power of two that an extreme load is divided by and its result multiplied; else 1.
-
-        The motion of such a load would be below or above all numbers; scaled by a power of two it
-        is that of a load near 1, digit by digit.
-        """
-        return 2.0 ** frexp(self.amplitude)[1] if is_extreme(self.amplitude) else 1.0
 
     @property
     def is_motion(self) -> bool:

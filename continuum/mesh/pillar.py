@@ -37,7 +37,6 @@ def pillar_mesh(
     elements_across: int,
     interfaces: np.ndarray,
     layers: Mapping[int, float] | None = None,
-    elements_per_layer: int = 1,
 ) -> Mesh:
     """Return the mesh of a pillar cut at some of its joints.
 
@@ -48,8 +47,7 @@ def pillar_mesh(
     elements_across : elements in each direction of the section.
     interfaces : int array, the joints that cut the pillar, 0 nearest the loaded end.
     layers : thickness (m) of the joints that are layers of rock: bonded to the blocks on both
-        sides, each of which is shortened by half of it.
-    elements_per_layer : elements through each layer.
+        sides, each of which is shortened by half of it; one element through each.
 
     Pieces of the same length are copies of one part. Raises ValueError for a joint that is both
     interface and layer, or a layer that is too thick for a block.
@@ -62,7 +60,7 @@ def pillar_mesh(
         if not p.is_uniform:
             column = _segmented(p, first, last, each)
         else:
-            column = _column(p, first, last, layers, each[0], elements_per_layer)
+            column = _column(p, first, last, layers, each[0])
         shifts = np.zeros((starts.size, dim))
         shifts[:, min(1, dim - 1)] = p.contact_y[starts]
         parts.append(Part(*extruded(kind, p.side, elements_across, column), shifts))
@@ -110,9 +108,8 @@ def _column(
     last: int,
     layers: dict[int, float],
     in_block: int,
-    in_layer: int,
 ) -> Column:
-    """Return the rows of elements of blocks `first` to `last` - 1 and of the layers within."""
+    """Return the rows of elements of blocks `first` to `last` - 1, and one for each layer."""
     edges, material, number = [], [], [*layers]
 
     def half(joint: int) -> float:
@@ -126,7 +123,7 @@ def _column(
         y, before, after = p.spacing * (block - first), half(block - 1), half(block)
         add(y + before, p.spacing - before - after, in_block, 0)
         if after:
-            add(y + p.spacing - after, 2 * after, in_layer, 1 + number.index(block))
+            add(y + p.spacing - after, 2 * after, 1, 1 + number.index(block))
     edges.append(np.array([p.spacing * (last - first)]))
     return Column(np.concatenate(edges), np.concatenate(material))
 

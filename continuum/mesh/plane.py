@@ -11,13 +11,14 @@ from typing import NamedTuple
 import numpy as np
 
 from cases.partition.blocks import Partition
+from cases.partition.periodic import Across
 from cases.partition.subdivision import NO_SET
 from continuum.mesh.blocks import BlockEdges, cells_along, has_four_corners, meshed_blocks
 from continuum.mesh.cells import FACETS
 from continuum.mesh.copies import parts_of_pieces
 from continuum.mesh.cut import pieces, split
 from continuum.mesh.description import Joints, Mesh, Side
-from continuum.mesh.segments import Across, Segments, segments_of
+from continuum.mesh.segments import Segments, segments_of
 
 
 class PlaneMesh(NamedTuple):

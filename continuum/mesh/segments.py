@@ -8,8 +8,8 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from cases.partition.blocks import Contacts, Partition
-from cases.partition.periodic import PAIRS, periodic_contacts
+from cases.partition.blocks import Partition
+from cases.partition.periodic import Across
 
 SAME = 1e-9  # of the domain: tolerance for coincident points
 STRAIGHT = 1e-6  # largest sine of the angle between collinear edges
@@ -48,26 +48,6 @@ class Loops(NamedTuple):
     segment: np.ndarray
     forward: np.ndarray
     is_corner: np.ndarray
-
-
-class Across(NamedTuple):
-    """Contacts across a pair of periodic sides. shift : [2], m, offset of blocks j.
-    sides : names of the pair."""
-
-    contacts: Contacts
-    shift: np.ndarray
-    sides: tuple[str, str]
-
-
-def across_periodic(partition: Partition, sides: list[str]) -> list[Across]:
-    """Return the contacts across periodic sides, named by "left" and "bottom"."""
-    size, found = np.ptp(partition.corners, axis=0), []
-    for side in sides:
-        other, axis = PAIRS[side]
-        shift = np.zeros(2)
-        shift[axis] = size[axis]
-        found.append(Across(periodic_contacts(partition, side), shift, (side, other)))
-    return found
 
 
 def segments_of(partition: Partition, across: list[Across]) -> tuple[Segments, Loops]:

@@ -73,7 +73,7 @@ class Drive:
         """Return the forces of steps first .. last - 1 [steps, k], N/m."""
         found = np.zeros((last - first, self.freedom.size))
         for push in self.pushes:
-            mean = step_means(Delayed(push.history, -first * self.dt), self.dt, last - first)
+            mean = step_means(push.history, self.dt, last - first, first)
             found += mean[:, None] * push.share
         if self.entry is not None:
             values = self.entry.tractions(self.dt * np.arange(first, last))
@@ -92,17 +92,6 @@ class Drive:
             largest = np.sqrt(whole(self.entry.largest(mass, self.dt * steps) ** 2))
             per_step += largest / self.dt * steps
         return self.dt * per_step
-
-
-class Delayed(NamedTuple):
-    """A history that is late, s."""
-
-    history: LoadHistory
-    late: float
-
-    def impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral from minus infinity to t."""
-        return self.history.impulse(t - self.late)
 
 
 class Entry:

@@ -16,12 +16,12 @@ from cases.material.dashpots import set_time_constants
 from cases.material.effective_medium import compliant, stiffness
 from cases.material.rock import elastic_rock
 from cases.material.strength import strength_of
+from cases.partition.periodic import Across, across_periodic
 from cases.partition.regions import within
 from cases.partition.scene import partition_of
 from continuum.build import body_and_jumps
 from continuum.joints import interfaces
 from continuum.mesh.plane import plane_mesh
-from continuum.mesh.segments import Across, across_periodic
 from continuum.model import Interfaces
 from continuum.plane.size import element_sizes, refuse_large_mesh
 from continuum.space.body import Body
@@ -73,8 +73,7 @@ def discretise(scene: RockMass, model: str, comm=None) -> PlaneDiscrete:
     kept = [one for one in scene.joint_sets if one not in sets]
     resolved = scene.model_copy(update={"joint_sets": kept})
     partition = partition_of(resolved)
-    sides = [side for side in ("left", "bottom") if getattr(scene.boundaries, side) == "periodic"]
-    across = across_periodic(partition, sides)
+    across = across_periodic(scene, partition)
     relaxes = mechanisms_of(scene, model)
     unrelaxed = 1.0 if relaxes is None else relaxes.unrelaxed
     *regions, rest = (
@@ -166,3 +165,22 @@ def stress_of(scene: RockMass) -> np.ndarray:
     """Return the prestress, xx, yy, xy [3], Pa, compression positive; zero without."""
     given = scene.prestress
     return np.zeros(3) if given is None else np.array([given.xx, given.yy, given.xy])
+
+
+def prestressed(scene: RockMass, discrete: PlaneDiscrete, pushing: float, relaxed: float) -> float:
+    """Return the root of twice the energy (sqrt(J/m)) that a prestress keeps in rock and joints,
+    and that rock gives off by pushing on both sides of joints that open, so long (s/sqrt(kg)).
+
+    relaxed : what the rock keeps of its stiffness in the end.
+    """
+    stress, joints, of_all = stress_of(scene), discrete.joints, discrete.body.communicator
+    softest = min(np.linalg.eigvalsh(one.stiffness).min() for one in discrete.materials)
+    least = relaxed * softest
+    stored = float(stress @ stress) / least * float(discrete.partition.area.sum())
+    size, softness = float(np.abs(stress).max()), 0.0
+    if joints is not None:
+        law = joints.law
+        softness = max(np.max(1 / law.normal_stiffness), np.max(1 / law.shear_stiffness))
+    length = of_all.sum(0.0 if joints is None else float(joints.area.sum()))
+    stored += 4 * size**2 * length * of_all.largest(softness)
+    return float(np.sqrt(stored)) + pushing * 4 * size * length

@@ -9,6 +9,7 @@ import numpy as np
 from cases.incident import free_field
 from cases.material.calibrate import mechanisms_of
 from cases.material.prestress import refuse_beyond_strength
+from cases.size import refuse_beyond_memory, waveform_bytes
 from continuum.build import critical_step, rock_operators, weight_of
 from continuum.model import Ends, Model
 from continuum.plane.drive import Drive, Entry
@@ -16,7 +17,6 @@ from continuum.plane.loads import pushes, released
 from continuum.plane.receivers import receivers
 from continuum.plane.rock import discretise
 from continuum.plane.sides import dashpots_on, fixed_sides, points_on, sides_that_are
-from continuum.plane.size import refuse_large_run
 from continuum.scheme import Choice, choose
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def discrete_and_steps(scene: RockMass, rock: str, comm) -> tuple[PlaneDiscrete,
     refuse_beyond_strength(discrete.resolved)
     critical = critical_step(discrete, fixed_sides(scene, discrete.body))
     choice = choose(scene, discrete, critical)
-    refuse_large_run(scene, choice.time)
+    refuse_beyond_memory(scene, {"record.interval": waveform_bytes(scene)})
     return discrete, choice, critical
 
 

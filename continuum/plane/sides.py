@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from cases.loads import base_steps
 from cases.material.quiet_sides import medium_impedances
 from continuum.mesh.description import Side
 from continuum.model import Dashpots, Fixed
@@ -136,8 +137,6 @@ def freedoms_of(body: Body) -> np.ndarray:
 def fixed_sides(scene: RockMass, body: Body, time: Clock | None = None) -> Fixed | None:
     """Return the freedoms of the fixed sides, with the motion of one that is shaken; None
     without."""
-    from cases.loads import base_motion
-
     names = sides_that_are(scene, body, "fixed")
     if not names:
         return None
@@ -155,5 +154,5 @@ def fixed_sides(scene: RockMass, body: Body, time: Clock | None = None) -> Fixed
             direction[of] = np.where(np.isnan(direction[of]) | shaken, given[c], direction[of])
     freedom, step = np.flatnonzero(~np.isnan(direction)), None
     if base is not None and time is not None:
-        step = base_motion(base, time.dt, time.steps + 1)
+        step = base_steps(base, time.dt, time.steps + 1)
     return Fixed(freedom, direction[freedom], step)

@@ -1,4 +1,4 @@
-"""Size of the elements of a rock mass, and the memory of its run, before any of it is made."""
+"""Size of the elements of a rock mass, and the memory of its mesh, before any of it is made."""
 
 from __future__ import annotations
 
@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cases.material.effective_medium import slowest
-from cases.size import COPIES, refuse_beyond_memory, samples_of
+from cases.size import refuse_beyond_memory, snapshot_bytes
 from continuum.build import resolved_period
 from continuum.size import ENTRY, FREEDOM
 
 if TYPE_CHECKING:
     from cases.partition.blocks import Partition
-    from cases.sampling import Clock
     from cases.schema.rock_mass import RockMass
 
 #: Elements in the way of the slowest wave in one period, by their order.
@@ -43,18 +42,8 @@ def refuse_large_mesh(scene: RockMass, partition: Partition, size: float) -> Non
     along = float(contacts.length.sum() + partition.boundary.length.sum())
     cells = float(partition.area.sum()) / size**2 + along / size + partition.count
     nodes, entries = cells * (order + 0.5) ** 2, 2 * (order + 1) ** 2
-    fields = scene.record.fields
-    shots = 0.0 if fields is None else (scene.time.duration / fields + 1) * nodes * 56 * COPIES
     parts = {
         "numerics.continuum.size": 2 * nodes * (FREEDOM + ENTRY * entries),
-        "record.fields": shots,
+        "record.fields": snapshot_bytes(scene, nodes),
     }
-    refuse_beyond_memory(scene, parts)  # type: ignore[arg-type]
-
-
-def refuse_large_run(scene: RockMass, time: Clock) -> None:
-    """Raise SceneError where the samples would not fit in memory."""
-    record = scene.record
-    rows = 7 * len(record.points) + 4 * len(record.joints) + 8 * record.energy
-    size = COPIES * 8 * samples_of(scene) * rows  # type: ignore[arg-type]
-    refuse_beyond_memory(scene, {"record.interval": float(np.ceil(size))})  # type: ignore[arg-type]
+    refuse_beyond_memory(scene, parts)

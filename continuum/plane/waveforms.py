@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from continuum.waveforms import energy_terms
+from continuum.waveforms import energy_terms, vectors
 from results.plane import plane_fields
 
 if TYPE_CHECKING:
@@ -23,19 +23,14 @@ def quantities(run: Run, samples: Samples) -> dict[str, np.ndarray]:
     points = len(run.scene.record.points)
     stress, tractions = np.split(samples.stress, [3 * points])
     found = {
-        "velocity": _components(samples.velocity, 2),
-        "displacement": _components(samples.displacement - samples.displacement[:, :1], 2),
-        "stress": _components(stress, 3),
+        "velocity": vectors(samples.velocity, 2),
+        "displacement": vectors(samples.displacement - samples.displacement[:, :1], 2),
+        "stress": vectors(stress, 3),
     }
     if samples.turn.size:
-        gap, slip = _components(samples.turn - samples.turn[:, :1], 2).transpose(2, 0, 1)
-        found |= {"traction": _components(tractions, 2), "gap": gap, "slip": slip}
+        gap, slip = vectors(samples.turn - samples.turn[:, :1], 2).transpose(2, 0, 1)
+        found |= {"traction": vectors(tractions, 2), "gap": gap, "slip": slip}
     return found
-
-
-def _components(waves: np.ndarray, count: int) -> np.ndarray:
-    """Return [place, sample, component] of rows that hold all places of one component together."""
-    return np.moveaxis(waves.reshape(count, -1, waves.shape[1]), 0, 2)
 
 
 def recorded(run: Run, samples: Samples, times: np.ndarray, about: dict[str, Any]) -> Fields:

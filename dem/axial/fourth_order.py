@@ -30,7 +30,7 @@ from cases.material.calibrate import calibrate
 from cases.sampling import Clock, clock
 from cases.schema.scene import Scene
 from dem.axial.model import Model, unloaded
-from dem.axial.samples import Samples, buffers
+from dem.axial.samples import Samples
 from dem.axial.springs import spring_forces
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
@@ -143,21 +143,13 @@ def run(
 
     monitor : stops a run that exceeds its bounds; None without.
     """
-    _take(composition, model, state, samples, monitor, first * stride, last * stride, first, stride)
-
-
-def march(composition: Composition, model: Model, state: State, first: int, last: int) -> None:
-    """Take steps first .. last - 1 without samples."""
-    _take(composition, model, state, buffers(model, state, 0), None, first, last, -1, 1)
-
-
-def _take(composition, model, state, samples, monitor, first, last, index, stride):
     limits, every = (guard(0.0), 0) if monitor is None else (monitor, EVERY)
     loop_for(model.effects._replace(ledger=state.work is not None))(
         model.chain, model.laws, *composition, model.load,
         *model.receivers.sections, *model.receivers.points,
         state.u, state.v, state.force, state.start, state.end, state.work, *samples,
-        limits.limit.view(np.float64)[0], limits.found, first, last, index, stride, every,
+        limits.limit.view(np.float64)[0], limits.found, first * stride, last * stride, first,
+        stride, every,
     )  # fmt: skip
 
 

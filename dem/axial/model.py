@@ -105,7 +105,7 @@ def build_model(scene: Scene, p: Properties, time: Clock) -> Model:
     along, count = scene.load.direction[1], time.steps + time.stride
     load = base = np.zeros(0)
     if scene.shakes_base:
-        base = np.append(0.0, -along * base_steps(scene, time.dt, count))
+        base = np.append(0.0, -along * base_steps(scene.load, time.dt, count))
     else:
         load = along * p.area * step_means(load_history(scene), time.dt, count)
     model = unloaded(scene, p, time.dt, (scene.ends.start, scene.ends.end))

@@ -15,16 +15,15 @@ from cases.sampling import Clock, interpolation
 from cases.schema.scene import Scene
 from dem import time_loop
 from dem.axial import leapfrog
-from dem.axial.bound import highest_speed
 from dem.axial.model import Model, Receivers, build
 from dem.axial.samples import buffers, terms
+from dem.axial.stability import highest_speed
 from dem.axial.start import start
 from dem.axial.state import State
 from dem.fragments import break_times, with_fragments
 from dem.static import since_prestress
-from numerics.checkpoint import Keeper
 from numerics.divergence import guard, look
-from numerics.instability import stopped
+from numerics.time_loop import Keeper
 from results.arrays import copied, size_of
 from results.dataset import Fields, fields
 
@@ -118,9 +117,8 @@ def simulate_fields(
     def check(samples: int) -> None:
         speed = np.abs(state.v)
         look(monitor, speed.max(), samples * time.stride)
-        seen = time_loop.sighting(monitor, speed, calibrate(scene).centre_y)
-        if seen is not None:
-            raise stopped(scene, time, critical, seen)
+        centres = calibrate(scene).centre_y
+        time_loop.refuse_beyond_bounds(scene, time, critical, monitor, speed, centres)
 
     whole = time_loop.Run(time, state.u.size, march, check, (state, samples, monitor))
     return time_loop.followed(whole, result, progress, film, keeper)

@@ -10,7 +10,7 @@ from cases.material.elastic import shear_modulus
 from cases.material.rigid_blocks import rock_shares, welded
 from cases.material.rock_mass import Stiffness, constrained_modulus
 from cases.partition.blocks import Partition
-from cases.partition.periodic import PAIRS, periodic_contacts
+from cases.partition.periodic import across_periodic
 from cases.partition.regions import ROCK, rocks_of
 from cases.partition.subdivision import NO_SET
 
@@ -47,11 +47,9 @@ def links_of(scene: RockMass, partition: Partition, further: list[JointSet]) -> 
     A fixed side is a wall behind the rock from each block's centroid to the side, as stiff as that
     rock is: half a block. So is intact rock between blocks where no set made the cut.
     """
-    parts, beside = [partition.contacts], [np.zeros(2)]
-    for side, (other, axis) in PAIRS.items():
-        if getattr(scene.boundaries, side) == "periodic":
-            parts.append(periodic_contacts(partition, side))
-            beside.append(_extent(partition, other, side, axis))
+    across = across_periodic(scene, partition)
+    parts = [partition.contacts, *(one.contacts for one in across)]
+    beside = [np.zeros(2), *(one.shift for one in across)]
     pairs = np.concatenate([one.blocks for one in parts])
     shift = np.repeat(beside, [len(one) for one in parts], axis=0)
     start, end, normal, joint_set = (
@@ -92,16 +90,6 @@ def _walls(scene: RockMass, partition: Partition) -> tuple[str, ...]:
     return tuple(name for name, kind in held.items() if kind == "fixed" and name in present)
 
 
-def _extent(partition: Partition, far: str, near: str, axis: int) -> np.ndarray:
-    """Return the vector from one periodic side to the other, m."""
-    edges, found = partition.boundary, np.zeros(2)
-    places = [
-        edges.start[edges.side == partition.sides.index(name), axis][0] for name in (far, near)
-    ]
-    found[axis] = places[0] - places[1]
-    return found
-
-
 def _columns(
     scene: RockMass, partition: Partition, joint_set: np.ndarray, pairs: np.ndarray, further: int
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -123,14 +111,14 @@ def _welds(
     """Return the stiffness of contacts of the partition outside all joint sets."""
     if not len(cuts):
         return Stiffness(np.zeros(0), np.zeros(0))
-    contacts, corners = partition.contacts, partition.corners
+    contacts = partition.contacts
     normal, (reach, thickness) = contacts.normal[cuts], np.zeros((2, len(cuts), 2))
     for side in (0, 1):
         block = contacts.blocks[cuts, side]
         off = contacts.start[cuts] - partition.centroid[block]
         reach[:, side] = np.abs((off * normal).sum(axis=1))
-        own = (corners[partition.first[b] : partition.first[b + 1]] for b in block)
-        thickness[:, side] = [np.ptp(c @ n) for c, n in zip(own, normal, strict=True)]
+        pairs = zip(map(partition.corners_of, block), normal, strict=True)
+        thickness[:, side] = [np.ptp(corners @ n) for corners, n in pairs]
     regions = partition.region[contacts.blocks[cuts]]
     shares = rock_shares(scene, further)
     return welded(shares, rocks_of(scene), regions, normal, reach, thickness)

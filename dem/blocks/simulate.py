@@ -15,9 +15,8 @@ from dem.blocks.model import PlaneState, state_at_rest
 from dem.blocks.record import quantities
 from dem.blocks.start import start
 from dem.blocks.system import PlaneSystem, prepared
-from numerics.checkpoint import Keeper
 from numerics.divergence import SPEED, Guard, audit, guard
-from numerics.instability import stopped
+from numerics.time_loop import Keeper
 from results.arrays import size_of
 from results.dataset import Fields
 from results.plane import plane_fields
@@ -78,11 +77,8 @@ def simulate_fields(
         look(system, state, samples, monitor, first, last)
 
     def check(count: int) -> None:
-        fastest = int(np.nan_to_num(_energies(system, state), nan=np.inf).argmax())
-        x, y = system.blocks.partition.centroid[fastest].tolist()
-        seen = time_loop.sighting_at(monitor, (x, y))
-        if seen is not None:
-            raise stopped(scene, time, system.critical, seen)
+        speeds, places = _energies(system, state), system.blocks.partition.centroid
+        time_loop.refuse_beyond_bounds(scene, time, system.critical, monitor, speeds, places)
 
     parts = (state, samples, monitor)
     run = time_loop.Run(time, system.blocks.partition.count, march_samples, check, parts)

@@ -9,13 +9,7 @@ import numpy as np
 from cases.partition.polygons import owner
 from dem.blocks.leapfrog import march, samples_for
 from results.arrays import copied
-from results.snapshots import (
-    Film,
-    refuse_beyond_room,
-    samples_between,
-    snapshots,
-    with_snapshots,
-)
+from results.snapshots import Film, snapshots, with_snapshots
 
 if TYPE_CHECKING:
     from cases.partition.blocks import Partition
@@ -36,8 +30,6 @@ class PlaneFilm(Film):
 
     def __init__(self, system: PlaneSystem, state: PlaneState) -> None:
         self.system, self.partition = system, system.blocks.partition
-        scene = system.blocks.scene
-        refuse_beyond_room(scene, len(self.partition.corners))
         everywhere = np.arange(self.partition.count)
         model = system.model._replace(places=everywhere, watched=everywhere[:0])
 
@@ -50,7 +42,7 @@ class PlaneFilm(Film):
             march(model, copied(state), found, 1, (0, 1), drive, shake)
             return Shot(found.displacement[..., 0], found.velocity[..., 0])
 
-        super().__init__(samples_between(scene) or 1, shoot)
+        super().__init__(system.blocks.scene, len(self.partition.corners), shoot)
 
     def developed(self, result: Fields) -> Fields:
         """Return the run's result with its snapshots; displacement counts from the first."""

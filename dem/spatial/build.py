@@ -151,7 +151,7 @@ def build_load(scene: Scene, p: Properties, time: Clock) -> Load:
     """Return what acts on the start face."""
     steps, size = time.steps + time.stride, 3 if scene.motion.rotation == "none" else 6
     if scene.shakes_base:
-        base = np.append(0.0, base_steps(scene, time.dt, steps + 1))
+        base = np.append(0.0, base_steps(scene.load, time.dt, steps + 1))
         return Load(np.zeros(0), np.zeros(size), base)
     means = step_means(load_history(scene), time.dt, steps)
     acting = np.flatnonzero(means)

@@ -28,10 +28,9 @@ from dem.spatial.record import ledger_of, shooter, waveforms, with_breaks
 from dem.spatial.stability import critical_spatial_step, highest_speeds
 from dem.spatial.start import start
 from dem.static import stiffest
-from dem.time_loop import Run, followed, sighting, thread_count, versions
-from numerics.checkpoint import Keeper
+from dem.time_loop import Run, followed, refuse_beyond_bounds, thread_count, versions
 from numerics.divergence import guard, look
-from numerics.instability import stopped
+from numerics.time_loop import Keeper
 from results.arrays import changed, size_of
 from results.dataset import Fields, fields
 
@@ -112,9 +111,7 @@ def simulate_fields(
     def check(samples: int) -> None:
         speed = speeds(model, state, p.block_count)
         look(held, speed.max(axis=1), samples * time.stride)
-        seen = sighting(held, speed[:3].max(axis=0), p.centre_y)
-        if seen is not None:
-            raise stopped(scene, time, critical, seen)
+        refuse_beyond_bounds(scene, time, critical, held, speed[:3].max(axis=0), p.centre_y)
         refuse_large_turns(scene, model, state, samples * time.stride * time.dt)
 
     def march_samples(first: int, last: int) -> None:

@@ -18,7 +18,7 @@ from scipy.linalg import LinAlgError, cholesky_banded
 from cases.material.calibrate import Properties
 from cases.sampling import Clock
 from cases.schema.scene import Scene
-from dem.axial.bound import shaking
+from dem.axial.stability import shaking
 from dem.spatial.ends import Face, end_springs, face_stiffness, lever_matrix
 from dem.spatial.layout import STRIDE, unpacked
 from dem.spatial.model import RowModel, RowState

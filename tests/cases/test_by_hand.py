@@ -373,9 +373,9 @@ class TestLoads:
         """v = 3 m/s: 0.3 m a step of 0.1 s. a = 3 m/s2: 3 t at the half steps, times 0.1 s."""
         base = {"ends": {"start": "fixed"}}
         load = {"shape": "step", "amplitude": 3.0, "quantity": "velocity"}
-        assert base_steps(scene(load=load, **base), 0.1, 3) == exact(np.array([0.3, 0.3, 0.3]))
+        assert base_steps(scene(load=load, **base).load, 0.1, 3) == exact(np.array([0.3, 0.3, 0.3]))
         load |= {"quantity": "acceleration"}
-        steps = base_steps(scene(load=load, **base), 0.1, 3)
+        steps = base_steps(scene(load=load, **base).load, 0.1, 3)
         assert steps == exact(np.array([0.015, 0.045, 0.075]))
 
 

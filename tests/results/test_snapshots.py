@@ -76,8 +76,8 @@ def test_later_snapshots_are_the_rest(found):
     assert found._replace(stress=None).since(1).stress is None
 
 
-def test_a_film_keeps_every_so_many_samples():
-    film = Film(3, lambda sample: 10 * sample)
+def test_a_film_keeps_every_so_many_samples(scene_with):
+    film = Film(scene_with(**{"record.fields": 1.5e-4}), 8, lambda sample: 10 * sample)
     for sample in range(8):
         film.look(sample)
     assert film.shots == [0, 30, 60]

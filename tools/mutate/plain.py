@@ -17,7 +17,7 @@ def jitted(function):
 def jitted_for(*effects):
     return jitted
 
-apart = inlined = jitted
+inlined = jitted
 """,
     "joints.formula": """
 def formula(function):

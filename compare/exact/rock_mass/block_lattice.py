@@ -18,7 +18,7 @@ from cases.material.rigid_blocks import rigid_joints
 from cases.material.rock_mass import Stiffness, inertia
 from cases.partition.blocks import Partition
 from cases.partition.locate import block_at
-from cases.partition.periodic import PAIRS, periodic_contacts
+from cases.partition.periodic import across_periodic
 from cases.partition.scene import block_count, partition_of
 from cases.sampling import sample_times
 from cases.schema.pulse import shortest_period
@@ -114,13 +114,9 @@ def masses(scene: RockMass, partition: Partition) -> np.ndarray:
 
 def _stiffness(scene: RockMass, partition: Partition):
     """Return the stiffness of all contacts, those across periodic sides included."""
-    joints, low = rigid_joints(scene, []), partition.corners.min(axis=0)
-    extent, total = partition.corners.max(axis=0) - low, 0
-    parts = [(partition.contacts, (0.0, 0.0))]
-    for side, (_, axis) in PAIRS.items():
-        if getattr(scene.boundaries, side) == "periodic":
-            shift = extent * np.eye(2)[axis]
-            parts.append((periodic_contacts(partition, side), (shift[0], shift[1])))
+    joints, total = rigid_joints(scene, []), 0
+    parts = [(partition.contacts, np.zeros(2))]
+    parts += [(one.contacts, one.shift) for one in across_periodic(scene, partition)]
     for contacts, shift in parts:
         points = contact_points(partition, contacts, scene.joint_sets, shift)
         own = contacts.joint_set

@@ -19,7 +19,7 @@ from results.dataset import Fields
 
 
 class RunKeeper:
-    """Keeps one run, see `numerics.checkpoint.Keeper`.
+    """Keeps one run, see `numerics.time_loop.Keeper`.
 
     done : number of samples in its newest checkpoint, 0 for a new run.
     every : interval between checkpoints in wall time, s; 0: none.

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from cases.schema.scene import Scene
-from dem.axial.bound import highest_speed
 from dem.axial.model import build
+from dem.axial.stability import highest_speed
 
 SCENE = {
     "title": "two blocks",

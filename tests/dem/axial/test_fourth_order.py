@@ -15,9 +15,10 @@ from dem.axial.fourth_order import (
     build,
     compose,
     half_trace,
-    march,
+    run,
     stability_limit,
 )
+from dem.axial.samples import buffers
 from dem.axial.state import state_at_rest
 from results.dataset import energy_residual
 
@@ -62,7 +63,11 @@ def stepped(scene, dt):
     state = state_at_rest(model.effects, p.block_count, False)
     steps = compose(scene, Clock(dt, 1, 1))
     steps = steps._replace(loads=np.zeros((0, 4)), impulses=np.zeros((0, 5)))
-    return model, state, lambda count: march(steps, model, state, 0, count)
+
+    def advance(count):
+        run(steps, model, state, buffers(model, state, count), 1, 0, count)
+
+    return model, state, advance
 
 
 def step_matrix(scene, dt):
