@@ -56,8 +56,3 @@ def with_fragments(
         coords["joint_y"] = (("joint_y",), p.joint_y, label("joint_y"))
         variables["break_time"] = (("joint_y",), break_time, label("break_time"))
     return Fields(variables, coords, {**result.attributes, "fragments": found})
-
-
-def break_times(broke: np.ndarray, dt: float, steps: int) -> np.ndarray:
-    """Return when each joint broke (s) from its step; nan where it is negative or after `steps`."""
-    return np.where((broke >= 0) & (broke <= steps), dt * broke, np.nan)

@@ -95,7 +95,7 @@ def squared(scene: RockMass) -> bool:
     Triangles can have any Poisson's ratio (`material.rigid_fit`), rectangles none; but periodic
     sides need lines along them.
     """
-    return scene.rock.intact_poisson == 0 or "periodic" in scene.boundaries.model_dump().values()
+    return scene.rock.intact_poisson == 0 or bool(scene.boundaries.sides("periodic"))
 
 
 def by_direction(sets: list[JointSet]) -> list[list[JointSet]]:

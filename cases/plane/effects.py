@@ -49,7 +49,7 @@ def _of_sets(name: str, found: list[JointSet], why: str, why_not: str) -> Effect
 
 
 def _of_sides(scene: RockMass, kind: str) -> Effect:
-    sides = [f"boundaries.{side}" for side, held in scene.boundaries if held == kind]
+    sides = [f"boundaries.{side}" for side in scene.boundaries.sides(kind)]
     return called_for(f"{kind} sides", " and ".join(sides), f"no side is {kind}")
 
 

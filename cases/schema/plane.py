@@ -35,6 +35,10 @@ class Boundaries(Table):
     top: Held = "free"  #: side of largest y
     outline: Literal["quiet", "free", "fixed"] = "free"  #: all other sides of an outline
 
+    def sides(self, *kinds: str) -> list[str]:
+        """Return the sides with one of these conditions."""
+        return [side for side, held in self if held in kinds]
+
 
 class GravityInPlane(Table):
     """A body force."""

@@ -95,13 +95,9 @@ def _check_outlines(scene: RockMass, outline: Outline) -> None:
             allowed = "must be a polygon that does not cross itself"
             raise contradiction(f"regions[{i}].outline", len(one.outline), allowed)
         within = shapely.Polygon(outline.corners).exterior.distance(shape)
-        if within <= outline.tolerance and (scene.waves or _is_periodic(scene)):
+        if within <= outline.tolerance and (scene.waves or scene.boundaries.sides("periodic")):
             allowed = "must lie inside the domain, not on its sides, with waves or periodic sides"
             raise contradiction(f"regions[{i}].outline", len(one.outline), allowed)
-
-
-def _is_periodic(scene: RockMass) -> bool:
-    return "periodic" in scene.boundaries.model_dump().values()
 
 
 def _check_damping(scene: RockMass) -> None:

@@ -36,7 +36,7 @@ def check(scene: RockMass) -> None:
     _check_waves(scene, outline)
     for i, load in enumerate(scene.loads):
         _check_load(f"loads[{i}]", load, scene, outline)
-    if scene.gravity is not None and scene.gravity.static and not _held(scene):
+    if scene.gravity is not None and scene.gravity.static and not scene.boundaries.sides("fixed"):
         raise contradiction("gravity.static", True, "needs a fixed side, or gravity.static = false")
 
 
@@ -172,7 +172,3 @@ def distance(point: np.ndarray, edges: np.ndarray) -> float:
     t = ((point - start) * along).sum(axis=1) / (along**2).sum(axis=1)
     foot = start + np.clip(t, 0, 1)[:, None] * along
     return float(np.hypot(*(point - foot).T).min())
-
-
-def _held(scene: RockMass) -> bool:
-    return "fixed" in scene.boundaries.model_dump().values()

@@ -40,14 +40,9 @@ class SidePoints(NamedTuple):
     region: np.ndarray
 
 
-def held(scene: RockMass, name: str) -> str:
-    """Return what holds a side of a partition; openings are free."""
-    return getattr(scene.boundaries, name, "free")
-
-
 def sides_that_are(scene: RockMass, body: Body, kind: str) -> list[str]:
-    """Return the names of the sides that are "quiet", "fixed" or "free"."""
-    return [name for name in body.mesh.sides if held(scene, name) == kind]
+    """Return the sides that are "quiet" or "fixed"."""
+    return [name for name in scene.boundaries.sides(kind) if name in body.mesh.sides]
 
 
 def outward(body: Body, side: Side) -> np.ndarray:

@@ -20,7 +20,7 @@ from dem.axial.samples import buffers, terms
 from dem.axial.stability import highest_speed
 from dem.axial.start import start
 from dem.axial.state import State
-from dem.fragments import break_times, with_fragments
+from dem.fragments import with_fragments
 from dem.static import since_prestress
 from numerics.divergence import guard, look
 from numerics.time_loop import Keeper
@@ -127,7 +127,8 @@ def simulate_fields(
 def _with_breaks(result: Fields, scene: Scene, state: State, time: Clock) -> Fields:
     if state.broke is None or result.coords["time"][1].size < time.samples:
         return result
-    times = break_times(state.broke, time.dt, time.steps)
+    broke = state.broke
+    times = np.where((broke >= 0) & (broke <= time.steps), time.dt * broke, np.nan)
     return with_fragments(result, calibrate(scene), ~np.isnan(times), state.v, times)
 
 

@@ -1,4 +1,8 @@
-"""Points on edges of blocks, and the forces and moments of tractions there."""
+"""Points on edges of blocks, and the forces and moments of tractions there.
+
+Quiet sides have the dashpots of Lysmer and Kuhlemeyer: a traction -rho a v_n - rho b v_s at points
+of each edge, with the impedances of `cases.material.quiet_sides`.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cases.material.contact_points import points_of
+from cases.material.rigid_step import jump
 from cases.partition.blocks import BoundaryEdges, Partition
 
 #: Rows of the resultants of tractions on a block: the force, and the sums of arm times force,
@@ -65,3 +70,17 @@ def resultant(sums: np.ndarray) -> np.ndarray:
     """Return force and moment [..., 3] of resultants [..., 6]."""
     moment = sums[..., S_XY] - sums[..., S_YX]
     return np.stack([sums[..., F_X], sums[..., F_Y], moment], axis=-1)
+
+
+def dashpots(points: EdgePoints, impedance: np.ndarray, row: np.ndarray, count: int) -> np.ndarray:
+    """Return the resultants of each row's quiet edges per velocity of its block, with the sign of a
+    resistance [count, 6, 3].
+
+    impedance : [m, 2], Pa s/m. row : of each point [m].
+    """
+    tangent = np.stack([-points.normal[:, 1], points.normal[:, 0]], axis=1)
+    traction = np.zeros((3, len(row), 2))
+    for along, Z in zip((points.normal, tangent), impedance.T, strict=True):
+        felt = jump(along, points.arm)  # of a velocity of the block [m, 3]
+        traction += (Z * points.length)[:, None] * felt.T[:, :, None] * along
+    return np.moveaxis(on_rows(gathered(points.arm, traction), row, count), 0, -1)

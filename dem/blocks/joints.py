@@ -58,15 +58,12 @@ def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
     found = law(normal, None, tension, shear_stiffness=shear, rock_compliance=rock, **strengths)
     eta = _time_constants(scene, normal, shear, which)
     if eta is not None:
-        viscosities = (uniform(values) for values in (eta[0] * normal, eta[1] * shear))
-        found = found._replace(**dict(zip(VISCOSITIES, viscosities, strict=True)))
+        viscosities = uniform(eta[0] * normal), uniform(eta[1] * shear)
+        found = found._replace(normal_viscosity=viscosities[0], shear_viscosity=viscosities[1])
     fails = not tension.all() or bool(strengths)
     rules = _rules(scene, which)
     most = np.array([np.resize(one, len(normal)) for one in stiffest(found, scene)])
     return Columns(found, normal, shear, most, eta, rules, rules.shape[2] if fails else 0)
-
-
-VISCOSITIES = ("normal_viscosity", "shear_viscosity")
 
 
 def _time_constants(

@@ -86,8 +86,7 @@ def links_of(scene: RockMass, partition: Partition, further: list[JointSet]) -> 
 def _walls(scene: RockMass, partition: Partition) -> tuple[str, ...]:
     """Return the fixed sides."""
     present = {partition.sides[k] for k in np.unique(partition.boundary.side)}
-    held = scene.boundaries.model_dump()
-    return tuple(name for name, kind in held.items() if kind == "fixed" and name in present)
+    return tuple(name for name in scene.boundaries.sides("fixed") if name in present)
 
 
 def _columns(

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem import time_loop
-from dem.blocks.bound import highest_energy
 from dem.blocks.leapfrog import PlaneSamples, march, samples_for
 from dem.blocks.model import PlaneState, state_at_rest
 from dem.blocks.record import quantities
+from dem.blocks.stability import highest_energy
 from dem.blocks.start import start
 from dem.blocks.system import PlaneSystem, prepared
 from numerics.divergence import SPEED, Guard, audit, guard

@@ -11,9 +11,8 @@ from cases.material.quiet_sides import impedances
 from cases.sampling import Clock, clock
 from cases.size import refuse_beyond_memory, snapshot_bytes, waveform_bytes
 from dem.blocks.build import RigidBlocks, constants, contacts, form_of, rigid_blocks
-from dem.blocks.edges import points_on, resultant
+from dem.blocks.edges import dashpots, points_on, resultant
 from dem.blocks.model import PlaneModel, held_by
-from dem.blocks.quiet import dashpots
 from dem.blocks.receivers import BlockReceivers, receivers_of
 from dem.blocks.shaking import Shaking, shaking
 from dem.blocks.sources import Sources, load_pattern, on_sides, reactions
@@ -104,17 +103,13 @@ def held_blocks(
 ) -> tuple[Sources, np.ndarray]:
     """Return the external forces on blocks, and the resistance of quiet edges [h, 6, 3]."""
     scene, partition = blocks.scene, blocks.partition
-    held = scene.boundaries.model_dump()
-    quiet = points_on(
-        partition,
-        partition.boundary,
-        on_sides(partition, [name for name, kind in held.items() if kind == "quiet"]),
-    )
+    on_quiet = on_sides(partition, scene.boundaries.sides("quiet"))
+    quiet = points_on(partition, partition.boundary, on_quiet)
     impedance = impedances(scene, quiet.normal, partition.region[quiet.block])
     patterns = [load_pattern(scene, partition, x) for x in scene.pushes]
     if scene.prestress is not None:
         # Openings have been excavated: nothing holds their walls.
-        open_sides = [n for n in held if held[n] in ("free", "quiet")]
+        open_sides = scene.boundaries.sides("free", "quiet")
         patterns.append(reactions(partition, open_sides, scene.prestress))
     rows = np.unique(np.concatenate([quiet.block, *(one.block for one in patterns)]))
     waves = incoming(scene, field, quiet, impedance, rows, time)
