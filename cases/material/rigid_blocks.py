@@ -58,20 +58,14 @@ class RockShare(NamedTuple):
     direction: np.ndarray
     left_over: float
 
-    def of_set(self, index: int) -> np.ndarray:
-        """Return the excess of a set [2], m/Pa; none for single joints."""
-        at = self.direction[index]
+    def excess(self, at: int) -> np.ndarray:
+        """Return the excess of joints of a direction [2], m/Pa; of none (-1) zero."""
         return self.compliance[at] * self.apart[at] if at >= 0 else np.zeros(2)
 
     def parallel_to(self, normal: np.ndarray) -> int:
         """Return which direction a unit normal [2] is that of, -1 for none."""
         sines = np.abs(self.normals @ [-normal[1], normal[0]])
         return int(sines.argmin()) if sines.min() < PARALLEL else -1
-
-    def beside(self, normal: np.ndarray) -> np.ndarray:
-        """Return the excess of joints of a normal [2] between this rock and another [2], m/Pa."""
-        at = self.parallel_to(normal)
-        return self.compliance[at] * self.apart[at] if at >= 0 else np.zeros(2)
 
 
 def rigid_joints(
@@ -90,9 +84,9 @@ def rigid_joints(
     excess = np.zeros((len(kinds), 2))
     for row, (k, *pair) in zip(excess, kinds, strict=True):
         normal = direction_of(sets[k].dip)[::-1] * [-1, 1]
-        same = pair[0] == pair[1]
-        for one in pair:
-            row += (shares[one].of_set(k) if same else shares[one].beside(normal)) / 2
+        for one in (shares[region] for region in pair):
+            at = one.direction[k] if pair[0] == pair[1] else one.parallel_to(normal)
+            row += one.excess(at) / 2
     real = [(one.normal_stiffness, one.shear_stiffness) for one in scene.joint_sets]
     own = np.array([*real, *([(np.inf, np.inf)] * len(further))], dtype=float)
     with np.errstate(divide="ignore"):

@@ -23,17 +23,6 @@ class Rings(NamedTuple):
     first: np.ndarray
 
 
-class Joined(NamedTuple):
-    """Edges of a pair joined to one: start and end [n, 2], normal [n, 2], length [n], and one of
-    the halves that each is made of [n]."""
-
-    start: np.ndarray
-    end: np.ndarray
-    normal: np.ndarray
-    length: np.ndarray
-    half: np.ndarray
-
-
 def rings(sub: Subdivision) -> Rings:
     """Return the outlines of all cells, counter-clockwise, without corners that turn nowhere.
 
@@ -80,15 +69,9 @@ def contacts(sub: Subdivision) -> Contacts:
     """Return the pairs of blocks that share an edge, with that edge."""
     half = sub.halves()
     own = (half.across != OUTSIDE) & (half.cell < half.across)
-    one = _joined(sub, np.stack([half.cell, half.across], axis=1), np.flatnonzero(own))
-    return Contacts(
-        blocks=np.stack([half.cell[one.half], half.across[one.half]], axis=1),
-        start=one.start,
-        end=one.end,
-        normal=one.normal,
-        length=one.length,
-        joint_set=sub.joint_set[sub.line[half.edge[one.half]]],
-    )
+    one, edges = _joined(sub, np.stack([half.cell, half.across], axis=1), np.flatnonzero(own))
+    blocks = np.stack([half.cell[one], half.across[one]], axis=1)
+    return Contacts(blocks=blocks, joint_set=sub.joint_set[sub.line[half.edge[one]]], **edges)
 
 
 def boundary(sub: Subdivision) -> BoundaryEdges:
@@ -97,15 +80,17 @@ def boundary(sub: Subdivision) -> BoundaryEdges:
     half = sub.halves()
     side, line = sub.side[half.edge], sub.line[half.edge]
     outer = np.flatnonzero(half.across == OUTSIDE)
-    one = _joined(sub, np.stack([half.cell, side, line], axis=1), outer)
-    block, side = half.cell[one.half], side[one.half]
-    along = sub.along[half.edge[one.half]]
-    return BoundaryEdges(block, one.start, one.end, one.normal, one.length, side, along)
+    one, edges = _joined(sub, np.stack([half.cell, side, line], axis=1), outer)
+    along = sub.along[half.edge[one]]
+    return BoundaryEdges(block=half.cell[one], side=side[one], joint_set=along, **edges)
 
 
-def _joined(sub: Subdivision, key: np.ndarray, chosen: np.ndarray) -> Joined:
-    """Return the chosen halves with those of one key (int array [h, k]), which lie on one line,
-    joined; in the order of the keys."""
+def _joined(
+    sub: Subdivision, key: np.ndarray, chosen: np.ndarray
+) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Return the edges of chosen halves, with those of one key (int array [h, k]), which lie on one
+    line, joined, in the order of the keys: one of the halves that each is made of [n], and start
+    and end [n, 2], m, normal [n, 2] and length [n], m."""
     half = sub.halves()
     key, outward = key[chosen], half.outward[chosen]
     along = np.stack([-outward[:, 1], outward[:, 0]], axis=1)
@@ -116,4 +101,5 @@ def _joined(sub: Subdivision, key: np.ndarray, chosen: np.ndarray) -> Joined:
     begins = np.flatnonzero(new)
     first, last = order[begins], order[np.append(begins[1:], len(order))[: len(begins)] - 1]
     length = np.hypot(*(end[last] - start[first]).T)
-    return Joined(start[first], end[last], outward[first], length, chosen[first])
+    edges = {"start": start[first], "end": end[last], "normal": outward[first], "length": length}
+    return chosen[first], edges

@@ -37,6 +37,12 @@ def across_periodic(scene: RockMass, partition: Partition) -> list[Across]:
     ]
 
 
+def of_all(partition: Partition, across: list[Across], key: str) -> np.ndarray:
+    """Return an array of all contacts, those across periodic sides last."""
+    parts = partition.contacts, *(one.contacts for one in across)
+    return np.concatenate([getattr(part, key) for part in parts])
+
+
 def periodic_contacts(partition: Partition, side: str) -> Contacts:
     """Return the contacts across the left or the bottom, with the blocks beyond it moved by the
     domain's extent: block i at the right or the top, block j at the left or the bottom.

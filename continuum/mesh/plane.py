@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cases.partition.blocks import Partition
-from cases.partition.periodic import Across
+from cases.partition.periodic import Across, of_all
 from cases.partition.subdivision import NO_SET
 from continuum.mesh.blocks import BlockEdges, cells_along, has_four_corners, meshed_blocks
 from continuum.mesh.cells import FACETS
@@ -57,8 +57,7 @@ def plane_mesh(
     size = sizes[kind]
     counts = cells_along(segments, loops, size, kind == "quadrilateral")
     x, cells, block, edges = meshed_blocks(segments, loops, counts, size, kind)
-    sets = [partition.contacts.joint_set, *(c.joint_set for c, _, _ in across)]
-    joint_set = np.append(np.concatenate(sets), NO_SET)  # the last is the boundary's
+    joint_set = np.append(of_all(partition, across, "joint_set"), NO_SET)  # the last: boundary's
     cuts = joint_set[segments.contact[edges.segment]] != NO_SET
     cut = np.zeros((len(cells), len(FACETS[kind])), dtype=bool)
     cut[edges.cell[cuts], edges.facet[cuts]] = True
@@ -89,7 +88,7 @@ def _joints(
     of its block j on the right."""
     own = np.flatnonzero(cuts)
     contact = segments.contact[edges.segment[own]]
-    blocks = np.concatenate([partition.contacts.blocks, *(c.blocks for c, _, _ in across)])
+    blocks = of_all(partition, across, "blocks")
     is_left = (edges.block[own] == blocks[contact, 0]) & (
         segments.like[edges.segment[own]] == edges.segment[own]
     )

@@ -16,7 +16,7 @@ from cases.material.dashpots import set_time_constants
 from cases.material.effective_medium import compliant, stiffness
 from cases.material.rock import elastic_rock
 from cases.material.strength import strength_of
-from cases.partition.periodic import Across, across_periodic
+from cases.partition.periodic import Across, across_periodic, of_all
 from cases.partition.regions import within
 from cases.partition.scene import partition_of
 from continuum.build import body_and_jumps
@@ -121,21 +121,9 @@ def _rayleigh(scene: RockMass) -> float:
     return 0.0 if scene.damping.rayleigh is None else scene.damping.rayleigh.coefficients[1]
 
 
-def joint_set_of(found: PlaneDiscrete) -> np.ndarray:
-    """Return the joint set of every contact, int array, those across periodic sides last."""
-    parts = [found.partition.contacts, *(one.contacts for one in found.across)]
-    return np.concatenate([part.joint_set for part in parts])
-
-
-def normals_of(found: PlaneDiscrete) -> np.ndarray:
-    """Return the unit normal of every contact [c, 2], from its block i to its block j."""
-    parts = [found.partition.contacts, *(one.contacts for one in found.across)]
-    return np.concatenate([part.normal for part in parts])
-
-
 def contact_law(scene: RockMass, found: PlaneDiscrete, contact: np.ndarray) -> Law:
     """Return the law at points [q] of these contacts, in its smallest form."""
-    sets, of = scene.joint_sets, joint_set_of(found)[contact]
+    sets, of = scene.joint_sets, of_all(found.partition, found.across, "joint_set")[contact]
     etas = set_time_constants(scene)
     tension = np.array([one.tension is not False for one in sets])[of]
     normal, shear = (
@@ -156,7 +144,8 @@ def _carried(scene: RockMass, found: PlaneDiscrete, contact: np.ndarray) -> np.n
     normal and its right: as `Jumps` has them; None without."""
     if scene.prestress is None:
         return None
-    n, (xx, yy, xy) = normals_of(found)[contact].T, stress_of(scene)
+    n = of_all(found.partition, found.across, "normal")[contact].T
+    xx, yy, xy = stress_of(scene)
     t = np.array([xx * n[0] + xy * n[1], xy * n[0] + yy * n[1]])
     return np.array([(t * n).sum(axis=0), t[0] * n[1] - t[1] * n[0]])
 

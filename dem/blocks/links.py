@@ -10,7 +10,7 @@ from cases.material.elastic import shear_modulus
 from cases.material.rigid_blocks import rock_shares, welded
 from cases.material.rock_mass import Stiffness, constrained_modulus
 from cases.partition.blocks import Partition
-from cases.partition.periodic import across_periodic
+from cases.partition.periodic import across_periodic, of_all
 from cases.partition.regions import ROCK, rocks_of
 from cases.partition.subdivision import NO_SET
 
@@ -50,11 +50,9 @@ def links_of(scene: RockMass, partition: Partition, further: list[JointSet]) -> 
     across = across_periodic(scene, partition)
     parts = [partition.contacts, *(one.contacts for one in across)]
     beside = [np.zeros(2), *(one.shift for one in across)]
-    pairs = np.concatenate([one.blocks for one in parts])
     shift = np.repeat(beside, [len(one) for one in parts], axis=0)
-    start, end, normal, joint_set = (
-        np.concatenate([getattr(one, key) for one in parts])
-        for key in ("start", "end", "normal", "joint_set")
+    pairs, start, end, normal, joint_set = (
+        of_all(partition, across, key) for key in ("blocks", "start", "end", "normal", "joint_set")
     )
     walls = _walls(scene, partition)
     edges = partition.boundary

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,13 +18,6 @@ if TYPE_CHECKING:
     from results.dataset import Fields
 
 
-class Shot(NamedTuple):
-    """All blocks at one instant: displacement and velocity [N, 3], m and m/s, rad and rad/s."""
-
-    displacement: np.ndarray
-    velocity: np.ndarray
-
-
 class PlaneFilm(Film):
     """The blocks at every snapshot of a scene; raises SceneError for too many."""
 
@@ -33,25 +26,24 @@ class PlaneFilm(Film):
         everywhere = np.arange(self.partition.count)
         model = system.model._replace(places=everywhere, watched=everywhere[:0])
 
-        def shoot(sample: int) -> Shot:
-            """Take a sample of all blocks, with the step that it needs, on a copy of the state."""
+        def shoot(sample: int) -> tuple[np.ndarray, np.ndarray]:
+            """Return displacement and velocity of all blocks [N, 3], m and m/s, rad and rad/s, by
+            a sample with the step that it needs, on a copy of the state."""
             step = sample * system.time.stride
             drive = None if model.held is None else system.sources.drive(step, step + 1)
             shake = None if system.shaking is None else system.shaking(np.array([step]))
             found = samples_for(model, 1)
             march(model, copied(state), found, 1, (0, 1), drive, shake)
-            return Shot(found.displacement[..., 0], found.velocity[..., 0])
+            return found.displacement[..., 0], found.velocity[..., 0]
 
         super().__init__(system.blocks.scene, len(self.partition.corners), shoot)
 
     def developed(self, result: Fields) -> Fields:
         """Return the run's result with its snapshots; displacement counts from the first."""
         time = result.coords["time"][1][:: self.every]
-        shots = self.shots[: len(time)]
-        u = np.stack([shot.displacement for shot in shots]) - shots[0].displacement
-        v = np.stack([shot.velocity for shot in shots])
+        u, v = (np.stack(x) for x in zip(*self.shots[: len(time)], strict=True))
         cells, block = triangles(self.partition)
-        moved, moving = (corner_motion(self.partition, x) for x in (u, v))
+        moved, moving = (corner_motion(self.partition, x) for x in (u - u[0], v))
         corners = self.partition.corners
         return with_snapshots(
             result, snapshots(time, corners, "triangle", cells, block, moved, moving)

@@ -12,7 +12,7 @@ from compare.solvers.incident import incident
 from continuum.build import operators
 from continuum.mesh.session import gmsh_session
 from continuum.plane.loads import pushes
-from continuum.plane.rock import discretise, normals_of
+from continuum.plane.rock import discretise
 from continuum.simulate import simulate
 from results.dataset import energy_residual
 
@@ -129,7 +129,8 @@ def test_a_uniform_stress_is_exact_through_the_joint_of_a_mesh(given):
     text = SCENE.replace("intact_modulus = 5e10", "intact_modulus = 5e10, intact_poisson = 0.0")
     found = discretise(given({"joint fault": through(37.0)}, text, size=1.5), "jointed")
     body = found.body
-    (normal, *_) = normals_of(found)[found.partition.contacts.of_joints(1)]
+    contacts = found.partition.contacts
+    (normal, *_) = contacts.normal[contacts.of_joints(1)]
     traction = STRESS @ normal
     opened = (traction @ normal) * normal
     jump = opened / 2e10 + (traction - opened) / 8e9
