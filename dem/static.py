@@ -26,6 +26,8 @@ from joints.law import stiffest as stiffest_springs
 from joints.normal import gap_under
 
 STEPS_BETWEEN_LOOKS = 10
+STEP_FRACTION = 0.9  # of the critical step: only the final state matters
+NEVER = 1 << 60  # steps between samples where none are taken
 PATIENCE = 20  # a stall is a twentieth of the most steps without progress
 
 
@@ -88,6 +90,13 @@ def gaps_under(p: Properties, stress: float | np.ndarray) -> np.ndarray:
     """Return the gaps of joints whose springs carry a normal stress (Pa), or each its own, m."""
     law = _springs(p)
     return gap_under(law, parts_of(law), stress)
+
+
+def undamped(p: Properties) -> Properties:
+    """Return the numbers of a scene without dashpots and damping."""
+    return replace(
+        p, time_constant=None, joint_time_constant=None, mass_damping=None, local_damping=None
+    )
 
 
 def stiffest(scene: Scene, p: Properties) -> Properties:

@@ -5,7 +5,6 @@ same on every process. Cells of other processes have no nodes here.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -72,17 +71,11 @@ def held_share(
     return held, jumps(held._replace(mesh=local._replace(joints=share.joints)))
 
 
-class Names(NamedTuple):
-    """The degrees of freedom of a process's cells or joints; those on the border, and their global
+def _names(
+    held: Body, own: np.ndarray, across: Jumps | None, border: Border
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the degrees of freedom of own cells and joints; those on the border, and their global
     names, ascending; int arrays."""
-
-    freedom: np.ndarray
-    border: np.ndarray
-    name: np.ndarray
-
-
-def _names(held: Body, own: np.ndarray, across: Jumps | None, border: Border) -> Names:
-    """Return the names of the degrees of freedom of own cells and joints."""
     reached = [_freedoms(held, own[own[:, 0] >= 0])]
     if across is not None:
         reached += [np.unique(matrix.indices) for matrix in across.matrices]
@@ -93,7 +86,7 @@ def _names(held: Body, own: np.ndarray, across: Jumps | None, border: Border) ->
     name = border.node[node >= 0][:, None] * components.size + components
     here = np.isin(found, freedom)
     name, first = np.unique(name[here], return_index=True)
-    return Names(freedom, found[here][first], name)
+    return freedom, found[here][first], name
 
 
 def _freedoms(body: Body, cells: np.ndarray) -> np.ndarray:

@@ -1,7 +1,6 @@
 """Initial state of a scene: unloaded, under its prestress, or in equilibrium with gravity."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -13,11 +12,9 @@ from dem.axial.model import Model, unloaded, with_mass_damping
 from dem.axial.springs import spring_forces
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State
-from dem.static import Rest, gaps_under, settle, stiffest
+from dem.static import STEP_FRACTION, Rest, gaps_under, settle, stiffest, undamped
 from joints.law import Parts
 from numerics.jit import jitted
-
-STEP_FRACTION = 0.9  # of the critical step: only the final state matters
 
 
 def start(scene: Scene, model: Model, state: State) -> Rest | None:
@@ -55,7 +52,7 @@ class ChainRelaxation:
     """
 
     def __init__(self, scene: Scene, p: Properties, state: State, weighed: bool) -> None:
-        p = _undamped(p)
+        p = undamped(p)
         start, end = (
             kind if kind == "fixed" else "free" for kind in (scene.ends.start, scene.ends.end)
         )
@@ -131,12 +128,6 @@ class ChainRelaxation:
         elif self.ends[0]:
             first = -steps[-1]
         return self.prestress + first + steps
-
-
-def _undamped(p: Properties) -> Properties:
-    return replace(
-        p, time_constant=None, joint_time_constant=None, mass_damping=None, local_damping=None
-    )
 
 
 @cache

@@ -14,15 +14,13 @@ from dem.blocks.model import PlaneState, held_by, state_at_rest
 from dem.blocks.sources import Sources, reactions
 from dem.blocks.stability import critical_plane_step
 from dem.blocks.tiles import LANES
-from dem.static import STEPS_BETWEEN_LOOKS, Damped, Rest, settle
+from dem.static import NEVER, STEP_FRACTION, STEPS_BETWEEN_LOOKS, Damped, Rest, settle
 from joints.law import IN_MOTION
 from results.arrays import copied, fill
 
 if TYPE_CHECKING:
     from dem.blocks.system import PlaneSystem
 
-NEVER = 1 << 60  # steps between samples where none are taken
-STEP_FRACTION = 0.9  # of the critical step: only the final state matters
 PARTS = 40  # in which walls of openings are released where joints may slip or open
 LOOKS = 0.3  # stretches of ten steps after each part, over the root of the number of blocks
 

@@ -106,19 +106,12 @@ def _tiles(low: np.ndarray, high: np.ndarray) -> list[int]:
     return found
 
 
-class Marks(NamedTuple):
-    """Recorded blocks or contacts by the tile that they are in: the first of each tile [tiles + 1],
-    where each is, ascending, and its row in the samples."""
-
-    first: np.ndarray
-    at: np.ndarray
-    row: np.ndarray
-
-
-def marks(at: np.ndarray, first: np.ndarray) -> Marks:
-    """Return marks of places [n], of tiles that begin at `first` [tiles + 1]."""
+def marks(at: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return recorded blocks or contacts at places [n] by the tile that they are in, of tiles that
+    begin at `first` [tiles + 1]: the first of each [tiles + 1], where each is, ascending, and its
+    row in the samples."""
     row = np.argsort(at, kind="stable")
-    return Marks(np.searchsorted(at[row], first), at[row], row)
+    return np.searchsorted(at[row], first), at[row], row
 
 
 def depth_of(contacts: Contacts, history: np.ndarray | None, threads: int) -> int:

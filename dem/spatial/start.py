@@ -1,7 +1,5 @@
 """Initial state of a spatial scene: unloaded, under its prestress, at rest under gravity."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from cases.material.calibrate import Properties
@@ -20,14 +18,12 @@ from dem.spatial.layout import LANES, STRIDE, packed, unpacked
 from dem.spatial.march import marcher
 from dem.spatial.model import Load, RowModel, RowState
 from dem.spatial.stability import critical_spatial_step
-from dem.static import Rest, prestressed, settle, stiffest
+from dem.static import NEVER, STEP_FRACTION, Rest, prestressed, settle, stiffest, undamped
 from joints.law import IN_MOTION
 from numerics.divergence import guard
 from results.arrays import copied, fill
 
-NEVER = 1 << 60  # steps between samples where none are taken
 NOWHERE = Interpolation(np.arange(0), np.arange(0), np.zeros(0))
-STEP_FRACTION = 0.9  # of the critical step: only the final state matters
 
 
 def start(scene: Scene, p: Properties, model: RowModel, state: RowState) -> Rest | None:
@@ -58,9 +54,7 @@ class RowRelaxation:
     """
 
     def __init__(self, scene: Scene, p: Properties, model: RowModel, weighed: bool) -> None:
-        p = replace(
-            p, time_constant=None, joint_time_constant=None, mass_damping=None, local_damping=None
-        )
+        p = undamped(p)
         scene, form = _at_rest(scene, weighed), model.form
         turns, face = scene.motion.rotation != "none", face_of(contact_points(scene))
         dt = STEP_FRACTION * critical_spatial_step(
