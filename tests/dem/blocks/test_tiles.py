@@ -54,6 +54,6 @@ def test_a_pass_takes_fewer_steps_of_wider_tiles_and_of_more_threads():
 
 def test_marks_name_each_place_in_its_tile():
     """In any order."""
-    found = marks(np.array([7, 0, 3, 9]), np.array([0, 3, 8, 10]))
-    assert found.at.tolist() == [0, 3, 7, 9] and found.row.tolist() == [1, 2, 0, 3]
-    assert found.first.tolist() == [0, 1, 3, 4]
+    first, at, row = marks(np.array([7, 0, 3, 9]), np.array([0, 3, 8, 10]))
+    assert at.tolist() == [0, 3, 7, 9] and row.tolist() == [1, 2, 0, 3]
+    assert first.tolist() == [0, 1, 3, 4]
