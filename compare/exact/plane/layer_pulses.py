@@ -10,6 +10,7 @@ that follows a pulse without delay is summed in time, with all its kinks.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import prod
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from compare.exact.plane.inversion import STEPS, analytic_inverse
 from compare.exact.plane.pulse import Pulse, PulseStack, modes_of
 
 HALF = 4  # samples on either side
+NODES = range(-HALF + 1, HALF + 1)  # the samples, from the one before a time on
 MOST_NODES = 40  # depths of an evanescent wave in a layer, SPARE more than its decay requires
 SPARE = 8
 NEGLIGIBLE = 1e-10  # of an evanescent wave
@@ -164,14 +166,14 @@ def _read(series: np.ndarray, offset: float, stride: int, count: int) -> np.ndar
     """Return a series at offset + k stride, k = 0 .. count - 1; zero before it begins."""
     first = int(np.floor(offset))
     weights = _lagrange(offset - first)
-    span = np.arange(-HALF + 1, HALF + 1)
-    low, high = first + span[0], first + span[-1] + stride * (count - 1) + 1
-    before, after = max(-low, 0), max(high - len(series), 0)
-    window = np.pad(series[max(low, 0) : max(high, 0)], (min(before, high - low), after))
+    low, high = first + NODES[0], first + NODES[-1] + stride * (count - 1) + 1
+    window = series[max(low, 0) : max(high, 0)]
+    if len(window) < high - low:
+        before = min(max(-low, 0), high - low)
+        window = np.pad(window, (before, high - low - before - len(window)))
     return sum(w * window[k : k + stride * (count - 1) + 1 : stride] for k, w in enumerate(weights))
 
 
-def _lagrange(x: float) -> np.ndarray:
-    """Return the weights of the samples at -HALF + 1 .. HALF for x in [0, 1)."""
-    nodes = np.arange(-HALF + 1, HALF + 1)
-    return np.array([np.prod([(x - m) / (k - m) for m in nodes if m != k]) for k in nodes])
+def _lagrange(x: float) -> list[float]:
+    """Return the weights of the samples at `NODES` for x in [0, 1)."""
+    return [prod([(x - m) / (k - m) for m in NODES if m != k]) for k in NODES]

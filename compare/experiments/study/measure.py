@@ -17,7 +17,7 @@ from compare.experiments.study.reference import UNKNOWN, error, finest_of, known
 from compare.experiments.study.study import StudyPoint
 from compare.solvers.record import Answer
 
-LONG = 0.25  # s: a longer run, including set-up, is repeated at most once
+LONG = 0.25  # s: longer steps are timed once, and repeats begin for no longer
 
 
 class PointRow(NamedTuple):
@@ -32,8 +32,8 @@ class PointRow(NamedTuple):
         total is known: the error assigned to it. cancels : whether it measures less than that.
     steps : of time. work : freedoms times evaluations of all forces, which are
         degree-of-freedom-steps where a step takes one. bytes : of the model and its state.
-    seconds, spread : stepping, median and half the range of the repeats; setup, compile : of the
-        first run.
+    seconds, spread : stepping, median and half the range of the repeats, or of the
+        first run where that takes long; setup, compile : of the first run.
     """
 
     curve: str
@@ -77,7 +77,7 @@ def _measured(point: StudyPoint) -> PointRow:
         return float(next((result.attrs[x] for x in names if x in result.attrs), math.nan))
 
     seconds = [counted("seconds_stepping")]
-    if study.timed:
+    if study.timed and not seconds[0] > LONG:
         seconds = _repeated(run, study.repeats)
     own = known(own_of(point), study, point.physics)
     finest = known(finest_of(study), study, {})
