@@ -11,6 +11,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags
 
 from continuum.implicit.substeps import Applied
+from continuum.implicit.vectors import Matrix, largest
 from continuum.model import Model
 from continuum.parallel.serial import SERIAL, Serial
 from continuum.space.body import Body, rock_matrices
@@ -18,7 +19,6 @@ from continuum.space.tractions import joint_energy, joint_loads, joint_tangents
 from continuum.state import STATES, Samples, State
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.jit import jitted
-from results.arrays import fill
 
 
 class Matrices(NamedTuple):
@@ -38,7 +38,8 @@ def implicit_matrices(body: Body) -> Matrices:
     stiffness, viscosity = rock_matrices(body)
     mass = csr_matrix(diags(body.mass)) if body.consistent is None else body.consistent
     moves = body.communicator.total(stiffness.diagonal()) > 0
-    return Matrices(stiffness, viscosity, mass, moves, body.communicator)
+    viscosity = None if viscosity is None else Matrix(viscosity)
+    return Matrices(Matrix(stiffness), viscosity, Matrix(mass), moves, body.communicator)
 
 
 def balance(
@@ -58,28 +59,29 @@ def balance(
     Returns the largest force (N) that is summed up, of rock, dashpots, load and weight.
     """
     trial.v_before[:] = (trial.u - now.u) / model.dt
-    fill(_history(trial), _history(now))
+    for own, before in zip(_history(trial), _history(now), strict=True):
+        if own is not None:
+            own[:] = before
     if trial.ledger is not None:
         trial.ledger[:] = now.ledger
     memory = model.rock.memory
     force = -(rock.stiffness @ trial.u) if memory is None else np.zeros_like(trial.u)
-    parts = [force]
+    sizes = [largest(force)]
     if trial.rate is not None:
         trial.rate[:] = trial.v
         trial.drag[:] = 0.0 if rock.viscosity is None else -(rock.viscosity @ trial.v)
-        parts.append(trial.drag.copy())
+        sizes.append(largest(trial.drag))
     if memory is not None:
         trial.elongation[:] = memory.advanced(now.elongation, trial.v_before)
         trial.strained[:] = memory.strained(trial.u, trial.elongation)
         trial.drag[:] = -(rock.stiffness @ trial.strained)  # all of it counts as viscous
-        parts.append(trial.drag.copy())
+        sizes.append(largest(trial.drag))
     if model.weight is not None:
-        parts.append(model.weight)
+        sizes.append(largest(model.weight))
     if model.ends.loaded is not None:
-        parts.append(model.ends.loaded.share * applied.pressure)
+        sizes.append(largest(model.ends.loaded.share * applied.pressure))
     if applied.driven is not None:
-        parts.append(applied.driven)
-    size = max(float(np.abs(part).max(initial=0.0)) for part in parts)
+        sizes.append(largest(applied.driven))
     trial.force[:] = force
     if model.interfaces is not None:
         _add_joint_forces(model, now, trial, r, tangents)
@@ -92,7 +94,7 @@ def balance(
     if applied.driven is not None:
         trial.force[model.ends.driven.freedom] += applied.driven
     _add_ends(model, now, trial)
-    return size
+    return max(sizes)
 
 
 def _history(state: State) -> tuple:

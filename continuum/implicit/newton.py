@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from continuum.implicit.vectors import largest
 from continuum.parallel.serial import SERIAL, Serial
 
 MOST_ITERATIONS = 12
@@ -53,5 +54,5 @@ def newton(
 
 def _size(values: np.ndarray) -> float:
     """Return the largest magnitude; infinite if any is NaN."""
-    found = float(np.abs(values).max(initial=0.0))
+    found = largest(values)
     return found if np.isfinite(found) else np.inf

@@ -12,10 +12,11 @@ from continuum.implicit.balance import Matrices, record
 from continuum.implicit.newton import Outcome
 from continuum.implicit.step import Moment, Stepper
 from continuum.implicit.substeps import Applied, applied_at, move
+from continuum.implicit.vectors import Matrix
 from continuum.model import Model
 from continuum.monitor import Monitor
 from continuum.state import Samples, State
-from results.arrays import changed, copied, fill
+from results.arrays import arrays, changed, copied, fill
 
 HALVINGS = 10
 WHOLE = 1 << HALVINGS
@@ -39,8 +40,8 @@ class Implicit:
     """
 
     def __init__(self, model: Model, state: State, matrices: Matrices, rho: float) -> None:
-        self.model, self.state = model, state
-        self.stepper = Stepper(model, matrices, rho)
+        self.stepper, self.state = Stepper(model, matrices, rho), state
+        self.model = self.stepper.model
         self.now, self.trial = (
             Moment(s, np.zeros_like(state.u), np.zeros(1)) for s in (state, copied(state))
         )
@@ -48,7 +49,9 @@ class Implicit:
         mass = self.communicator.total(model.rock.mass)
         self.mass = np.where(mass > 0, mass, np.inf)  # massless freedoms do not move
         self.counts = np.array([0, -1])
-        self.receivers = readings(model, state)
+        matrix, added = readings(model, state)
+        self.receivers = Matrix(matrix), added
+        self._pairs = list(zip(arrays(self.now), arrays(self.trial), strict=True))
         self.outcome: Outcome | None = None
         self.parts = self.now[1:], self.trial, self.counts, self.stepper.counts
 
@@ -125,13 +128,12 @@ class Implicit:
 
     def _accept(self, n: int, before: float, share: float) -> None:
         """Make the trial the present, and add the work of the part of step n that led there."""
-        now, trial = self.now, self.trial
+        trial = self.trial
         if trial.state.ledger is not None and share:
             self._book(trial.state.ledger, *(applied_at(self.model, n, s) for s in (before, share)))
         trial.state.v_before[:] = trial.state.v
-        fill(now.state, trial.state)
-        now.acceleration[:] = trial.acceleration
-        now.size[:] = trial.size
+        for present, tried in self._pairs:
+            present[...] = tried
 
     def _book(self, ledger: np.ndarray, first: Applied, last: Applied) -> None:
         """Add the work of all forces by the trapezoidal rule, friction apart; with rho = 1 their

@@ -26,6 +26,7 @@ from continuum.implicit.substeps import (
     move,
     shortened,
 )
+from continuum.implicit.vectors import compiled_joints, largest
 from continuum.model import Model
 from continuum.state import State
 
@@ -68,6 +69,7 @@ class Stepper:
     """
 
     def __init__(self, model: Model, matrices: Matrices, rho: float) -> None:
+        model = model._replace(interfaces=compiled_joints(model.interfaces))
         self.model, self.scheme = model, scheme(rho)
         self.rock, self.mass, self.communicator = matrices, matrices.mass, matrices.communicator
         self.mass_damping = mass_damping(model.rock.decay, model.dt)
@@ -78,6 +80,9 @@ class Stepper:
         parts = [matrices.mass, matrices.stiffness, viscosity]
         self._system = System(model, matrices, self.fixed.freedom, parts)
         self.free, self._pattern = self._system.free, self._system.pattern
+        # A slice takes no time where nothing is held.
+        every = self.free.size == matrices.mass.shape[0]
+        self._moves: slice | np.ndarray = slice(None) if every else self.free
         self._factored: tuple[Length, np.ndarray] | None = None
         self._weight = np.zeros(self.free.size)
         self._carried = _prestress(model)
@@ -88,7 +93,7 @@ class Stepper:
         """Try a step of dt / 2**halvings to a share of the way from step n to n + 1; the end is
         left in `trial`."""
         length, (alpha_m, alpha_f, beta, gamma) = self._length(halvings), self.scheme
-        old, dt, free = now.state, length.model.dt, self.free
+        old, dt, free = now.state, length.model.dt, self._moves
         drift = dt * old.v + (0.5 - beta) * dt**2 * now.acceleration
         before = alpha_f * old.force - alpha_m * (self.mass @ now.acceleration)
         move(self.fixed, trial.state, trial.acceleration, n, share)
@@ -101,8 +106,8 @@ class Stepper:
             self.set_forces(length.model, now, trial, n, share, length.r)
             inertia = self.mass @ a
             rest = (1 - alpha_f) * state.force + before - (1 - alpha_m) * inertia
-            size = max(trial.size[0], now.size[0], np.abs(inertia).max())
-            moves = np.abs(self._weight * state.u[free]).max(initial=0.0)
+            size = max(trial.size[0], now.size[0], largest(inertia))
+            moves = largest(self._weight * state.u[free])
             left = RESIDUAL * size + LAST_DIGITS * (moves + self._carried)
             return self.communicator.total(rest)[free], left
 
