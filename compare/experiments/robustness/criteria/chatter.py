@@ -55,9 +55,10 @@ def _peaks(trial: CaseTrial, stride: int) -> np.ndarray:
     loose, start = body.second, np.zeros(body.mass.size)
     start[loose] = 1.0
     (moving, advance), mass = body.begin(trial.dt, start), body.mass[loose]
+    total = mass.sum()
 
     def speed() -> float:
-        return float(mass @ moving[loose] / mass.sum())
+        return float(mass @ moving[loose] / total)
 
     peaks: list[float] = []
     largest, sign = abs(speed()), 1.0
