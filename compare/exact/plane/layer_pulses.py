@@ -174,6 +174,6 @@ def _read(series: np.ndarray, offset: float, stride: int, count: int) -> np.ndar
     return sum(w * window[k : k + stride * (count - 1) + 1 : stride] for k, w in enumerate(weights))
 
 
-def _lagrange(x: float) -> list[float]:
+def _lagrange(x: float) -> np.ndarray:
     """Return the weights of the samples at `NODES` for x in [0, 1)."""
-    return [prod([(x - m) / (k - m) for m in NODES if m != k]) for k in NODES]
+    return np.array([prod([(x - m) / (k - m) for m in NODES if m != k]) for k in NODES])
