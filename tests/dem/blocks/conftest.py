@@ -78,38 +78,47 @@ def rock_mass():
 
 @pytest.fixture
 def lattice():
-    """Return a function that gives a periodic patch of square blocks with all joints alike, the
-    place of each block [N, 2] in sides, and the rotation [2, 2] by which the patch is turned."""
+    """Return a function that gives a periodic patch of square blocks, or of bricks of a length, a
+    height and an offset, with all joints alike, the cell of each block [N, 2], and the rotation
+    [2, 2] by which the patch is turned."""
     return _lattice
 
 
-def _lattice(law=None, points=0, ledger=False, turned=0.0, shifted=(0.0, 0.0), places=(), **form):
+def _lattice(
+    law=None, points=0, ledger=False, turned=0.0, shifted=(0.0, 0.0), places=(), brick=None, **form
+):
     law = law or Law(normal_stiffness=K_N, shear_stiffness=K_S)
     c, s = np.cos(turned), np.sin(turned)
     turn = np.array([[c, -s], [s, c]])
+    length, height, offset = brick or (SIDE, SIDE, 0.0)
+    vectors = np.array([[length, 0.0], [offset * length, height]])
     at = np.stack(np.meshgrid(*map(np.arange, NUMBER), indexing="ij"), axis=-1).reshape(-1, 2)
     number = np.arange(len(at)).reshape(NUMBER)
-    pairs, centre, normal, far = [], [], [], []
-    for axis in (0, 1):
-        step = np.eye(2, dtype=int)[axis]
+    # Beside, above to the right, above to the left: cells between, normal, ends in sides.
+    faces = [
+        ((1, 0), (1, 0), (0.5, -0.5), (0.5, 0.5)),
+        ((0, 1), (0, 1), (0.5, 0.5), (offset - 0.5, 0.5)),
+        ((-1, 1), (0, 1), (offset - 0.5, 0.5), (-0.5, 0.5)),
+    ]
+    pairs, normal, near, far, ends = [], [], [], [], ([], [])
+    for step, outward, *corners in faces[: 3 if offset else 2]:
         beyond = at + step
-        other = number[tuple((beyond % NUMBER).T)]
-        pairs.append(np.stack([number.ravel(), other], axis=1))
-        centre.append(SIDE * (at + step / 2))
-        far.append(SIDE * beyond)
-        normal.append(np.broadcast_to(step, at.shape))
-    pairs, centre, normal, far = map(np.concatenate, (pairs, centre, normal, far))
-    along = SIDE / 2 * np.stack([-normal[:, 1], normal[:, 0]], axis=1)
-    near = SIDE * np.concatenate([at, at])
-    ends = [(centre + sign * along) @ turn.T + shifted for sign in (-1, 1)]
+        pairs.append(np.stack([number.ravel(), number[tuple((beyond % NUMBER).T)]], axis=1))
+        normal.append(np.broadcast_to(outward, at.shape))
+        near.append(at @ vectors)
+        far.append(beyond @ vectors)
+        for end, corner in zip(ends, corners, strict=True):
+            end.append(at @ vectors + np.array(corner) * (length, height))
+    pairs, normal, near, far = map(np.concatenate, (pairs, normal, near, far))
+    ends = [np.concatenate(end) @ turn.T + shifted for end in ends]
     rule = np.array(points_of("gauss", points or 2))
     rule[0] -= 0.5
     beside = near @ turn.T + shifted, far @ turn.T + shifted
     second = None if points else rule[1] @ rule[0] ** 2
     contacts = contacts_of(pairs, *ends, normal @ turn.T, beside, len(at), second=second)
-    mass = DENSITY * SIDE**2
-    inertia = np.tile([mass, mass, mass * SIDE**2 / 6], (len(at), 1))
-    omega = np.sqrt(4 * (K_N + K_S) * SIDE / mass)
+    mass = DENSITY * length * height
+    inertia = np.tile([mass, mass, mass * (length**2 + height**2) / 12], (len(at), 1))
+    omega = np.sqrt(4 * (K_N + K_S) * max(length, height) / mass)
     dt = form.pop("step", 0.25) * 2 / omega
     drag = 0.5 * dt * form.pop("mass_damping", 0.0)
     local, gravity = form.pop("local", 0.0), form.pop("gravity", (0.0, 0.0))

@@ -1,4 +1,6 @@
-"""Plane waves in a periodic square lattice, against the closed form of its discrete motion.
+"""Plane waves in periodic squares and bricks, against the closed form of their discrete motion.
+
+Bricks against the assembled Bloch problem. Of squares:
 
 With k_n, k_s (N/m) and the bending stiffness k_b (N m) of a contact, x = k_x A, y = k_y A and the
 freedoms (u, v, phi), omega^2 are the eigenvalues of the Hermitian D against diag(m, m, I):
@@ -14,6 +16,8 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
+from closed_forms.bloch import brickwork, leapfrog
+from closed_forms.bloch import modes as bloch_modes
 from dem.blocks.leapfrog import march, samples_for
 from dem.blocks.model import state_at_rest
 
@@ -44,13 +48,31 @@ STEPS = 5000
 def test_plane_waves_are_exact_in_every_branch_and_direction(wave, branch, points, lattice):
     """After 5000 steps to 1e-10 of the amplitude: round-off of the phase, 5000 times 1e-15 of a
     step's rotation, and its square root of sums."""
-    model, at, _ = lattice(points=points)
     number = 2 * np.pi * np.array(wave) / NUMBER
     squares, shapes = modes(number)
-    dt, omega, shape = model.blocks.dt, np.sqrt(squares[branch]), shapes[:, branch]
+    check(*lattice(points=points)[:2], number, np.sqrt(squares[branch]), shapes[:, branch])
+
+
+@pytest.mark.parametrize("points", [0, 2], ids=["whole contacts", "by points"])
+@pytest.mark.parametrize("branch", [0, 1, 2])
+@pytest.mark.parametrize("wave", [(1, 0), (0, 2), (2, -1)])
+@pytest.mark.parametrize("offset", [0.5, 0.3])
+def test_plane_waves_in_brickwork_are_those_of_its_bloch_problem(
+    wave, branch, points, offset, lattice
+):
+    """As in squares: bricks of 0.8 m by 0.5 m, each on two others."""
+    cell = brickwork(0.8, 0.5, offset, DENSITY, (K_N, K_S), (K_N, K_S))
+    number = 2 * np.pi * np.array(wave) / NUMBER
+    omega, shapes = bloch_modes(cell, np.linalg.solve(cell.vectors, number))
+    model, at, _ = lattice(points=points, brick=(0.8, 0.5, offset))
+    check(model, at, number, omega[branch], shapes[:, branch])
+
+
+def check(model, at, number, omega, shape):
+    """March a mode of unit amplitude, whose phase from cell to cell is given, for 5000 steps."""
+    dt = model.blocks.dt
     shape = 1e-6 * shape / np.abs(shape).max()
-    Omega = 2 / dt * np.arcsin(omega * dt / 2)
-    phase = np.exp(1j * (at @ number))
+    Omega, phase = leapfrog(omega, dt), np.exp(1j * (at @ number))
 
     def u(t):
         return (phase[:, None] * shape * np.exp(-1j * Omega * t)).real

@@ -7,19 +7,22 @@ inertia I. With x = k_x A, y = k_y A, freedoms (u, v, phi) and a wave e^{i (k . 
     D_vv = 2 k_s (1 - cos x) + 2 k_n (1 - cos y)        D_vphi =  i k_s A sin x
     D_phiphi = (k_s A^2 / 2)(2 + cos x + cos y) + 2 k_b (2 - cos x - cos y)
 
-and omega^2 are the eigenvalues of D against diag(m, m, I). Derived from the energy of the contacts.
-A face of contact points at the distances h along it has
+and omega^2 are the eigenvalues of D against diag(m, m, I). Derived from the energy of the contacts:
+`bloch` assembles it. A face of contact points at the distances h along it has
 k_b = sum k_n h^2: k_n A^2 / 12 of two Gauss points or of the whole face, k_n A^2 / 16 of two points
 at a quarter of the side.
 
 Long waves along x have the speeds c_p^2 = k_n A^2 / m and c_s^2 = k_s A^2 / (2 m), since both sets
 of joints shear; the third branch begins at omega^2 = 2 k_s A^2 / I, the blocks turning in place.
-C_12 = 0: pressure along x does not press along y, whatever the stiffnesses.
+C_12 = 0: pressure along x does not press along y, whatever the stiffnesses. Leapfrog on it is exact
+too (`bloch.leapfrog`).
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+
+from closed_forms.bloch import natural
 
 
 @dataclass(frozen=True)
@@ -51,7 +54,5 @@ def dynamic_matrix(lattice: Lattice, wave_vectors: np.ndarray) -> np.ndarray:
 
 def modes(lattice: Lattice, wave_vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return omega [..., 3] (rad/s), ascending, and modes [..., 3, mode] of unit modal mass."""
-    root = np.sqrt([lattice.mass, lattice.mass, lattice.inertia])
-    D = dynamic_matrix(lattice, wave_vectors)
-    squares, shapes = np.linalg.eigh(D / (root[:, None] * root))
-    return np.sqrt(np.maximum(squares, 0.0)), shapes / root[:, None]
+    masses = np.array([lattice.mass, lattice.mass, lattice.inertia])
+    return natural(dynamic_matrix(lattice, wave_vectors), masses)

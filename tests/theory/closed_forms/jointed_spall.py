@@ -19,7 +19,8 @@ from compare.exact.bar.laplace import bounded
 def jointed_spall(scene: Scene) -> Spall | None:
     """Return the first failure of the scene's jointed rock, None where there is none."""
     p, times = calibrate(scene), sample_times(scene)
-    assert p.tensile_strength is not None
+    if p.tensile_strength is None:
+        raise ValueError("no joint has a tensile strength")
     load, period = load_history(scene), scene.load.time_scale
     (stress, _, _), _ = bounded(bar(scene), load, times, p.joint_y.tolist(), [], period)
     fails = stress <= -p.tensile_strength[:, None]
