@@ -11,6 +11,7 @@ import xarray as xr
 from cases.read import load_variant
 from compare.engines import solve
 from compare.scenes import find
+from continuum.explicit.critical import RESIDUAL
 from results.dataset import energy_residual
 from results.snapshots import snapshots_of
 
@@ -175,6 +176,7 @@ SCENES = {
             "load.quantity": "velocity",
             "load.amplitude": 0.1,
             "ends.start": "fixed",
+            "ends.end": "quiet",
             "joints.damping_ratio": 0.02,
         },
     ),
@@ -261,11 +263,16 @@ def command(scene, out, in_toml):
     "scene", [pytest.param(s, marks=pytest.mark.slow if s in DEAR else ()) for s in SCENES]
 )
 def test_any_number_of_processes_gives_the_same_waveforms(scene, runs):
-    """To round-off, with one file and one report; what the scene is there for does happen."""
+    """To round-off, with one file and one report; what the scene is there for does happen.
+
+    The search for the critical step ends within half its residual, and round-off may end it
+    elsewhere; explicit steps, which follow from it, are the same.
+    """
     one, other = runs(scene)
     assert other.attrs["processes"] == 3
     assert one.attrs["scheme"] == SCENES[scene][1]["numerics.continuum.scheme"]
-    assert other.attrs["critical_dt"] == pytest.approx(one.attrs["critical_dt"], rel=1e-12)
+    same = RESIDUAL / 2 if one.attrs["scheme"] == "implicit" else 1e-12
+    assert other.attrs["critical_dt"] == pytest.approx(one.attrs["critical_dt"], rel=same)
     for name in ("dt", "steps", "degrees_of_freedom", "scheme", "halved_steps"):
         assert other.attrs.get(name) == one.attrs.get(name)
     assert set(other.variables) == set(one.variables)

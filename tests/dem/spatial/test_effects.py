@@ -13,7 +13,7 @@ from numerics.cache_lines import CACHE_LINE
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
 ABSENT = ("points", "finite", "mass_damping", "local_damping", "gravity", "base", "start", "end")
 ABSENT += ("ledger", "relaxed")
-VECTOR = r"fmul <\d+ x double>"
+SEVERAL = r" <\d+ x double>"  # of several blocks at once
 SQRT = r"(?:tail )?call \S+ @llvm\.sqrt\S*"
 
 
@@ -125,13 +125,14 @@ def test_absent_effects_leave_no_instruction(row, at_rest, instructions):
         )
         kernel, given = march_for(blocks.model.form), (*given, 0, 0, 1)
         return [
-            instructions(kernel, given, kind) for kind in ("fcmp", "fdiv", SQRT, "fmul", VECTOR)
+            instructions(kernel, given, kind)
+            for kind in ("fcmp", "fdiv", SQRT, "fmul", "fmul" + SEVERAL, "fdiv" + SEVERAL)
         ]
 
     elastic, slip = count(), count(joints={"friction_angle": 20.0})
     assert elastic[:3] == [0, 0, 0]
     assert min(slip[:3]) > 0 and slip[3] > elastic[3]
-    assert slip[4] > elastic[4] > 0
+    assert elastic[4] > 0 and min(slip[4:]) > 0
     assert count(motion__rotation="none", load__at=[0.0, 0.0])[3] < elastic[3]
 
 
