@@ -18,9 +18,9 @@ class Matrix(csr_matrix):
 
     def __matmul__(self, other: Any) -> Any:
         """Return the product with a vector, or what scipy returns for anything else."""
-        if type(other) is not np.ndarray or other.ndim != 1 or other.size != self._shape[1]:
+        if type(other) is not np.ndarray or other.ndim != 1 or other.size != self.shape[1]:
             return super().__matmul__(other)
-        product = np.empty(self._shape[0])
+        product = np.empty(self.shape[0])
         multiply(self.indptr, self.indices, self.data, np.ascontiguousarray(other), product)
         return product
 

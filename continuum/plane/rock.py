@@ -162,7 +162,7 @@ def prestressed(scene: RockMass, discrete: PlaneDiscrete, pushing: float, relaxe
 
     relaxed : what the rock keeps of its stiffness in the end.
     """
-    stress, joints, of_all = stress_of(scene), discrete.joints, discrete.body.communicator
+    stress, joints, shared = stress_of(scene), discrete.joints, discrete.body.communicator
     softest = min(np.linalg.eigvalsh(one.stiffness).min() for one in discrete.materials)
     least = relaxed * softest
     stored = float(stress @ stress) / least * float(discrete.partition.area.sum())
@@ -170,6 +170,6 @@ def prestressed(scene: RockMass, discrete: PlaneDiscrete, pushing: float, relaxe
     if joints is not None:
         law = joints.law
         softness = max(np.max(1 / law.normal_stiffness), np.max(1 / law.shear_stiffness))
-    length = of_all.sum(0.0 if joints is None else float(joints.area.sum()))
-    stored += 4 * size**2 * length * of_all.largest(softness)
+    length = shared.sum(0.0 if joints is None else float(joints.area.sum()))
+    stored += 4 * size**2 * length * shared.largest(softness)
     return float(np.sqrt(stored)) + pushing * 4 * size * length
