@@ -37,6 +37,10 @@ settings.load_profile("jointwave")
 if providers := sys.modules.get("hypothesis.internal.conjecture.providers"):
     providers.is_local_module_file = lambda file: False
 
+# Workers of xdist inherit it. Threads of BLAS would wait for one another, a millisecond for every
+# small matrix.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # Nor does a test how long it takes: no command that it runs speaks of its progress.
 os.environ["JOINTWAVE_PROGRESS"] = "0"
 

@@ -1,5 +1,7 @@
 """The order of the elements and of the step, by a manufactured motion of the whole body."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from scipy.sparse import csr_matrix
@@ -19,7 +21,7 @@ MESHES = [
     ("quadrilateral", 2, 4, 3),
     ("quadrilateral", 3, 3, 4),
     ("quadrilateral", 4, 2, 5),
-    ("hexahedron", 1, 5, 2),
+    ("hexahedron", 1, 4, 2),
     ("hexahedron", 2, 2, 3),
     ("hexahedron", 3, 2, 4),
     ("hexahedron", 4, 1, 5),
@@ -29,6 +31,7 @@ MESHES = [
     ("tetrahedron", 2, 3, 2),
 ]
 SIMPLICES = ("triangle", "tetrahedron")
+DEAR = ("hexahedron", 3)  # to factorise: implicit steps take orders 1, 2 and 4 by default
 END = 1e-3  # s, 0.6 of a period
 
 
@@ -144,7 +147,7 @@ def test_order_of_the_elements(problem, kind, order, count, expected, distorted)
 
 @pytest.mark.parametrize(
     "kind, order, count, expected, consistent",
-    [(*mesh, False) for mesh in MESHES]
+    [pytest.param(*mesh, False, marks=[pytest.mark.slow] * (mesh[:2] == DEAR)) for mesh in MESHES]
     + [(*mesh[:3], mesh[1] + 1, True) for mesh in MESHES if mesh[0] in SIMPLICES],
 )
 def test_order_of_the_elements_in_implicit_steps(problem, kind, order, count, expected, consistent):
@@ -170,14 +173,19 @@ def test_order_of_the_step(problem, kind):
     assert np.diff(-np.log2(errors)) == pytest.approx([2, 2], abs=0.02)
 
 
+@cache
+def without_error_of_steps(problem, kind, steps):
+    """Return the displacement of one cell of order 4 at the end, after trapezoidal steps."""
+    one, dt = problem(kind, 1, 4), END / steps
+    return drive_implicitly(one, dt, steps, trapezoids_own(one.motion, dt))
+
+
 @pytest.mark.parametrize("rho", [1.0, 0.5, 0.0])
 @pytest.mark.parametrize("kind", ["quadrilateral", "hexahedron"])
 def test_order_of_the_implicit_step(problem, kind, rho):
     """Two for every spectral radius: the distance from steps that make no error."""
     one, errors = problem(kind, 1, 4), []
     for steps in (60, 120, 240):
-        dt = END / steps
-        exact = drive_implicitly(one, dt, steps, trapezoids_own(one.motion, dt))
-        u = drive_implicitly(one, dt, steps, one.motion.omega, rho)
-        errors.append(np.linalg.norm(u - exact))
+        u = drive_implicitly(one, END / steps, steps, one.motion.omega, rho)
+        errors.append(np.linalg.norm(u - without_error_of_steps(problem, kind, steps)))
     assert np.diff(-np.log2(errors)) == pytest.approx([2, 2], abs=0.05)
