@@ -1,7 +1,5 @@
 """The way in to `jointwave`: whatever goes wrong, its import included, is one line."""
 
-import atexit
-import gc
 import os
 import sys
 import traceback
@@ -17,10 +15,10 @@ def main() -> None:
     # With colorama there numba ends all that goes to a terminal, JSON too, by an escape sequence.
     os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")
     _open_streams()
-    # What is imported stays: searching it for garbage, mostly at exit, is a third of a short run.
-    gc.set_threshold(100_000)
-    atexit.register(gc.freeze)
     try:
+        from compare.runs.garbage import collect_rarely
+
+        collect_rarely()  # a third of a short run
         from compare.cli.program import main as run
 
         run()

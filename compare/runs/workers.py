@@ -9,6 +9,8 @@ from multiprocessing import active_children, get_context
 from types import TracebackType
 from typing import Any
 
+from compare.runs.garbage import collect_rarely
+
 
 class Workers(ProcessPoolExecutor):
     """The standard pool, of spawned processes.
@@ -19,7 +21,7 @@ class Workers(ProcessPoolExecutor):
     """
 
     def __init__(self, count: int) -> None:
-        super().__init__(count, get_context("spawn"))
+        super().__init__(count, get_context("spawn"), initializer=collect_rarely)
 
     def submit(self, work: Callable[..., Any], /, *arguments: Any, **more: Any) -> Future:
         """Submit work to a worker, starting one if none is free."""
