@@ -3,6 +3,8 @@
 `flags` marks a NamedTuple of booleans that is a constant of kernels: formulas know it beforehand.
 """
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
 import numba
@@ -13,9 +15,13 @@ KNOWN = ((0, 68),)
 
 options: dict[str, Any] = {"forceinline": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 kernel_options: dict[str, Any] = {}
+#: While a kernel compiles.
+shortcuts: Callable[[], AbstractContextManager] = nullcontext
 if numba.version_info.short in KNOWN:
     from joints.compiler.passes import FormulaCompiler, KernelCompiler, flags
+    from joints.compiler.shortcuts import taken
 
+    shortcuts = taken
     options["pipeline_class"] = FormulaCompiler
     kernel_options["pipeline_class"] = KernelCompiler
 else:

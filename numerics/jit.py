@@ -14,7 +14,7 @@ import numba
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.runtime import rtsys
 
-from joints.formula import KNOWN, kernel_options
+from joints.formula import KNOWN, kernel_options, shortcuts
 from numerics.cache import cache_directory, make, mark_used
 
 
@@ -110,7 +110,9 @@ def _in_one_process(compiling: Callable, lock: str) -> Callable:
                 make(DIRECTORY)
                 file = held.enter_context((DIRECTORY / lock).open("w"))
                 fcntl.flock(file, fcntl.LOCK_EX)
-            return compiling(signature)
+            with suppress(Exception), shortcuts():
+                return compiling(signature)
+            return compiling(signature)  # as numba does without them
 
     return alone
 

@@ -8,6 +8,7 @@ item of a pointer takes two.
 import operator
 from typing import Any
 
+from llvmlite.ir import ArrayType
 from numba import types
 from numba.core import cgutils
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
@@ -18,6 +19,8 @@ class Pointer(types.Type):
     """The type of a pointer to a contiguous array of so many dimensions."""
 
     distinct = True  # for `joints.formula`: formulas are never given one array twice
+    get_item: Any  # and how items are read and written
+    set_item: Any
 
     def __init__(self, dtype: Any, ndim: int):
         self.dtype, self.ndim = dtype, ndim
@@ -115,35 +118,30 @@ def _place(builder, kind, pointer, index):
     return builder.gep(builder.extract_value(pointer, 0), [at], inbounds=True)
 
 
-@lower_builtin(operator.getitem, Pointer, types.Integer)
-def get_one(context, builder, sig, args):
+def _indices(builder, index):
+    """Return one index or those of a tuple."""
+    return cgutils.unpack_tuple(builder, index) if isinstance(index.type, ArrayType) else [index]
+
+
+@lower_builtin(operator.getitem, Pointer, types.Any)
+def get_item(context, builder, sig, args):
     """Return a number, or a pointer to a row."""
-    kind = sig.args[0]
-    place = _place(builder, kind, args[0], [args[1]])
-    if kind.ndim == 1:
+    pointer, index = args
+    place = _place(builder, sig.args[0], pointer, _indices(builder, index))
+    if not isinstance(sig.return_type, Pointer):
         return builder.load(place)
     row = cgutils.create_struct_proxy(sig.return_type)(context, builder)
     row.data = place
     for k in range(1, sig.return_type.ndim):
-        setattr(row, f"length{k}", builder.extract_value(args[0], k + 1))
+        setattr(row, f"length{k}", builder.extract_value(pointer, k + 1))
     return row._getvalue()
 
 
-@lower_builtin(operator.getitem, Pointer, types.BaseTuple)
-def get_item(context, builder, sig, args):
-    """Return a number."""
-    index = cgutils.unpack_tuple(builder, args[1])
-    return builder.load(_place(builder, sig.args[0], args[0], index))
-
-
-@lower_builtin(operator.setitem, Pointer, types.Integer, types.Any)
-def set_one(context, builder, sig, args):
-    """Set a number."""
-    builder.store(args[2], _place(builder, sig.args[0], args[0], [args[1]]))
-
-
-@lower_builtin(operator.setitem, Pointer, types.BaseTuple, types.Any)
+@lower_builtin(operator.setitem, Pointer, types.Any, types.Any)
 def set_item(context, builder, sig, args):
     """Set a number."""
-    index = cgutils.unpack_tuple(builder, args[1])
-    builder.store(args[2], _place(builder, sig.args[0], args[0], index))
+    pointer, index, value = args
+    builder.store(value, _place(builder, sig.args[0], pointer, _indices(builder, index)))
+
+
+Pointer.get_item, Pointer.set_item = staticmethod(get_item), staticmethod(set_item)

@@ -25,7 +25,7 @@ from numba.core.sigutils import normalize_signature
 
 import cases
 from cases.errors import InterruptedRun
-from joints.formula import KNOWN
+from joints.formula import KNOWN, shortcuts
 from numerics import jit
 from results.arrays import copied, fill
 
@@ -189,8 +189,8 @@ def _in_a_child(compiling, lock):
         large = getrusage(RUSAGE_SELF).ru_maxrss > LARGE
         alone = current_thread() is main_thread()  # a child would keep the locks of another thread
         if large and alone and kernel._cache.load_overload(types, target) is None:
-            cpu_target.typing_context.refresh()  # once, not in every child
-            target.refresh()
+            with shortcuts():
+                target.refresh()  # once, not in every child
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", DeprecationWarning)  # of threads, which only wait
                 child = os.fork()

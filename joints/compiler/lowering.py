@@ -11,7 +11,7 @@ from collections import defaultdict
 from typing import Any, NamedTuple
 
 from llvmlite.ir import IntType
-from numba.core import cgutils, ir, types
+from numba.core import cgutils, ir, types, typing
 from numba.core.lowering import Lower
 from numba.core.types.containers import BaseNamedTuple
 
@@ -36,6 +36,7 @@ INSTRUCTIONS: dict[types.Type, dict[Any, tuple[str, ...]]] = {
         operator.ne: ("fcmp_unordered", "!="),
     },
 }
+TRUTH = typing.signature(types.boolean, types.boolean)
 
 
 class Range(NamedTuple):
@@ -125,7 +126,7 @@ class Plainly(Lower):
     def lower_inst(self, inst):
         """Write one instruction."""
         if not isinstance(inst, ir.Assign):
-            super().lower_inst(inst)
+            self._lower_other(inst)
             return
         name = inst.target.name
         if name in self._of_loops:
@@ -133,14 +134,56 @@ class Plainly(Lower):
         else:
             self.storevar(self.lower_assign(self.typeof(name), inst), name)
 
+    def _lower_other(self, inst):
+        """Write one instruction that assigns nothing to a variable."""
+        if isinstance(inst, ir.StaticSetItem) and _is_pointer(self.typeof(inst.target.name)):
+            kinds = self.fndesc.calltypes[inst]
+            self.lower_setitem(inst.target, inst.index_var, inst.value, kinds)
+        else:
+            super().lower_inst(inst)
+
     def lower_expr(self, resty, expr):
         """Return the value of an expression."""
         if expr.op in ("pair_first", "pair_second") and expr.value.name in self._of_loops:
             return self._state[expr.value.name][expr.op == "pair_second"]
-        kind = self.typeof(expr.value.name) if expr.op == "getattr" else None
-        if isinstance(kind, BaseNamedTuple):
+        kind = self.typeof(expr.value.name) if expr.op in ("getattr", "static_getitem") else None
+        if expr.op == "getattr" and isinstance(kind, BaseNamedTuple):
             return self._field(resty, kind, expr)
+        if _is_pointer(kind):
+            kinds = self.fndesc.calltypes[expr]
+            return self.lower_getitem(resty, expr, expr.value, expr.index_var, kinds)
         return super().lower_expr(resty, expr)
+
+    def lower_getitem(self, resty, expr, value, index, signature):
+        """Return an item."""
+        kind = signature.args[0]
+        if not _is_pointer(kind):
+            return super().lower_getitem(resty, expr, value, index, signature)
+        given = self._given((value, index), signature)
+        item = kind.get_item(self.context, self.builder, signature, given)
+        return self.context.cast(self.builder, item, signature.return_type, resty)
+
+    def lower_setitem(self, target_var, index_var, value_var, signature):
+        """Write an item."""
+        kind, variables = signature.args[0], (target_var, index_var, value_var)
+        if _is_pointer(kind):
+            given = self._given(variables, signature)
+            kind.set_item(self.context, self.builder, signature, given)
+        else:
+            super().lower_setitem(*variables, signature)
+
+    def lower_call(self, resty, expr):
+        """Return the result of a call: a boolean is one already."""
+        signature = self.fndesc.calltypes[expr]
+        if signature == TRUTH and getattr(self.typeof(expr.func.name), "typing_key", 0) is bool:
+            return self._given(expr.args, signature)[0]
+        return super().lower_call(resty, expr)
+
+    def _given(self, variables, signature):
+        """Return the values of variables as those of a signature's types."""
+        return [
+            self._cast_var(one, kind) for one, kind in zip(variables, signature.args, strict=True)
+        ]
 
     def _field(self, resty, kind, expr):
         """Return a field of a NamedTuple."""
@@ -151,23 +194,21 @@ class Plainly(Lower):
 
     def lower_binop(self, resty, expr, op):
         """Return the result of an operator: of two numbers of one type, without a search."""
-        kinds = self.fndesc.calltypes[expr].args
-        instruction = INSTRUCTIONS.get(kinds[0], {}).get(op) if kinds[0] == kinds[1] else None
+        signature = self.fndesc.calltypes[expr]
+        kind, other = signature.args
+        instruction = INSTRUCTIONS.get(kind, {}).get(op) if kind == other else None
         if instruction is None:
             return super().lower_binop(resty, expr, op)
-        left, right = (
-            self.context.cast(self.builder, self.loadvar(one.name), self.typeof(one.name), kind)
-            for one, kind in zip((expr.lhs, expr.rhs), kinds, strict=True)
-        )
         name, *sign = instruction
-        value = getattr(self.builder, name)(*sign, left, right)
-        return self.context.cast(
-            self.builder, value, self.fndesc.calltypes[expr].return_type, resty
-        )
+        given = self._given((expr.lhs, expr.rhs), signature)
+        value = getattr(self.builder, name)(*sign, *given)
+        return self.context.cast(self.builder, value, signature.return_type, resty)
 
     def _cast_var(self, var, ty):
-        """Return a variable's value as one of this type: a flag's is known."""
+        """Return a variable's value as one of this type: those of constants are known."""
         kind = self.typeof(var.name) if isinstance(var, ir.Var) else None
+        if isinstance(kind, types.IntegerLiteral) and ty == types.int64:
+            return WORD(kind.literal_value)
         if isinstance(kind, types.BooleanLiteral) and ty == types.boolean:
             return cgutils.true_bit if kind.literal_value else cgutils.false_bit
         return super()._cast_var(var, ty)
@@ -178,11 +219,7 @@ class Plainly(Lower):
         if isinstance(value, ir.Var):
             return self._state[value.name]
         if value.op == "call":
-            wanted = self.fndesc.calltypes[value].args
-            given = [
-                self.context.cast(self.builder, self.loadvar(one.name), self.typeof(one.name), kind)
-                for one, kind in zip(value.args, wanted, strict=True)
-            ]
+            given = self._given(value.args, self.fndesc.calltypes[value])
             return Range(None if len(given) == 1 else given[0], given[-1])
         if value.op == "getiter":
             return self._counter(self._state[value.value.name])
@@ -229,6 +266,11 @@ class Plainly(Lower):
     def alloca_lltype(self, name, lltype, datamodel=None):
         """Return the place of a variable."""
         return cgutils.alloca_once(self.builder, lltype, name=name, zfill=False)
+
+
+def _is_pointer(kind: types.Type | None) -> bool:
+    """Return whether a type says itself how its items are read and written."""
+    return hasattr(kind, "get_item")
 
 
 def _loop(name: str, once: dict, uses: dict) -> set[str]:

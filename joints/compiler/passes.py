@@ -12,6 +12,8 @@ flags before anything is typed: what stands behind an untrue one is not compiled
 It relies on the inside of numba: `joints.formula` asks for its version.
 """
 
+from functools import cache, partial
+from types import BuiltinFunctionType
 from typing import ClassVar
 
 from numba._dynfunc import make_function
@@ -192,14 +194,31 @@ class Signatures:
 
     def resolve_function_type(self, function, arguments, keywords):
         """Return the signature of a function for arguments of these types."""
-        asked = function, tuple(arguments)
-        if keywords or not isinstance(function, types.Function):
-            return self._context.resolve_function_type(function, arguments, keywords)
+        find = partial(self._context.resolve_function_type, function, arguments, keywords)
+        if keywords or not isinstance(function, types.Function | BuiltinFunctionType | str):
+            return find()
+        return self._remembered((function, *arguments), find)
+
+    def resolve_static_getitem(self, value, index):
+        """Return the signature of an item at a constant index, None if any index is the same."""
+        find = partial(self._context.resolve_static_getitem, value, index)
+        return find() if isinstance(index, slice) else self._remembered((value, index), find)
+
+    def resolve_setitem(self, target, index, value):
+        """Return the signature of an assignment to an item."""
+        find = partial(self._context.resolve_setitem, target, index, value)
+        return self._remembered(("setitem", target, index, value), find)
+
+    def resolve_static_setitem(self, target, index, value):
+        """Return the signature of an assignment at a constant index, None if any is the same."""
+        find = partial(self._context.resolve_static_setitem, target, index, value)
+        if isinstance(index, slice):
+            return find()
+        return self._remembered(("static_setitem", target, index, value), find)
+
+    def _remembered(self, asked, find):
         if asked not in self.known:
-            found = self._context.resolve_function_type(function, arguments, keywords)
-            if found is None:
-                return None
-            self.known[asked] = found
+            self.known[asked] = find()
         return self.known[asked]
 
 
@@ -232,12 +251,15 @@ class Releases(typed_passes.IRLegalization):
         """Return whether one does."""
         models_of, kinds = state.targetctx.data_model_manager, state.typemap
 
-        def counted(one):
-            return models_of[kinds[one.target.name]].contains_nrt_meminfo() and not borrowed(one)
+        @cache
+        def counted(kind):
+            return models_of[kind].contains_nrt_meminfo()
 
         blocks = state.func_ir.blocks.values()
-        owned = models_of[state.return_type].contains_nrt_meminfo() or any(
-            counted(one) for block in blocks for one in block.find_insts(ir.Assign)
+        owned = counted(state.return_type) or any(
+            counted(kinds[one.target.name]) and not borrowed(one)
+            for block in blocks
+            for one in block.find_insts(ir.Assign)
         )
         if owned:
             super().run_pass(state)
@@ -245,8 +267,7 @@ class Releases(typed_passes.IRLegalization):
                 block.body = [
                     one
                     for one in block.body
-                    if not isinstance(one, ir.Del)
-                    or models_of[kinds[one.value]].contains_nrt_meminfo()
+                    if not isinstance(one, ir.Del) or counted(kinds[one.value])
                 ]
         return owned
 

@@ -116,7 +116,7 @@ def total(a):
 
 found, rows = total(numpy.ones(3))
 assert found == 6.0 and rows.tolist() == [2.0, 2.0, 2.0]
-print(int(not total.stats.cache_hits), "numba.np.arraymath" in sys.modules)
+print(int(not total.stats.cache_hits), "numba.np.npyfuncs" in sys.modules)
 if len(sys.argv) > 1:
     print(total(numpy.ones(3, dtype=numpy.float32))[0])
 """
