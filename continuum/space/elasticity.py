@@ -95,7 +95,10 @@ def discretise(
     x, nodes = nodes_of(part, cell, order)
     first, kind = _alike(part)
     corners, of_kind = part.x[part.cells[first]], [materials[m] for m in part.material[first]]
-    moduli = np.array([elastic_moduli(m, x.shape[1], section.components) for m in of_kind])
+    used, which = np.unique(part.material[first], return_inverse=True)
+    moduli = np.array([elastic_moduli(materials[m], x.shape[1], section.components) for m in used])[
+        which
+    ]
     stiffness = section.extent * _stiffness(cell, order, corners, moduli)
     eta = np.array([m.time_constant for m in of_kind])
     is_damped = any(m.time_constant for m in materials)
