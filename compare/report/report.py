@@ -19,8 +19,10 @@ from compare.experiments.cost.timings import measured_on
 from compare.experiments.pool import Lent, Pool, alone
 from compare.experiments.robustness.summary import make_study as make_hard_cases
 from compare.experiments.scattering import summary as scattering
+from compare.experiments.study.study import load as load_study
 from compare.experiments.study.summary import REPORTED
 from compare.experiments.study.summary import reported as reported_studies
+from compare.experiments.study.summary import run as run_study
 from compare.experiments.summary import Summary
 from compare.figures.charts.static import draw
 from compare.figures.charts.waveforms import by_solutions
@@ -92,7 +94,7 @@ def build(
             untimed: list[Future[_Untimed]] = []
 
             def begin() -> None:
-                untimed.append(beside.submit(_untimed, Path(out), hard, pool, part))
+                untimed.append(beside.submit(_untimed, Path(out), hard, studies, pool, part))
 
             solved = _solved(Path(out), part("scenes"), pool, begin)
             page = _of_paper(*solved, untimed[0].result())
@@ -146,15 +148,39 @@ def _solved(
     return solve(out / "figures", asked, progress, pool, besides, begin), snapshots[0].result()
 
 
-def _untimed(out: Path, hard: bool, pool: Pool, part: Callable[[str], Progress]) -> _Untimed:
-    """Return what is made beside the scenes: processors are busy, and no seconds are measured."""
-    stability = make_hard_cases(out / "studies", pool, False, part("hard cases")) if hard else None
-    part("hard cases")(1.0)  # also where they are left out
-    tell, joints = part("rock masses"), []
+def _untimed(
+    out: Path, hard: bool, studies: tuple[str, ...], pool: Pool, part: Callable[[str], Progress]
+) -> _Untimed:
+    """Return what is made beside the scenes: processors are busy, and no seconds are measured.
+
+    All of it at once: where one part ends, no processor waits for the next. Points of untimed
+    studies are only computed, and read where their summary is made.
+    """
+    with ThreadPoolExecutor() as threads:
+        joints = threads.submit(_joints, out / "studies", pool, part("rock masses"))
+        points = threads.submit(_compute_untimed, out / "studies", studies, pool)
+        tell = part("hard cases")
+        stability = make_hard_cases(out / "studies", pool, False, tell) if hard else None
+        tell(1.0)  # also where they are left out
+        points.result()
+        return _Untimed(stability, joints.result())
+
+
+def _joints(folder: Path, pool: Pool, progress: Progress) -> list[Summary]:
+    """Return the studies of what joints reflect and pass, drawn by processes of the pool."""
     for i, name in enumerate(scattering.TITLES, start=1):
-        joints.append(scattering.make_study(name, out / "studies", brief=True, pool=pool))
-        tell(i / len(scattering.TITLES))
-    return _Untimed(stability, joints)
+        scattering.run(name, folder / name, None, True, pool)
+        progress(i / len(scattering.TITLES))
+    with pool() as executor:
+        made = partial(scattering.make_study, out=folder, brief=True)
+        return [one.result() for one in [executor.submit(made, x) for x in scattering.TITLES]]
+
+
+def _compute_untimed(folder: Path, studies: tuple[str, ...], pool: Pool) -> None:
+    """Compute the points of studies that are not timed, which are saved."""
+    for name, study in ((name, load_study(name)) for name in studies):
+        if not study.timed:
+            run_study(study, folder / name, pool)
 
 
 def _of_paper(solved: Solved, snapshots: SnapshotsSection, untimed: _Untimed) -> Page:

@@ -6,10 +6,13 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import active_children, get_context
+from threading import Lock
 from types import TracebackType
 from typing import Any
 
 from compare.runs.garbage import collect_rarely
+
+STARTING = Lock()  # held while a worker may start: the environment is that of the whole process
 
 
 class Workers(ProcessPoolExecutor):
@@ -25,8 +28,8 @@ class Workers(ProcessPoolExecutor):
 
     def submit(self, work: Callable[..., Any], /, *arguments: Any, **more: Any) -> Future:
         """Submit work to a worker, starting one if none is free."""
-        # Also in workers started now, permanently.
-        with _held_back(signal.SIGINT), _one_blas_thread():
+        # Also in workers started now, permanently. Several threads may submit.
+        with STARTING, _held_back(signal.SIGINT), _one_blas_thread():
             return super().submit(work, *arguments, **more)
 
     def __exit__(

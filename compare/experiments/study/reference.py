@@ -31,7 +31,13 @@ def finest_of(study: Study) -> str | FineRun | None:
     None if the finest that applies is an engine and the study gives no fine run of it."""
     if study.finest is not None:
         return None if study.finest == NONE else study.finest
-    scene = study.base
+    key = study.model_dump_json()
+    if key not in _finest:
+        _finest[key] = _finest_exact(study.base)
+    return _finest[key]
+
+
+def _finest_exact(scene: AnyScene) -> str | None:
     found = finest([name for name, answer in applicable(scene).items() if answer], scene)
     return None if found is None or found.name in ENGINES else found.name
 
@@ -63,8 +69,7 @@ def known(
     if against is None:
         return None
     if isinstance(against, str):
-        exact = reference(against, study.changed(physics))
-        return ErrorReference(against, exact, worst(exact, exact).floor)
+        return reference(against, study.changed(physics))
     changes = physics | against.changes
     fine = _solved(against.method, study.changed(changes))
     coarse = _solved(against.method, study.changed(changes | against.coarser))
@@ -81,11 +86,14 @@ def error(result: xr.Dataset, against: ErrorReference | None, study: Study) -> E
     return Error(_misfit(result, against.result, study), against.error)
 
 
-def reference(name: str, scene: AnyScene) -> xr.Dataset:
+def reference(name: str, scene: AnyScene) -> ErrorReference:
     """Return an exact solution, regardless of the scene's numerics; solved once per process."""
-    return _solved(
-        name, scene.model_copy(update={"numerics": type(scene.numerics)(), "expect": {}})
-    )
+    scene = scene.model_copy(update={"numerics": type(scene.numerics)(), "expect": {}})
+    key = name, scene_hash(scene)
+    if key not in _references:
+        exact = _solved(name, scene)
+        _references[key] = ErrorReference(name, exact, worst(exact, exact).floor)
+    return _references[key]
 
 
 def _solved(name: str, scene: AnyScene) -> xr.Dataset:
@@ -96,6 +104,8 @@ def _solved(name: str, scene: AnyScene) -> xr.Dataset:
 
 
 _known: dict[tuple[str, str], xr.Dataset] = {}
+_references: dict[tuple[str, str], ErrorReference] = {}
+_finest: dict[str, str | None] = {}  # by the study's text
 
 
 def _misfit(one: xr.Dataset, other: xr.Dataset, study: Study) -> float:

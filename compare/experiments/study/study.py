@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from math import prod
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -140,7 +141,7 @@ class StudyPoint:
         """All changes, keys of the scene and arguments."""
         return self.curve.changes | self.settings
 
-    @property
+    @cached_property
     def scene(self) -> "AnyScene":
         """The scene to solve; raises SceneError if it is invalid."""
         return self.study.changed({k: v for k, v in self.changes.items() if k not in ARGUMENTS})
