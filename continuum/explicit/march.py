@@ -11,6 +11,9 @@ from continuum.model import Memory, Model
 from continuum.state import Samples, State
 from numerics.divergence import Guard
 
+#: A matrix [receivers, fields], and what is added.
+Readings = tuple[csr_matrix, np.ndarray]
+
 
 def run(model: Model, state: State, samples: Samples, stride: int, first: int, last: int) -> None:
     """Take steps first .. last - 1 and a sample at every step that `stride` divides, whatever comes
@@ -25,17 +28,20 @@ def march(
     stride: int,
     limits: Guard | None,
     link: Any = None,
+    read: Readings | None = None,
 ) -> Callable[[int, int], int]:
     """Return a function of (first, last) that takes steps first .. last - 1, and a sample at every
     step that `stride` divides; it returns MPI's error code, 0 without.
 
     limits : end the run where it exceeds them; None without. link : to those who share the run,
         `continuum.parallel.exchange.Link`, who then go on to where all of them look.
+    read : how receivers read the state, of `readings`; None: as the model has it.
     """
     joints = model.interfaces
     constants = (None, None) if joints is None else (joints.parts, joints.directions)
     kernel = leapfrog_for(*constants, shared=link is not None)
-    arrays = arguments(model, state, samples, limits, link)
+    read = readings(model, state) if read is None else read
+    arrays = arguments(model, state, samples, limits, link, read)
     driven = model.ends.driven
     if driven is None:
         return lambda first, last: kernel(first, last, stride, model.dt, *arrays)
@@ -52,7 +58,7 @@ def march(
 
 
 def arguments(
-    model: Model, state: State, samples: Samples, limits: Guard | None, link: Any
+    model: Model, state: State, samples: Samples, limits: Guard | None, link: Any, read: Readings
 ) -> tuple[Any, ...]:
     """Return the arguments of the kernel after the steps, in its order; None for what is absent."""
     rock, joints = model.rock, model.interfaces
@@ -60,7 +66,7 @@ def arguments(
     viscosity = 3 * (None,) if rock.viscosity is None else rock.viscosity[2:]
     springs = None if quiet is None else quiet.springs
     jumps: tuple[Any, ...] = 8 * (None,)
-    read, added = readings(model, state)
+    matrix, added = read
     if joints is not None:
         along = int(np.searchsorted(joints.stencils.first, joints.area.size))
         along = 0 if joints.parts.dilation else along
@@ -84,7 +90,7 @@ def arguments(
         state.braking,
         *(3 * (None,) if fixed is None else fixed),
         state.base_force,
-        *(state.fields, read.indptr, read.indices, read.data, added, samples.waves),
+        *(state.fields, matrix.indptr, matrix.indices, matrix.data, added, samples.waves),
         *(state.ledger, samples.energy),
         *(2 * (None,) if limits is None else (limits.limit.view(float)[0], limits.found)),
         link,
@@ -103,7 +109,7 @@ def _flat(points: np.ndarray | None) -> np.ndarray | None:
     return None if points is None else points.reshape(-1)
 
 
-def readings(model: Model, state: State) -> tuple[csr_matrix, np.ndarray]:
+def readings(model: Model, state: State) -> Readings:
     """Return how the rows of `Samples.waves` follow from `State.fields`: a matrix, and what is
     added.
 

@@ -58,22 +58,24 @@ def balance(
     applied : of the loads. r : rate factor, 1/s (`joints.tangent`).
     Returns the largest force (N) that is summed up, of rock, dashpots, load and weight.
     """
-    trial.v_before[:] = (trial.u - now.u) / model.dt
+    u, mean = trial.u, trial.v_before
+    mean[:] = (u - now.u) / model.dt
     for own, before in zip(_history(trial), _history(now), strict=True):
         if own is not None:
             own[:] = before
     if trial.ledger is not None:
         trial.ledger[:] = now.ledger
     memory = model.rock.memory
-    force = -(rock.stiffness @ trial.u) if memory is None else np.zeros_like(trial.u)
+    force = -(rock.stiffness @ u) if memory is None else np.zeros_like(u)
     sizes = [largest(force)]
-    if trial.rate is not None:
-        trial.rate[:] = trial.v
-        trial.drag[:] = 0.0 if rock.viscosity is None else -(rock.viscosity @ trial.v)
+    if trial.at.rate is not None:
+        v = trial.v
+        trial.rate[:] = v
+        trial.drag[:] = 0.0 if rock.viscosity is None else -(rock.viscosity @ v)
         sizes.append(largest(trial.drag))
     if memory is not None:
-        trial.elongation[:] = memory.advanced(now.elongation, trial.v_before)
-        trial.strained[:] = memory.strained(trial.u, trial.elongation)
+        trial.elongation[:] = memory.advanced(now.elongation, mean)
+        trial.strained[:] = memory.strained(u, trial.elongation)
         trial.drag[:] = -(rock.stiffness @ trial.strained)  # all of it counts as viscous
         sizes.append(largest(trial.drag))
     if model.weight is not None:
@@ -114,17 +116,18 @@ def _add_joint_forces(
     ):
         if jump is not None:
             jump[:] = (joints.jump @ moved).reshape(shape)
+    loads, drags = trial.loads, trial.drags
     work = joint_balance_for(joints.parts, joints.directions)(
         joints.table, joints.area, joints.prestress,
         trial.jump, trial.jump_rate, trial.slip_rate,
-        trial.opening, trial.slide, trial.cohesion, trial.path, trial.loads, trial.drags, model.dt,
+        trial.opening, trial.slide, trial.cohesion, trial.path, loads, drags, model.dt,
         now.opening, now.slide, now.cohesion, now.path, r, tangents,
     )  # fmt: skip
     if trial.ledger is not None:
         trial.ledger[1] += work
-    trial.force[:] += joints.spread @ trial.loads.ravel()
-    if trial.drags is not None:
-        trial.drag[:] += joints.spread @ trial.drags.ravel()
+    trial.force[:] += joints.spread @ loads.ravel()
+    if drags is not None:
+        trial.drag[:] += joints.spread @ drags.ravel()
 
 
 def _add_ends(model: Model, now: State, trial: State) -> None:

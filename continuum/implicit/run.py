@@ -83,7 +83,8 @@ class Implicit:
         one, rock = changed(samples, lambda rows: rows[:, :1].copy()), self.stepper.rock
         still = np.zeros_like(self.state.u)
         with self.communicator.in_turn():
-            self.stepper.set_forces(self.model, self.now, spare, 0, 0.0)
+            applied = applied_at(self.model, 0, 0.0)
+            self.stepper.set_forces(self.model, self.now, spare, applied)
             record(self.model, rock, self.receivers, spare.state, still, one, 0)
 
     def _begin(self) -> None:
@@ -91,7 +92,7 @@ class Implicit:
         now, trial, stepper = self.now, self.trial, self.stepper
         move(stepper.fixed, now.state, now.acceleration, 0, 0.0)
         fill(trial.state, now.state)
-        stepper.set_forces(self.model, now, trial, 0, 0.0)
+        stepper.set_forces(self.model, now, trial, applied_at(self.model, 0, 0.0))
         trial.acceleration[:] = now.acceleration
         stepper.balance(trial)
         self._accept(0, 0.0, 0.0)

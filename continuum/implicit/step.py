@@ -19,6 +19,7 @@ from continuum.implicit.generalised_alpha import scheme
 from continuum.implicit.newton import Outcome, newton
 from continuum.implicit.pattern import System
 from continuum.implicit.substeps import (
+    Applied,
     applied_at,
     dashpot_matrix,
     end_resistance,
@@ -97,17 +98,20 @@ class Stepper:
         drift = dt * old.v + (0.5 - beta) * dt**2 * now.acceleration
         before = alpha_f * old.force - alpha_m * (self.mass @ now.acceleration)
         move(self.fixed, trial.state, trial.acceleration, n, share)
+        # What no iteration changes: Newton's method takes two of a linear step.
+        applied, a, force = applied_at(self.model, n, share), trial.acceleration, trial.state.force
+        u, v, old_u, old_v = trial.state.u, trial.state.v, old.u[free], old.v
+        drifts, kept = drift[free], (1 - gamma) * now.acceleration
 
         def residual(moved: np.ndarray) -> tuple[np.ndarray, float]:
-            state, a = trial.state, trial.acceleration
-            a[free] = (moved - drift[free]) / (beta * dt**2)
-            state.u[free] = old.u[free] + moved
-            state.v[free] = (old.v + dt * ((1 - gamma) * now.acceleration + gamma * a))[free]
-            self.set_forces(length.model, now, trial, n, share, length.r)
+            a[free] = (moved - drifts) / (beta * dt**2)
+            u[free] = old_u + moved
+            v[free] = (old_v + dt * (kept + gamma * a))[free]
+            self.set_forces(length.model, now, trial, applied, length.r)
             inertia = self.mass @ a
-            rest = (1 - alpha_f) * state.force + before - (1 - alpha_m) * inertia
+            rest = (1 - alpha_f) * force + before - (1 - alpha_m) * inertia
             size = max(trial.size[0], now.size[0], largest(inertia))
-            moves = largest(self._weight * state.u[free])
+            moves = largest(self._weight * u[free])
             left = RESIDUAL * size + LAST_DIGITS * (moves + self._carried)
             return self.communicator.total(rest)[free], left
 
@@ -120,11 +124,11 @@ class Stepper:
         return newton(residual, correction, start, self.communicator)
 
     def set_forces(
-        self, model: Model, now: Moment, trial: Moment, n: int, share: float, r: float = 0.0
+        self, model: Model, now: Moment, trial: Moment, applied: Applied, r: float = 0.0
     ) -> None:
         """Set the forces and tangents of a trial moment whose displacement and velocity are given;
         r : rate factor, 1/s."""
-        state, applied = trial.state, applied_at(self.model, n, share)
+        state = trial.state
         trial.size[0] = balance(
             model, self.rock, now.state, state, applied, r, self._system.tangents
         )

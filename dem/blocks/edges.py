@@ -52,8 +52,11 @@ def points_on(
 
 def gathered(arm: np.ndarray, traction: np.ndarray) -> np.ndarray:
     """Return the resultants of forces [..., m, 2] at arms [m, 2], each [..., m, 6]."""
-    sums = arm[:, :, None] * traction[..., None, :]
-    return np.concatenate([traction, sums.reshape(*traction.shape[:-1], 4)], axis=-1)
+    found = np.empty((*traction.shape[:-1], 6))
+    found[..., : F_Y + 1] = traction
+    for place, (i, j) in zip((S_XX, S_XY, S_YX, S_YY), np.ndindex(2, 2), strict=True):
+        np.multiply(arm[:, i], traction[..., j], out=found[..., place])
+    return found
 
 
 def on_rows(values: np.ndarray, row: np.ndarray, count: int) -> np.ndarray:
@@ -61,8 +64,10 @@ def on_rows(values: np.ndarray, row: np.ndarray, count: int) -> np.ndarray:
     found = np.zeros((*values.shape[:-2], count, values.shape[-1]))
     order = np.argsort(row, kind="stable")
     rows, first = np.unique(row[order], return_index=True)
+    if (np.diff(row) < 0).any():  # else they are in order already
+        values = values[..., order, :]
     if len(rows):
-        found[..., rows, :] = np.add.reduceat(values[..., order, :], first, axis=-2)
+        found[..., rows, :] = np.add.reduceat(values, first, axis=-2)
     return found
 
 

@@ -170,7 +170,8 @@ def _read(series: np.ndarray, offset: float, stride: int, count: int) -> np.ndar
     window = series[max(low, 0) : max(high, 0)]
     if len(window) < high - low:
         before = min(max(-low, 0), high - low)
-        window = np.pad(window, (before, high - low - before - len(window)))
+        known, window = window, np.zeros(high - low, dtype=series.dtype)
+        window[before : before + len(known)] = known
     return sum(w * window[k : k + stride * (count - 1) + 1 : stride] for k, w in enumerate(weights))
 
 

@@ -5,9 +5,11 @@ damping ratio is zeta = eta omega / 2, and in x = omega dt / 2, the step over th
 one, the critical step of `numerics.critical_step` reads x = sqrt(1 + 4 zeta^2) - 2 zeta.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from math import pi
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -20,6 +22,9 @@ from compare.engines import ENGINES
 from compare.experiments.robustness.case import SHORT
 from compare.scenes import find
 from compare.solvers.record import Solver
+
+if TYPE_CHECKING:
+    from continuum.model import Model
 
 #: Velocities [freedoms], m/s, and what takes a number of steps, in which they change.
 FreeMotion = tuple[np.ndarray, Callable[[int], object]]
@@ -66,18 +71,24 @@ def _blocks(scene: Scene) -> Unloaded:
 
 def _rock(scene: Scene, kind: str) -> Unloaded:
     from continuum.build import build_model, discretise, receivers
-    from continuum.explicit.march import march
+    from continuum.explicit.march import march, readings
     from continuum.state import empty_samples, state_at_rest
 
     discrete, d = discretise(scene, kind), scene.pillar.block
     body, read = discrete.body, receivers(scene, discrete)
 
+    def model_of(dt: float) -> Model:
+        return build_model(scene, discrete, kind, Clock(dt, 1, 2), read)
+
+    first = model_of(1.0)
+    unread = readings(first, state_at_rest(first, False))  # of any step, as no sample is taken
+
     def begin(dt: float, v: np.ndarray) -> FreeMotion:
-        model = build_model(scene, discrete, kind, Clock(dt, 1, 2), read)
+        model = model_of(dt)
         state = state_at_rest(model, False)
         state.v[:] = state.v_before[:] = v
         samples = empty_samples(model, state, 2)
-        take = march(model, state, samples, NEVER, None)
+        take = march(model, state, samples, NEVER, None, read=unread)
         return state.v, lambda n: take(1, n + 1)
 
     heights = body.corners[:, :, 0].mean(axis=1)
