@@ -14,13 +14,12 @@ It relies on the inside of numba: `joints.formula` asks for its version.
 
 from functools import cache, partial
 from types import BuiltinFunctionType
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from numba._dynfunc import make_function
 from numba.core import (
     compiler,
     compiler_machinery,
-    interpreter,
     ir,
     postproc,
     transforms,
@@ -34,20 +33,21 @@ from numba.core.rewrites.static_getitem import RewriteConstGetitems
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import models, register_model, typeof_impl
 
+from joints.compiler.bytecode import Translation, arguments_of
 from joints.compiler.live_ranges import LiveRanges
 from joints.compiler.lowering import Plainly
 
 
 class Flags(types.Opaque):
-    """The type of a tuple of flags with these values [(name, value)].
+    """The type of a NamedTuple of flags that have these values.
 
     Python cannot call a kernel with one: numba remembers types of arguments by the types of their
     members, and would take two tuples of other values for the same.
     """
 
-    def __init__(self, name: str, values: tuple[tuple[str, bool], ...]):
-        self.values = values
-        super().__init__(f"{name}{values}")
+    def __init__(self, values: Any):
+        self.values = values._make(map(bool, values))
+        super().__init__(repr(self.values))
 
 
 register_model(Flags)(models.OpaqueModel)
@@ -58,7 +58,7 @@ def flags(kind: type) -> type:
 
     @typeof_impl.register(kind)
     def typed(value, context):
-        return Flags(kind.__name__, tuple(zip(value._fields, map(bool, value), strict=True)))
+        return Flags(value)
 
     return kind
 
@@ -71,46 +71,19 @@ class FlagsAttribute(AttributeTemplate):
 
     def generic_resolve(self, kind, attribute):
         """Return its type."""
-        return types.boolean if attribute in dict(kind.values) else None
+        return types.boolean if attribute in kind.values._fields else None
 
 
 @lower_getattr_generic(Flags)
 def flag(context, builder, kind, value, attribute):
     """Return a flag's value."""
-    return context.get_constant(types.boolean, dict(kind.values)[attribute])
+    return context.get_constant(types.boolean, getattr(kind.values, attribute))
 
 
 @lower_constant(Flags)
 def nothing(context, builder, kind, value):
     """Return what is there of flags when a kernel runs."""
     return context.get_dummy_value()
-
-
-class Bytecode(interpreter.Interpreter):
-    """Translation of bytecode: what follows it concerns only some instructions."""
-
-    def post_process(self, peepholes, func_ir):
-        """Return numba's IR of a function."""
-        found = {one.opname for one in self.bytecode}
-        if found & UNUSUAL or any("EXCEPT" in one for one in found):
-            return super().post_process(peepholes, func_ir)
-        return func_ir
-
-
-#: Instructions with lists and dictionaries of arguments, and with contexts.
-UNUSUAL = {"BEFORE_WITH", "CALL_FUNCTION_EX", "DICT_MERGE", "DICT_UPDATE", "LIST_EXTEND"}
-
-
-@compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
-class Translation(untyped_passes.TranslateByteCode):
-    """Translate bytecode to numba's IR."""
-
-    _name = "translation"
-
-    def run_pass(self, state):
-        """Return that the state has changed."""
-        state.func_ir = Bytecode(state.func_id).interpret(state.bc)
-        return True
 
 
 @compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
@@ -141,12 +114,7 @@ class KnownFlags(compiler_machinery.FunctionPass):
 
     def run_pass(self, state):
         """Return whether there are any."""
-        names = state.func_id.arg_names
-        known = {
-            n: dict(kind.values)
-            for n, kind in zip(names, state.args, strict=False)
-            if isinstance(kind, Flags)
-        }
+        known = {n: kind.values for n, kind in arguments_of(state) if isinstance(kind, Flags)}
         found = False
         for block in state.func_ir.blocks.values() if known else ():
             for one in block.find_insts(ir.Assign):
@@ -156,7 +124,7 @@ class KnownFlags(compiler_machinery.FunctionPass):
                     and value.op == "getattr"
                     and value.value.name in known
                 ):
-                    one.value = ir.Const(known[value.value.name][value.attr], value.loc)
+                    one.value = ir.Const(getattr(known[value.value.name], value.attr), value.loc)
                     found = True
         return found
 

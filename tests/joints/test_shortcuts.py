@@ -8,7 +8,6 @@ import sys
 from pathlib import Path
 
 import numba
-import numpy as np
 import pytest
 from numba.core import errors, event, typeinfer
 from numba.core.cpu import CPUContext
@@ -46,14 +45,6 @@ def pairs_of_either(n):
     return pair
 
 
-def rows(n):
-    found = np.zeros((n, 2))
-    for i in range(n):
-        found[i, 0], found[i, 1] = i, i / 2
-        found[0] += found[i]
-    return found[0, 0] + found[0, 1]
-
-
 @formula
 def halved(x):
     return x / 2 if x > 1 else x
@@ -65,7 +56,7 @@ def formula_of_two_types(n):
 
 @pytest.mark.parametrize(
     "function",
-    [whole_then_real, real_by_way_of_others, pairs_of_either, rows, formula_of_two_types],
+    [whole_then_real, real_by_way_of_others, pairs_of_either, formula_of_two_types],
 )
 def test_types_are_those_of_numba(function, monkeypatch):
     """Also of variables that change after others have read them, by several rounds."""
