@@ -170,7 +170,8 @@ def _relative(path: str) -> str:
 
 def _hundredths(n: int) -> str:
     """Return a number of hundredths as a decimal, without a zero before the point."""
-    return re.sub(r"^(-?)0\.", r"\1.", f"{n / 100:g}")
+    text = f"{n / 100:g}"
+    return text.replace("0.", ".", 1) if abs(n) < 100 else text
 
 
 def _without_overruled_styles(svg: str) -> str:
