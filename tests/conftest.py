@@ -38,9 +38,10 @@ settings.load_profile("jointwave")
 if providers := sys.modules.get("hypothesis.internal.conjecture.providers"):
     providers.is_local_module_file = lambda file: False
 
-# Workers of xdist inherit it. Threads of BLAS would wait for one another, a millisecond for every
-# small matrix.
+# Workers of xdist inherit them. Threads of BLAS would wait for one another, a millisecond for every
+# small matrix, and those of MUMPS would for every front.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 # Each file of tests is searched for garbage at its end.
 collect_rarely()
