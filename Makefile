@@ -1,9 +1,10 @@
 # `make help` lists the targets. Everything runs in .venv, which `make setup` makes and every target asks for.
 MAKEFLAGS += --no-print-directory
 RUN := tools/run.sh
-# Each process takes neighbouring tests, which share kernels and fixtures. Hundreds of them start Python: none compiles
-# the sources anew, whatever the environment says.
-TESTS := PYTHONDONTWRITEBYTECODE= $(RUN) python -m pytest -n auto --maxprocesses 8 --dist worksteal --junitxml out/tests.xml
+# Reports and tests start Python many times: none compiles the sources anew, whatever the environment says.
+export PYTHONDONTWRITEBYTECODE :=
+# Each process takes neighbouring tests, which share kernels and fixtures.
+TESTS := $(RUN) python -m pytest -n auto --maxprocesses 8 --dist worksteal --junitxml out/tests.xml
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test test-all docs check fuzz mutate bench bench-peers bench-plan lock test-lowest test-debian13 test-wheel clean distclean
