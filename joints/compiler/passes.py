@@ -251,6 +251,13 @@ def borrowed(one: ir.Assign) -> bool:
 class FormulaLibrary(JITCodeLibrary):
     """The code of a formula, as it will be linked to that of its callers."""
 
+    def _optimize_functions(self, ll_module):
+        ll_module.data_layout = self._codegen._data_layout
+        passes, builder = self._codegen._function_pass_manager()
+        for one in ll_module.functions:
+            if not one.is_declaration:
+                passes.run(one, builder)
+
     def _optimize_final_module(self):
         pass
 
@@ -300,7 +307,6 @@ BEFORE_LOWERING = (
     Canonical,
     KnownFlags,
     untyped_passes.RewriteSemanticConstants,
-    untyped_passes.DeadBranchPrune,
     ConstantIndices,
     LiveRanges,
     untyped_passes.DeadBranchPrune,

@@ -8,7 +8,7 @@ from cases.material.calibrate import calibrate
 from continuum import applies, simulate
 from continuum.build import discretise
 from continuum.explicit.leapfrog import leapfrog_for
-from continuum.explicit.march import arguments
+from continuum.explicit.march import arguments, readings
 from continuum.implicit.balance import joint_balance_for
 from continuum.implicit.pattern import empty_tangents
 from continuum.joints import interfaces
@@ -168,7 +168,8 @@ def count(short, ready, instructions):
         at = ready(short(**SILENT, **changes), model, dim)
         joints = at.model.interfaces
         constants = (None, None) if joints is None else (joints.parts, joints.directions)
-        given = arguments(at.model, at.state, at.samples, None, None)
+        read = readings(at.model, at.state)
+        given = arguments(at.model, at.state, at.samples, None, None, read)
         return instructions(leapfrog_for(*constants), (0, 0, 1, at.model.dt, *given), kind)
 
     return counted
