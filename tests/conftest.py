@@ -25,7 +25,6 @@ from numba.core.sigutils import normalize_signature
 
 import cases
 from cases.errors import InterruptedRun
-from compare.runs.garbage import collect_rarely
 from joints.formula import KNOWN, shortcuts
 from numerics import jit
 from results.arrays import copied, fill
@@ -42,9 +41,6 @@ if providers := sys.modules.get("hypothesis.internal.conjecture.providers"):
 # small matrix, and those of MUMPS would for every front.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
-
-# Each file of tests is searched for garbage at its end.
-collect_rarely()
 
 # Nor does a test how long it takes: no command that it runs speaks of its progress.
 os.environ["JOINTWAVE_PROGRESS"] = "0"

@@ -119,6 +119,6 @@ def test_adaptive_steps_reach_the_exact_chain_as_their_tolerance_shrinks(pillar,
     """Some digits for every digit of the tolerance."""
     load = {"shape": "ricker", "amplitude": 1e6, "period": 0.01}
     scene = pillar(load=load, time__duration=0.03, **damping)
-    exact = reference("lattice", scene)
+    exact = reference("lattice", scene).result
     coarse, fine = (misfit(adaptive.solve(scene, rtol), exact) for rtol in (1e-4, 1e-8))
     assert coarse < 1e-2 and fine < 1e-5 and fine < 1e-2 * coarse
