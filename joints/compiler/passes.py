@@ -2,9 +2,7 @@
 
 A formula is typed once and becomes part of the kernels that call it. So numba is kept from
 optimising it and from making machine code of it at every level of calls; the kernel as a whole is
-optimised once. Only those passes are taken that change anything. A first run of the chain takes
-2.4 instead of 3.3 s of processor time beyond that of a second one, of a row in space 11.4 instead
-of 14.3 s; a seventh less with the short list for kernels too, whose machine code stays the same.
+optimised once. Only those passes are taken that change anything.
 
 A tuple of flags that is a constant of the kernel is a type of its own, so that a formula knows its
 flags before anything is typed: what stands behind an untrue one is not compiled at all.

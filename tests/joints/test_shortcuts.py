@@ -14,9 +14,12 @@ from numba.core.cpu import CPUContext
 
 import joints
 from joints.compiler import shortcuts
-from joints.formula import formula, kernel_options
+from joints.formula import KNOWN, formula, kernel_options
 from numerics.jit import _in_one_process
 
+pytestmark = pytest.mark.skipif(
+    numba.version_info.short not in KNOWN, reason="this numba compiles without shortcuts"
+)
 ROOT = Path(joints.__file__).resolve().parent.parent
 
 
