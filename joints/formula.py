@@ -15,7 +15,7 @@ KNOWN = ((0, 68),)
 
 options: dict[str, Any] = {"forceinline": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 kernel_options: dict[str, Any] = {}
-#: While a kernel compiles.
+#: What lasts while a kernel compiles: shortcuts through numba, where its version is known.
 shortcuts: Callable[[], AbstractContextManager] = nullcontext
 if numba.version_info.short in KNOWN:
     from joints.compiler.passes import FormulaCompiler, KernelCompiler, flags
