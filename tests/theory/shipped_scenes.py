@@ -31,7 +31,14 @@ LINEAR_ENERGY_BOUND = 1e-10  # in the form that leapfrog conserves
 
 
 class WholeItem(PairItem):
-    """All variants of a shipped file on every engine and model that applies."""
+    """All variants of a shipped file on every engine and model that applies.
+
+    release : called when its results are no longer needed.
+    """
+
+    def __init__(self, *, release, **kwargs):
+        super().__init__(**kwargs)
+        self.release = release
 
     def runtest(self):
         """Hold every result to the bounds, and tell every variant from the others."""
@@ -44,6 +51,11 @@ class WholeItem(PairItem):
             for other in scenes[:k]:
                 differ = any(self.differ(engine, scene, other) for engine in ENGINES)
                 assert differ, f"{scene.name} records what {other.name} does"
+
+    def teardown(self):
+        """Release the results of the file, whose last test this is."""
+        self.parent.results.clear()
+        self.release()
 
     def result(self, name, scene):
         self.scene = scene
@@ -79,12 +91,14 @@ def is_linear(scene):
     return not {"slip", "softening", "no tension", "closure"} & set(active_effects(scene))
 
 
-def added_to(items):
-    """Return collected tests with that of each shipped file behind its pairs."""
+def added_to(items, release):
+    """Return collected tests with that of each shipped file behind its pairs; release : called
+    after each of them."""
     files, found = set(shipped()), []
     for item, after in zip(items, [*items[1:], None], strict=True):
         found.append(item)
         file, last = item.parent, after is None or after.parent is not item.parent
         if last and isinstance(file, SceneFile) and file.path in files:
-            found.append(WholeItem.from_parent(file, name="every engine, every variant"))
+            name = "every engine, every variant"
+            found.append(WholeItem.from_parent(file, name=name, release=release))
     return found

@@ -53,7 +53,7 @@ def under_mpi(mpiexec):
     launcher, environment = mpiexec
 
     def run(count, *arguments, code=0):
-        command = [launcher, "-n", str(count), sys.executable, *map(str, arguments)]
+        command = [*launcher, "-n", str(count), sys.executable, *map(str, arguments)]
         done = subprocess.run(
             command, capture_output=True, text=True, env=environment, timeout=1800
         )

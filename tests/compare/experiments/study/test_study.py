@@ -108,7 +108,8 @@ def test_command_writes_what_it_prints(made):
 
 def test_two_ranks_give_the_table_of_one_process(made, tmp_path, mpiexec):
     (folder, facts), (launcher, env) = made, mpiexec
-    ranks = facts_of(folder / "mine.toml", "--out", tmp_path, before=(launcher, "-n", "2"), env=env)
+    before = (*launcher, "-n", "2")
+    ranks = facts_of(folder / "mine.toml", "--out", tmp_path, before=before, env=env)
     keys = ("numerical", "total", "steps", "work")
     one, two = ([[row[key] for key in keys] for row in f["rows"]] for f in (facts, ranks))
     assert one == two

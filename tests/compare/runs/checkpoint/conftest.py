@@ -80,7 +80,7 @@ def start(request):
         environment = None
         if ranks > 1:
             mpiexec, environment = request.getfixturevalue("mpiexec")
-            command = [mpiexec, "-n", str(ranks), *command]
+            command = [*mpiexec, "-n", str(ranks), *command]
         begun.append(
             subprocess.Popen(
                 command,
