@@ -2,13 +2,16 @@
 
 import ast
 import inspect
+from collections.abc import Mapping
+from functools import cache
 from textwrap import dedent
 
 #: The package that defines all models.
 CASES = __name__.rpartition(".schema.")[0]
 
 
-def field_comments(model: type) -> dict[str, str]:
+@cache
+def field_comments(model: type) -> Mapping[str, str]:
     """Return the comment of each field of a model, inherited fields included."""
     found: dict[str, str] = {}
     for base in reversed(model.__mro__):

@@ -1,5 +1,6 @@
 """The tangent of the joint law against differences of the law itself, and at its kinks exactly."""
 
+from functools import cache
 from itertools import product
 from math import hypot
 
@@ -33,6 +34,7 @@ COMBINATIONS = [
 FIELDS = {"iangle": "dilation", "Idistance": "dilation_distance"}
 
 
+@cache
 def some(low, high):
     """Return floats in a range; rounded, as differences of much smaller ones mean nothing."""
     return st.floats(low, high).map(lambda x: round(x, 6))

@@ -364,12 +364,15 @@ def one_law(draw, dashpots, opens, shears):
     return law(stiffness, eta, np.array(["no tension" not in opens]), **parts)
 
 
+UNIT = st.floats(-1, 1).map(lambda x: round(x, 9))
+STEPS = st.lists(st.tuples(*[UNIT] * 6), min_size=1, max_size=12)
+
+
 @st.composite
 def paths(draw, one):
     """Return steps of (gap, gap rate, slip, slip rate) that reach every branch of a law."""
     reach = 1.5 * (one.critical_opening or 1e-4)
-    unit = st.floats(-1, 1).map(lambda x: round(x, 9))
-    steps = draw(st.lists(st.tuples(*[unit] * 6), min_size=1, max_size=12))
+    steps = draw(STEPS)
     return [
         (g * reach, 10 * r, (x * 1e-4, z * 1e-4), (10 * rx, 10 * rz))
         for g, r, x, z, rx, rz in steps

@@ -19,8 +19,7 @@ or with friction under the prestress, and all else elastic and undamped.
 
 from collections.abc import Iterator
 from functools import cache
-from itertools import pairwise
-from math import ceil, exp, inf, isfinite
+from math import exp, inf, isfinite
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -270,8 +269,10 @@ def transmitted(
         impulse = np.concatenate([[0.0], np.cumsum(growth)])
         return np.clip(load.value(times), -tau, tau), impulse[np.searchsorted(nodes, times)]
     found = [(0.0, 0.0)]
-    for (start, end), limit in zip(pairwise(nodes.tolist()), limits.tolist(), strict=True):
-        found.append(_advance(load, relaxation, limit, start, end, *found[-1]))
+    decays, entered = np.exp(-np.diff(nodes) / relaxation), np.diff(load.impulse(nodes))
+    columns = nodes[:-1], nodes[1:], limits, decays, _loaded(load, relaxation, nodes), entered
+    for each in zip(*(column.tolist() for column in columns), strict=True):
+        found.append(_advance(load, relaxation, *found[-1], *each))
     stress, impulse = np.array(found)[np.searchsorted(nodes, times)].T
     return stress, impulse
 
@@ -291,27 +292,45 @@ def _nodes(load: LoadHistory, times: np.ndarray, tau: float) -> np.ndarray:
     return np.unique([*smooth, *crossings])
 
 
-def _advance(load, relaxation, limit, start, end, stress, impulse) -> tuple[float, float]:
-    """Return s and its impulse at `end` from those at `start`; limit is nan while |load| <= tau."""
+def _advance(
+    load, relaxation, stress, impulse, start, end, limit, decay, loaded, entered
+) -> tuple[float, float]:
+    """Return s and its impulse at `end` from those at `start`.
+
+    limit : of s, Pa, nan while |load| <= tau. decay, loaded, entered : what is left of s, what the
+    load adds to it (Pa), and the load's impulse (Pa s) until `end`.
+    """
     from scipy.optimize import brentq
 
-    later, slipping = stress, start
-    if stress != limit:
-        slipping, later = end, _relaxed(load, relaxation, stress, start, end)
-        if abs(later) > abs(limit):
-            miss = lambda t: _relaxed(load, relaxation, stress, start, t) - limit  # noqa: E731
-            slipping, later = brentq(miss, start, end, xtol=1e-15), limit
-    sticking = float(load.impulse(slipping) - load.impulse(start)) - relaxation * (later - stress)
-    return later, impulse + sticking + later * (end - slipping)
+    if stress == limit:
+        return stress, impulse + stress * (end - start)
+    later = stress * decay + loaded
+    if not abs(later) > abs(limit):
+        return later, impulse + (entered - relaxation * (later - stress))
+
+    def miss(t: float) -> float:
+        left = stress * exp((start - t) / relaxation)
+        return left + float(_loaded(load, relaxation, np.array([start, t]))[0]) - limit
+
+    slipping = brentq(miss, start, end, xtol=1e-15)
+    sticking = float(load.impulse(slipping) - load.impulse(start)) - relaxation * (limit - stress)
+    return limit, impulse + sticking + limit * (end - slipping)
 
 
-def _relaxed(load: LoadHistory, relaxation: float, s: float, start: float, end: float) -> float:
-    """Return the solution of T s' = sigma_I - s, T the relaxation time (s), at `end`."""
-    width = min(end - start, FORGOTTEN * relaxation)
-    x, weights = _gauss(16 + ceil(width / relaxation))
-    before = width * (1 - x) / 2
-    kernel = weights * width / 2 * np.exp(-before / relaxation) / relaxation
-    return s * exp((start - end) / relaxation) + float(kernel @ load.value(end - before))
+def _loaded(load: LoadHistory, relaxation: float, nodes: np.ndarray) -> np.ndarray:
+    """Return the solution of T s' = sigma_I - s, T the relaxation time (s), at the end of each span
+    between two nodes (s), from 0 at its beginning."""
+    widths = np.minimum(np.diff(nodes), FORGOTTEN * relaxation)
+    counts = 16 + np.ceil(widths / relaxation).astype(int)
+    found = np.empty(len(widths))
+    for count in np.unique(counts):
+        x, weights = _gauss(int(count))
+        own = counts == count
+        width, end = widths[own, None], nodes[1:][own, None]
+        before = width * (1 - x) / 2
+        kernel = weights * width / 2 * np.exp(-before / relaxation) / relaxation
+        found[own] = np.sum(kernel * load.value(end - before), axis=1)
+    return found
 
 
 SOLVER = Solver(

@@ -19,6 +19,7 @@ steps bounds the error, with FLOOR times the largest motion for round-off.
 """
 
 from collections.abc import Callable
+from math import isqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -133,10 +134,22 @@ def _level(
 def _climb(transfer, signal, window: Window, skip: int, keep: slice) -> np.ndarray:
     """Return the integral over the slope from 0 to the level path, at the fine steps `keep`."""
     nodes, weights = _gauss(CLIMB)
-    end, t = SLOPE * window.bin_width + 1j * window.decay, window.times - window.times[0]
-    F = np.exp(1j * end * np.outer(nodes, t[::skip])) @ signal * (skip * window.step)
+    end = SLOPE * window.bin_width + 1j * window.decay
+    turn = 1j * end * nodes * window.step
+    long, short = _powers(turn * skip, len(signal))
+    rows = np.pad(signal, (0, len(long) * len(short) - len(signal))).reshape(len(long), -1)
+    F = np.sum(rows @ short * long, axis=0) * (skip * window.step)
     spectrum = transfer(end * nodes) * (F * weights * end)
-    return spectrum @ np.exp(-1j * end * np.outer(nodes, t[keep])) / np.pi
+    long, short = _powers(-turn, keep.stop)
+    found = (spectrum[..., None, :] * long) @ short.T
+    return found.reshape(*spectrum.shape[:-1], -1)[..., keep] / np.pi
+
+
+def _powers(x: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return e^(x m j) and e^(x k), j, k < m [m, x]: their products are e^(x n) for all n up to
+    `count`, whose own exponentials would take most of the time."""
+    n = np.arange(isqrt(count) + 1)[:, None]
+    return np.exp(len(n) * n * x), np.exp(n * x)
 
 
 def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
