@@ -12,7 +12,6 @@ from cases.loads import history_of
 from cases.material.rock import elastic_rock
 from cases.schema.rock_mass import RockMass
 from compare.exact.joint.closing_joint import TOLERANCES, ClosingJoint, Passed
-from compare.exact.joint.one_joint import around
 from compare.exact.linear import bound
 from compare.exact.plane.waves import PlaneMotion
 from compare.exact.rock_mass import stack_waves
@@ -74,12 +73,18 @@ class ClosingField:
 
     def waves(self, points: np.ndarray, times: np.ndarray) -> np.ndarray:
         """Return the waves to and fro [2, stress and impulse, m, n]; Pa, compression positive."""
-        y = (np.asarray(points) - self.wave.through) @ self.wave.direction
-        joint, speed = self.joint, self.wave.speed
-        # On one side of the joint, not on it, where `around` takes the mean of both sides.
-        off = np.copysign(np.maximum(np.abs(y - joint.y), BESIDE), y - joint.y)
-        y = joint.y + off
-        return around(joint.y, speed, self.passed, self.load, np.asarray(times), y.tolist())
+        y = ((np.asarray(points) - self.wave.through) @ self.wave.direction)[:, None]
+        joint, speed, load, times = self.joint.y, self.wave.speed, self.load, np.asarray(times)
+        # On one side of the joint, not on it, where velocity and stress along it have no one value.
+        off = np.copysign(np.maximum(np.abs(y - joint), BESIDE), y - joint)
+        y, behind = joint + off, off > 0
+        # What the joint passes or sends back, at all places in one evaluation.
+        direct = times - y / speed
+        scattered = times - np.where(behind, y, 2 * joint - y) / speed
+        passed = np.array(self.passed(scattered))
+        there = np.where(behind, passed, [load.value(direct), load.impulse(direct)])
+        back = passed - [load.value(scattered), load.impulse(scattered)]
+        return np.array([there, np.where(behind, 0.0, back)])
 
     def stress(self, across: np.ndarray) -> np.ndarray:
         """Return (xx, yy, xy) [m, 3, n], tension positive, from the stress on the fronts [m, n]."""
