@@ -25,7 +25,7 @@ from numba.core.sigutils import normalize_signature
 
 import cases
 from cases.errors import InterruptedRun
-from joints.formula import KNOWN, shortcuts
+from joints.formula import KNOWN, kernel_options, shortcuts
 from numerics import jit
 from results.arrays import copied, fill
 
@@ -275,8 +275,11 @@ def instructions():
     def count(kernel, arguments, kind, unrolled=True):
         key = kernel.py_func, tuple(map(numba.typeof, arguments))
         if key not in texts:
-            fresh = numba.njit(error_model="numpy")(kernel.py_func)
-            fresh(*arguments)
+            fresh = numba.njit(error_model="numpy", no_cfunc_wrapper=True, **kernel_options)(
+                kernel.py_func
+            )
+            with shortcuts():
+                fresh(*arguments)
             texts[key] = "\n".join(fresh.inspect_llvm().values())
         found = re.findall(rf"(%\.?\w+)[.\w]* = {kind} ", texts[key])
         return len(found if unrolled else set(found))

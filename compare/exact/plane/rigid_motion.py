@@ -13,7 +13,7 @@ frequency, is below round-off (Hairer, Norsett & Wanner, Solving Ordinary Differ
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_array
+from scipy.sparse import bmat, csr_array, identity
 
 from cases.material.contact_points import ContactPoints, points_of
 from cases.material.rigid_step import jump
@@ -108,24 +108,31 @@ def motion(
 
     pieces = CubicSpline(interval * np.arange(len(forces)), forces).c[::-1]
     parts = int(np.ceil(interval * system.highest / STEP))
-    h, K, C = interval / parts, system.stiffness, system.viscosity
-    u, v = np.zeros((2, len(system.masses)))
-    found = [(u, v)]
+    h, N, matrix = interval / parts, len(system.masses), _first_order(system)
+    x = np.zeros(2 * N)
+    found = [x]
     for n in range(len(forces) - 1):
         for part in range(parts):
             polynomial = _shifted(pieces[:, n], part * h) * (h ** np.arange(4))[:, None]
-            term_u, term_v = u, v
-            u, v = u.copy(), v.copy()
+            driven, term = polynomial / system.masses, x
             for k in range(ORDER):
-                force = polynomial[k] if k < len(polynomial) else 0.0
-                rate = (force - K @ term_u - C @ term_v) / system.masses
-                term_u, term_v = h / (k + 1) * term_v, h / (k + 1) * rate
-                u += term_u
-                v += term_v
+                term = matrix @ term
+                if k < len(driven):
+                    term[N:] += driven[k]
+                term *= h / (k + 1)
+                x = x + term
         if (n + 1) % stride == 0:
-            found.append((u, v))
-    displacement, velocity = (np.array(x) for x in zip(*found, strict=True))
+            found.append(x)
+    displacement, velocity = np.split(np.array(found), 2, axis=1)
     return displacement, velocity
+
+
+def _first_order(system: RigidSystem) -> csr_array:
+    """Return A of x' = A x + b for x = (u, u') [6 N, 6 N]."""
+    own = 1 / system.masses[:, None]
+    moves = identity(len(own), format="csr")
+    rows = [[None, moves], [-system.stiffness.multiply(own), -system.viscosity.multiply(own)]]
+    return csr_array(bmat(rows, format="csr"))
 
 
 def _shifted(coefficients: np.ndarray, s: float) -> np.ndarray:

@@ -30,7 +30,7 @@ def rock(scheme, *changes):
 
 #: Options, name of the result and number of processes of runs that step for a second or two.
 RUNS = {
-    "axial": (keys("numerics.dem.step_fraction=2e-5", *DAMPED, *SHOT), "dem.nc", 1),
+    "axial": (keys("numerics.dem.step_fraction=4e-5", *DAMPED, *SHOT), "dem.nc", 1),
     "spatial": (
         keys("numerics.dem.step_fraction=4e-3", "load.direction=[1, 0, 0]", *SHOT),
         "dem.nc",
