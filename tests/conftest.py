@@ -14,7 +14,7 @@ import warnings
 from contextlib import suppress
 from copy import deepcopy
 from pathlib import Path
-from resource import RUSAGE_SELF, getrusage
+from resource import RUSAGE_SELF, getpagesize, getrusage
 from threading import current_thread, main_thread
 
 import numba
@@ -45,7 +45,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 # Nor does a test how long it takes: no command that it runs speaks of its progress.
 os.environ["JOINTWAVE_PROGRESS"] = "0"
 
-LARGE = 1 << 20  # kB, of a process
+LARGE = 1 << 30  # bytes, of a process
 MALLOC_TRIM = getattr(ctypes.CDLL(None), "malloc_trim", lambda keep: 0)
 
 PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
@@ -185,6 +185,14 @@ def one_joint():
     return lambda **changes: deepcopy(tables | changes)
 
 
+def _resident():
+    """Return the bytes of memory that this process has now, or has had where Linux is not there to
+    tell."""
+    if (found := Path("/proc/self/statm")).is_file():
+        return int(found.read_text().split()[1]) * getpagesize()
+    return getrusage(RUSAGE_SELF).ru_maxrss * 1024
+
+
 def _in_a_child(compiling, lock):
     """Compile a kernel in a child process where this one has become large, and load it from the
     cache: numba never frees what it compiles with, several MB a kernel."""
@@ -192,7 +200,7 @@ def _in_a_child(compiling, lock):
 
     def compiled(signature):
         target, types = cpu_target.target_context, normalize_signature(signature)[0]
-        large = getrusage(RUSAGE_SELF).ru_maxrss > LARGE
+        large = _resident() > LARGE
         alone = current_thread() is main_thread()  # a child would keep the locks of another thread
         if large and alone and kernel._cache.load_overload(types, target) is None:
             with shortcuts():
