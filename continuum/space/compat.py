@@ -3,6 +3,7 @@
 basix is dolfinx's library of elements; what dolfinx compiles, `continuum.space.forms` has.
 """
 
+from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 
@@ -19,6 +20,7 @@ def load_mpi() -> None:
         import_module("dolfinx_solver")
 
 
+@cache
 def reference_element(cell: str, order: int):
     """Return the Lagrange element of a cell in reference coordinates; `points` are its nodes.
 

@@ -244,7 +244,8 @@ def test_patch_of_any_shape_carries_uniform_strain_exactly(dim, cell, order, ben
     Lobatto's rule integrates cof(J) grad w exactly, but for warped faces of trilinear hexahedra:
     it is of degree order + 1 in each coordinate there, the rule of degree 2 order - 1.
     """
-    at = body(dim, cell, order, blocks=2, along=3, across=4, bent=bent)
+    across = 4 if dim == 2 else 2  # the fewest with vertices inside that bend, in space
+    at = body(dim, cell, order, blocks=2, along=3, across=across, bent=bent)
     gradient = GRADIENT[:dim, :dim]
     force = assembled(at) @ moved_by(at, gradient)
     half, nodes = 0.25, np.arange(len(at.x))
