@@ -7,6 +7,7 @@ from results.dataset import energy_residual
 
 DOWN = {"direction": [0, 1, 0]}
 HELD = {"start": "matched", "end": "fixed"}
+BASE = {"ends__end": "fixed", "joints__damping_ratio": 0.02}
 SEGMENTS = [
     {"y": [5.0, 12.0], "density": 5000.0, "block": 0.25},
     {"y": [30.0, 50.0], "joints": False, "block": 0.4, "intact_modulus": 1e10},
@@ -21,17 +22,21 @@ SHAKEN = {"shape": "sine", "amplitude": 1.0, "period": 0.01, "quantity": "veloci
         {"ends__end": "quiet"},
         {"ends__end": "matched", "ends__start": "matched"},
         {"ends__end": "fixed"},
-        {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4e8}]},
+        {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4e8}], "joints__damping_ratio": 0.02},
         {"joints__damping_ratio": 0.3},
         {"numerics__dem__step_fraction": 0.9},
-        {"damping__mass_proportional": 100.0},
+        {"damping__mass_proportional": 100.0, "joints__damping_ratio": 0.02},
         {"damping__local": 0.3, "ends__end": "quiet"},
-        {"gravity": DOWN, "ends__end": "fixed"},
-        {"gravity": {**DOWN, "static": False}, "ends__end": "fixed"},
+        {"gravity": DOWN, **BASE},
+        {"gravity": {**DOWN, "static": False}, **BASE},
         {"segments": SEGMENTS, "joints__damping_ratio": 0.1, "ends": HELD},
         {"segments": SEGMENTS, "damping__mass_proportional": 50.0, "prestress": {"normal": 2e6}},
         {"prestress": {"normal": 2e6}, "ends": {"start": "quiet", "end": "matched"}},
-        {"load": SHAKEN, "ends__start": "fixed", "joints__damping_ratio": 0.1},
+        {
+            "load": SHAKEN,
+            "ends": {"start": "fixed", "end": "matched"},
+            "joints__damping_ratio": 0.1,
+        },
         {
             "load": SHAKEN,
             "ends": {"start": "fixed", "end": "matched"},
@@ -64,7 +69,8 @@ SHAKEN = {"shape": "sine", "amplitude": 1.0, "period": 0.01, "quantity": "veloci
 def test_linear_scenes_close_to_round_off(pillar, changes):
     """Below 1e-10 of the work, in the form of the energy that leapfrog conserves at any step.
 
-    Local damping is not linear in the motion, but books what it takes all the same.
+    Local damping is not linear in the motion, but books what it takes all the same. Joints are
+    damped where those of test_accuracy.py are, whose kernels serve here too.
     """
     assert energy_residual(dem.simulate(pillar(**changes))) < 1e-10
 
