@@ -7,6 +7,7 @@ smooth (Moler & Van Loan, SIAM Review 45, 2003, for the exponential).
 """
 
 from collections.abc import Sequence
+from functools import cache
 from itertools import pairwise
 from math import ceil
 
@@ -18,10 +19,12 @@ from cases.size import require
 
 NEGLIGIBLE = 1e-18  # of a propagator whose largest entries are about 1: below round-off
 NOISE = 64 * float(np.finfo(float).eps)  # of the twin, in each interval
+SMALL = 100  # states of which a full matrix is faster than a sparse one
 BATCH = 256  # instants whose loads and outputs are computed together
 MORE_POINTS = 7  # of integration, for the twin
 PART, TERMS = 3.5, 30  # largest |A| t of a Taylor series, and its most terms: 3.5^30 / 30! = 8e-17
 SAFETY = 4.0  # factor on the difference of a solution and its twin
+_points = cache(leggauss)
 
 
 def twins(
@@ -51,7 +54,8 @@ def twins(
     room = 3 * size**2 + 2 * size * count + 3 * float(count) ** 2 + 5.0 * len(times) * count
     require(8 * room, f"{count:,} points of integration in each sampling interval")
     A, P = csr_array(matrix), expm_multiply(csr_array(matrix) * h, np.eye(len(vector)))
-    P = csr_array(np.where(np.abs(P) > NEGLIGIBLE, P, 0.0))
+    P = np.where(np.abs(P) > NEGLIGIBLE, P, 0.0)
+    P = P if size < SMALL else csr_array(P)
     driven = []
     for points in (count, count + MORE_POINTS):
         nodes, weights = _gauss(h, points)
@@ -104,7 +108,7 @@ def _moved(A, vector: np.ndarray, times: np.ndarray) -> np.ndarray:
 
 
 def _gauss(h: float, count: int) -> tuple[np.ndarray, np.ndarray]:
-    x, w = leggauss(count)
+    x, w = _points(count)
     return h * (x + 1) / 2, h * w / 2
 
 
@@ -112,7 +116,7 @@ def _load_on_nodes(load, starts, h, nodes, weights) -> np.ndarray:
     """Return the weights [intervals, nodes] that integrate a smooth function times the load."""
     shares = weights * load.value(starts[:, None] + nodes)
     count = len(nodes)
-    to_lagrange = legvander(2 * nodes / h - 1, count - 1) * (2 * np.arange(count) + 1)
+    to_lagrange = _legendre(count)
     for n, cuts in _cut_intervals(load, starts, h):
         shares[n] = 0
         for a, b in pairwise(cuts):
@@ -120,6 +124,12 @@ def _load_on_nodes(load, starts, h, nodes, weights) -> np.ndarray:
             basis = legvander(2 * (a + s) / h - 1, count - 1) @ to_lagrange.T * (weights / h)
             shares[n] += (w * load.value(starts[n] + a + s)) @ basis
     return shares
+
+
+@cache
+def _legendre(count: int) -> np.ndarray:
+    """Return (2 k + 1) P_k at the points of integration [points, k]."""
+    return legvander(_points(count)[0], count - 1) * (2 * np.arange(count) + 1)
 
 
 def _cut_intervals(load, starts, h) -> list[tuple[int, np.ndarray]]:

@@ -6,6 +6,20 @@ from dem.axial import leapfrog
 from dem.spatial import march
 
 
+@pytest.fixture(scope="module")
+def solved():
+    """Return a function of a name, an exact solution and a scene: the result, which no key of
+    [numerics] changes, found once in a file."""
+    found = {}
+
+    def once(name, solve, scene):
+        if name not in found:
+            found[name] = solve(scene)
+        return found[name]
+
+    return once
+
+
 @pytest.fixture
 def plain(monkeypatch):
     """Let the chain and rows in space take their steps as plain Python, on one thread: nothing is

@@ -93,15 +93,11 @@ def test_a_pipe_that_nobody_reads_does_not_end_the_work(close):
 
 
 @pytest.mark.parametrize("every", ["often", "-1", "nan", "inf"])
-def test_an_interval_that_is_none_is_one_line(every):
-    environment = os.environ | {"JOINTWAVE_PROGRESS": every}
-    run = command("run", "guo-li-2002/fig-03", "--out", "/nowhere/writable")
-    done = subprocess.run(run, capture_output=True, text=True, env=environment)
-    assert done.returncode == 2
-    assert (
-        done.stderr
-        == f"jointwave: JOINTWAVE_PROGRESS: must be a number of seconds, not {every!r}\n"
-    )
+def test_an_interval_that_is_none_is_one_line(every, jointwave, monkeypatch):
+    monkeypatch.setenv("JOINTWAVE_PROGRESS", every)
+    done = jointwave("run", "guo-li-2002/fig-03", "--out", "/nowhere/writable", code=2)
+    message = f"JOINTWAVE_PROGRESS: must be a number of seconds, not {every!r}"
+    assert done.err == f"jointwave: {message}\n"
 
 
 def test_colours_are_for_a_terminal_that_wants_them():
