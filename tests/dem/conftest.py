@@ -8,8 +8,8 @@ from dem.spatial import march
 
 @pytest.fixture(scope="module")
 def solved():
-    """Return a function of a name, an exact solution and a scene: the result, which no key of
-    [numerics] changes, found once in a file."""
+    """Return a function of a name, what solves a scene, and a scene: its result, found once in a
+    file. Exact ones serve all scenes of a name, whose steps alone differ."""
     found = {}
 
     def once(name, solve, scene):

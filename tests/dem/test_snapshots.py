@@ -143,11 +143,17 @@ TOPPLING = {
 }
 
 
-def test_finite_rotations_keep_the_shape_of_blocks(pillar):
+@pytest.fixture
+def toppled(pillar, solved):
+    """Return the result of blocks that topple, run once."""
+    return solved("toppling", dem.simulate, pillar(**TOPPLING))
+
+
+def test_finite_rotations_keep_the_shape_of_blocks(toppled):
     """Blocks that turn by more than a third of a turn keep all distances, and turn as recorded."""
     from scipy.spatial.transform import Rotation
 
-    result = dem.simulate(pillar(**TOPPLING))
+    result = toppled
     found = snapshots_of(result)
     x = (found.points + found.displacement).reshape(-1, 2, 8, 3)
     arms, rest = x - x.mean(axis=2, keepdims=True), found.points.reshape(2, 8, 3)
@@ -158,10 +164,10 @@ def test_finite_rotations_keep_the_shape_of_blocks(pillar):
     np.testing.assert_allclose(arms, np.einsum("tbij,bcj->tbci", turns, rest), rtol=0, atol=1e-13)
 
 
-def test_velocity_of_turning_blocks_is_that_of_a_rigid_body(pillar):
+def test_velocity_of_turning_blocks_is_that_of_a_rigid_body(toppled):
     """v - v_centre is at right angles to the arm, and the rate of what is drawn, to second order:
     differences over two samples are off by four times as much as those over one."""
-    found = snapshots_of(dem.simulate(pillar(**TOPPLING)))
+    found = snapshots_of(toppled)
     # The blow is over, and nothing holds the blocks: they turn freely.
     late = found.time > 0.03
     x = (found.points + found.displacement)[late].reshape(-1, 2, 8, 3)
