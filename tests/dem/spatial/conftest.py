@@ -13,6 +13,7 @@ from dem.spatial.ends import CLOSURE
 from dem.spatial.layout import LANES, STRIDE, TERMS, packed, unpacked
 from dem.spatial.march import marcher
 from dem.spatial.simulate import prepare
+from numerics.divergence import guard
 
 SHORT: dict[str, Any] = {
     "pillar__length": 8.0,
@@ -33,9 +34,12 @@ class Row(NamedTuple):
     samples: Any
     time: Clock
 
-    def take(self, first: int, last: int) -> None:
-        """Take the steps first .. last - 1."""
-        marcher(self.model, self.state, buffers_for(self.model, 1), self.samples)(first, last)
+    def take(self, first: int, last: int, guarded: bool = True) -> None:
+        """Take the steps first .. last - 1, by the kernel of runs: under a guard of energy alone,
+        which a row that was put in motion after its first sample cannot have."""
+        unheld = guard([np.inf] * self.model.form.freedoms) if guarded else None
+        buffers = buffers_for(self.model, 1, unheld)
+        marcher(self.model, self.state, buffers, self.samples)(first, last)
 
     @property
     def motion(self) -> np.ndarray:
