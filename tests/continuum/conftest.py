@@ -12,13 +12,14 @@ from cases.sampling import Clock
 from cases.schema.scene import Scene
 from continuum.build import Discrete, build_model, critical_step_of, discretise
 from continuum.explicit import leapfrog, march
-from continuum.explicit.march import run
+from continuum.explicit.march import march as march_of
 from continuum.mesh.cells import DIMENSION
 from continuum.mesh.pillar import pillar_mesh
 from continuum.space.body import build_body
 from continuum.space.elasticity import Material, Section
 from continuum.state import empty_samples, state_at_rest
 from continuum.waveforms import waveforms
+from numerics.divergence import guard
 
 ROCK = Material(modulus=8.64e10, poisson=0.25, density=2400.0)
 
@@ -29,6 +30,14 @@ SHORT: dict[str, Any] = {
     "record": {"stress": [0.2, 1.0, 1.6], "velocity": [0.0, 0.3, 1.0], "interval": 5e-5},
     "numerics__continuum__elements_per_block": 1,
 }
+
+
+def take(model, state, samples, stride, first, last):
+    """Take the steps first .. last - 1 within bounds that only a NaN exceeds: by the kernel of a
+    simulation, which other tests compile too."""
+    limits = guard(np.inf)
+    limits.peak[0] = np.inf
+    march_of(model, state, samples, stride, limits)(first, last)
 
 
 class Run(NamedTuple):
@@ -43,7 +52,7 @@ class Run(NamedTuple):
 
     def take(self, first: int, last: int) -> "Run":
         """Take the steps first .. last - 1."""
-        run(self.model, self.state, self.samples, self.time.stride, first, last)
+        take(self.model, self.state, self.samples, self.time.stride, first, last)
         return self
 
     def to_the_end(self) -> "Run":

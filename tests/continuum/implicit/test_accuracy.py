@@ -8,9 +8,9 @@ from cases.material.calibrate import calibrate
 from closed_forms import generalised_alpha as theory
 from compare.exact.bar import images, jointed_bar
 from continuum.build import critical_step_of, discretise, operators
-from continuum.explicit.march import run as run_explicit
 from continuum.implicit.balance import implicit_matrices
 from continuum.implicit.generalised_alpha import scheme
+from tests.continuum.conftest import take
 
 RICKER = {"load": {"shape": "ricker", "amplitude": 1e6, "period": 0.01}}
 ACROSS = {"motion__rotation": "none", "load__direction": [0.6, 0.8, 0.0]}
@@ -125,7 +125,7 @@ def test_error_falls_with_the_square_of_the_step(pillar, implicit, rho, kind):
 def explicit(scene, implicit, stride, kind="jointed"):
     """Return the samples of explicit steps of the same model."""
     run = implicit(scene, stride=stride, kind=kind)
-    run_explicit(run.model, run.state, run.samples, stride, 0, run.clock.steps + 1)
+    take(run.model, run.state, run.samples, stride, 0, run.clock.steps + 1)
     return run.samples
 
 
