@@ -102,17 +102,19 @@ def test_rigid_blocks_run_once_in_the_first_process(told):
     assert {path.name for path in folder.iterdir()} == {"dem.nc", "exact-lattice.nc"}
 
 
-#: One process fails where the others wait for it.
+#: One process fails where the others wait for it, which is told at once: they never arrive.
 SERIAL = """
 import sys
 from mpi4py import MPI
 from compare.cli import program
+from compare.runs import processes
 from continuum import build
 from continuum.parallel import body
 
 def broken(*arguments, **named):
     raise {error}
 
+processes.PATIENCE = 0.1  # s
 if MPI.COMM_WORLD.rank == {rank}:
     {function} = broken
 sys.argv = ["jointwave", *sys.argv[1:]]
@@ -121,20 +123,20 @@ program.main()
 
 
 @pytest.mark.parametrize(
-    ("rank", "function", "error", "code", "words"),
+    ("count", "rank", "function", "error", "code", "words"),
     [
-        (0, "body.restrict", "MemoryError('of one')", 2, ["not enough memory: of one"]),
-        (1, "build.weight_of", "KeyError('bug')", 1, ["internal error, KeyError", "'bug'"]),
+        (3, 0, "body.restrict", "MemoryError('of one')", 2, ["not enough memory: of one"]),
+        (2, 1, "build.weight_of", "KeyError('bug')", 1, ["internal error, KeyError", "'bug'"]),
     ],
 )
 def test_a_process_that_fails_alone_ends_all(
-    rank, function, error, code, words, under_mpi, said, tmp_path
+    count, rank, function, error, code, words, under_mpi, said, tmp_path
 ):
     """Others wait for what it would have sent them; its line is the only one, of a mistake of the
     program too."""
     program = SERIAL.format(error=error, rank=rank, function=function)
     arguments = ("run", *SCENE, *CONTINUUM, *SHORT, "--out", tmp_path)
-    (line,) = said(under_mpi(3, "-c", program, *arguments, code=code))
+    (line,) = said(under_mpi(count, "-c", program, *arguments, code=code))
     assert all(word in line for word in words)
 
 

@@ -155,7 +155,7 @@ def test_set_that_a_kill_has_left_incomplete_does_not_count(tmp_path, parts):
 
 
 def test_input_that_has_vanished_is_one_line_and_the_checkpoint_stays(
-    tmp_path, start, finish, until
+    tmp_path, start, said, finish, until
 ):
     """The load's history is gone when the run is to go on; back again, it goes on."""
     scene, table, out = (tmp_path / name for name in ("blast.toml", "table.csv", "out"))
@@ -169,14 +169,16 @@ def test_input_that_has_vanished_is_one_line_and_the_checkpoint_stays(
     process.send_signal(signal.SIGINT)
     assert finish(process)[0] == 130
     left, gone = sorted(out.iterdir()), table.rename(tmp_path / "gone.csv")
-    code, (line,) = finish(start(*run, *changes))
-    assert code == 2 and table.name in line and sorted(out.iterdir()) == left
+    (line,) = said(*run, *changes, code=2)
+    assert table.name in line and sorted(out.iterdir()) == left
     gone.rename(table)
-    code, (line,) = finish(start(*run, *changes))
-    assert code == 0 and "continues at t = " in line
+    (line,) = said(*run, *changes)
+    assert "continues at t = " in line
 
 
-def test_damaged_checkpoint_is_one_line_of_the_command(tmp_path, start, finish, until, arguments):
+def test_damaged_checkpoint_is_one_line_of_the_command(
+    tmp_path, start, said, finish, until, arguments
+):
     """Nothing is touched; without --resume the run starts anew and clears it away."""
     process = start(*arguments("axial", tmp_path, "--checkpoint-every", "0.01"))
     assert until(process, lambda: list(tmp_path.glob(".*.checkpoint-*-0.npz")))
@@ -185,7 +187,7 @@ def test_damaged_checkpoint_is_one_line_of_the_command(tmp_path, start, finish, 
     (path,) = tmp_path.glob(".*.npz")
     path.write_bytes(path.read_bytes()[:-1000])
     left = sorted(tmp_path.iterdir())
-    code, (line,) = finish(start(*arguments("axial", tmp_path, "--resume")))
-    assert code == 2 and f"{path}: is damaged" in line and sorted(tmp_path.iterdir()) == left
-    assert finish(start(*arguments("axial", tmp_path))) == (0, [])
+    (line,) = said(*arguments("axial", tmp_path, "--resume"), code=2)
+    assert f"{path}: is damaged" in line and sorted(tmp_path.iterdir()) == left
+    assert said(*arguments("axial", tmp_path)) == []
     assert not path.exists() and (tmp_path / "dem.nc").is_file()

@@ -22,13 +22,6 @@ def disk(tmp_path):
     subprocess.run(("umount", str(place)), check=True)
 
 
-@pytest.fixture
-def said(jointwave, without_warnings):
-    """Return a function that runs the command in this process, checks its exit status, and gives
-    its lines on standard error."""
-    return lambda *run, code=0: without_warnings(jointwave(*run, code=code).err)
-
-
 def fill(place):
     """Fill a disk to its last byte; returns the file that does."""
     filler = place / "filler"
@@ -112,27 +105,27 @@ def test_full_standard_output_is_one_line(start, finish):
 
 
 def test_second_run_into_a_folder_is_refused_and_the_first_goes_on(
-    tmp_path, start, finish, until, arguments, is_locked
+    tmp_path, start, said, finish, until, arguments, is_locked
 ):
     """Results of two runs do not mix; those who only read are let in."""
     out = tmp_path / "out"
     first = start(*arguments("axial", out, "--checkpoint-every", "0"))
     assert until(first, lambda: is_locked(out))
     first.send_signal(signal.SIGSTOP)  # lest it ends before the second has started
-    code, (line,) = finish(start(*arguments("axial", out, *SHORT)))
-    assert code == 2 and f"{out}: another jointwave process is writing here" in line
+    (line,) = said(*arguments("axial", out, *SHORT), code=2)
+    assert f"{out}: another jointwave process is writing here" in line
     first.send_signal(signal.SIGCONT)
     assert finish(first) == (0, []) and not is_locked(out)
 
 
-def test_lock_of_a_killed_run_is_nobodys(tmp_path, start, finish, until, arguments, is_locked):
+def test_lock_of_a_killed_run_is_nobodys(tmp_path, start, said, until, arguments, is_locked):
     """The system releases it, and the next run takes it."""
     first = start(*arguments("axial", tmp_path))
     assert until(first, lambda: is_locked(tmp_path))
     first.kill()
     first.communicate()
     assert not is_locked(tmp_path)
-    assert finish(start(*arguments("axial", tmp_path, *SHORT))) == (0, [])
+    assert said(*arguments("axial", tmp_path, *SHORT)) == []
 
 
 def test_folder_of_a_refused_run_is_not_made(tmp_path, said, arguments):
