@@ -2,7 +2,6 @@
 
 import json
 import os
-import subprocess
 import sys
 from math import nan
 
@@ -12,13 +11,6 @@ from compare.cli.diagnostics import doctor
 from compare.cli.diagnostics.accuracy import PAIRS, Check, bound_of, check
 from compare.cli.diagnostics.components import PROBES
 from compare.cli.diagnostics.doctor import Component, Health
-
-
-def run():
-    command = [sys.executable, "-m", "compare", "doctor", "--json"]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert "Traceback" not in done.stderr + done.stdout
-    return done
 
 
 @pytest.fixture
@@ -38,11 +30,10 @@ def found(parts, name):
     return part
 
 
-def test_everything_is_a_line_and_all_is_well_here():
+def test_everything_is_a_line_and_all_is_well_here(jointwave):
     """Every part that is looked at, both checks with their numbers, exit 0."""
-    done = run()
-    facts = json.loads(done.stdout)
-    assert done.returncode == 0 and facts["well"]
+    facts = json.loads(jointwave("doctor", "--json").out)
+    assert facts["well"]
     lines = {part["part"]: part for part in facts["parts"]}
     assert (
         PROBES.keys() | {"jointwave", "mpiexec", "cores", "memory", "kernel cache"} == lines.keys()
@@ -65,21 +56,21 @@ def test_a_check_measures_the_pair_that_it_names():
     assert not right._replace(misfit=nan).holds
 
 
-def test_what_breaks_is_a_line_and_fails_the_check_that_needs_it_alone(broken):
+def test_what_breaks_is_a_line_and_fails_the_check_that_needs_it_alone(broken, jointwave):
     """An error, and an end of the process: what comes after them is looked at all the same, the
     check of the rock fails with the reason, exit 1, and the blocks are right."""
     broken("obspy", "raise RuntimeError('first line\\nsecond line')")
     broken("gmsh", "import os; os.abort()")
     broken("basix", "raise ImportError('libbasix.so: cannot open shared object file')")
-    done = run()
-    facts = json.loads(done.stdout)
-    assert done.returncode == 1 and not facts["well"]
+    broken("pyvista", "raise OSError('libGL.so.1: cannot open shared object file')")
+    facts = json.loads(jointwave("doctor", "--json", code=1).out)
+    assert not facts["well"]
     blocks, rock = facts["self_check"]
     assert blocks["holds"] and not rock["holds"]
     assert rock["misfit"] is None and "libbasix.so" in rock["reason"]
     lines = {part["part"]: part for part in facts["parts"]}
     states = {name: line["state"] for name, line in lines.items() if line["state"] == "broken"}
-    assert {"obspy", "gmsh", "basix"} <= states.keys()
+    assert {"obspy", "gmsh", "basix", "pyvista"} <= states.keys()
     assert lines["obspy"]["found"] == "RuntimeError: first line second line"
     assert "signal 6" in lines["gmsh"]["found"] and lines["gmsh"]["hint"]
     assert "apt" in lines["basix"]["hint"]

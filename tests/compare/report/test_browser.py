@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 
 WIDE, NARROW = (1280, 800), (390, 844)
+TALL = (1280, 1400)  # every figure fits: for its picture the page is not laid out anew
 BOXES = ".scroll, .static, pre, nav"  # may scroll; whatever else is wider than its place is clipped
 CHARTS = "figure[data-plot]"
 
@@ -34,10 +35,9 @@ def show(browser, alone):
 
     def opened(size=WIDE, path=alone, **options):
         context = browser.new_context(
-            viewport=dict(zip(("width", "height"), size, strict=True)), **options
+            viewport=dict(zip(("width", "height"), size, strict=True)), offline=True, **options
         )
         contexts.append(context)
-        context.route(re.compile("^(http|ws)"), lambda route: route.abort())
         page = context.new_page()
         page.on("console", lambda message: complaints.append(message.text))
         page.on("pageerror", lambda error: complaints.append(str(error)))
@@ -53,7 +53,7 @@ def show(browser, alone):
 
 @pytest.fixture
 def opened(show):
-    """Return the same, for pages that the test may change; each is a process of 200 MB until it is
+    """Return the same, for pages of the test's own; each is a process of 200 MB until it is
     closed."""
     show.complaints.clear()
     before = len(show.contexts)
@@ -63,8 +63,21 @@ def opened(show):
 
 
 @pytest.fixture(scope="module")
+def _page(show):
+    return show(permissions=["clipboard-read", "clipboard-write"])
+
+
+@pytest.fixture
+def page(_page):
+    """Return a page at its top, with every fold closed and few charts drawn; each test changes
+    a chart of its own."""
+    fold(_page)
+    return _page
+
+
+@pytest.fixture(scope="module")
 def _whole(show):
-    page = show()
+    page = show(TALL)
     assert drawn(page) and show.complaints == []
     return page
 
@@ -84,6 +97,12 @@ def _refuse_outside(url, path, complaints):
 def unfold(page):
     """Open every fold."""
     page.evaluate("document.querySelectorAll('details').forEach(d => { d.open = true })")
+
+
+def fold(page):
+    """Close every fold, and return to the top."""
+    page.evaluate("document.querySelectorAll('details').forEach(d => { d.open = false })")
+    page.evaluate("scrollTo(0, 0)")
 
 
 def draw(figure):
@@ -108,15 +127,13 @@ def test_the_page_opens_and_draws_without_a_complaint(whole):
     assert whole.locator(f"{CHARTS}.live").count() == whole.locator(CHARTS).count() > 0
 
 
-def test_charts_wait_until_they_are_looked_at(opened):
-    page = opened()
+def test_charts_wait_until_they_are_looked_at(page, show):
     assert page.locator(CHARTS).count() > page.locator(".live").count()
     draw(page.locator(f"section > {CHARTS}").last)
-    assert opened.complaints == []
+    assert show.complaints == []
 
 
-def test_the_first_screen_answers_how_far_apart_and_at_what_cost(opened, report):
-    page = opened()
+def test_the_first_screen_answers_how_far_apart_and_at_what_cost(page, report):
     table = page.locator("table.overview")
     box = table.bounding_box()
     assert box["y"] + box["height"] <= WIDE[1] and box["x"] + box["width"] <= WIDE[0]
@@ -141,8 +158,7 @@ def test_no_button_of_a_chart_sends_it_away(whole):
     assert not [name for name in names if "hare" in name or "loud" in name]
 
 
-def test_dragging_zooms_all_panels_of_a_chart(opened):
-    page = opened()
+def test_dragging_zooms_all_panels_of_a_chart(page):
     unfold(page)
     chart = draw(page.locator(CHARTS).first).locator(".chart")
     chart.locator(".nsewdrag").first.scroll_into_view_if_needed()
@@ -160,8 +176,7 @@ def test_dragging_zooms_all_panels_of_a_chart(opened):
     assert (high - before[0]) / full == pytest.approx(0.5, abs=0.02)
 
 
-def test_a_curve_is_switched_off_and_on_in_every_panel_by_mouse_and_by_key(opened):
-    page = opened()
+def test_a_curve_is_switched_off_and_on_in_every_panel_by_mouse_and_by_key(page):
     unfold(page)
     figure = draw(page.locator("#short-pillar-waveforms-figure"))
     button = figure.get_by_role("button", name="dem", exact=True)
@@ -231,9 +246,8 @@ def test_no_figure_is_blank_on_screen(whole):
         assert spread(figure.screenshot()) > 8, figure.get_attribute("id")
 
 
-def test_the_page_prints_what_is_not_folded(opened):
+def test_the_page_prints_what_is_not_folded(page):
     """Folds stay closed; each scene takes at most three sides and a half."""
-    page = opened()
     pdf = page.pdf(prefer_css_page_size=True)
     assert pdf.startswith(b"%PDF")
     sheets = len(re.findall(rb"/Type\s*/Page\b", pdf))
@@ -331,8 +345,7 @@ def test_headings_follow_each_other_and_everything_has_a_name(whole):
     assert len(ids) == len(set(ids))
 
 
-def test_the_command_of_a_scene_is_copied(opened):
-    page = opened(permissions=["clipboard-read", "clipboard-write"])
+def test_the_command_of_a_scene_is_copied(page):
     page.locator("#moving .copy").click()
     page.locator("#moving .copy", has_text="Copied").wait_for()
     copied = page.evaluate("navigator.clipboard.readText()")

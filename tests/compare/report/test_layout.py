@@ -1,6 +1,7 @@
 """Text of the page: whole and beside other text, on a wide and a narrow screen and on paper."""
 
 import io
+from functools import cache
 
 import pytest
 from pdfminer.high_level import extract_pages
@@ -56,11 +57,11 @@ def page(request, once, small_report, own_scene):
     return once(f"page-{receivers}-{variants}", made)
 
 
-@pytest.fixture
-def shown(browser, page):
-    """Return a function that opens the page in a window of a size, every chart drawn."""
+@pytest.fixture(scope="module")
+def _shown(browser, page):
     contexts = []
 
+    @cache
     def show(size):
         context = browser.new_context(
             viewport=dict(zip(("width", "height"), size, strict=True)), reduced_motion="reduce"
@@ -73,12 +74,25 @@ def shown(browser, page):
                 continue
             figure.scroll_into_view_if_needed()
             figure.locator(".chart .main-svg").first.wait_for(timeout=60_000)
-        opened.evaluate("scrollTo(0, 0)")
         return opened
 
     yield show
     for context in contexts:
         context.close()
+
+
+@pytest.fixture
+def shown(_shown):
+    """Return a function that gives the page in a window of a size, every chart drawn, at its top
+    and with every fold closed."""
+
+    def show(size):
+        opened = _shown(size)
+        opened.evaluate("document.querySelectorAll('details').forEach(d => { d.open = false })")
+        opened.evaluate("scrollTo(0, 0)")
+        return opened
+
+    return show
 
 
 @pytest.mark.parametrize("size", [WIDE, NARROW], ids=["wide", "narrow"])
