@@ -29,14 +29,6 @@ order = 2
 """
 
 
-def facts_of(*arguments, before=(), env=None):
-    """Return the JSON output of a study's command."""
-    command = [*before, sys.executable, "-m", "compare", "study", *map(str, arguments), "--json"]
-    done = subprocess.run(command, capture_output=True, text=True, env=env)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
-
-
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
@@ -88,12 +80,16 @@ def test_a_study_that_is_not_there_names_those_that_are(command):
     assert "oblique-joint" in said
 
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """Return the folder of a study run by the command, and its output."""
-    folder = tmp_path_factory.mktemp("study")
-    (folder / "mine.toml").write_text(GOOD)
-    return folder, facts_of(folder / "mine.toml", "--out", folder / "out", "--workers", 1)
+@pytest.fixture
+def made(once, command):
+    """Return the folder of a study run by the command, and its output; made once."""
+
+    def make(folder):
+        (mine := folder / "mine.toml").write_text(GOOD)
+        done = command("study", mine, "--out", folder / "out", "--workers", 1, "--json")
+        return folder, json.loads(done.out)
+
+    return once("study-mine", make)
 
 
 def test_command_writes_what_it_prints(made):
@@ -108,8 +104,11 @@ def test_command_writes_what_it_prints(made):
 
 def test_two_ranks_give_the_table_of_one_process(made, tmp_path, mpiexec):
     (folder, facts), (launcher, env) = made, mpiexec
-    before = (*launcher, "-n", "2")
-    ranks = facts_of(folder / "mine.toml", "--out", tmp_path, before=before, env=env)
+    study = ("study", folder / "mine.toml", "--out", tmp_path, "--json")
+    two = [*launcher, "-n", "2", sys.executable, "-m", "compare", *map(str, study)]
+    done = subprocess.run(two, capture_output=True, text=True, env=env)
+    assert done.returncode == 0, done.stderr
+    ranks = json.loads(done.stdout)
     keys = ("numerical", "total", "steps", "work")
     one, two = ([[row[key] for key in keys] for row in f["rows"]] for f in (facts, ranks))
     assert one == two
