@@ -17,7 +17,7 @@ from time import sleep
 from compare.cli.terminal import progress
 with progress("[bold]ten parts") as advance:
     for i in range(10):
-        sleep(0.15)
+        sleep(0.05)
         advance((i + 1) / 10)
 """
 
@@ -26,7 +26,7 @@ CLOCKED = """
 import rich.console
 clock = [0.0]
 rich.console.monotonic = lambda: clock[0]
-""" + SLOW.replace("sleep(0.15)", "sleep(0.15); clock[0] += 0.15")
+""" + SLOW.replace("sleep(0.05)", "sleep(0.15); clock[0] += 0.15")
 
 
 def on_terminal(command, **environment):
@@ -77,7 +77,7 @@ def piped(code, every):
 
 def test_a_pipe_gets_a_line_now_and_then():
     """On standard error only, with the progress so far; none remains after the work has ended."""
-    done = piped(SLOW + "sleep(0.6)", "0.4")
+    done = piped(SLOW + "sleep(0.3)", "0.1")
     assert done.stdout == ""
     lines = done.stderr.splitlines()
     said = [re.fullmatch(r"jointwave: \[bold\]ten parts: (\d+)% after \d s", x) for x in lines]
@@ -99,12 +99,12 @@ def test_an_interval_that_is_none_is_one_line(every, jointwave, monkeypatch):
     assert done.err == f"jointwave: {message}\n"
 
 
-def test_colours_are_for_a_terminal_that_wants_them():
-    """Red on a terminal; none with NO_COLOR, none in a pipe."""
+def test_colours_are_for_a_terminal_that_wants_them(jointwave):
+    """Red on a terminal; none with NO_COLOR, none elsewhere."""
     assert COLOUR.search(on_terminal(command(*RED)))
     assert not COLOUR.search(on_terminal(command(*RED), NO_COLOR="1"))
-    done = subprocess.run(command(*RED), capture_output=True, text=True)
-    assert "would fail" in done.stdout and "\x1b" not in done.stdout and done.stderr == ""
+    done = jointwave(*RED)
+    assert "would fail" in done.out and "\x1b" not in done.out and done.err == ""
 
 
 def test_a_run_shows_its_progress_on_a_terminal(tmp_path):
