@@ -344,7 +344,8 @@ def step_for(form: Form) -> Callable:
         """
         count, tiles, stride, contacts = counts[0], counts[1], counts[2], counts[3]
         receivers, per_face, loaded, sides = counts[4], counts[5], counts[6], counts[9]
-        b, m, final = constants_of(constants, counts[8]), motion[t], t == tiles - 1
+        freedoms = min(counts[8], 6)  # known to be few: loops over them are not vectorised
+        b, m, final = constants_of(constants, freedoms), motion[t], t == tiles - 1
         blocks, joints = L, L
         if final:
             blocks = count - t * L

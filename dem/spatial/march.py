@@ -92,7 +92,7 @@ def march_for(form: Form) -> Callable:
                     for i in range(AFTER):
                         sums[i] += one[i]
                     if j % stride == 0:
-                        for k in range(len(PLACES)):
+                        for k in range(len(energy)):  # unrolled if it were a constant
                             total = 0.0
                             for i in range(PLACES[k], PLACES[k] + LANES):  # always in this order
                                 total += one[i] if i >= KINETIC else sums[i]
