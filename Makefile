@@ -3,8 +3,8 @@ MAKEFLAGS += --no-print-directory
 RUN := tools/run.sh
 # Reports and tests start Python many times: none compiles the sources anew, whatever the environment says.
 export PYTHONDONTWRITEBYTECODE :=
-# Each process takes neighbouring tests, which share kernels and fixtures; scenes, whose tests share results, come first: near the end,
-# processes take from one another.
+# Each process takes neighbouring tests, which share kernels and fixtures. Scenes come last: else those of large elements run beside those
+# of the browser, and both together take 5 GB.
 TESTS := $(RUN) python -m pytest -n auto --maxprocesses 8 --dist worksteal --junitxml out/tests.xml
 
 .DEFAULT_GOAL := help
@@ -21,11 +21,11 @@ demo: setup  ## the paper's figures and all studies as one page, report/index.ht
 
 test:  ## all tests, and every shipped scene checked against its bounds
 	@tools/setup.sh browser
-	@$(TESTS) cases tests
+	@$(TESTS) tests cases
 
 test-all:  ## make test with the slow tests, the longest hard cases
 	@tools/setup.sh browser
-	@$(TESTS) -m "slow or not slow" cases tests
+	@$(TESTS) -m "slow or not slow" tests cases
 
 docs:  ## the documentation as pages, site/index.html, with the outcomes of the last make test
 	@tools/setup.sh docs
@@ -64,7 +64,7 @@ lock: .uv/bin/uv  ## regenerate constraints.txt: the newest versions, for numpy 
 test-lowest: setup .uv/bin/uv  ## make test with the oldest versions allowed by pyproject.toml, in .lowest
 	@tools/setup.sh browser
 	@tools/lowest.sh
-	@VENV=.lowest $(TESTS) --junitxml out/lowest.xml cases tests
+	@VENV=.lowest $(TESTS) --junitxml out/lowest.xml tests cases
 
 test-debian13:  ## make test in a fresh Debian 13, with pip's dolfinx and with apt's (needs root or sudo)
 	@tools/debian13.sh
