@@ -103,12 +103,7 @@ LEDGERS = {
 
 
 @pytest.mark.parametrize(
-    ("kind", "dim"),
-    [
-        *((kind, 1) for kind in LEDGERS),
-        pytest.param(APART, 2, marks=pytest.mark.slow),
-        (APART, 3),
-    ],
+    ("kind", "dim"), [*((kind, 1) for kind in LEDGERS), (APART, 2), (APART, 3)]
 )
 def test_ledger_closes_and_mechanisms_only_lose(kind, dim, short):
     result = simulate(short(**Q, **{"load__period": 1e-3} | LEDGERS[kind]), "jointed", dim)

@@ -123,20 +123,20 @@ program.main()
 
 
 @pytest.mark.parametrize(
-    ("count", "rank", "function", "error", "code", "words"),
+    ("rank", "function", "error", "code", "words"),
     [
-        (3, 0, "body.restrict", "MemoryError('of one')", 2, ["not enough memory: of one"]),
-        (2, 1, "build.weight_of", "KeyError('bug')", 1, ["internal error, KeyError", "'bug'"]),
+        (0, "body.restrict", "MemoryError('of one')", 2, ["not enough memory: of one"]),
+        (1, "build.weight_of", "KeyError('bug')", 1, ["internal error, KeyError", "'bug'"]),
     ],
 )
 def test_a_process_that_fails_alone_ends_all(
-    count, rank, function, error, code, words, under_mpi, said, tmp_path
+    rank, function, error, code, words, under_mpi, said, tmp_path
 ):
     """Others wait for what it would have sent them; its line is the only one, of a mistake of the
     program too."""
     program = SERIAL.format(error=error, rank=rank, function=function)
     arguments = ("run", *SCENE, *CONTINUUM, *SHORT, "--out", tmp_path)
-    (line,) = said(under_mpi(count, "-c", program, *arguments, code=code))
+    (line,) = said(under_mpi(3, "-c", program, *arguments, code=code))
     assert all(word in line for word in words)
 
 
