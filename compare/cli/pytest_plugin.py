@@ -4,16 +4,20 @@
 it imports nothing heavy before a scene is met; any other TOML file is left alone.
 """
 
+import fcntl
 import shlex
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 from warnings import warn
 
 import pytest
 
 LARGEST_FILE = 10_000_000  # bytes, as of any scene
+SHARED = pytest.StashKey[str]()  # the folder of results that all workers of pytest-xdist read
 
 
 class SceneWarning(UserWarning):
@@ -22,6 +26,31 @@ class SceneWarning(UserWarning):
 
 class Misfit(Exception):
     """A pair that is further apart than its scene expects, or that cannot be measured."""
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_configure_node(node: Any) -> None:
+    """Give each worker of pytest-xdist one folder for the results of all, until the tests end."""
+    config = node.config
+    if SHARED not in config.stash:
+        folder = TemporaryDirectory(prefix="jointwave-")
+        config.add_cleanup(folder.cleanup)
+        config.stash[SHARED] = folder.name
+    node.workerinput["jointwave"] = config.stash[SHARED]
+
+
+def _once(file: Path, make: Callable[[], Any]) -> Any:
+    """Return the result that the first worker that asks makes and writes, for which others wait."""
+    from compare.runs.output import fields_of, write_fields
+    from results.netcdf import load_netcdf
+
+    with file.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if file.is_file():
+            return load_netcdf(file)
+        result = make()
+        write_fields(file, fields_of(result))
+        return result
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "SceneFile | None":
@@ -127,14 +156,17 @@ class PairItem(pytest.Item):
             warn(SceneWarning(f"{self.scene.where}: {line}"), stacklevel=1)
 
     def _solved(self, name: str):
-        """Return a result; each engine runs once for the same scene of a file."""
+        """Return a result; each engine runs once for the same scene of a file, in one worker."""
         from compare.engines import solve
         from results.dataset import scene_hash
 
         assert isinstance(self.parent, SceneFile)
         results, key = self.parent.results, (scene_hash(self.scene), name)
         if key not in results:
-            results[key] = solve(name, self.scene)
+            folder = Path(getattr(self.config, "workerinput", {}).get("jointwave", ""))
+            make = partial(solve, name, self.scene)
+            is_shared = folder.name and folder.is_dir()  # a worker may run on another machine
+            results[key] = _once(folder / f"{'-'.join(key)}.nc", make) if is_shared else make()
         return results[key]
 
     def _command(self) -> str:
