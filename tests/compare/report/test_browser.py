@@ -246,12 +246,10 @@ def test_no_figure_is_blank_on_screen(whole):
         assert spread(figure.screenshot()) > 8, figure.get_attribute("id")
 
 
-def test_the_page_prints_what_is_not_folded(page):
-    """Folds stay closed; each scene takes at most three sides and a half."""
-    pdf = page.pdf(prefer_css_page_size=True)
-    assert pdf.startswith(b"%PDF")
-    sheets = len(re.findall(rb"/Type\s*/Page\b", pdf))
-    assert 4 <= sheets <= 11
+def test_the_page_prints_what_is_not_folded(page, printed, title):
+    """Folds stay closed, and titles are whole; each scene takes at most three sides and a half."""
+    sides, said = printed(page)
+    assert 4 <= sides <= 11 and title.replace(" ", "") in said
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
     assert page.locator("details[open]").count() == 0 < page.locator("details").count()
 
@@ -299,9 +297,15 @@ OUTSIDE = """figure => {
 
 
 @pytest.mark.parametrize("size", [WIDE, NARROW], ids=["wide", "narrow"])
-def test_no_text_is_clipped(opened, whole, size):
+def test_no_text_is_clipped_or_lies_over_another(
+    opened, whole, overlaps, shows_verdict_and_cost, size
+):
+    """The first narrow screen shows the verdict and the cost, too."""
     page = whole if size == WIDE else opened(size)
+    if size == NARROW:
+        shows_verdict_and_cost(page, *size)
     drawn(page)
+    assert overlaps(page) == []
     assert page.evaluate("document.documentElement.scrollWidth") == size[0]
     assert page.evaluate(CLIPPED, BOXES) == []
     for figure in page.locator("figure").all():
