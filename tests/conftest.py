@@ -25,6 +25,7 @@ from numba.core.sigutils import normalize_signature
 
 import cases
 from cases.errors import InterruptedRun
+from compare.runs.garbage import collect_rarely
 from joints.formula import KNOWN, kernel_options, shortcuts
 from numerics import jit
 from results.arrays import copied, fill
@@ -46,6 +47,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ["JOINTWAVE_PROGRESS"] = "0"
 
 LARGE = 1 << 30  # bytes, of a process
+LITTLE = 1 << 26  # bytes, that a process may grow before garbage is looked for
 MALLOC_TRIM = getattr(ctypes.CDLL(None), "malloc_trim", lambda keep: 0)
 
 PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
@@ -76,7 +78,9 @@ def pytest_collection_modifyitems(items):
 
 
 def pytest_collection_finish():
-    """Take what has been imported and collected from the garbage that is looked through."""
+    """Take what has been imported and collected from the garbage that is looked through, rarely as
+    in the command."""
+    collect_rarely()
     gc.collect()
     gc.freeze()
 
@@ -110,10 +114,16 @@ def release_results(request):
 
 
 def release_memory():
-    """Release garbage in cycles, and the pages of what was freed."""
+    """Release garbage in cycles, and the pages of what was freed, where the process has grown."""
+    if _resident() < _released[0] + LITTLE:
+        return
     gc.collect()
     gc.freeze()  # what is left are kernels and types, which stay: no need to look at them again
     MALLOC_TRIM(0)  # glibc keeps the pages of arrays that were freed below others that were not
+    _released[0] = _resident()
+
+
+_released = [0]  # bytes of this process when its garbage was last released
 
 
 @pytest.fixture(scope="session")

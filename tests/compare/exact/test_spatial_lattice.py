@@ -73,7 +73,7 @@ class Points:
 
         def push(i, h, f):
             force[i] += f
-            force[i, 3:] += np.cross([0, h, 0], f[:3])
+            force[i, 3:] += h * np.array([f[2], 0, -f[0]])  # of an arm along y
 
         for j, (spring, eta) in enumerate(self.joints):
             rel, rate = (self.face(x[j + 1], -d / 2) - self.face(x[j], d / 2) for x in (q, v))

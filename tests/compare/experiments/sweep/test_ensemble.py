@@ -1,8 +1,6 @@
 """Ensembles as a user meets them: members that resume, and their statistics."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -25,15 +23,17 @@ MEMBERS = 5
 
 
 @pytest.fixture(scope="module")
-def ensemble(tmp_path_factory):
-    """Return the folder of an ensemble of runs by two processes."""
-    out = tmp_path_factory.mktemp("ensemble")
-    asked = ["run", SCENE, "--variant", "", *KEYS, "--ensemble", str(MEMBERS), "--workers", "2"]
-    done = subprocess.run(
-        [sys.executable, "-m", "compare", *asked, "--out", str(out)], capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stderr
-    return out
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("ensemble")
+
+
+@pytest.fixture
+def ensemble(folder, command):
+    """Return the folder of an ensemble of runs by two processes, made once."""
+    if not list(folder.iterdir()):
+        asked = ["run", SCENE, "--variant", "", *KEYS, "--ensemble", MEMBERS, "--workers", 2]
+        command(*asked, "--out", folder)
+    return folder
 
 
 def waves() -> np.ndarray:
