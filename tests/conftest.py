@@ -26,7 +26,7 @@ from numba.core.sigutils import normalize_signature
 import cases
 from cases.errors import InterruptedRun
 from compare.runs.garbage import collect_rarely
-from joints.formula import KNOWN, kernel_options, shortcuts
+from joints.formula import KNOWN, shortcuts
 from numerics import jit
 from results.arrays import copied, fill
 
@@ -280,9 +280,9 @@ def without_warnings():
 
 @pytest.fixture(scope="module")
 def instructions():
-    """Return a function that counts one kind of instruction in a kernel for given arguments.
+    """Return a function that counts one kind of instruction in a kernel for given arguments, as
+    runs and other tests compile it.
 
-    The kernel is compiled afresh, because the cache hands back machine code without its text.
     unrolled : whether the copies that unrolling makes of an instruction count, whose names only
     end differently. Skips with a numba that leaves flags to its optimiser.
     """
@@ -291,15 +291,12 @@ def instructions():
     texts = {}
 
     def count(kernel, arguments, kind, unrolled=True):
-        key = kernel.py_func, tuple(map(numba.typeof, arguments))
-        if key not in texts:
-            fresh = numba.njit(error_model="numpy", no_cfunc_wrapper=True, **kernel_options)(
-                kernel.py_func
-            )
-            with shortcuts():
-                fresh(*arguments)
-            texts[key] = "\n".join(fresh.inspect_llvm().values())
-        found = re.findall(rf"(%\.?\w+)[.\w]* = {kind} ", texts[key])
+        types = tuple(map(numba.typeof, arguments))
+        if (kernel, types) not in texts:
+            kernel(*arguments)
+            library = kernel.overloads[types].library  # compiled here, or read from the cache
+            texts[kernel, types] = str(library._get_module_for_linking())
+        found = re.findall(rf"(%\.?\w+)[.\w]* = {kind} ", texts[kernel, types])
         return len(found if unrolled else set(found))
 
     return count

@@ -61,7 +61,9 @@ def march(
     """
     form, b, contacts, (first, last) = model.form, model.blocks, model.contacts, steps
     held, first_held = model.held or (None, None, None, None), None
-    if model.held is not None:
+    if model.held is None:
+        drive = None  # one kernel, whoever asks
+    else:
         first_held = np.searchsorted(model.held.block, contacts.first_block)
         if drive is None:
             drive = np.zeros((last - first, len(model.held.block), 3))

@@ -23,7 +23,7 @@ BAR: dict[str, Any] = {
     "load": {"shape": "ricker", "amplitude": 1e6, "period": PERIOD},
     "ends": {"start": "quiet", "end": "quiet"},
     "time": {"duration": 0.1},
-    "record": {"stress": [10.0, 30.0], "velocity": [], "interval": 1e-4, "energy": False},
+    "record": {"stress": [10.0, 30.0], "velocity": [], "interval": 1e-4},
     "numerics__continuum__elements_per_block": 1,
 }
 

@@ -151,11 +151,12 @@ def test_order_of_the_elements(problem, kind, order, count, expected, distorted)
     + [(*mesh[:3], mesh[1] + 1, True) for mesh in MESHES if mesh[0] in SIMPLICES],
 )
 def test_order_of_the_elements_in_implicit_steps(problem, kind, order, count, expected, consistent):
-    """The same orders; p + 1 for quadratic simplices too, where their mass is consistent."""
-    errors, dt = [], END / 40
+    """The same orders; p + 1 for quadratic simplices too, where their mass is consistent. Steps of
+    any length make no error."""
+    errors, dt = [], END / 10
     for cells in (count, 2 * count):
         one = problem(kind, cells, order, True, consistent)
-        u = drive_implicitly(one, dt, 40, trapezoids_own(one.motion, dt))
+        u = drive_implicitly(one, dt, 10, trapezoids_own(one.motion, dt))
         errors.append(one.error(u, one.motion.history(END)))
     rate = np.log2(errors[0] / errors[1])
     assert expected - 0.2 < rate < expected + 0.5

@@ -130,7 +130,6 @@ def explicit(scene, implicit, stride, kind="jointed"):
 
 
 STRENGTHS = {
-    "linear": {},
     "no tension": {"joints__tension": False},
     "softening": {"joints__tensile_strength": 1e5, "joints__fracture_energy": 10.0},
     "friction": {"joints__friction_angle": 30.0, **ACROSS},

@@ -46,9 +46,9 @@ shear_stiffness = 8.0e9
 [[waves]]
 kind = "S"
 direction = [-0.6, 0.8]
-shape = "ricker"
+shape = "sine"
 amplitude = 1.0e6
-period = 5.0e-3
+period = 2.5e-3
 
 [boundaries]
 left = "quiet"
@@ -57,7 +57,7 @@ bottom = "quiet"
 top = "quiet"
 
 [time]
-duration = 8.0e-3
+duration = 4.0e-3
 
 [record]
 points = [[3.0, 7.5], [6.0, 2.0], [12.0, 6.0]]
@@ -72,7 +72,8 @@ continuum.scheme = "explicit"
 name = "tunnel"
 boundaries.top = "free"
 prestress = { xx = 2.0e5, yy = 3.0e5 }
-record.fields = 2.0e-3
+record.fields = 5.0e-4
+time.duration = 2.0e-3
 
 [variants.domain]
 non_convex = "cut"
@@ -104,7 +105,7 @@ kind = "pressure"
 opening = 0
 shape = "sine"
 amplitude = 5.0e5
-period = 2.0e-3
+period = 1.0e-3
 
 [[variants]]
 name = "weight"
@@ -112,6 +113,7 @@ waves = []
 boundaries = { left = "periodic", right = "periodic", bottom = "fixed", top = "free" }
 gravity = { acceleration = 9.81 }
 numerics.continuum.scheme = "implicit"
+time.duration = 2.0e-3
 
 [[variants.regions]]
 name = "cover"
@@ -138,13 +140,13 @@ kind = "base"
 side = "bottom"
 direction = [0.6, 0.8]
 quantity = "velocity"
-shape = "ricker"
+shape = "sine"
 amplitude = 0.01
 period = 5.0e-3
 
 [[variants]]
 name = "rate and state"
-prestress = { xx = 4.0e6, yy = 4.0e6, xy = 1.0e6 }
+prestress = { xx = 2.0e6, yy = 2.0e6, xy = 8.0e5 }
 
 [[variants.joint_sets]]
 name = "one"

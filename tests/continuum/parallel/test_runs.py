@@ -41,7 +41,7 @@ INCLINED = {"load.direction": [0.6, 0.8, 0.0], "motion.rotation": "small"}
 IMPLICIT = PILLAR | {
     **INCLINED,
     "record.interval": 1e-4,
-    "time.duration": 8e-3,
+    "time.duration": 2e-3,
     "numerics.continuum.scheme": "implicit",
 }
 
@@ -69,7 +69,7 @@ SCENES = {
             "joints.damping_ratio": 0.02,
             "segments": [
                 {"y": [0.0, 0.5], "density": 5000.0, "block": 0.25},
-                {"y": [0.5, 1.5], "joints": False, "intact_modulus": 2e11, "block": 0.1},
+                {"y": [0.5, 1.5], "joints": False, "intact_modulus": 2e11, "block": 0.25},
             ],
             "load.direction": [0, 1, 0],
             "ends.end": "matched",
@@ -191,6 +191,8 @@ SCENES = {
             "joints.tension": False,
             "joints.friction_angle": 30.0,
             "pillar.length": 1.5,
+            "time.duration": 4e-3,
+            "load.period": 5e-3,
             "record.stress": [0.0, 0.5, 1.1],
             "soft_layers": [],
             "gravity.direction": [0.28, 0.96, 0.0],

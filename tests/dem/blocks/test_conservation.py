@@ -24,7 +24,6 @@ RATE |= {"reference_rate": 1e-6, "initial_state": 1.0}
 SOFTENING = {"tensile_strength": 5e4, "critical_opening": 3e-5}
 LAWS = {
     "elastic": (STIFF, 0),
-    "elastic, by points": (STIFF, 2),
     "dashpots": (STIFF | DASHPOTS, 0),
     "dashpots, by points": (STIFF | DASHPOTS, 3),
     "no tension": (STIFF | {"carries_tension": 0.0}, 2),
@@ -33,7 +32,6 @@ LAWS = {
         STIFF | SLIP | DASHPOTS | {"residual_cohesion": 0.0},
         2,
     ),
-    "slip that weakens and lifts": (STIFF | SLIP | WORN, 2),
     "slip that weakens and lifts, with dashpots": (STIFF | SLIP | WORN | DASHPOTS, 2),
     "rate and state": (STIFF | SLIP | RATE, 2),
     "softening": (STIFF | SLIP | SOFTENING | DASHPOTS, 2),

@@ -6,7 +6,7 @@ import pytest
 import dem
 from cases.material.calibrate import calibrate
 
-SLIP = {"friction_angle": 30.0}
+SLIP = {"friction_angle": 30.0, "damping_ratio": 0.02}
 UNLOADED = {"load": {"shape": "step", "amplitude": 0.0, "direction": [1, 0, 0]}}
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
 G = 9.81
