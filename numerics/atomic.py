@@ -7,15 +7,13 @@ from numba.extending import intrinsic
 
 
 def _place(context, builder, signature, arguments):
-    array = context.make_array(signature.args[0])(context, builder, arguments[0])
-    return cgutils.get_item_pointer(
-        context, builder, signature.args[0], array, [arguments[1]], wraparound=False
-    )
+    counters = cgutils.create_struct_proxy(signature.args[0])(context, builder, arguments[0])
+    return builder.gep(counters.data, [arguments[1]], inbounds=True)
 
 
 @intrinsic
 def peek(typing, counters, i):
-    """Return counters[i] (int64 array) with acquire semantics: earlier writes are visible."""
+    """Return counters[i] (int64, contiguous) with acquire semantics: earlier writes are visible."""
 
     def generate(context, builder, signature, arguments):
         place = _place(context, builder, signature, arguments)

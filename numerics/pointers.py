@@ -1,4 +1,4 @@
-"""Pointers to arrays, which compile fastest in kernels: an address and the row lengths.
+"""Pointers to arrays, which compile fastest in kernels: an address and the lengths.
 
 An item of an array takes numba some thirty instructions, which count its references, allow for
 negative indices and read its shape; each is typed, lowered, parsed and optimised away again. An
@@ -11,73 +11,80 @@ from typing import Any
 from llvmlite.ir import ArrayType
 from numba import types
 from numba.core import cgutils
-from numba.core.typing.templates import AbstractTemplate, infer_global, signature
-from numba.extending import intrinsic, lower_builtin, models, register_model
+from numba.core.imputils import lower_getattr
+from numba.core.typing.templates import (
+    AbstractTemplate,
+    AttributeTemplate,
+    infer_getattr,
+    infer_global,
+    signature,
+)
+from numba.extending import lower_builtin, models, register_model
 
 
 class Pointer(types.Type):
-    """The type of a pointer to a contiguous array of so many dimensions."""
+    """The type of a pointer to a contiguous array of so many dimensions.
 
-    distinct = True  # for `joints.formula`: formulas are never given one array twice
-    get_item: Any  # and how items are read and written
+    distinct : for `joints.formula`, whether it overlaps no other that a formula is given.
+    """
+
+    get_item: Any  # how items are read and written
     set_item: Any
 
-    def __init__(self, dtype: Any, ndim: int):
-        self.dtype, self.ndim = dtype, ndim
-        super().__init__(f"pointer({dtype}, {ndim})")
+    def __init__(self, dtype: Any, ndim: int, distinct: bool):
+        self.dtype, self.ndim, self.distinct = dtype, ndim, distinct
+        super().__init__(f"pointer({dtype}, {ndim}, {distinct})")
 
 
 @register_model(Pointer)
 class PointerModel(models.StructModel):
-    """The address of an array, and the lengths of its dimensions except the first."""
+    """The address of an array, and the lengths of its dimensions."""
 
     def __init__(self, manager, kind):
-        lengths = [(f"length{k}", types.intp) for k in range(1, kind.ndim)]
+        lengths = [(f"length{k}", types.intp) for k in range(kind.ndim)]
         super().__init__(manager, kind, [("data", types.CPointer(kind.dtype)), *lengths])
 
 
-def _pointer_type(kind: Any) -> Any:
-    if isinstance(kind, types.Array):
-        if kind.layout != "C":
-            raise TypeError("pointers require contiguous arrays")
-        return Pointer(kind.dtype, kind.ndim)
-    return kind
+@infer_getattr
+class PointerAttribute(AttributeTemplate):
+    """The number of items and the lengths of all dimensions."""
+
+    key = Pointer
+
+    def resolve_size(self, kind):
+        """Return its type."""
+        return types.intp
+
+    def resolve_shape(self, kind):
+        """Return its type."""
+        return types.UniTuple(types.intp, kind.ndim)
 
 
-def _pointer(context, builder, kind, value):
-    if not isinstance(kind, types.Array):
-        return value
-    place = context.data_model_manager[kind].get_field_position
-    found = context.get_value_type(_pointer_type(kind))(None)
-    found = builder.insert_value(found, builder.extract_value(value, place("data")), 0)
-    for k in range(1, kind.ndim):
-        length = builder.extract_value(value, (place("shape"), k))
-        found = builder.insert_value(found, length, k)
-    return found
+@lower_getattr(Pointer, "shape")
+def shape(context, builder, kind, pointer):
+    """Return the lengths of all dimensions."""
+    found = types.UniTuple(types.intp, kind.ndim)
+    return context.make_tuple(builder, found, _lengths(builder, kind, pointer))
 
 
-@intrinsic
-def pointers(typing, values):
-    """Return a tuple with a pointer for each array: valid only while the kernel that received it
-    runs, and for indices within bounds."""
-    given = values.types
-    result = types.Tuple([_pointer_type(kind) for kind in given])
+@lower_getattr(Pointer, "size")
+def size(context, builder, kind, pointer):
+    """Return the number of items."""
+    first, *others = _lengths(builder, kind, pointer)
+    for one in others:
+        first = builder.mul(first, one, flags=["nsw"])
+    return first
 
-    def generate(context, builder, signature, arguments):
-        parts = [
-            _pointer(context, builder, kind, builder.extract_value(arguments[0], k))
-            for k, kind in enumerate(given)
-        ]
-        return context.make_tuple(builder, result, parts)
 
-    return result(values), generate
+def _lengths(builder, kind, pointer):
+    return [builder.extract_value(pointer, 1 + k) for k in range(kind.ndim)]
 
 
 def _index_types(kind: Pointer, index: Any) -> Any:
     """Return the types of an index and of the item."""
     if isinstance(index, types.Integer):
         rest = kind.ndim - 1
-        return types.intp, Pointer(kind.dtype, rest) if rest else kind.dtype
+        return types.intp, Pointer(kind.dtype, rest, kind.distinct) if rest else kind.dtype
     if isinstance(index, types.BaseTuple) and len(index) == kind.ndim:
         return types.UniTuple(types.intp, kind.ndim), kind.dtype
     return None, None
@@ -112,7 +119,7 @@ def _place(builder, kind, pointer, index):
     """Return the address of an item, for one index or all of them."""
     at = index[0]
     for k in range(1, kind.ndim):
-        at = builder.mul(at, builder.extract_value(pointer, k), flags=["nsw"])
+        at = builder.mul(at, builder.extract_value(pointer, 1 + k), flags=["nsw"])
         if k < len(index):
             at = builder.add(at, index[k], flags=["nsw"])
     return builder.gep(builder.extract_value(pointer, 0), [at], inbounds=True)
@@ -132,8 +139,8 @@ def get_item(context, builder, sig, args):
         return builder.load(place)
     row = cgutils.create_struct_proxy(sig.return_type)(context, builder)
     row.data = place
-    for k in range(1, sig.return_type.ndim):
-        setattr(row, f"length{k}", builder.extract_value(pointer, k + 1))
+    for k, length in enumerate(_lengths(builder, sig.args[0], pointer)[1:]):
+        setattr(row, f"length{k}", length)
     return row._getvalue()
 
 

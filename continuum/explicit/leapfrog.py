@@ -14,6 +14,7 @@ from continuum.space.operator import multiply
 from continuum.space.stencils import add_transposed, multiply_stencils
 from continuum.space.tractions import joint_energy, joint_loads
 from joints.formula import formula
+from numerics.arguments import unpacked
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.divergence import EVERY, SPEED
 from numerics.jit import jitted_for
@@ -24,7 +25,7 @@ def leapfrog_for(parts, directions, shared=False):
     """Return the kernel for joints of a law with these parts (`joints.law.Parts`) and jumps
     in so many directions, both None without joints; shared : by several processes.
 
-    Its arguments are those of `continuum.explicit.march.arguments`; what a model lacks is None.
+    Of what `continuum.explicit.march.arguments` packs, a model's absent effects are None.
     """
 
     shears = True if directions != 1 else None
@@ -33,8 +34,8 @@ def leapfrog_for(parts, directions, shared=False):
     if shared:
         from continuum.parallel.exchange import receive, send
 
-    @jitted_for(parts, directions, shared)
-    def leapfrog(
+    @formula
+    def steps(
         first, last, stride, dt,
         u, v, v_before, force, rate, drag,
         tiles, pairs, k_start, k_column, k_value, c_start, c_column, c_value,
@@ -181,11 +182,11 @@ def leapfrog_for(parts, directions, shared=False):
                             parts, directions, table, area, prestress,
                             jump, opening, slide, path, loads,
                         )  # fmt: skip
-                    balance = energy[:, n // stride]
-                    balance[1], balance[2] = elastic + stored, spent
-                    add_energy(balance, mass, u, v_before, v, weight, ledger)
+                    s = n // stride
+                    energy[1, s], energy[2, s] = elastic + stored, spent
+                    add_energy(energy, s, mass, u, v_before, v, weight, ledger)
                     if elongation is not None:
-                        balance[4] -= elastic
+                        energy[4, s] -= elastic
             if ledger is not None:
                 add_work(
                     ledger, 0.5 * dt, v, v_before, v, drag, mass, decay, dt,
@@ -215,6 +216,10 @@ def leapfrog_for(parts, directions, shared=False):
                         break
         restore_tiny(flushing)
         return failed
+
+    @jitted_for(parts, directions, shared)
+    def leapfrog(given, link, first, last, stride, dt):
+        return steps(first, last, stride, dt, *unpacked(given), link)
 
     return leapfrog
 
@@ -270,8 +275,8 @@ def read(fields, start, column, value, constant, waves, s):
 
 
 @formula
-def add_energy(balance, mass, u, v_before, v, weight, ledger):
-    """Set the energies (J) of a sample, in the order of `continuum.model.TERMS`, that are not of
+def add_energy(energy, s, mass, u, v_before, v, weight, ledger):
+    """Set the energies (J) of sample s, in the order of `continuum.model.TERMS`, that are not of
     springs."""
     kinetic, fallen = 0.0, 0.0
     for i in range(v.size):
@@ -279,6 +284,6 @@ def add_energy(balance, mass, u, v_before, v, weight, ledger):
     if weight is not None:
         for i in range(u.size):
             fallen += weight[i] * u[i]
-    balance[0], balance[3] = kinetic, -fallen
+    energy[0, s], energy[3, s] = kinetic, -fallen
     for k in range(ledger.size):
-        balance[4 + k] = ledger[k]
+        energy[4 + k, s] = ledger[k]

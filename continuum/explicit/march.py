@@ -9,6 +9,7 @@ from scipy.sparse import csr_matrix
 from continuum.explicit.leapfrog import leapfrog_for
 from continuum.model import Memory, Model
 from continuum.state import Samples, State
+from numerics.arguments import Packed
 from numerics.divergence import Guard
 
 #: A matrix [receivers, fields], and what is added.
@@ -41,15 +42,15 @@ def march(
     constants = (None, None) if joints is None else (joints.parts, joints.directions)
     kernel = leapfrog_for(*constants, shared=link is not None)
     read = readings(model, state) if read is None else read
-    arrays = arguments(model, state, samples, limits, link, read)
+    given = arguments(model, state, samples, limits, read)
     driven = model.ends.driven
     if driven is None:
-        return lambda first, last: kernel(first, last, stride, model.dt, *arrays)
+        return lambda first, last: kernel(given, link, first, last, stride, model.dt)
 
     def in_parts(first: int, last: int) -> int:
         failed = 0
         for begin, end in driven.filled(first, last):
-            failed = failed or kernel(begin, end, stride, model.dt, *arrays)
+            failed = failed or kernel(given, link, begin, end, stride, model.dt)
             if link is None and limits is not None and limits.found[0] >= 0:
                 break
         return failed
@@ -58,9 +59,9 @@ def march(
 
 
 def arguments(
-    model: Model, state: State, samples: Samples, limits: Guard | None, link: Any, read: Readings
-) -> tuple[Any, ...]:
-    """Return the arguments of the kernel after the steps, in its order; None for what is absent."""
+    model: Model, state: State, samples: Samples, limits: Guard | None, read: Readings
+) -> Packed:
+    """Return what the kernel is given, in its order; None for what is absent."""
     rock, joints = model.rock, model.interfaces
     loaded, quiet, fixed, dashpots, driven = model.ends
     viscosity = 3 * (None,) if rock.viscosity is None else rock.viscosity[2:]
@@ -71,7 +72,7 @@ def arguments(
         along = int(np.searchsorted(joints.stencils.first, joints.area.size))
         along = 0 if joints.parts.dilation else along
         jumps = *joints.stencils, along, joints.table, joints.area, joints.prestress
-    return (
+    return Packed(
         *(state.u, state.v, state.v_before, state.force, state.rate, state.drag),
         *(*rock.stiffness, *viscosity),
         *(rock.step_over_mass, rock.mass, rock.decay, model.weight),
@@ -93,7 +94,6 @@ def arguments(
         *(state.fields, matrix.indptr, matrix.indices, matrix.data, added, samples.waves),
         *(state.ledger, samples.energy),
         *(2 * (None,) if limits is None else (limits.limit.view(float)[0], limits.found)),
-        link,
     )
 
 

@@ -30,7 +30,7 @@ def multiply_tile(typing, start, column, value, x, y, factor, at, width, first, 
     def generate(context, builder, signature, arguments):
         *arrays, factor, at, width, first, size = arguments
         data = [
-            context.make_array(kind)(context, builder, array).data
+            cgutils.create_struct_proxy(kind)(context, builder, array).data
             for kind, array in zip(signature.args, arrays, strict=False)
         ]
         for lanes in (1, *(WIDTH * n for n in range(1, 1 + REGISTERS))):
@@ -93,7 +93,7 @@ def multiply_pair(typing, column, value, x, y, factor, at, row, first, last, beg
     def generate(context, builder, signature, arguments):
         *arrays, factor, at, row, first, last, begin = arguments
         column, value, x, y = (
-            context.make_array(kind)(context, builder, array).data
+            cgutils.create_struct_proxy(kind)(context, builder, array).data
             for kind, array in zip(signature.args, arrays, strict=False)
         )
         two, four = (ir.VectorType(DOUBLE, n) for n in (2, 4))

@@ -37,10 +37,12 @@ from dem.axial.state import State, state_at_rest
 from dem.size import refuse_large
 from dem.static import stiffest
 from joints.energy import elastic_energy
+from joints.formula import formula
 from joints.law import law_of
+from numerics.arguments import Packed, unpacked
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.divergence import EVERY, SPEED, Guard, guard, out_of_bounds
-from numerics.jit import jitted
+from numerics.jit import jitted_for
 from numerics.sums import total_of
 
 XI, LAMBDA, CHI = 0.1786178958448091, -0.2123418310626054, -0.06626458266981849
@@ -144,13 +146,14 @@ def run(
     monitor : stops a run that exceeds its bounds; None without.
     """
     limits, every = (guard(0.0), 0) if monitor is None else (monitor, EVERY)
-    loop_for(model.effects._replace(ledger=state.work is not None))(
+    given = Packed(
         model.chain, model.laws, *composition, model.load,
         *model.receivers.sections, *model.receivers.points,
         state.u, state.v, state.force, state.start, state.end, state.work, *samples,
-        limits.limit.view(np.float64)[0], limits.found, first * stride, last * stride, first,
-        stride, every,
+        limits.limit.view(np.float64)[0], limits.found, every,
     )  # fmt: skip
+    loop = loop_for(model.effects._replace(ledger=state.work is not None))
+    loop(given, first * stride, last * stride, first, stride)
 
 
 @cache
@@ -163,11 +166,11 @@ def loop_for(effects):
     parts, gravity, ledger = effects.joints, effects.gravity, effects.ledger
     varied, start_held, end_held = parts.varied, effects.start, effects.end
 
-    @jitted
-    def loop(
+    @formula
+    def steps(
         c, laws, drifts, kicks, loads, impulses, load, left, right, weight, before, after, share,
         u, v, force, start, end, work, stress, velocity, displacement, energy, squares,
-        limit, found, first, last, s, stride, every,
+        limit, found, every, first, last, s, stride,
     ):  # fmt: skip
         tiny = flush_tiny()
         tail, law = u.size - 1, law_of(laws, 0)
@@ -189,7 +192,8 @@ def loop_for(effects):
                     in_ends = 0.5 * start[1] * start[0] + 0.5 * end[1] * end[0]
                     if n == 0:
                         work[0] = -in_ends
-                    energy[2, s], energy[3, s], energy[-1, s] = 0.0, in_ends + work[0], work[1]
+                    energy[2, s], energy[3, s] = 0.0, in_ends + work[0]
+                    energy[energy.shape[0] - 1, s] = work[1]
                     for j in range(tail + 1):
                         squares[j] = v[j] * v[j]
                     energy[0, s] = 0.5 * c.mass * total_of(squares)
@@ -200,7 +204,7 @@ def loop_for(effects):
                     squares[tail] = 0.0
                     energy[1, s] = c.area * total_of(squares)
                     if gravity:
-                        energy[-2, s] = -c.weight * total_of(u)
+                        energy[energy.shape[0] - 2, s] = -c.weight * total_of(u)
                 s += 1
 
             for k in range(drifts.size):
@@ -236,5 +240,9 @@ def loop_for(effects):
                     break
                 due = due + every if due + every < last else last
         restore_tiny(tiny)
+
+    @jitted_for(effects)
+    def loop(given, first, last, s, stride):
+        steps(*unpacked(given), first, last, s, stride)
 
     return loop

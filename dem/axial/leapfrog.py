@@ -16,12 +16,14 @@ from dem.axial.model import Model
 from dem.axial.samples import Samples, buffers
 from dem.axial.state import State
 from joints.energy import elastic_energy, fracture_energy_spent
+from joints.formula import formula
 from joints.law import law_of
 from joints.normal import normal_traction, spring_traction
 from joints.softening import strength_left
+from numerics.arguments import Packed, unpacked
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.divergence import ENERGY, EVERY, SPEED, Guard, gains_energy, guard, out_of_bounds
-from numerics.jit import jitted
+from numerics.jit import jitted_for
 from numerics.sums import total_of
 
 UNGUARDED = guard(0.0)  # placeholder of a loop without a monitor
@@ -50,14 +52,14 @@ def march(model: Model, state: State, first: int, last: int) -> None:
 
 def _take(model, state, samples, monitor, first, last, index, stride):
     loop = loop_for(model.effects._replace(ledger=state.work is not None))
-    loop(*arguments(model, state, samples, monitor), first, last, index, stride)
+    loop(arguments(model, state, samples, monitor), first, last, index, stride)
 
 
-def arguments(model: Model, state: State, samples: Samples, monitor: Guard | None) -> tuple:
-    """Return the arguments of a time loop, except steps and samples."""
+def arguments(model: Model, state: State, samples: Samples, monitor: Guard | None) -> Packed:
+    """Return what a time loop is given except steps and samples."""
     limits, every = (UNGUARDED, 0) if monitor is None else (monitor, EVERY)
     limit = limits.limit.view(np.float64)[0]
-    return (
+    return Packed(
         model.chain, model.laws, model.blocks, model.load, model.base,
         *(6 * (None,) if model.relaxation is None else model.relaxation),
         *model.receivers.sections, *model.receivers.points, *state, *samples,
@@ -81,8 +83,8 @@ def loop_for(effects):
     joint_ledger = ledger and dashpots
     block_ledger = ledger and (mass_damping or local_damping)
 
-    @jitted
-    def loop(
+    @formula
+    def steps(
         c, laws, blocks, load, base, relaxed, shares, decays, gains, springs, losses,
         left, right, weight, before, after, share,
         u, v, force, gap_rate, opening, broke, start, end,
@@ -197,7 +199,7 @@ def loop_for(effects):
                             v_before[j] = fracture_energy_spent(law, opening[j])
                         energy[3, s] = c.area * total_of(v_before)
                     if gravity:
-                        energy[-2, s] = -c.weight * total_of(u)
+                        energy[energy.shape[0] - 2, s] = -c.weight * total_of(u)
                     for j in range(count):
                         v_before[j] = v[j]
 
@@ -241,7 +243,7 @@ def loop_for(effects):
                     energy[0, s] = 0.5 * c.mass * total_of(v_before)
                     if joint_ledger or block_ledger or relaxes:
                         energy[2, s] = total_of(viscous)
-                    energy[fracture_row, s], energy[-1, s] = work[0], work[1]
+                    energy[fracture_row, s], energy[energy.shape[0] - 1, s] = work[0], work[1]
                 s += 1
             if n + 1 == due:
                 lost, what = n + 1 if out_of_bounds(v, limit) else -1, SPEED
@@ -252,5 +254,9 @@ def loop_for(effects):
                     break
                 due = due + every if due + every < last else last
         restore_tiny(tiny)
+
+    @jitted_for(effects)
+    def loop(given, first, last, s, stride):
+        steps(*unpacked(given), first, last, s, stride)
 
     return loop

@@ -17,11 +17,11 @@ import numpy as np
 from dem.blocks.model import PlaneForm, PlaneModel, PlaneState
 from dem.blocks.tile import AFTER, BEFORE, CONTACT_ROWS, SUMMED, step_for
 from dem.blocks.tiles import LANES, depth_of, marks
+from numerics.arguments import Packed, unpacked
 from numerics.atomic import give_way, peek, post
 from numerics.cache_lines import zeros
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.jit import jitted_for
-from numerics.pointers import pointers
 from results.plane import TERMS
 
 
@@ -78,16 +78,18 @@ def march(
     loop, inertia = loop_for(form), b.inertia.ravel()
     inverse, force = 1.0 / inertia, np.zeros(inertia.size)
 
+    given = Packed(
+        contacts.pair, contacts.table, model.laws, model.rules, contacts.first_chunk,
+        contacts.first_block, inertia, inverse, first_held, *held, state.u.reshape(-1),
+        state.v.reshape(-1), state.history, drive, walls, force,
+        *marks(model.places, contacts.first_block),
+        *marks(contacts.place[model.watched], LANES * contacts.first_chunk),
+        *samples, state.sums, ledgers, buffers, progress, len(contacts.place), b.dt, b.keep,
+        b.local, b.gravity_x, b.gravity_y, depth, distinct=True,
+    )  # fmt: skip
+
     def share(thread: int) -> None:
-        loop(
-            contacts.pair, contacts.table, model.laws, model.rules, contacts.first_chunk,
-            contacts.first_block, inertia, inverse, first_held, *held, state.u.reshape(-1),
-            state.v.reshape(-1), state.history, drive, walls, force,
-            *marks(model.places, contacts.first_block),
-            *marks(contacts.place[model.watched], LANES * contacts.first_chunk),
-            *samples, state.sums, ledgers, buffers, progress, len(contacts.place), b.dt, b.keep,
-            b.local, b.gravity_x, b.gravity_y, first, last, stride, depth, thread,
-        )  # fmt: skip
+        loop(given, thread, first, last, stride)
 
     if threads == 1 or first == last:  # nothing to take: compiles
         share(0)
@@ -119,38 +121,25 @@ def loop_for(form: PlaneForm) -> Callable:
     ledger = form.ledger
 
     @jitted_for(form)
-    def loop(
-        pair, table, laws, rules, first_chunk, first_block, inertia, inverse, first_held, block,
-        keeps, moves, dashpot, u, v, history, drive, walls, force, first_place, place, place_row,
-        first_seen, seen, seen_row, displacement, velocity, contact, energy, sums, ledgers, buffers,
-        progress, contacts, dt, keep, local, g_x, g_y, first, last, stride, depth, thread,
-    ):  # fmt: skip
+    def loop(given, thread, first, last, stride):
         """Take this thread's share of the steps first .. last - 1, in turn with the others.
 
         Band B of `depth` steps belongs to thread B modulo their number; its diagonal k has tile
         k - j at its step j. It enters one when band B - 1 has left the one that asks for the last
         of its own steps at the next tile.
 
-        inertia, inverse, force : float arrays [3 N], of each freedom, one over it, and zero. drive
-        : [last - first, h, 3], on held blocks. walls : of `motion_of_walls`. progress : int64
-        [threads + 1], zero at first: diagonals that each thread has left behind, as many for each
-        band, and how many bands have closed their ledgers. The rest are the arrays of
-        `dem.blocks.model` and `tiles`, None for what the form does not have.
+        given : of `march`; inertia, inverse and force have an entry for each freedom, one over it,
+        and zero. progress : diagonals that each thread has left behind, as many for each band, and
+        how many bands have closed their ledgers.
         """
         tiny = flush_tiny()
-        tiles, size, threads = first_chunk.size - 1, inertia.size, progress.size - 1
-        given = (
-            pair, table, laws, rules, first_chunk, first_block, inertia, inverse, first_held, block,
-            keeps, moves, dashpot, u, v, history, drive, walls, force, first_place, place,
-            place_row, first_seen, seen, seen_row, displacement, velocity, contact, ledgers,
-            buffers,
-        )  # fmt: skip
         (
             pair, table, laws, rules, first_chunk, first_block, inertia, inverse, first_held, block,
             keeps, moves, dashpot, u, v, history, drive, walls, force, first_place, place,
-            place_row, first_seen, seen, seen_row, displacement, velocity, contact, ledgers,
-            buffers,
-        ) = pointers(given)  # fmt: skip
+            place_row, first_seen, seen, seen_row, displacement, velocity, contact, energy, sums,
+            ledgers, buffers, progress, contacts, dt, keep, local, g_x, g_y, depth,
+        ) = unpacked(given)  # fmt: skip
+        tiles, size, threads = first_chunk.size - 1, inertia.size, progress.size - 1
         buffer, own = buffers[thread], None
         diagonals = tiles + depth - 1
         for band in range(thread, (last - first + depth - 1) // depth, threads):

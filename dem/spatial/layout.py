@@ -34,13 +34,10 @@ FORCE = 0  # and moment about the face's centre; with finite rotations about the
 LEFT = 6 * STRIDE  # moment about the left block's centroid, for finite rotations
 DRAG = 9 * STRIDE  # the dashpots' share of all nine, for the ledger
 BEFORE = 18 * STRIDE  # velocity and angular velocity before the step, for the ledger
-MOMENTA = 24 * STRIDE  # angular momentum before the step, for the ledger, with finite rotations
-SPIN = 27 * STRIDE  # and angular velocity after it
-RELATIVE = 30 * STRIDE  # relative motion of a joint's faces: displacement and rotation, 6 or 9 rows
-RATE = 39 * STRIDE  # their rates half a step before
-CENTRED = 48 * STRIDE  # and at the whole step, for the dashpots
-NET = 57 * STRIDE  # force and moment of both joints on a block
-BUFFER = 63 * STRIDE
+RELATIVE = 24 * STRIDE  # relative motion of a joint's faces: displacement and rotation, 6 or 9 rows
+RATE = 33 * STRIDE  # their rates half a step before
+CENTRED = 42 * STRIDE  # and at the whole step, for the dashpots
+BUFFER = 51 * STRIDE
 CARRY = (
     12  # then, for each step under way, the force of a tile's last joint and its dashpots' share
 )

@@ -47,7 +47,9 @@ from dem.spatial.finite import (
     angular_velocity,
     centred,
     cross,
+    dot,
     finite_relative,
+    less,
     put_rates,
     put_three,
     three,
@@ -70,13 +72,10 @@ from dem.spatial.layout import (
     GRAVITY,
     KINETIC,
     LEFT,
-    MOMENTA,
-    NET,
     RATE,
     RELATIVE,
     ROTATION,
     SLIDING,
-    SPIN,
     VISCOUS,
     WORK,
     Form,
@@ -276,24 +275,29 @@ def step_for(form: Form) -> Callable:
 
     @formula
     def net_force(q, k, i, j, arm):
-        """Return force or moment k of both joints on a block: small rotations."""
+        """Return force or moment k of both joints on a block, and the dashpots' share of it for the
+        ledger: small rotations."""
+        net, drag = q[i] - q[i + 1], 0.0
+        if drags:
+            drag = q[DRAG + i] - q[DRAG + i + 1]
         if turns and (k == 3 or k == 5):
-            return q[i] - q[i + 1] + arm * (q[j] + q[j + 1])
-        return q[i] - q[i + 1]
+            net = net + arm * (q[j] + q[j + 1])
+            if drags:
+                drag = drag + arm * (q[DRAG + j] + q[DRAG + j + 1])
+        return net, drag
 
     @formula
-    def net_forces(b, q, at, n):
-        """Leave the forces of both joints on n blocks, and their moments about the centroids, in
-        the buffer; at : the rows of the joints' forces."""
-        for k in range(b.freedoms):
-            one = at + k * R
-            if finite and k > 2:
-                for i in range(n):
-                    q[NET + k * R + i] = q[one + i] + q[one + LEFT - ABOUT_X + i + 1]
-            else:
-                arm, across = lever(b, at, k)
-                for i in range(n):
-                    q[NET + k * R + i] = net_force(q, k, one + i, across + i, arm)
+    def moments(q, at, i):
+        """Return the moment of both joints on block i about its centroid: finite rotations."""
+        right, left = three(q, at + ABOUT_X, i), three(q, at + LEFT, i + 1)
+        return right[0] + left[0], right[1] + left[1], right[2] + left[2]
+
+    @formula
+    def dissipate(own, i, before, after):
+        """Enter into the ledger the work of an impulse that damps block i, taken as a force over
+        the half step before it and over the one after it, J."""
+        own[VISCOUS + i] -= 0.5 * before
+        own[VISCOUS + AFTER + i] -= 0.5 * after
 
     @formula
     def add_at_face(b, q, i, side, factor, f):
@@ -505,36 +509,50 @@ def step_for(form: Form) -> Callable:
                     for i in range(blocks):
                         own[GRAVITY + i] -= x * m[X + i] + y * m[Y + i] + z * m[Z + i]
 
-        # Motion.
+        # Motion, and the work of what damps blocks and joints.
         for k in range(b.freedoms // 2 if finite else b.freedoms):
             push, fall, (arm, across) = b.rows[PUSH, k], b.rows[FALL, k], lever(b, FORCE, k)
+            inertia, impulse = b.rows[INERTIA, k], b.dt * b.rows[WEIGHT, k]
             for i in range(blocks):
                 at = k * R + i
-                gain, old = push * net_force(q, k, at, across + i, arm), m[velocity + at]
+                (net, drag), old = net_force(q, k, at, across + i, arm), m[velocity + at]
+                gain = push * net
                 if gravity:
                     gain += fall
-                if ledger:
-                    q[BEFORE + at] = old
                 new = advanced(b, old, gain)
                 m[velocity + at] = new
                 m[at] += b.dt * new
+                if ledger:
+                    q[BEFORE + at] = old
+                if damped and ledger:
+                    lost = inertia * (new - old) - (b.dt * net + impulse)
+                    dissipate(own, i, lost * old, lost * new)
+                if drags:
+                    lost = b.dt * drag
+                    dissipate(own, i, lost * old, lost * new)
         if finite:
             kick = b.rows[PUSH, 0] * b.mass  # dt, less by mass-proportional damping
             for i in range(blocks):
-                spun, left = three(m, velocity + ABOUT_X, i), three(q, LEFT, i + 1)
-                moment = three(q, ABOUT_X, i)
-                if ledger:
-                    put_three(q, MOMENTA + i, spun)
-                    put_three(q, BEFORE + ABOUT_X + i, angular_velocity(b, m, i))
-                spun = (
-                    advanced(b, spun[0], kick * (moment[0] + left[0])),
-                    advanced(b, spun[1], kick * (moment[1] + left[1])),
-                    advanced(b, spun[2], kick * (moment[2] + left[2])),
+                momentum, torque = three(m, velocity + ABOUT_X, i), moments(q, FORCE, i)
+                turned = (
+                    advanced(b, momentum[0], kick * torque[0]),
+                    advanced(b, momentum[1], kick * torque[1]),
+                    advanced(b, momentum[2], kick * torque[2]),
                 )
-                put_three(m, velocity + ABOUT_X + i, spun)
-                turn_by_momentum(b, m, i, spun)
                 if ledger:
-                    put_three(q, SPIN + i, angular_velocity(b, m, i))
+                    spun = angular_velocity(b, m, i)
+                    put_three(q, BEFORE + ABOUT_X + i, spun)
+                put_three(m, velocity + ABOUT_X + i, turned)
+                turn_by_momentum(b, m, i, turned)
+                if drags or (damped and ledger):
+                    spin = angular_velocity(b, m, i)
+                if damped and ledger:
+                    added = b.dt * torque[0], b.dt * torque[1], b.dt * torque[2]
+                    taken = less(less(turned, momentum), added)
+                    dissipate(own, i, dot(taken, spun), dot(taken, spin))
+                if drags:
+                    torque = moments(q, DRAG, i)
+                    dissipate(own, i, b.dt * dot(torque, spun), b.dt * dot(torque, spin))
 
         if limit is not None and (n + 1) % CHECK == 0:
             for k in range(b.freedoms):
@@ -570,29 +588,6 @@ def step_for(form: Form) -> Callable:
                     for k in range(b.freedoms):
                         speed[p - contacts, k, s] += 0.5 * m[velocity + k * R + places[1, p]]
 
-        # Work of what damps blocks and joints, as both change the blocks' momentum.
-        if damped and ledger:
-            net_forces(b, q, FORCE, blocks)
-            for k in range(b.freedoms):
-                inertia, impulse = b.rows[INERTIA, k], b.dt * b.rows[WEIGHT, k]
-                for i in range(k * R, k * R + blocks):
-                    old, new = q[BEFORE + i], m[velocity + i]
-                    gain = inertia * (new - old)
-                    if finite and k > 2:
-                        gain = new - q[MOMENTA - ABOUT_X + i]
-                        new = q[SPIN - ABOUT_X + i]
-                    lost = gain - (b.dt * q[NET + i] + impulse)
-                    own[VISCOUS + i - k * R] -= 0.5 * lost * old
-                    own[VISCOUS + AFTER + i - k * R] -= 0.5 * lost * new
-        if drags:
-            net_forces(b, q, DRAG, blocks)
-            for k in range(b.freedoms):
-                for i in range(k * R, k * R + blocks):
-                    old, new, half = q[BEFORE + i], m[velocity + i], 0.5 * (b.dt * q[NET + i])
-                    if finite and k > 2:
-                        new = q[SPIN - ABOUT_X + i]
-                    own[VISCOUS + i - k * R] -= half * old
-                    own[VISCOUS + AFTER + i - k * R] -= half * new
         if ledger and sampled:
             for k in range(b.freedoms):
                 inertia = 0.5 if finite and k > 2 else 0.5 * b.rows[INERTIA, k]

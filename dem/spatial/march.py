@@ -16,11 +16,11 @@ import numpy as np
 from dem.spatial.layout import AFTER, BUFFER, CARRY, FRICTION, KINETIC, LANES, LEDGER, TERMS, Form
 from dem.spatial.leapfrog import step_for
 from dem.spatial.model import Buffers, RowModel, RowSamples, RowState
+from numerics.arguments import Packed, unpacked
 from numerics.atomic import give_way, peek, post
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.divergence import ENERGY, EVERY, gains_energy, note
 from numerics.jit import jitted_for
-from numerics.pointers import pointers
 
 PLACES = tuple(TERMS.values())
 RUN = 16  # diagonals of tiles between two checks of the others' progress
@@ -32,33 +32,21 @@ def march_for(form: Form) -> Callable:
     step = step_for(form)
     ledger = form.ledger
 
-    def march(
-        counts, constants, table, points, drive, ends, places, motion, history, end_states, sums,
-        force, speed, displacement, energy, tile, ledgers, limit, peak, found, progress,
-        thread, first, last,
-    ):  # fmt: skip
+    def march(given, thread, first, last):
         """Take this thread's share of the steps first .. last - 1, in turn with the others.
 
         Band B of `depth` steps belongs to thread B modulo their number. It enters a run of
         diagonals of tiles, tile k - j at step j of the band, when band B - 1 has left the next
         run: what it reads is finished then, and what it writes nobody reads any more.
 
-        counts : of blocks, tiles, steps from a sample to the next, contacts among the receivers,
-        receivers, points of a face, steps of the load, depth, freedoms of a block, ends: a number
-        that is given, since loops over constants are unrolled.
-        progress : int64 [threads + 1], zero at first: B runs + r when r runs of band B are left
-        behind, for each thread, and how many bands have closed their ledgers. The rest are the
-        arrays of `dem.spatial.model`, None for what the form does not have.
+        given : of `arguments`. progress : B runs + r when r runs of band B are left behind, for
+        each thread, and how many bands have closed their ledgers.
         """
         tiny = flush_tiny()
-        given = (
-            counts, constants, table, points, drive, ends, places, motion, history, end_states,
-            sums, force, speed, displacement, tile, ledgers, limit, found,
-        )  # fmt: skip
         (
             counts, constants, table, points, drive, ends, places, motion, history, end_states,
-            sums, force, speed, displacement, tile, ledgers, limit, found,
-        ) = pointers(given)  # fmt: skip
+            sums, force, speed, displacement, energy, tile, ledgers, limit, peak, found, progress,
+        ) = unpacked(given)  # fmt: skip
         tiles, stride, depth, threads = counts[1], counts[2], counts[7], progress.size - 1
         buffer, own = tile[thread], None
         runs = (tiles + depth - 1 + RUN - 1) // RUN
@@ -92,7 +80,7 @@ def march_for(form: Form) -> Callable:
                     for i in range(AFTER):
                         sums[i] += one[i]
                     if j % stride == 0:
-                        for k in range(len(energy)):  # unrolled if it were a constant
+                        for k in range(energy.shape[0]):  # unrolled if it were a constant
                             total = 0.0
                             for i in range(PLACES[k], PLACES[k] + LANES):  # always in this order
                                 total += one[i] if i >= KINETIC else sums[i]
@@ -114,26 +102,31 @@ def marcher(
 ) -> Callable[[int, int], None]:
     """Return a function that takes the steps first .. last - 1 on the threads of the buffers."""
     kernel, threads = march_for(model.form), len(buffers.tile)
+    progress = np.zeros(threads + 1, dtype=np.int64)
+    given = arguments(model, state, buffers, samples, progress)
 
     def march(first: int, last: int) -> None:
-        progress = np.zeros(threads + 1, dtype=np.int64)
-
-        def share(thread: int) -> None:
-            kernel(*arguments(model, state, buffers, samples, progress), thread, first, last)
-
+        progress[:] = 0
         if threads == 1 or first == last:  # nothing to take: compiles
-            share(0)
+            kernel(given, 0, first, last)
             return
         with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(share, range(threads)))
+            list(pool.map(lambda thread: kernel(given, thread, first, last), range(threads)))
 
     return march
 
 
 def arguments(
     model: RowModel, state: RowState, buffers: Buffers, samples: RowSamples, progress: np.ndarray
-) -> tuple:
-    """Return what a kernel takes but for its thread and steps."""
+) -> Packed:
+    """Return what a kernel is given but for its thread and steps: the arrays of
+    `dem.spatial.model`, None for what the form does not have.
+
+    progress : int64 [threads + 1], zero before each march. The first of the arrays has counts, of
+    blocks, tiles, steps from a sample to the next, contacts among the receivers, receivers, points
+    of a face, steps of the load, depth, freedoms of a block, ends: numbers that are given, since
+    loops over constants are unrolled.
+    """
     (stress, direction, base), receivers = model.load, model.receivers
     drive, places = stress if base is None else base, np.hstack(receivers)
     counts = (
@@ -144,7 +137,8 @@ def arguments(
     if buffers.guard is not None:
         limit, peak, found = buffers.guard
         limit = limit.view(np.float64)
-    return (
+    return Packed(
         np.array(counts), model.block.as_array(direction), model.table, model.points, drive,
-        model.ends, places, *state, *samples, *buffers[:2], limit, peak, found, progress,
+        model.ends, places, *state, *samples,
+        *buffers[:2], limit, peak, found, progress, distinct=True,
     )  # fmt: skip

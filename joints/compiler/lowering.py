@@ -149,7 +149,7 @@ class Plainly(Lower):
         kind = self.typeof(expr.value.name) if expr.op in ("getattr", "static_getitem") else None
         if expr.op == "getattr" and isinstance(kind, BaseNamedTuple):
             return self._field(resty, kind, expr)
-        if _is_pointer(kind):
+        if expr.op == "static_getitem" and _is_pointer(kind):
             kinds = self.fndesc.calltypes[expr]
             return self.lower_getitem(resty, expr, expr.value, expr.index_var, kinds)
         return super().lower_expr(resty, expr)

@@ -177,9 +177,9 @@ def count(short, ready, instructions):
         constants = (None, None) if joints is None else (joints.parts, joints.directions)
         read = readings(at.model, at.state)
         limits = guard(np.inf) if of_runs else None
-        given = arguments(at.model, at.state, at.samples, limits, None, read)
+        given = arguments(at.model, at.state, at.samples, limits, read)
         kernel = leapfrog_for(*constants, shared=False)
-        return instructions(kernel, (0, 0, 1, at.model.dt, *given), kind)
+        return instructions(kernel, (given, None, 0, 0, 1, at.model.dt), kind)
 
     return counted
 

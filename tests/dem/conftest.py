@@ -37,6 +37,5 @@ def plain(monkeypatch):
     for module in (leapfrog, march):
         monkeypatch.setattr(module, "flush_tiny", lambda: 0)
         monkeypatch.setattr(module, "restore_tiny", lambda old: None)
-    monkeypatch.setattr(march, "pointers", lambda values: values)
     monkeypatch.setattr(march, "peek", lambda counters, i: counters[i])
     monkeypatch.setattr(march, "post", lambda counters, i, value: counters.__setitem__(i, value))

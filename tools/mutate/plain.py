@@ -25,10 +25,6 @@ def formula(function):
 
 flags = formula
 """,
-    "numerics.pointers": """
-def pointers(values):
-    return values
-""",
     "numerics.denormals": """
 def flush_tiny():
     return 0

@@ -64,7 +64,7 @@ def _blocks(scene: Scene) -> Unloaded:
         # Gathered once: a loose block is advanced 160,000 times.
         loop = loop_for(model.effects._replace(ledger=False))
         given = arguments(model, state, buffers(model, state, 0), None)
-        return state.v, lambda steps: loop(*given, 0, steps, -1, 1)
+        return state.v, lambda steps: loop(given, 0, steps, -1, 1)
 
     return Unloaded(np.ones(p.block_count), np.array([1]), begin)
 

@@ -120,10 +120,9 @@ def test_absent_effects_leave_no_instruction(row, at_rest, instructions):
     def count(**changes):
         blocks = at_rest(row(record__energy=False, **changes))
         buffers = buffers_for(blocks.model, 1)
-        given = arguments(
-            blocks.model, blocks.state, buffers, blocks.samples, np.zeros(2, dtype=np.int64)
-        )
-        kernel, given = march_for(blocks.model.form), (*given, 0, 0, 1)
+        progress = np.zeros(2, dtype=np.int64)
+        given = arguments(blocks.model, blocks.state, buffers, blocks.samples, progress)
+        kernel, given = march_for(blocks.model.form), (given, 0, 0, 1)
         return [
             instructions(kernel, given, kind)
             for kind in ("fcmp", "fdiv", SQRT, "fmul", "fmul" + SEVERAL, "fdiv" + SEVERAL)
