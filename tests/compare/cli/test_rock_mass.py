@@ -109,7 +109,7 @@ def test_a_view_of_it_is_a_picture_of_both_engines(jointwave_says, tmp_path, mon
     pytest.importorskip("pyvista")
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
-    coarse = "--set numerics.dem.block=5 --set record.fields=0.002"
+    coarse = "--set numerics.dem.block=5 --set numerics.continuum.size=4 --set record.fields=0.002"
     code, out, err = jointwave_says(f"view joint.toml {coarse} --time 0.006 --out seen.png")
     if "needs EGL or OSMesa" in err:
         pytest.skip("VTK cannot render here")
@@ -162,7 +162,8 @@ def test_tables_and_curves_of_a_comparison_name_places(jointwave_says, tmp_path)
 def test_one_waveform_of_a_result_is_asked_for_by_its_place(jointwave_says):
     jointwave_says("run joint.toml --engine exact")
     file = "results/exact-oblique-joint.nc"
-    _, out, _ = jointwave_says(f"compare joint.toml --json --with {file}:velocity_x@[20,30]")
+    command = "compare joint.toml --set numerics.continuum.size=4 --json"
+    _, out, _ = jointwave_says(f"{command} --with {file}:velocity_x@[20,30]")
     rows = [row for row in json.loads(out)[0]["rows"] if row["other"] == "oblique-joint"]
     assert [row["quantity"] for row in rows if row["kind"] == "given curves"] == ["velocity x"]
     code, _, err = jointwave_says(f"compare joint.toml --with {file}:velocity_x@[20,31]")
