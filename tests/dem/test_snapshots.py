@@ -136,14 +136,14 @@ def test_small_rotations_turn_corners_as_vectors(pillar):
 
 TOPPLING = {
     "pillar__length": 1.0,
-    "load__amplitude": 3e6,
+    "load__amplitude": 6e6,
     "load__direction": [0.6, 0.8, 0.0],
     "load__at": [0.2, 0.1],
     "motion__rotation": "finite",
     "ends__start": "free",
     "ends__end": "free",
     "joints__tension": False,
-    "time__duration": 0.2,
+    "time__duration": 0.1,
     "record": {"velocity": [0.25, 0.75], "interval": 5e-5, "fields": 5e-5, "energy": False},
 }
 
