@@ -43,6 +43,9 @@ if providers := sys.modules.get("hypothesis.internal.conjecture.providers"):
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
+# As in the command: most of what would be looked through has been imported, and stays.
+collect_rarely()
+
 # Nor does a test how long it takes: no command that it runs speaks of its progress.
 os.environ["JOINTWAVE_PROGRESS"] = "0"
 
@@ -78,9 +81,7 @@ def pytest_collection_modifyitems(items):
 
 
 def pytest_collection_finish():
-    """Take what has been imported and collected from the garbage that is looked through, rarely as
-    in the command."""
-    collect_rarely()
+    """Take what has been imported and collected from the garbage that is looked through."""
     gc.collect()
     gc.freeze()
 
