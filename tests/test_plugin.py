@@ -209,7 +209,9 @@ def test_workers_share_what_one_of_them_has_solved(run, pytester, monkeypatch):
                 file.write(f"{name}\\n")
             return solve(name, scene)
 
-        compare.engines.solve = noted
+        def pytest_sessionstart(session):
+            if hasattr(session.config, "workerinput"):  # not in the process of the test itself
+                compare.engines.solve = noted
         """
     )
     pair = scene("lattice ~ equivalent-bar")
