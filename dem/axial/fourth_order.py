@@ -19,6 +19,7 @@ The ledger closes to the fourth order, not to round-off: the map conserves an en
 from the true one by O(dt^4), and this difference stays bounded over any number of steps.
 """
 
+from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 
@@ -131,17 +132,16 @@ def _acting(values: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(values[: acting[-1] + 1 if acting.size else 0])
 
 
-def run(
+def marcher(
     composition: Composition,
     model: Model,
     state: State,
     samples: Samples,
     stride: int,
-    first: int,
-    last: int,
     monitor: Guard | None = None,
-) -> None:
-    """Take samples first .. last - 1, `stride` steps apart, the steps after each included.
+) -> Callable[[int, int], None]:
+    """Return a function that takes samples first .. last - 1, `stride` steps apart, the steps after
+    each included.
 
     monitor : stops a run that exceeds its bounds; None without.
     """
@@ -153,7 +153,7 @@ def run(
         limits.limit.view(np.float64)[0], limits.found, every,
     )  # fmt: skip
     loop = loop_for(model.effects._replace(ledger=state.work is not None))
-    loop(given, first * stride, last * stride, first, stride)
+    return lambda first, last: loop(given, first * stride, last * stride, first, stride)
 
 
 @cache

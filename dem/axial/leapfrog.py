@@ -6,6 +6,7 @@ length: the work of a force from one whole step to the next is the mean of its t
 displacement increment, the kinetic energy m v[n-1/2] v[n+1/2] / 2.
 """
 
+from collections.abc import Callable
 from functools import cache
 from math import copysign
 
@@ -29,30 +30,26 @@ from numerics.sums import total_of
 UNGUARDED = guard(0.0)  # placeholder of a loop without a monitor
 
 
-def run(
-    model: Model,
-    state: State,
-    samples: Samples,
-    stride: int,
-    first: int,
-    last: int,
-    monitor: Guard | None = None,
-) -> None:
-    """Take samples first .. last - 1, `stride` steps apart, the steps after each included.
+def marcher(
+    model: Model, state: State, samples: Samples, stride: int, monitor: Guard | None = None
+) -> Callable[[int, int], None]:
+    """Return a function that takes samples first .. last - 1, `stride` steps apart, the steps after
+    each included.
 
     monitor : stops a run that exceeds its bounds; None without.
     """
-    _take(model, state, samples, monitor, first * stride, last * stride, first, stride)
+    loop, given = _loop(model, state), arguments(model, state, samples, monitor)
+    return lambda first, last: loop(given, first * stride, last * stride, first, stride)
 
 
 def march(model: Model, state: State, first: int, last: int) -> None:
     """Take steps first .. last - 1 without samples."""
-    _take(model, state, buffers(model, state, 0), None, first, last, -1, 1)
+    given = arguments(model, state, buffers(model, state, 0), None)
+    _loop(model, state)(given, first, last, -1, 1)
 
 
-def _take(model, state, samples, monitor, first, last, index, stride):
-    loop = loop_for(model.effects._replace(ledger=state.work is not None))
-    loop(arguments(model, state, samples, monitor), first, last, index, stride)
+def _loop(model: Model, state: State) -> Callable:
+    return loop_for(model.effects._replace(ledger=state.work is not None))
 
 
 def arguments(model: Model, state: State, samples: Samples, monitor: Guard | None) -> Packed:

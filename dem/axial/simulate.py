@@ -30,21 +30,21 @@ from results.dataset import Fields, fields
 if TYPE_CHECKING:
     from dem.snapshots import BlockFilm
 
-#: Of (model, state, samples, stride, first, last, monitor): takes samples first .. last - 1.
-Run = Callable[..., None]
+#: Of (model, state, samples, stride, monitor): a function that takes samples first .. last - 1.
+Marcher = Callable[..., Callable[[int, int], None]]
 
 
 class Scheme(NamedTuple):
     """How the chain is stepped.
 
     build : of (scene), to the model, the state, the clock and the critical step.
-    runner : of (scene, clock), to what takes samples.
+    marcher : of (scene, clock), to what takes samples.
     forces : how often a step computes the force of every joint.
     takes_means : whether the load is its mean over each step.
     """
 
     build: Callable[[Scene], tuple[Model, State, Clock, float]]
-    runner: Callable[[Scene, Clock], Run]
+    marcher: Callable[[Scene, Clock], Marcher]
     forces: int
     takes_means: bool
 
@@ -52,13 +52,13 @@ class Scheme(NamedTuple):
 def scheme_of(scene: Scene) -> Scheme:
     """Return how a scene's chain is stepped; a scheme that it does not name is not imported."""
     if scene.numerics.dem.scheme == "leapfrog":
-        return Scheme(build, lambda scene, time: leapfrog.run, 1, True)
+        return Scheme(build, lambda scene, time: leapfrog.marcher, 1, True)
     from dem.axial import fourth_order
 
-    def runner(scene: Scene, time: Clock) -> Run:
-        return partial(fourth_order.run, fourth_order.compose(scene, time))
+    def marcher(scene: Scene, time: Clock) -> Marcher:
+        return partial(fourth_order.marcher, fourth_order.compose(scene, time))
 
-    return Scheme(fourth_order.build, runner, len(fourth_order.KICKS), False)
+    return Scheme(fourth_order.build, marcher, len(fourth_order.KICKS), False)
 
 
 def simulate_fields(
@@ -71,15 +71,12 @@ def simulate_fields(
     rest = start(scene, model, state)
     samples = buffers(model, state, time.samples)
     monitor = guard(highest_speed(model, state, time))
-    run = scheme.runner(scene, time)
-
-    def march(first: int, last: int) -> None:
-        run(model, state, samples, time.stride, first, last, monitor)
-
+    marcher = scheme.marcher(scene, time)
+    march = marcher(model, state, samples, time.stride, monitor)
     built = perf_counter()
     march(0, 0)
     mean = time.dt if scheme.takes_means else None
-    film = _film(scene, run, model, state, time.stride, mean)
+    film = _film(scene, marcher, model, state, time.stride, mean)
     compiled = perf_counter()
 
     def result(count: int) -> Fields:
@@ -133,7 +130,7 @@ def _with_breaks(result: Fields, scene: Scene, state: State, time: Clock) -> Fie
 
 
 def _film(
-    scene: Scene, run: Run, model: Model, state: State, stride: int, mean: float | None
+    scene: Scene, marcher: Marcher, model: Model, state: State, stride: int, mean: float | None
 ) -> BlockFilm | None:
     """Return the recorder of snapshots; None, and nothing imported, without snapshots.
 
@@ -151,7 +148,7 @@ def _film(
         now, twin = sample * stride, copied(state)
         found = buffers(everywhere, twin, 1)
         shifted = everywhere._replace(load=model.load[now:], base=model.base[now:])
-        run(shifted, twin, found, 1, 0, 1)
+        marcher(shifted, twin, found, 1)(0, 1)
         return Shot(found.stress[:, 0], found.displacement, found.velocity)
 
     return BlockFilm(scene, p, shoot, mean)

@@ -55,11 +55,11 @@ def test_energies_of_a_sample():
         np.array([3.0, -5.0, 1.0, 1.0]),
         np.arange(4.0),
     )
-    balance = np.full(8, 9.0)
-    add_energy(balance, MASS, u, OLD, NEW, weight, ledger)
-    assert balance.tolist() == [-5.0, 9.0, 9.0, 7.0, 0.0, 1.0, 2.0, 3.0]
-    add_energy(balance, MASS, u, OLD, NEW, None, ledger)
-    assert balance[3] == 0.0
+    energy = np.full((8, 2), 9.0)
+    add_energy(energy, 1, MASS, u, OLD, NEW, weight, ledger)
+    assert energy[:, 1].tolist() == [-5.0, 9.0, 9.0, 7.0, 0.0, 1.0, 2.0, 3.0]
+    add_energy(energy, 1, MASS, u, OLD, NEW, None, ledger)
+    assert energy[3, 1] == 0.0 and (energy[:, 0] == 9.0).all()
 
 
 def test_receivers_read_a_matrix_and_a_constant():

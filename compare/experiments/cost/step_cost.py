@@ -110,10 +110,11 @@ def _along_axis(scene: Scene, guarded: tuple[bool, ...]) -> list[Stretch]:
     model, state, time, _ = scheme.build(scene)
     count = samples_of(time, state.u.size)
     samples, block_steps = buffers(model, state, count), count * time.stride * state.u.size
-    run = scheme.runner(scene, time)
+    marcher = scheme.marcher(scene, time)
 
     def timed(monitor: Guard | None) -> Stretch:
-        return lambda: run(model, state, samples, time.stride, 0, count, monitor), block_steps
+        march = marcher(model, state, samples, time.stride, monitor)
+        return lambda: march(0, count), block_steps
 
     return [timed(guard(inf) if held else None) for held in guarded]
 

@@ -9,7 +9,7 @@ import pytest
 import dem
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
-from dem.axial.leapfrog import arguments, loop_for, march, run
+from dem.axial.leapfrog import arguments, loop_for, march, marcher
 from dem.axial.model import build, build_model
 from dem.axial.samples import buffers
 from dem.axial.state import state_at_rest
@@ -181,7 +181,7 @@ def test_blocks_with_masses_of_their_own_that_are_alike_change_no_bit(pillar):
     found = []
     for each, at in ((model, copied(state)), (twin, copied(state))):
         samples = buffers(each, at, time.samples)
-        run(each, at, samples, time.stride, 0, time.samples)
+        marcher(each, at, samples, time.stride)(0, time.samples)
         found.append([samples.stress, samples.velocity, samples.energy])
     assert model.blocks is None
     for one, other in zip(*found, strict=True):

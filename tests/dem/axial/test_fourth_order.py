@@ -15,7 +15,7 @@ from dem.axial.fourth_order import (
     build,
     compose,
     half_trace,
-    run,
+    marcher,
     stability_limit,
 )
 from dem.axial.samples import buffers
@@ -65,7 +65,7 @@ def stepped(scene, dt):
     steps = steps._replace(loads=np.zeros((0, 4)), impulses=np.zeros((0, 5)))
 
     def advance(count):
-        run(steps, model, state, buffers(model, state, count), 1, 0, count)
+        marcher(steps, model, state, buffers(model, state, count), 1)(0, count)
 
     return model, state, advance
 

@@ -6,7 +6,7 @@ import pytest
 import dem
 from cases.material.calibrate import calibrate
 from closed_forms.spall import lattice_spall
-from dem.axial.leapfrog import march, run
+from dem.axial.leapfrog import march, marcher
 from dem.axial.model import build
 from dem.axial.samples import buffers, terms
 from results.dataset import energy_residual
@@ -52,7 +52,7 @@ def test_ledger_closes_but_for_the_corners_of_the_law(pillar, ratio):
     samples, gaps = buffers(model, state, time.steps), np.zeros((time.steps, len(state.opening)))
     for n in range(time.steps):
         gaps[n] = np.diff(state.u)
-        run(model, state, samples, 1, n, n + 1)
+        marcher(model, state, samples, 1)(n, n + 1)
     kinetic, elastic, viscous, fracture, boundary, work = samples.energy
     lost = np.abs(kinetic + elastic + viscous + fracture + boundary - work).max()
     assert terms(model.effects) == ("kinetic", "elastic", "viscous", "fracture", "boundary", "work")
