@@ -8,7 +8,7 @@ import dem
 from cases.errors import StoppedError
 from cases.material.calibrate import calibrate
 from continuum.run import discrete_and_steps
-from dem.axial.leapfrog import run
+from dem.axial.leapfrog import marcher
 from dem.axial.model import build
 from dem.axial.samples import buffers
 from dem.axial.simulate import scheme_of
@@ -81,12 +81,12 @@ def test_it_stops_within_so_many_steps_of_leaving_its_bounds(pillar):
     speed = highest_speed(model, state, time)
     samples, left = buffers(model, state, time.samples), None
     for n in range(time.steps):
-        run(model, state, samples, 1, n, n + 1)
+        marcher(model, state, samples, 1)(n, n + 1)
         if left is None and np.abs(state.v).max() > RUNAWAY * speed:
             left = n + 1
     model, state, time, _ = build(scene)
     held = guard(speed)
-    run(model, state, buffers(model, state, time.samples), 1, 0, time.samples, held)
+    marcher(model, state, buffers(model, state, time.samples), 1, held)(0, time.samples)
     assert left is not None and left <= held.found[0] < left + EVERY
     assert held.found[1] == SPEED
 
@@ -98,10 +98,10 @@ def test_a_chain_that_gains_energy_is_stopped_by_its_ledger(pillar):
     model, state, time, _ = build(scene)
     samples, held = buffers(model, state, time.samples), guard(np.inf)
     half = int(0.008 / scene.interval)  # the pulse is within the pillar
-    run(model, state, samples, time.stride, 0, half, held)
+    marcher(model, state, samples, time.stride, held)(0, half)
     assert held.found[0] == -1
     model.laws[0] *= 1.5
-    run(model, state, samples, time.stride, half, time.samples, held)
+    marcher(model, state, samples, time.stride, held)(half, time.samples)
     assert half * time.stride <= held.found[0] < half * time.stride + EVERY
     assert held.found[1] == ENERGY
 
