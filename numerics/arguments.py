@@ -48,9 +48,9 @@ class PackedModel(models.StructModel):
 
 class Packed:
     """Arguments of a kernel, which takes them out by `unpacked`: None, numbers, contiguous arrays
-    and NamedTuples of such.
+    and NamedTuples of such. Raises TypeError for anything else.
 
-    distinct : whether no two of the arrays overlap. Raises TypeError for anything else.
+    distinct : whether no two of the arrays overlap.
     """
 
     def __init__(self, *values: Any, distinct: bool = False):

@@ -25,7 +25,7 @@ def leapfrog_for(parts, directions, shared=False):
     """Return the kernel for joints of a law with these parts (`joints.law.Parts`) and jumps
     in so many directions, both None without joints; shared : by several processes.
 
-    Of what `continuum.explicit.march.arguments` packs, a model's absent effects are None.
+    It is given what `continuum.explicit.march.arguments` packs: None for what a model lacks.
     """
 
     shears = True if directions != 1 else None
