@@ -1,7 +1,7 @@
 """The arguments of a kernel, packed into one.
 
 numba unpacks an array with some sixty instructions: of a kernel with thirty arrays that is more
-than its loop, and compiles as long. Packed, an argument is a few words in memory: the address and
+than its loop. Packed, an argument is a few words in memory: the address and
 lengths of an array, a number. What is absent is None and takes no word.
 """
 
