@@ -13,6 +13,7 @@ from continuum.parallel.communicator import Communicator
 from continuum.parallel.graph import ranks_by_graph
 from continuum.parallel.identity import Border, border
 from continuum.parallel.partition import Share, cells_enough, copies_of, ranks_of_cells, restrict
+from continuum.parallel.waiting import arrive
 from continuum.space.body import Body, build_body, cell_geometry
 from continuum.space.elasticity import Material, Rock, Section
 from continuum.space.interface import Jumps, jumps
@@ -38,7 +39,9 @@ def share_of(
     # By one process, so that all use the same partition.
     ranks = ranks_by_graph if paired else ranks_of_cells
     cells_enough(copies_of(mesh), comm.size)
-    rank_of = comm.bcast(ranks(mesh, comm.size) if comm.rank == 0 else None)
+    found = ranks(mesh, comm.size) if comm.rank == 0 else None
+    arrive(comm)
+    rank_of = comm.bcast(found)
     share = restrict(mesh, rank_of, comm.rank, together=paired)
     asked = order, materials, section, plane_wave, consistent, paired
     held, across = held_share(mesh, share, *asked)

@@ -13,6 +13,7 @@ from continuum.explicit.march import march
 from continuum.parallel.exchange import TAG, add_shares, connect, release
 from continuum.parallel.identity import Border, joined
 from continuum.parallel.serial import Pieces, Serial, T
+from continuum.parallel.waiting import arrive
 from numerics.divergence import EVERY
 
 
@@ -107,13 +108,13 @@ class Communicator(Serial):
     def in_turn(self) -> Iterator[None]:
         local = self.comm.Split_type(MPI.COMM_TYPE_SHARED)
         if local.rank:
-            local.barrier()
+            arrive(local)
         try:
             yield
         finally:
             if not local.rank:
-                local.barrier()
-            self.comm.barrier()
+                arrive(local)
+            arrive(self.comm)
             local.Free()
 
     def leapfrog(self, model, state, samples, stride, limits) -> Callable[[int, int], object]:
