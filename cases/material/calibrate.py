@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf, sqrt
 from typing import TYPE_CHECKING
+from weakref import ref
 
 import numpy as np
 
@@ -196,8 +197,24 @@ class Properties(Strength):
         return differs & (self.excess_compliance == 0)
 
 
+#: The scene that was calibrated last, while it lives, and its properties: a run asks several times.
+_last: list[tuple[ref[Scene], Properties]] = []
+
+
 def calibrate(scene: Scene) -> Properties:
-    """Return the properties of a scene: every joint's stiffness, damping, tension and strength."""
+    """Return the properties of a scene: every joint's stiffness, damping, tension and strength.
+
+    Nobody changes its arrays: it may be given again.
+    """
+    for known, found in _last:
+        if known() is scene:
+            return found
+    found = _calibrated(scene)
+    _last[:] = [(ref(scene, lambda _: _last.clear()), found)]
+    return found
+
+
+def _calibrated(scene: Scene) -> Properties:
     if not scene.is_uniform:
         from cases.material.layered import calibrate_layered
 

@@ -17,6 +17,7 @@ sigma_I minus Z u / 2.
 """
 
 from itertools import pairwise
+from math import asinh, copysign, exp, log
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,7 +27,7 @@ from cases.material.calibrate import Properties
 
 SPANS = 500  # of the whole time: no step is longer than one
 SHORTEST = 1e-12  # s, of a part of the time
-LARGE = 300.0  # ln of a rate that occurs only in too long a step
+LARGE = 300.0  # ln of a rate, or over 1 s of an age, that occurs only in too long a step
 MOST, SETTLED = 100, 1e-15  # corrections of Newton's method, and the last one, relative
 
 
@@ -48,30 +49,36 @@ class RateJoint(NamedTuple):
         names = ("pressure", "distance", "rate")
         return self._replace(**{name: getattr(self, name) / factor for name in names})
 
-    def offset(self, log_state: Any) -> Any:
+    def offset(self, log_state: float) -> float:
         """Return ln V_0 - psi / a at ln theta."""
-        aged = np.log(self.rate / self.distance) + log_state
-        return np.log(self.rate) - (self.friction + self.evolution * aged) / self.direct
+        aged = log(self.rate / self.distance) + log_state
+        return log(self.rate) - (self.friction + self.evolution * aged) / self.direct
 
-    def slides(self, stress: Any, log_state: Any) -> Any:
+    def slides(self, stress: float, log_state: float) -> float:
         """Return V (m/s) at s (Pa) and ln theta."""
         x, offset = stress / (self.direct * self.pressure), self.offset(log_state)
-        return np.exp(np.minimum(offset + x, LARGE)) - np.exp(np.minimum(offset - x, LARGE))
+        return _exp(offset + x) - _exp(offset - x)
 
-    def carries(self, incident: Any, log_state: Any, impedance: float) -> Any:
+    def carries(self, incident: float, log_state: float, impedance: float) -> float:
         """Return s (Pa) of a joint with 1/K = 0 under sigma_I (Pa)."""
-        a, z, most = self.direct * self.pressure, impedance / 2, np.abs(incident)
+        if not incident:
+            return 0.0
+        a, z, most = self.direct * self.pressure, impedance / 2, abs(incident)
         offset = self.offset(log_state)
-        with np.errstate(divide="ignore"):
-            fast = np.log(most / (2 * z)) - offset  # asinh of e^fast
-        s = np.minimum(most, a * np.logaddexp(fast, np.logaddexp(0, 2 * fast) / 2))
+        fast = log(most) - log(2 * z) - offset
+        s = min(most, a * (asinh(exp(fast)) if fast < LARGE else fast + log(2)))
         for _ in range(MOST):
-            up, down = np.exp(offset + s / a), np.exp(offset - s / a)
+            up, down = _exp(offset + s / a), _exp(offset - s / a)
             less = (s + z * (up - down) - most) / (1 + z / a * (up + down))
-            s = np.maximum(s - less, 0.0)
-            if (np.abs(less) <= SETTLED * most).all():
+            s = max(s - less, 0.0)
+            if abs(less) <= SETTLED * most:
                 break
-        return np.sign(incident) * s
+        return copysign(s, incident)
+
+
+def _exp(x: float) -> float:
+    """Return e^x, of a finite number."""
+    return exp(min(x, LARGE))
 
 
 def rate_joint(p: Properties, j: int, pressure: float, compliance: float) -> RateJoint:
@@ -124,16 +131,16 @@ class RateStateWave:
             self.parts.append((*part, found.sol))
             now = found.y[:, -1]
 
-    def _rate(self, t: float, now: np.ndarray) -> np.ndarray:
+    def _rate(self, t: float, now: np.ndarray) -> list[float]:
         """Return the rates of S, ln theta and s (0 where 1/K = 0)."""
-        joint, incident = self.joint, self.load.value(np.array([t]))[0]
-        stress, loads = now[2], 0.0
+        joint, incident, loads = self.joint, float(self.load.value(np.asarray(t))), 0.0
+        _, log_state, stress = now.tolist()
         if joint.compliance == 0:
-            stress = joint.carries(incident, now[1], self.impedance)
-        slides = joint.slides(stress, now[1])  # not what is left of sigma_I: that would cancel
+            stress = joint.carries(incident, log_state, self.impedance)
+        slides = joint.slides(stress, log_state)  # not what is left of sigma_I: that would cancel
         if joint.compliance:
             loads = (2 * (incident - stress) / self.impedance - slides) / joint.compliance
-        return np.array([slides, np.exp(-now[1]) - abs(slides) / joint.distance, loads])
+        return [slides, _exp(-log_state) - abs(slides) / joint.distance, loads]
 
     def __call__(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return both at times (s)."""
@@ -145,6 +152,7 @@ class RateStateWave:
                 found[:, own] = solution(times[own])
         slide, log_state, stress = found
         if joint.compliance == 0:
-            stress = joint.carries(self.load.value(times), log_state, self.impedance)
+            both = zip(self.load.value(times).tolist(), log_state.tolist(), strict=True)
+            stress = np.array([joint.carries(*each, self.impedance) for each in both])
         slip = joint.compliance * stress + slide
         return stress, self.load.impulse(times) - self.impedance * slip / 2

@@ -106,7 +106,7 @@ class Passed:
 
     def _rate(self, incident: Any, path: Any, share: float) -> Any:
         """Return S' under sigma_I (Pa) along the slip; share : 1 - h / K."""
-        joint, path = self.joint, np.asarray(path)
+        joint = self.joint
         resistance = self.impedance * share
         if joint.dilation:
             lifted = joint.friction_at(path) * joint.lift_rate(path)
@@ -133,7 +133,7 @@ class Passed:
         return phase.end
 
     def _incident(self, t: float) -> float:
-        return float(self.load.value(np.array([t]))[0])
+        return float(self.load.value(np.asarray(t)))
 
     def _stick(self, start: float, stop: float, stress: float, path: float, slide: float) -> Phase:
         joint, limit = self.joint, self.joint.left(path)
@@ -145,8 +145,8 @@ class Passed:
             return Phase(start, stop, 0, path, slide, None)
         relaxation = self.impedance * joint.compliance / 2
 
-        def rate(t: float, s: np.ndarray) -> np.ndarray:
-            return (self._incident(t) - s) / relaxation
+        def rate(t: float, s: np.ndarray) -> float:
+            return (self._incident(t) - float(s[0])) / relaxation
 
         def yields(t: float, s: np.ndarray) -> float:
             return abs(float(s[0])) - limit
@@ -164,11 +164,11 @@ class Passed:
         weakens = path < joint.distance * (1 - NEAR)
         share = 1 - joint.compliance * joint.fall if weakens else 1.0
 
-        def rate(t: float, s: np.ndarray) -> np.ndarray:
-            return self._rate(way * self._incident(t), s, share)
+        def rate(t: float, s: np.ndarray) -> float:
+            return self._rate(way * self._incident(t), float(s[0]), share)
 
         def stops(t: float, s: np.ndarray) -> float:
-            return float(rate(t, s)[0])
+            return rate(t, s)
 
         def is_weak(t: float, s: np.ndarray) -> float:
             return float(s[0]) - joint.distance if weakens and joint.fall else -1.0

@@ -1,5 +1,8 @@
 """Equations (4) to (7) of Guo & Li (2002): the paper's numbers, and both ways round."""
 
+import gc
+from weakref import ref
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -156,3 +159,16 @@ def test_without_intact_rock_there_is_no_own_stiffness(scene_with):
     p = calibrate(scene_with(rock=rock))
     assert p.own_stiffness is None and p.intact_modulus is None
     assert p.bar_speed == pytest.approx(np.sqrt(4.375e9 / 2400))
+
+
+def test_a_scene_is_calibrated_once_while_it_lives(pillar):
+    """A run asks several times; another scene, equal or not, has properties of its own."""
+    scene = pillar()
+    found = calibrate(scene)
+    assert calibrate(scene) is found
+    assert calibrate(pillar(joints__damping_ratio=0.1)).time_constant != found.time_constant
+    assert calibrate(scene) is not found
+    kept = ref(calibrate(scene))
+    del scene
+    gc.collect()
+    assert kept() is None

@@ -50,8 +50,17 @@ def test_a_stiff_joint_tends_to_a_rigid_one():
 def test_what_it_carries_solves_its_equation():
     """From nothing to a hundred times the strength, and its opposite."""
     incident = np.append(0.0, np.geomspace(1e-6, 1e8, 300))
+    carries, slides = np.vectorize(JOINT.carries), np.vectorize(JOINT.slides)
     for log_state in (-20.0, 0.0, 10.0):
-        stress = JOINT.carries(incident, log_state, Z)
-        left = stress + Z / 2 * JOINT.slides(stress, log_state) - incident
+        stress = carries(incident, log_state, Z)
+        left = stress + Z / 2 * slides(stress, log_state) - incident
         assert np.abs(left).max() <= 1e-11 * 1e8 and (np.diff(stress) > 0).all()
-        assert (JOINT.carries(-incident, log_state, Z) == -stress).all()
+        assert (carries(-incident, log_state, Z) == -stress).all()
+
+
+@pytest.mark.parametrize("log_state", [-1e5, 1e5])
+@pytest.mark.parametrize("incident", [1e-320, 1e8])
+def test_what_it_carries_is_finite_where_a_trial_step_is_too_long(incident, log_state):
+    """Integration tries states of no meaning: exponentials beyond all numbers."""
+    stress = JOINT.carries(incident, log_state, Z)
+    assert 0 <= stress <= incident and np.isfinite(JOINT.slides(stress, log_state))
