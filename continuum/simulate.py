@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numba
 import numpy as np
@@ -15,7 +15,7 @@ from scipy.sparse import csr_matrix
 from cases.errors import SceneError, StoppedError
 from cases.schema.scene import Scene
 from continuum.build import weight_of
-from continuum.engines import explicit_engine, implicit_engine
+from continuum.engines import Engine, explicit_engine, implicit_engine
 from continuum.model import Model
 from continuum.monitor import Monitor
 from continuum.run import Run, run_of
@@ -25,7 +25,7 @@ from continuum.state import State
 from continuum.validity import applies
 from continuum.waveforms import energy_terms, waveforms
 from numerics.time_loop import Keeper, run_in_stretches
-from results.arrays import changed, size_of
+from results.arrays import changed, copied, fill, size_of
 from results.dataset import Fields, fields
 
 FREEDOM_STEPS_AT_ONCE = 10_000_000  # some 0.1 s: often enough for a progress bar
@@ -63,16 +63,9 @@ def simulate(
     Raises SceneError for what this model cannot simulate; StoppedError, an UnstableError with the
     result so far, when the motion leaves its bounds or implicit steps do not converge.
     """
-    refuse(scene, model, dim)
-    reason = applies(scene, model, dim)
-    if reason:
-        raise SceneError(scene.name or scene.title, "model", model, reason)
     began = perf_counter()
-    run = run_of(scene, model, dim, comm, incident)
-    time, communicator = run.choice.time, run.communicator
-    rest, monitor = _at_rest(run), Monitor(run)
-    start = explicit_engine if run.choice.scheme == "explicit" else implicit_engine
-    engine = start(run, monitor)
+    begun = start(scene, model, dim, comm, incident)
+    run, engine = begun.run, begun.engine
     film = _film(run, engine.ahead)
     ready = perf_counter()
     engine.compile()
@@ -84,26 +77,79 @@ def simulate(
             "seconds_compile": compiled - ready,
             "seconds_stepping": perf_counter() - compiled,
         }
-        about = _about(run) | rest | engine.attributes() | seconds
-        found = _recorded(run, time.times[:count], about)
+        about = _about(run) | begun.rest | engine.attributes() | seconds
+        found = _recorded(run, run.choice.time.times[:count], about)
         return xr.Dataset(*(found if film is None else film.developed(found)))
 
-    def march(first: int, last: int) -> None:
-        # Every stretch ends with the step of a sample: what follows it belongs to the next one.
-        engine.march(max(0, (first - 1) * time.stride + 1), (last - 1) * time.stride + 1)
-        monitor.check(first, last)
-        if film is not None:
-            film.look(last - 1)
-
-    parts = run.state, run.samples, monitor.parts, engine.parts
-    work = engine.work * int(communicator.largest(run.state.u.size)) * time.stride
-    chunk = min(FREEDOM_STEPS_AT_ONCE // work, time.samples // LEAST_STRETCHES)
     try:
-        run_in_stretches(time.samples, chunk, march, parts, progress, film, keeper, 1)
+        begun.march(film, progress, keeper)
     except StoppedError as error:
         error.result = result(error.samples)
         raise
-    return result(time.samples)
+    return result(run.choice.time.samples)
+
+
+class Start(NamedTuple):
+    """A run at rest before its kernels are compiled; rest : what a result says of its state."""
+
+    run: Run
+    monitor: Monitor
+    engine: Engine
+    rest: dict[str, Any]
+
+    @property
+    def parts(self) -> tuple:
+        """All arrays that change while the run goes on."""
+        return self.run.state, self.run.samples, self.monitor.parts, self.engine.parts
+
+    def march(
+        self,
+        film: RockFilm | None = None,
+        progress: Callable[[float], None] | None = None,
+        keeper: Keeper | None = None,
+    ) -> None:
+        """Take all samples, and snapshots for a film. Raises StoppedError, without its result."""
+        run, time = self.run, self.run.choice.time
+
+        def march(first: int, last: int) -> None:
+            # Every stretch ends with the step of a sample: what follows belongs to the next one.
+            self.engine.march(max(0, (first - 1) * time.stride + 1), (last - 1) * time.stride + 1)
+            self.monitor.check(first, last)
+            if film is not None:
+                film.look(last - 1)
+
+        work = self.engine.work * int(run.communicator.largest(run.state.u.size)) * time.stride
+        chunk = min(FREEDOM_STEPS_AT_ONCE // work, time.samples // LEAST_STRETCHES)
+        run_in_stretches(time.samples, chunk, march, self.parts, progress, film, keeper, 1)
+
+    def march_again(self) -> Callable[[], None]:
+        """Return a function that takes all samples from this state on, whenever it is called, with
+        the snapshots of the scene."""
+        kept = copied(self.parts)
+
+        def march() -> None:
+            fill(self.parts, kept)
+            self.march(_film(self.run, self.engine.ahead))
+
+        return march
+
+
+def start(
+    scene: Scene | RockMass,
+    model: str,
+    dim: int | None = None,
+    comm=None,
+    incident: IncidentField | None = None,
+) -> Start:
+    """Return the run of a scene at rest; arguments and errors as of `simulate`."""
+    refuse(scene, model, dim)
+    reason = applies(scene, model, dim)
+    if reason:
+        raise SceneError(scene.name or scene.title, "model", model, reason)
+    run = run_of(scene, model, dim, comm, incident)
+    rest, monitor = _at_rest(run), Monitor(run)
+    begin = explicit_engine if run.choice.scheme == "explicit" else implicit_engine
+    return Start(run, monitor, begin(run, monitor), rest)
 
 
 def _recorded(run: Run, times: np.ndarray, about: dict[str, Any]) -> Fields:

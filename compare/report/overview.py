@@ -118,7 +118,7 @@ def _version(package: str) -> str:
 
 REPEATS = 5
 LONG = 0.5  # s: a run that has taken so long is not repeated
-ENOUGH = 0.2  # s: of repeats, their set-up included
+ENOUGH = 0.1  # s: of repeats, their set-up included
 
 
 def seconds(comparison: Comparison) -> dict[str, float]:

@@ -23,6 +23,7 @@ from compare.experiments.study.study import load as load_study
 from compare.experiments.study.summary import REPORTED
 from compare.experiments.study.summary import reported as reported_studies
 from compare.experiments.study.summary import run as run_study
+from compare.experiments.study.summary import summarise as summarise_study
 from compare.experiments.summary import Summary
 from compare.figures.charts.static import draw
 from compare.figures.charts.waveforms import by_solutions
@@ -98,10 +99,7 @@ def build(
 
             solved = _solved(Path(out), part("scenes"), pool, begin)
             page = _of_paper(*solved, untimed[0].result())
-            page = _with_studies(page, Path(out), studies, others, pool, part("studies"))
-            kept, tell = Path(out) / "effects", part("effects")
-            effects = ablation_runs.run(ablation_runs.reported(), kept, pool, tell)
-            page = replace(page, effects=summarise_ablation(kept, effects))
+            page = _with_measured(page, Path(out), studies, others, pool, part)
     return Report(write_text(Path(out) / "index.html", render(page, Path(out))), page)
 
 
@@ -154,15 +152,18 @@ def _untimed(
     """Return what is made beside the scenes: processors are busy, and no seconds are measured.
 
     All of it at once: where one part ends, no processor waits for the next. Points of untimed
-    studies are only computed, and read where their summary is made.
+    studies and results without effects are only computed, and read where they are needed.
     """
     with ThreadPoolExecutor() as threads:
         joints = threads.submit(_joints, out / "studies", pool, part("rock masses"))
         points = threads.submit(_compute_untimed, out / "studies", studies, pool)
+        cases = ablation_runs.reported()
+        effects = threads.submit(ablation_runs.prepared, cases, out / "effects", pool)
         tell = part("hard cases")
         stability = make_hard_cases(out / "studies", pool, False, tell) if hard else None
         tell(1.0)  # also where they are left out
         points.result()
+        effects.result()
         return _Untimed(stability, joints.result())
 
 
@@ -218,21 +219,30 @@ def _ranked(solved: Solved) -> list[RankedScene]:
     ]
 
 
-def _with_studies(
+def _with_measured(
     page: Page,
     out: Path,
     studies: tuple[str, ...],
     others: DataFrame | None,
     pool: Pool,
-    progress: Progress | None,
+    part: Callable[[str], Progress],
 ) -> Page:
-    """Return the page with what was measured: the seconds after everything else, and alone."""
-    return replace(
-        page,
-        studies=reported_studies(out, studies, progress, pool),
-        peers=None if others is None else peers.write_section(out / "studies", others),
-        peers_file=str(peers.PLACE),
-    )
+    """Return the page with what was measured: the seconds after everything else, and alone; drawn
+    once no more are to be measured."""
+    kept = out / "effects"
+    measured = reported_studies(out, studies, part("studies"), pool)
+    effects = ablation_runs.run(ablation_runs.reported(), kept, pool, part("effects"))
+    with pool() as executor:
+        drawn = [executor.submit(summarise_study, *one) for one in measured]
+        of_effects = executor.submit(summarise_ablation, kept, effects)
+        section = None if others is None else peers.write_section(out / "studies", others)
+        return replace(
+            page,
+            studies=[one.result() for one in drawn],
+            effects=of_effects.result(),
+            peers=section,
+            peers_file=str(peers.PLACE),
+        )
 
 
 def write_comparisons(comparisons: list[Comparison], out: Path) -> None:

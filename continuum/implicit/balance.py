@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags
 
 from continuum.implicit.substeps import Applied
-from continuum.implicit.vectors import Matrix, largest
+from continuum.implicit.vectors import Matrix, largest, mean_velocity, rock_forces
 from continuum.model import Model
 from continuum.parallel.serial import SERIAL, Serial
 from continuum.space.body import Body, rock_matrices
@@ -58,16 +58,18 @@ def balance(
     applied : of the loads. r : rate factor, 1/s (`joints.tangent`).
     Returns the largest force (N) that is summed up, of rock, dashpots, load and weight.
     """
-    u, mean = trial.u, trial.v_before
-    mean[:] = (u - now.u) / model.dt
+    u, mean, force, K = trial.u, trial.v_before, trial.force, rock.stiffness
+    mean_velocity(u, now.u, model.dt, mean)
     for own, before in zip(_history(trial), _history(now), strict=True):
         if own is not None:
             own[:] = before
     if trial.ledger is not None:
         trial.ledger[:] = now.ledger
     memory = model.rock.memory
-    force = -(rock.stiffness @ u) if memory is None else np.zeros_like(u)
-    sizes = [largest(force)]
+    if memory is None:
+        sizes = [rock_forces(K.indptr, K.indices, K.data, u, force)]
+    else:
+        force[:], sizes = 0.0, [0.0]
     if trial.at.rate is not None:
         v = trial.v
         trial.rate[:] = v
@@ -76,7 +78,7 @@ def balance(
     if memory is not None:
         trial.elongation[:] = memory.advanced(now.elongation, mean)
         trial.strained[:] = memory.strained(u, trial.elongation)
-        trial.drag[:] = -(rock.stiffness @ trial.strained)  # all of it counts as viscous
+        trial.drag[:] = -(K @ trial.strained)  # all of it counts as viscous
         sizes.append(largest(trial.drag))
     if model.weight is not None:
         sizes.append(largest(model.weight))
@@ -84,17 +86,16 @@ def balance(
         sizes.append(largest(model.ends.loaded.share * applied.pressure))
     if applied.driven is not None:
         sizes.append(largest(applied.driven))
-    trial.force[:] = force
     if model.interfaces is not None:
         _add_joint_forces(model, now, trial, r, tangents)
     if trial.drag is not None:
-        trial.force[:] += trial.drag
+        force += trial.drag
     if model.weight is not None:
-        trial.force[:] += model.weight
+        force += model.weight
     if model.ends.loaded is not None:
-        trial.force[model.ends.loaded.freedom] += model.ends.loaded.share * applied.pressure
+        force[model.ends.loaded.freedom] += model.ends.loaded.share * applied.pressure
     if applied.driven is not None:
-        trial.force[model.ends.driven.freedom] += applied.driven
+        force[model.ends.driven.freedom] += applied.driven
     _add_ends(model, now, trial)
     return max(sizes)
 
@@ -125,7 +126,8 @@ def _add_joint_forces(
     )  # fmt: skip
     if trial.ledger is not None:
         trial.ledger[1] += work
-    trial.force[:] += joints.spread @ loads.ravel()
+    force = trial.force
+    force += joints.spread @ loads.ravel()
     if drags is not None:
         trial.drag[:] += joints.spread @ drags.ravel()
 

@@ -1,6 +1,7 @@
 """Newton's method."""
 
 from collections.abc import Callable
+from math import inf, isfinite
 from typing import NamedTuple
 
 import numpy as np
@@ -42,7 +43,7 @@ def newton(
         rest, left = residual(x)
         errors.append(communicator.largest(_size(rest)))
         tolerance = communicator.largest(left)
-        if not np.isfinite(errors[-1]):
+        if not isfinite(errors[-1]):
             break
         if errors[-1] == 0 or (len(errors) > 1 and errors[-1] <= tolerance):
             return Outcome(x, True, errors, tolerance)
@@ -55,4 +56,4 @@ def newton(
 def _size(values: np.ndarray) -> float:
     """Return the largest magnitude; infinite if any is NaN."""
     found = largest(values)
-    return found if np.isfinite(found) else np.inf
+    return found if isfinite(found) else inf

@@ -27,7 +27,7 @@ from continuum.implicit.substeps import (
     move,
     shortened,
 )
-from continuum.implicit.vectors import compiled_joints, largest
+from continuum.implicit.vectors import compiled_joints, move_free, out_of_balance
 from continuum.model import Model
 from continuum.state import State
 
@@ -94,33 +94,31 @@ class Stepper:
         """Try a step of dt / 2**halvings to a share of the way from step n to n + 1; the end is
         left in `trial`."""
         length, (alpha_m, alpha_f, beta, gamma) = self._length(halvings), self.scheme
-        old, dt, free = now.state, length.model.dt, self._moves
-        drift = dt * old.v + (0.5 - beta) * dt**2 * now.acceleration
-        before = alpha_f * old.force - alpha_m * (self.mass @ now.acceleration)
+        old, dt, free, mass = now.state, length.model.dt, self.free, self.mass
+        old_u, old_v, square = old.u, old.v, beta * dt**2
+        drift = dt * old_v + (0.5 - beta) * dt**2 * now.acceleration
+        before = alpha_f * old.force - alpha_m * (mass @ now.acceleration)
         move(self.fixed, trial.state, trial.acceleration, n, share)
         # What no iteration changes: Newton's method takes two of a linear step.
         applied, a, force = applied_at(self.model, n, share), trial.acceleration, trial.state.force
-        u, v, old_u, old_v = trial.state.u, trial.state.v, old.u[free], old.v
-        drifts, kept = drift[free], (1 - gamma) * now.acceleration
+        u, v, rest = trial.state.u, trial.state.v, np.empty_like(old_u)
+        matrix, kept = (mass.indptr, mass.indices, mass.data), (1 - gamma) * now.acceleration
+        of_step = old_u, old_v, drift, kept, dt, gamma, square
 
         def residual(moved: np.ndarray) -> tuple[np.ndarray, float]:
-            a[free] = (moved - drifts) / (beta * dt**2)
-            u[free] = old_u + moved
-            v[free] = (old_v + dt * (kept + gamma * a))[free]
+            moves = move_free(free, moved, *of_step, self._weight, a, u, v)
             self.set_forces(length.model, now, trial, applied, length.r)
-            inertia = self.mass @ a
-            rest = (1 - alpha_f) * force + before - (1 - alpha_m) * inertia
-            size = max(trial.size[0], now.size[0], largest(inertia))
-            moves = largest(self._weight * u[free])
+            inertia = out_of_balance(*matrix, a, force, before, 1 - alpha_f, 1 - alpha_m, rest)
+            size = max(trial.size[0], now.size[0], inertia)
             left = RESIDUAL * size + LAST_DIGITS * (moves + self._carried)
-            return self.communicator.total(rest)[free], left
+            return self.communicator.total(rest)[self._moves], left
 
         def correction(rest: np.ndarray) -> np.ndarray:
             self._factorise(length)
             self.counts[0] += 1
             return self._system.solve(rest)
 
-        start = (drift + beta * dt**2 * now.acceleration)[free]
+        start = (drift + square * now.acceleration)[self._moves].copy()
         return newton(residual, correction, start, self.communicator)
 
     def set_forces(

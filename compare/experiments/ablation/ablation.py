@@ -170,4 +170,4 @@ def _in_rock(scene: AnyScene, without: dict[str, AnyScene]) -> dict[str, StepCos
     if not applies(ROCK, scene):
         return {}
     timed = {OWN: scene} | without
-    return dict(zip(timed, freedoms_in_turns(ROCK, list(timed.values())), strict=True))
+    return dict(zip(timed, freedoms_in_turns(JOINTED_ROCK, list(timed.values())), strict=True))

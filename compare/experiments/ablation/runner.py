@@ -66,13 +66,11 @@ def run(
 
     pool : makes the executor that solves and compiles; timing is done in this process, one by one.
     """
-    done, prepared = ablations(folder), Store[list[Dropped]](list[Dropped], folder)
+    done = ablations(folder)
     tell = progress or (lambda fraction: None)
     new = [case for case in wanted if not done.has(case.key)]
     with timings.timing(RATE, len(new)):
-        results = prepared.compute(
-            new, lambda case: f"{case.key}-prepared", _prepared, pool, lambda x: tell(PREPARING * x)
-        )
+        results = prepared(new, folder, pool, lambda x: tell(PREPARING * x))
         dropped = {case.key: one for case, one in zip(new, results, strict=True)}
         with alone():
             return done.compute(
@@ -81,6 +79,15 @@ def run(
                 lambda case: ablate(case.name, case.scene, dropped[case.key]),
                 progress=lambda part: tell(PREPARING + (1 - PREPARING) * part),
             )
+
+
+def prepared(
+    wanted: list[Variant], folder: Path, pool: Pool | None = None, progress: Progress | None = None
+) -> list[list[Dropped]]:
+    """Return the results without each effect of all cases, which are saved in `folder`, and
+    compile what `run` will time."""
+    known = Store[list[Dropped]](list[Dropped], folder)
+    return known.compute(wanted, lambda case: f"{case.key}-prepared", _prepared, pool, progress)
 
 
 def ablations(folder: Path) -> Store[Ablation]:

@@ -12,10 +12,10 @@ from cases.effects import is_spatial
 from cases.kinds import AnyScene
 from cases.sampling import Clock
 from cases.schema.scene import Scene
-from compare.engines import solve
 from compare.experiments.cost import timings
 from compare.experiments.cost.scenes import everything
 from compare.solvers.incident import incident
+from compare.solvers.record import Solver
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 Stretch = tuple[Callable[[], None], int]
 
 REPEATS = 5
-SHORTEST = 0.02  # s, least duration of a timing
+SHORTEST = 0.01  # s, least duration of a timing
 LONGEST = 0.5  # s, of stepping: longer continuum runs are not repeated
 BLOCK_STEPS = 5_000_000  # of one call, at most, unless it has a single sample
 BLOCK_STEPS_IN_SPACE = 500_000  # each takes ten times as long
@@ -53,18 +53,32 @@ def in_turns(scenes: Sequence[AnyScene], threads: int = 1) -> list[StepCost]:
     return _least(rounds, [block_steps for _, block_steps in timed])
 
 
-def freedoms_in_turns(engine: str, scenes: Sequence[AnyScene]) -> list[StepCost]:
+def freedoms_in_turns(engine: Solver, scenes: Sequence[AnyScene]) -> list[StepCost]:
     """Return the cost of one step of one freedom of a continuum engine: the minimum of two runs or
     more, alternating between the scenes.
 
     Raises SceneError if the engine does not apply, UnstableError if it becomes unstable.
     """
+    from continuum.simulate import start
+
+    begun = [start(scene, str(engine.model), incident=incident(scene)) for scene in scenes]
+    for one in begun:
+        one.engine.compile()
+    timed = [one.march_again() for one in begun]
     rounds: list[list[float]] = []
     most = LONGEST * len(scenes)
     while len(rounds) < 2 or (len(rounds) < REPEATS and sum(map(sum, rounds)) < most):
-        runs = [solve(engine, scene).attrs for scene in scenes]
-        rounds.append([run["seconds_stepping"] for run in runs])
-    return _least(rounds, [run["steps"] * run["degrees_of_freedom"] for run in runs])
+        rounds.append([_once(march) for march in timed])
+    steps = [one.run.choice.time.steps for one in begun]
+    freedoms = [one.run.discrete.body.degrees_of_freedom for one in begun]
+    return _least(rounds, [n * count for n, count in zip(steps, freedoms, strict=True)])
+
+
+def _once(march: Callable[[], None]) -> float:
+    """Return the seconds of one call."""
+    began = perf_counter()
+    march()
+    return perf_counter() - began
 
 
 def _least(rounds: list[list[float]], counts: list[int]) -> list[StepCost]:

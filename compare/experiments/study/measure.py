@@ -17,7 +17,7 @@ from compare.experiments.study.reference import UNKNOWN, error, finest_of, known
 from compare.experiments.study.study import StudyPoint
 from compare.solvers.record import Answer
 
-LONG = 0.25  # s: longer steps are timed once, and repeats begin for no longer
+LONG = 0.1  # s: longer steps are timed once, and repeats begin for no longer
 
 
 class PointRow(NamedTuple):

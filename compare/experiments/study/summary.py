@@ -2,6 +2,7 @@
 
 from contextlib import nullcontext
 from pathlib import Path
+from typing import NamedTuple
 
 from compare.engines import Progress
 from compare.experiments import store
@@ -54,23 +55,29 @@ def summarise(folder: Path, name: str, study: Study, rows: list[PointRow]) -> Su
     )
 
 
+class Measured(NamedTuple):
+    """A study with its rows, and what `summarise` needs beside them."""
+
+    folder: Path
+    name: str
+    study: Study
+    rows: list[PointRow]
+
+
 def reported(
     out: Path,
     names: tuple[str, ...] = REPORTED,
     progress: Progress | None = None,
     pool: Pool | None = None,
-) -> list[Summary]:
-    """Run studies one after the other, because they are timed, then draw them; write into `out`."""
+) -> list[Measured]:
+    """Run studies one after the other, because they are timed; points are saved in `out`."""
     measured, folder = [], out / "studies"
     for i, name in enumerate(names):
         study = load(name)
-        measured.append((folder, name, study, run(study, folder / name, pool)))
+        measured.append(Measured(folder, name, study, run(study, folder / name, pool)))
         if progress:
             progress((i + 1) / len(names))
-    if pool is None:
-        return [summarise(*one) for one in measured]
-    with pool() as executor:
-        return [one.result() for one in [executor.submit(summarise, *one) for one in measured]]
+    return measured
 
 
 def cells(row: PointRow) -> list[str]:
