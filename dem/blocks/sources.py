@@ -82,6 +82,14 @@ class Sources:
                 found += one.drive(first, last, self.time.dt, len(self.rows))
         return found
 
+    def _at(self, steps: np.ndarray) -> np.ndarray:
+        """Return forces and moments in equally spaced steps [n, h, 3], N and N m."""
+        found = np.zeros((len(steps), len(self.rows), 3))
+        self._add_patterns(found, steps, resultant(self.shapes))
+        for one in self.waves:
+            found += one.at(steps, self.time.dt, len(self.rows))
+        return found
+
     def _add_patterns(self, found: np.ndarray, steps: np.ndarray, shapes: np.ndarray) -> None:
         """Add the mean of every pattern over each step."""
         dt = self.time.dt
@@ -100,14 +108,14 @@ class Sources:
         What is steady acts from the start, and is in equilibrium with the stress that it stands
         for.
         """
-        time, every = self.time, np.arange(len(self.rows))
+        time = self.time
         periods = time.dt * time.stride * (frequency or 0.0)
         stride = max(1, int(time.stride / max(1.0, IN_A_PERIOD * periods)))
         steps = np.arange(0, time.stride * time.samples, stride)
         parts = -(-len(steps) * max(1, len(self.rows)) // AT_ONCE)
         felt = 0.0
         for some in np.array_split(steps, parts):
-            forces = resultant(self.sums(some, every)) - self.steady
+            forces = self._at(some) - self.steady
             felt += float(np.sqrt((forces**2 / inertia).sum(axis=(1, 2))).sum())
         return time.dt * stride * felt
 

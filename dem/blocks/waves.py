@@ -42,6 +42,10 @@ class Delayed:
         place = np.searchsorted(rows, self.row[own])
         return on_rows(mean[..., None] * self.sums_of[own], place, len(rows))
 
+    def at(self, steps: np.ndarray, dt: float, count: int) -> np.ndarray:
+        """Return forces and moments in steps [n] of dt, s: [n, count, 3]."""
+        return resultant(self.sums(steps, dt, np.arange(count)))
+
     def drive(self, first: int, last: int, dt: float, count: int) -> np.ndarray:
         """Return forces and moments in the steps first .. last - 1 [n, count, 3]."""
         from scipy.sparse import csr_array
@@ -67,9 +71,13 @@ class Sampled:
         """Return the resultants in equally spaced steps [n] of dt, s, on rows [k]: [n, k, 6]."""
         return FaceTractions(self.times, self.sums_of[:, rows]).at(dt * steps)
 
+    def at(self, steps: np.ndarray, dt: float, count: int) -> np.ndarray:
+        """Return forces and moments in equally spaced steps [n] of dt, s: [n, h, 3]."""
+        return self.forces.at(dt * steps)
+
     def drive(self, first: int, last: int, dt: float, count: int) -> np.ndarray:
         """Return forces and moments in the steps first .. last - 1 [n, h, 3]."""
-        return self.forces.at(dt * np.arange(first, last))
+        return self.at(np.arange(first, last), dt, count)
 
 
 def incoming(
