@@ -7,6 +7,7 @@ second, equally sampled.
 """
 
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -273,18 +274,24 @@ def envelope_phase_misfit(one: np.ndarray, other: np.ndarray, dt: float) -> tupl
     Bull. Seism. Soc. Am. 96, 1836-1850; over the band that contains the reference's energy. A
     reference at rest, or with a period longer than the record, has no such band.
     """
-    from obspy.signal.tf_misfit import cwt
-
     period = mean_period(other, dt)
     if not one.any() or not period < dt * len(other):
         return np.nan, np.nan
     coarse = max(1, int(period / (40 * dt)))  # 40 samples per period: far above the band's end
-    band = {"dt": dt * coarse, "w0": 6, "fmin": 0.25 / period, "fmax": 4 / period, "nf": 24}
-    found, wanted = (cwt(wave[::coarse], **band) for wave in (one, other))
+    band = {"dt": dt * coarse, "fmin": 0.25 / period, "fmax": 4 / period}
+    found, wanted = (_wavelets(wave[::coarse].tobytes(), **band) for wave in (one, other))
     size = np.abs(wanted)
     envelope, phase = np.abs(found) - size, size * np.angle(found * wanted.conj()) / np.pi
     off, whole = np.linalg.norm([envelope, phase], axis=(1, 2)), np.linalg.norm(size)
     return float(off[0] / whole), float(off[1] / whole)
+
+
+@lru_cache(maxsize=32)
+def _wavelets(waveform: bytes, dt: float, fmin: float, fmax: float) -> np.ndarray:
+    """Return the wavelet transform of a waveform; that of a reference serves several pairs."""
+    from obspy.signal.tf_misfit import cwt
+
+    return np.asarray(cwt(np.frombuffer(waveform), dt=dt, w0=6, fmin=fmin, fmax=fmax, nf=24))
 
 
 def _ratio(a: float, b: float) -> float:

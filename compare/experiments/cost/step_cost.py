@@ -25,7 +25,7 @@ Stretch = tuple[Callable[[], None], int]
 
 REPEATS = 5
 SHORTEST = 0.01  # s, least duration of a timing
-LONGEST = 0.5  # s, of stepping: longer continuum runs are not repeated
+LONGEST = 0.25  # s, of stepping: longer continuum runs are not repeated
 BLOCK_STEPS = 5_000_000  # of one call, at most, unless it has a single sample
 BLOCK_STEPS_IN_SPACE = 500_000  # each takes ten times as long
 
