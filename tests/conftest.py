@@ -42,6 +42,8 @@ if providers := sys.modules.get("hypothesis.internal.conjecture.providers"):
 # small matrix, and those of MUMPS would for every front.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
+# Open MPI would start a daemon for every process that imports it on its own, and wait for it.
+os.environ.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
 
 # As in the command: most of what would be looked through has been imported, and stays.
 collect_rarely()

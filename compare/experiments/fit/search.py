@@ -25,6 +25,7 @@ class FitSearch:
     def __init__(self, problem: Problem, keys: list[Free], progress: Progress | None) -> None:
         self.problem, self.keys, self.progress = problem, keys, progress
         self.trials = self.refused = 0
+        self._known: dict[bytes, list[np.ndarray] | None] = {}
         self.weights = [1 / m.size / np.sqrt(len(m.time)) for m in problem.measured]
         self.low = np.array([-np.inf if k.low == -np.inf else k.unknown(k.low) for k in keys])
         self.high = np.array([np.inf if k.high == np.inf else k.unknown(k.high) for k in keys])
@@ -38,11 +39,16 @@ class FitSearch:
         return [key.value(u) for key, u in zip(self.keys, x, strict=True)]
 
     def residuals(self, x: np.ndarray) -> list[np.ndarray] | None:
-        """Return solution minus measurement of each waveform [n], SI; None without a solution."""
+        """Return solution minus measurement of each waveform [n], SI; None without a solution.
+
+        A search begins and ends where others and the statistics need the same solutions: each is
+        found once.
+        """
         self.trials += 1
-        found = self.problem.residual(
-            {k.key: v for k, v in zip(self.keys, self.values(x), strict=True)}
-        )
+        if (at := x.tobytes()) not in self._known:
+            values = {k.key: v for k, v in zip(self.keys, self.values(x), strict=True)}
+            self._known[at] = self.problem.residual(values)
+        found = self._known[at]
         self.refused += found is None
         if self.progress:
             self.progress(1 - 0.97**self.trials)  # the number of trials is unknown

@@ -16,7 +16,7 @@ from compare.exact.blocks import lattice
 from compare.experiments.fit import search
 from compare.experiments.fit.files import draw, scene_text
 from compare.experiments.fit.keys import changed, free_keys
-from compare.experiments.fit.problem import problem_of
+from compare.experiments.fit.problem import Problem, problem_of
 from compare.experiments.fit.statistics import autocorrelation_time
 from compare.misfit.external import Curves, read_curves
 from compare.misfit.places import Place
@@ -164,6 +164,20 @@ def test_clock_is_found_to_a_thousandth_of_an_interval(late, free, scene):
     assert clock.value == pytest.approx(-late, abs=1e-3 * scene.interval, rel=0)
     assert clock.unit == "s" and fitted.after < 1e-6
     assert fitted.before > 0.2 or "=" not in free[0]
+
+
+def test_no_solution_is_found_twice(scene, monkeypatch):
+    """The search asks again for where another has ended; what it counts are its questions."""
+    asked, residual = [], Problem.residual
+
+    def counted(problem, values):
+        asked.append(tuple(values.items()))
+        return residual(problem, values)
+
+    monkeypatch.setattr(Problem, "residual", counted)
+    places = (AT_3, Place("stress", "", (1.0,)))
+    found = jointwave.fit(scene, [heard(scene, places)], list(TRUE))
+    assert len(set(asked)) == len(asked) < found.trials
 
 
 def test_poor_start_is_left_for_another(scene):
