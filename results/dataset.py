@@ -60,9 +60,12 @@ class Fields(NamedTuple):
     attributes: dict[str, Any]
 
 
-def scene_hash(scene: AnyScene) -> str:
-    """Return a short hash of everything that determines a result, including samples of loads."""
-    digest = hashlib.sha256(scene.model_dump_json().encode())
+def scene_hash(scene: AnyScene, text: str | None = None) -> str:
+    """Return a short hash of everything that determines a result, including samples of loads.
+
+    text : the scene as JSON, where it is at hand.
+    """
+    digest = hashlib.sha256((text or scene.model_dump_json()).encode())
     for pulse in scene.pulses:
         if pulse.history is not None:
             digest.update(pulse.history.time.tobytes())
@@ -156,17 +159,18 @@ def fields(
 def attributes_of(scene: AnyScene, engine: str, own: Mapping[str, Any]) -> dict[str, Any]:
     """Return the attributes of a result: its scene and solver, `own` attributes of the run, and the
     scene itself, last because of its length."""
+    text = scene.model_dump_json()
     common = {
         "engine": engine,
         "kind": scene.kind,
         "title": scene.title,
         "variant": scene.name,
-        "scene_hash": scene_hash(scene),
+        "scene_hash": scene_hash(scene, text),
         **static_attributes(scene),
         "effects": json.dumps(active_effects(scene)),
         "warnings": json.dumps(warnings(scene)),
     }
-    return {**common, **own, "scene": scene.model_dump_json()}
+    return {**common, **own, "scene": text}
 
 
 def static_attributes(scene: AnyScene) -> dict[str, Any]:

@@ -138,15 +138,21 @@ def distance(found, expected):
     return np.abs(found - expected).max() / np.abs(expected).max()
 
 
+STRAIGHT = [(*kind, False) for kind in HEXAHEDRA + SIMPLICES if kind[0] == 1 or kind[2] <= 2]
+BENT = [(*kind, True) for kind in HEXAHEDRA + SIMPLICES if kind[0] > 1]
+
+
 @pytest.mark.parametrize(
     ("dim", "cell", "order", "bent"),
-    [(*kind, False) for kind in HEXAHEDRA + SIMPLICES if kind[0] == 1 or kind[2] <= 2]
-    + [(*kind, True) for kind in HEXAHEDRA + SIMPLICES if kind[0] > 1],
+    [
+        pytest.param(*kind, marks=pytest.mark.slow if kind[2] == 3 else ())
+        for kind in STRAIGHT + BENT
+    ],
 )
 def test_matrices_are_those_of_the_form_as_dolfinx_assembles_it(dim, cell, order, bent, body):
     """Cell by cell, through the map of straight cells, of which some are alike, and of bent ones,
     in two materials; by Lobatto's rule the mass matrix has no entries beside its diagonal, and is
-    not lumped by hand."""
+    not lumped by hand. Slow in order 3, whose forms take long to compile, between 2 and 4."""
     at = body(dim, cell, order, along=2, bent=bent_everywhere if bent else None)
     part = at.mesh.parts[0]
     part = part._replace(material=np.arange(len(part.cells)) % 2)
