@@ -62,6 +62,12 @@ def step_means(load: LoadHistory, dt: float, count: int, first: int = 0) -> np.n
     return np.diff(load.impulse(edges)) / dt
 
 
+def until_it_ends(steps: np.ndarray) -> np.ndarray:
+    """Return what acts in each step [n], up to the last in which something does."""
+    acts = np.flatnonzero(steps)
+    return steps[: acts[-1] + 1 if acts.size else 0]
+
+
 def with_load_itself(
     stress: np.ndarray, scene: Scene, sections: Interpolation, times: np.ndarray, dt: float
 ) -> np.ndarray:

@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from cases.loads import load_history
+from cases.loads import load_history, until_it_ends
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock, clock
 from cases.schema.scene import Scene
@@ -104,7 +104,7 @@ def build(scene: Scene) -> tuple[Model, State, Clock, float]:
     refuse_large(scene, time, stages=1 + len(EDGES))
     at_steps = time.dt * np.arange(time.steps + time.stride)
     load = _unit_force(scene) * load_history(scene).value(at_steps)
-    model = unloaded(scene, p, 0.0, ends)._replace(load=np.trim_zeros(load, "b"))
+    model = unloaded(scene, p, 0.0, ends)._replace(load=until_it_ends(load))
     state = state_at_rest(model.effects, p.block_count, scene.record.energy)
     return model, state, time, critical
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.loads import base_steps, load_history, step_means
+from cases.loads import base_steps, load_history, step_means, until_it_ends
 from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock, Interpolation, clock, interpolation
 from cases.schema.scene import Scene
@@ -111,8 +111,8 @@ def build_model(scene: Scene, p: Properties, time: Clock) -> Model:
     model = unloaded(scene, p, time.dt, (scene.ends.start, scene.ends.end))
     return model._replace(
         effects=model.effects._replace(base=scene.shakes_base),
-        load=np.trim_zeros(load, "b"),
-        base=np.trim_zeros(base, "b"),
+        load=until_it_ends(load),
+        base=until_it_ends(base),
     )
 
 
