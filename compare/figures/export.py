@@ -101,9 +101,9 @@ def _write_drawings(figure: Figure, folder: Path, name: str, title: str, png: bo
             engine.execute(figure)
         figure.set_layout_engine(None)
         drawn = draw_both(figure, title)
+        write(folder / f"{name}.pdf", lambda place: place.write_bytes(drawn.pdf))
         if png:
             write_drawing(folder / f"{name}.png", figure, dpi=DOTS)
-    write(folder / f"{name}.pdf", lambda place: place.write_bytes(drawn.pdf))
     svg = compact(drawn.svg, name)
     write_text(folder / f"{name}.svg", svg)
     return svg[svg.index("<svg") :]

@@ -3,6 +3,7 @@
 import shlex
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -73,6 +74,7 @@ def build(
     peers_table: Path | None = None,
     hard: bool = True,
     ensembles: Sequence[Path] = (),
+    executor: Executor | None = None,
 ) -> Report:
     """Solve scenes by all that applies, and write their figures, tables and `out`/index.html.
 
@@ -81,10 +83,12 @@ def build(
     `peers_table` is what `make bench-peers` wrote; None: where it writes, if it did.
     `hard` : also put both engines to the hard cases, except those that take long.
     `ensembles` : folders of ensembles of these scenes, whose pictures stand among theirs.
+    `executor` : does the work; None: so many `workers`.
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
-    with ThreadPoolExecutor(1) as beside, Workers(workers) as executor:
-        pool = partial(Lent, executor)
+    given = Workers(workers) if executor is None else nullcontext(executor)
+    with ThreadPoolExecutor(1) as beside, given as lent:
+        pool = partial(Lent, lent)
         if scenes:
             page = _of_scenes(Path(out), asked_for(scenes, ensembles), progress, pool)
         else:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 LARGEST_ROW = 100_000_000  # bytes, of a point saved by a study, a sweep or the robustness suite
+AT_ONCE = 10_000  # rows of a table that are formatted together
 FORMULA = ("=", "+", "-", "@")  # first characters of a spreadsheet formula
 UNFINISHED = ".unfinished-"  # in the names of files being written, which begin with a dot
 
@@ -145,12 +146,23 @@ def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
 def write_csv(path: Path, table: pd.DataFrame, digits: int = 9) -> Path:
     """Write a table without its index; text is escaped by `csv_cell`."""
     safe = table.rename(columns=csv_cell)
+    if all(kind.kind == "f" for kind in safe.dtypes) and not safe.isna().to_numpy().any():
+        text = safe.iloc[:0].to_csv(index=False) + _rows(safe.to_numpy(), digits)
+        return write_text(path, text)
     for i, kind in enumerate(safe.dtypes):
         if kind.kind == "f":
             safe.isetitem(i, [csv_number(value, digits) for value in safe.iloc[:, i].tolist()])
         elif kind.kind not in "biu":
             safe.isetitem(i, [csv_cell(value) for value in safe.iloc[:, i]])
     return write(path, lambda file: safe.to_csv(file, index=False))
+
+
+def _rows(values: np.ndarray, digits: int) -> str:
+    """Return the rows of a table of numbers [n, k], without NaN: one format for many of them takes
+    half the time of one each."""
+    row = ",".join([f"%.{digits}g"] * values.shape[1]) + "\n"
+    parts = (values[i : i + AT_ONCE] for i in range(0, len(values), AT_ONCE))
+    return "".join(row * len(part) % tuple(part.ravel().tolist()) for part in parts)
 
 
 def csv_number(value: float, digits: int) -> str:

@@ -5,6 +5,7 @@ import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
+from importlib import import_module
 from multiprocessing import active_children, get_context
 from threading import Lock
 from types import TracebackType
@@ -23,8 +24,11 @@ class Workers(ProcessPoolExecutor):
     would wait for one another, a millisecond for every small matrix.
     """
 
-    def __init__(self, count: int) -> None:
-        super().__init__(count, get_context("spawn"), initializer=collect_rarely)
+    def __init__(self, count: int, module: str | None = None) -> None:
+        """Start no worker yet; with a module all of them, which import it meanwhile."""
+        super().__init__(count, get_context("spawn"), _begin, (module,))
+        for _ in range(count if module else 0):
+            self.submit(os.getpid)  # each starts a worker
 
     def submit(self, work: Callable[..., Any], /, *arguments: Any, **more: Any) -> Future:
         """Submit work to a worker, starting one if none is free."""
@@ -42,6 +46,12 @@ class Workers(ProcessPoolExecutor):
             for worker in active_children():
                 worker.terminate()
         self.shutdown(cancel_futures=kind is not None)
+
+
+def _begin(module: str | None) -> None:
+    collect_rarely()
+    if module is not None:
+        import_module(module)
 
 
 @contextmanager

@@ -178,15 +178,23 @@ def report(
     for one in scenes or []:
         load(one, [], None, strict)
     from compare.cli import terminal, views
-    from compare.report.report import build
 
     if dry:
         from compare.experiments.cost.experiment_cost import parts_of_report, show_parts
 
         show_parts(parts_of_report(scenes or (), out), as_json)
         return
-    with locked(out, out / "figures", out / "studies"), terminal.progress("report") as advance:
-        found = build(out, advance, scenes=scenes or (), peers_table=peers, ensembles=ensembles)
+    from compare.runs.workers import Workers
+
+    with (
+        locked(out, out / "figures", out / "studies"),
+        terminal.progress("report") as advance,
+        Workers(2, "compare.report.scenes") as executor,
+    ):
+        from compare.report.report import build
+
+        about: dict[str, Any] = {"peers_table": peers, "ensembles": ensembles}
+        found = build(out, advance, scenes=scenes or (), executor=executor, **about)
     views.show_report(found, as_json)
 
 

@@ -1,11 +1,13 @@
 """Files are complete or absent, and the previous file survives a failure."""
 
+import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 
 import dem
 from compare.exact.blocks import spatial_lattice
-from compare.runs.output import fields_of, write, write_fields, write_text
+from compare.runs.output import fields_of, write, write_csv, write_fields, write_text
 
 
 def test_failed_write_leaves_the_old_file_and_no_other(tmp_path):
@@ -20,6 +22,18 @@ def test_failed_write_leaves_the_old_file_and_no_other(tmp_path):
         write(path, half)
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("rows", [0, 1, 25_000])
+def test_a_table_of_numbers_is_written_as_one_with_text(tmp_path, rows):
+    """Formatted together or one by one, numbers and names of columns look the same."""
+    values = np.random.default_rng(0).standard_normal((rows, 2)) * 10.0 ** np.arange(-20, 20, 20)
+    numbers = pd.DataFrame(values, columns=["stress, dem (Pa)", "=v"])
+    numbers.iloc[:1] = np.inf, -0.0
+    lines = write_csv(tmp_path / "a.csv", numbers, 6).read_text().splitlines()
+    mixed = write_csv(tmp_path / "b.csv", numbers.assign(word="x"), 6).read_text().splitlines()
+    assert mixed[0] == f"{lines[0]},word" and len(lines) == rows + 1
+    assert mixed[1:] == [f"{line},x" for line in lines[1:]]
 
 
 def test_dataset_comes_back_as_it_was(pillar, tmp_path):
