@@ -139,7 +139,8 @@ def contacts_for(form: Form) -> Callable:
                 for k in range(b.freedoms):
                     for i in range(n):
                         q[kind * DRAG + k * R + i + 1] = 0.0
-        for p in range(count - 1, -1, -1):
+        for k in range(count):
+            p = count - 1 - k
             x, z, whole = points[0, p], points[1, p], points[2, p]
             past = first_point + p * point_rows
             for i in range(n):
@@ -348,7 +349,8 @@ def step_for(form: Form) -> Callable:
         """
         count, tiles, stride, contacts = counts[0], counts[1], counts[2], counts[3]
         receivers, per_face, loaded, sides = counts[4], counts[5], counts[6], counts[9]
-        freedoms = min(counts[8], 6)  # known to be few: loops over them are not vectorised
+        # Known to be few: loops over them are not vectorised.
+        freedoms = counts[8] if counts[8] < 6 else 6
         b, m, final = constants_of(constants, freedoms), motion[t], t == tiles - 1
         blocks, joints = L, L
         if final:

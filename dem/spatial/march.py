@@ -16,6 +16,7 @@ import numpy as np
 from dem.spatial.layout import AFTER, BUFFER, CARRY, FRICTION, KINETIC, LANES, LEDGER, TERMS, Form
 from dem.spatial.leapfrog import step_for
 from dem.spatial.model import Buffers, RowModel, RowSamples, RowState
+from joints.formula import apart
 from numerics.arguments import Packed, unpacked
 from numerics.atomic import give_way, peek, post
 from numerics.denormals import flush_tiny, restore_tiny
@@ -31,6 +32,24 @@ def march_for(form: Form) -> Callable:
     """Return the kernel that takes steps of rows with these effects."""
     step = step_for(form)
     ledger = form.ledger
+
+    @apart
+    def diagonals(
+        constants, counts, table, points, drive, ends, places, motion, history, end_states,
+        force, speed, displacement, buffer, ledgers, thread, begin, end, n, steps, limit, found,
+    ):  # fmt: skip
+        """Take the steps n .. n + steps - 1 on the diagonals begin .. end - 1."""
+        tiles, depth, own = counts[1], counts[7], None
+        for k in range(begin, end):
+            from_step = k - tiles + 1 if k >= tiles else 0
+            for j in range(from_step, steps if steps < k + 1 else k + 1):
+                if ledger:
+                    own = ledgers[thread * depth + j]
+                step(
+                    constants, counts, table, points, drive, ends, places, motion,
+                    history, end_states, force, speed, displacement, buffer,
+                    BUFFER + CARRY * j, own, k - j, n + j, limit, found,
+                )  # fmt: skip
 
     def march(given, thread, first, last):
         """Take this thread's share of the steps first .. last - 1, in turn with the others.
@@ -48,7 +67,7 @@ def march_for(form: Form) -> Callable:
             sums, force, speed, displacement, energy, tile, ledgers, limit, peak, found, progress,
         ) = unpacked(given)  # fmt: skip
         tiles, stride, depth, threads = counts[1], counts[2], counts[7], progress.size - 1
-        buffer, own = tile[thread], None
+        buffer = tile[thread]
         runs = (tiles + depth - 1 + RUN - 1) // RUN
         for band in range(thread, (last - first + depth - 1) // depth, threads):
             n = first + band * depth
@@ -61,16 +80,11 @@ def march_for(form: Form) -> Callable:
                 if found[0] < 0:
                     most = tiles + steps - 1
                     most = most if most < (run + 1) * RUN else (run + 1) * RUN
-                    for k in range(run * RUN, most):
-                        from_step = k - tiles + 1 if k >= tiles else 0
-                        for j in range(from_step, steps if steps < k + 1 else k + 1):
-                            if ledger:
-                                own = ledgers[thread * depth + j]
-                            step(
-                                constants, counts, table, points, drive, ends, places, motion,
-                                history, end_states, force, speed, displacement, buffer,
-                                BUFFER + CARRY * j, own, k - j, n + j, limit, found,
-                            )  # fmt: skip
+                    diagonals(
+                        constants, counts, table, points, drive, ends, places, motion, history,
+                        end_states, force, speed, displacement, buffer, ledgers, thread,
+                        run * RUN, most, n, steps, limit, found,
+                    )  # fmt: skip
                 post(progress, thread, band * runs + run + 1)
             while peek(progress, threads) < band:
                 give_way()

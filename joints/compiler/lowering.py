@@ -10,11 +10,12 @@ import operator
 from collections import defaultdict
 from typing import Any, NamedTuple
 
-from llvmlite.ir import IntType
+from llvmlite.ir import IntType, IRBuilder
 from numba.core import cgutils, ir, types, typing
 from numba.core.lowering import Lower
 from numba.core.types.containers import BaseNamedTuple
 
+from joints.compiler.calls import FormulaCall, alloca, raises
 from joints.compiler.live_ranges import names_read
 
 WORD = IntType(64)
@@ -68,7 +69,7 @@ class Unoptimised(NamedTuple):
         self.library.add_ir_module(module)
 
 
-class Plainly(Lower):
+class OfKernel(Lower):
     """Write code without what only debuggers read."""
 
     def create_cpython_wrapper(self, release_gil=False):
@@ -228,7 +229,7 @@ class Plainly(Lower):
     def _counter(self, over):
         """Return the counter of a loop over a range."""
         build = self.builder
-        counter = Counter(cgutils.alloca_once(build, WORD), cgutils.alloca_once(build, WORD))
+        counter = Counter(alloca(build, WORD), alloca(build, WORD))
         left = over.stop if over.start is None else build.sub(over.stop, over.start)
         some = build.icmp_signed(">", left, WORD(0))
         build.store(build.select(some, left, WORD(0)), counter.left)
@@ -265,7 +266,30 @@ class Plainly(Lower):
 
     def alloca_lltype(self, name, lltype, datamodel=None):
         """Return the place of a variable."""
+        if self._plain(name):
+            return alloca(self.builder, lltype, name)
         return cgutils.alloca_once(self.builder, lltype, name=name, zfill=False)
+
+
+class OfFormula(OfKernel):
+    """Write the code of a formula, as its callers call it."""
+
+    @property
+    def call_conv(self):
+        """How it is called."""
+        return FormulaCall(self.context)
+
+    def setup_function(self, fndesc):
+        """Begin the function."""
+        self.function = self.call_conv.declared(self.module, fndesc)
+        self.entry_block = self.function.append_basic_block("entry")
+        self.builder = IRBuilder(self.entry_block)
+        self.call_helper = self.call_conv.init_call_helper(self.builder)
+
+    def lower_normal_function(self, fndesc):
+        """Write the function, and tell its library whether it may raise."""
+        super().lower_normal_function(fndesc)
+        self.library.raises = raises(self.function)
 
 
 def _is_pointer(kind: types.Type | None) -> bool:

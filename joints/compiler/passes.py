@@ -32,8 +32,9 @@ from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import models, register_model, typeof_impl
 
 from joints.compiler.bytecode import Translation, arguments_of
+from joints.compiler.calls import calling
 from joints.compiler.live_ranges import LiveRanges
-from joints.compiler.lowering import Plainly
+from joints.compiler.lowering import OfFormula, OfKernel
 
 
 class Flags(types.Opaque):
@@ -249,6 +250,8 @@ def borrowed(one: ir.Assign) -> bool:
 class FormulaLibrary(JITCodeLibrary):
     """The code of a formula, as it will be linked to that of its callers."""
 
+    raises = False  # whether it may
+
     def _optimize_functions(self, ll_module):
         ll_module.data_layout = self._codegen._data_layout
         passes, builder = self._codegen._function_pass_manager()
@@ -273,7 +276,7 @@ class KernelLowering(typed_passes.NativeLowering):
     @property
     def lowering_class(self):
         """The class that writes it."""
-        return Plainly
+        return OfKernel
 
 
 @compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
@@ -285,6 +288,11 @@ class Lowering(KernelLowering):
 
     _name = "lowering of a formula"
 
+    @property
+    def lowering_class(self):
+        """The class that writes it."""
+        return OfFormula
+
     def run_pass(self, state):
         """Return that the state has changed: by a library that has no machine code."""
         state.library = FormulaLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
@@ -293,7 +301,8 @@ class Lowering(KernelLowering):
         super().run_pass(state)
         code, described = state.cr, state.cr.fndesc
         nowhere = make_function(described.lookup_module(), described.qualname, "", 0, code.env, ())
-        state.targetctx.insert_user_function(nowhere, described, [state.library])
+        call = calling(described, state.library, state.library.raises)
+        state.targetctx.insert_func_defn([(call, nowhere, tuple(described.argtypes))])
         state.reload_init.extend(state.library._reload_init)
         state.cr = code._replace(cfunc=nowhere)
         return True

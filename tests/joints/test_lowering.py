@@ -2,7 +2,8 @@
 
 Each loop must count as Python's does, also where the range is empty, has steps, is used twice or
 is not all of a loop; operators must give what numpy gives, also of NaN, infinity, -0 and whole
-numbers that overflow; arrays must keep as many references as they had.
+numbers that overflow; arrays must keep as many references as they had. Calls must pass tuples, and
+hand on exceptions, as Python's do.
 """
 
 import operator
@@ -15,6 +16,7 @@ import numpy as np
 import pytest
 from numba.core.runtime import _nrt_python, rtsys
 
+from joints.compiler.calls import raises
 from joints.compiler.lowering import INSTRUCTIONS
 from joints.formula import formula, kernel_options
 
@@ -234,3 +236,104 @@ def test_what_unpacks_arguments_is_not_optimised_but_the_kernel_is():
 
     assert not any(map(optimised, unpacks))
     assert all(map(optimised, others))
+
+
+class Numbers(NamedTuple):
+    a: float
+    b: int
+    c: float
+
+
+class Mixed(NamedTuple):
+    numbers: Numbers
+    array: np.ndarray
+    known: bool
+
+
+def weighed(numbers, x, both):
+    return numbers.a * x + numbers.b, (numbers.c, numbers.b + both[1]), both[0] and x > 0.0
+
+
+def through_another(mixed, x):
+    first, (second, third), positive = part_of_another(mixed.numbers, x, (mixed.known, 2))
+    mixed.array[0] += first
+    return second - mixed.array[0], third, positive
+
+
+part_of_another = formula(weighed)
+
+
+def test_tuples_reach_a_formula_and_come_back_whole():
+    part = formula(through_another)
+
+    @numba.njit(**kernel_options)
+    def kernel(mixed, x):
+        return part(mixed, x)
+
+    for known, x in product((True, False), (0.5, -3.0)):
+        arrays = np.arange(2.0), np.arange(2.0)
+        found, expected = (
+            function(Mixed(Numbers(2.5, 3, -1.0), array, known), x)
+            for function, array in zip((kernel, through_another), arrays, strict=True)
+        )
+        assert found == expected
+        np.testing.assert_array_equal(*arrays)
+
+
+def counted(first, last, step):
+    total = 0
+    for i in range(first, last, step):
+        total += i
+    return total
+
+
+def twice(first, last, step):
+    return counted_by_step(first, last, step) + counted_by_step(last, first, -step)
+
+
+counted_by_step = formula(counted)
+
+
+@pytest.mark.parametrize("function", [counted, twice], ids=lambda f: f.__name__)
+def test_what_a_formula_raises_reaches_the_caller_of_the_kernel(function):
+    part = formula(function)
+
+    @numba.njit(**kernel_options)
+    def kernel(first, last, step):
+        return part(first, last, step)
+
+    assert kernel(1, 8, 3) == function(1, 8, 3)
+    with pytest.raises(ValueError, match="must not be zero"):
+        kernel(1, 8, 0)
+
+
+def test_nothing_looks_for_an_exception_where_a_formula_never_raises(monkeypatch):
+    found = []
+
+    def noted(function):
+        found.append(raises(function))
+        return found[-1]
+
+    monkeypatch.setattr("joints.compiler.lowering.raises", noted)
+    part = formula(lambda x: 2.0 * x if x > 0.0 else x)
+    numba.njit(lambda x: part(x), **kernel_options)(1.0)
+    assert found == [False]
+
+    @formula
+    def first_of(n):
+        for i in range(0, 1, n):
+            return i
+
+    numba.njit(lambda n: first_of(n), **kernel_options)(1)
+    assert found == [False, True]
+
+
+def test_a_formula_may_return_nothing():
+    part = formula(lambda x: x if x > 0.0 else None)
+
+    @numba.njit(**kernel_options)
+    def kernel(x):
+        found = part(x)
+        return -1.0 if found is None else 2.0 * found
+
+    assert (kernel(3.0), kernel(-3.0)) == (6.0, -1.0)
