@@ -32,5 +32,5 @@ else:
 
 
 formula = register_jitable(**options)
-#: A formula that stays a function of its own: LLVM optimises it apart from the kernel that calls it.
+#: A formula that stays a function of its own: LLVM optimises it apart from the kernel that calls.
 apart = register_jitable(**(options | {"forceinline": False}))
