@@ -33,4 +33,5 @@ else:
 
 formula = register_jitable(**options)
 #: A formula that stays a function of its own: LLVM optimises it apart from the kernel that calls.
-apart = register_jitable(**(options | {"forceinline": False}))
+#: With another numba it does not, since kernels of two processes might call the same one.
+apart = register_jitable(**(options | {"forceinline": numba.version_info.short not in KNOWN}))

@@ -24,7 +24,6 @@ from pandas import DataFrame
 from PIL import Image
 
 from compare.figures.style import RC, WIDTH
-from compare.figures.vector import draw_both
 from compare.runs.output import write, write_csv, write_text
 
 DOTS = 160  # per inch of the PNG
@@ -96,15 +95,17 @@ def save(
 
 
 def _write_drawings(figure: Figure, folder: Path, name: str, title: str, png: bool) -> str:
+    buffer = io.StringIO()
     with matplotlib.rc_context(RC | {"svg.hashsalt": name}):
         if isinstance(engine := figure.get_layout_engine(), ConstrainedLayoutEngine):
             engine.execute(figure)
         figure.set_layout_engine(None)
-        drawn = draw_both(figure, title)
-        write(folder / f"{name}.pdf", lambda place: place.write_bytes(drawn.pdf))
+        figure.savefig(buffer, format="svg", metadata={"Title": title, "Date": None})
+        about = {"Title": title, "CreationDate": None}
+        write_drawing(folder / f"{name}.pdf", figure, metadata=about)
         if png:
             write_drawing(folder / f"{name}.png", figure, dpi=DOTS)
-    svg = compact(drawn.svg, name)
+    svg = compact(buffer.getvalue(), name)
     write_text(folder / f"{name}.svg", svg)
     return svg[svg.index("<svg") :]
 

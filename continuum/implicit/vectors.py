@@ -10,6 +10,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from continuum.model import Interfaces
+from joints.formula import formula
 from numerics.jit import jitted
 
 
@@ -33,7 +34,7 @@ def multiply(start, column, value, x, product):
         product[i] = row_times(start, column, value, x, i)
 
 
-@jitted
+@formula
 def row_times(start, column, value, x, i):
     """Return the product of a row of a matrix (CSR) and a vector."""
     total = 0.0
@@ -51,7 +52,7 @@ def largest(values):
     return found
 
 
-@jitted
+@formula
 def larger(found, value):
     """Return the larger of a magnitude and that of a value, NaN if any is NaN."""
     size = abs(value)

@@ -14,6 +14,7 @@ from functools import cache, partial
 from types import BuiltinFunctionType
 from typing import Any, ClassVar
 
+from llvmlite.binding import Linkage
 from numba._dynfunc import make_function
 from numba.core import (
     compiler,
@@ -267,6 +268,17 @@ class FormulaLibrary(JITCodeLibrary):
         self._finalized = True
 
 
+class KernelLibrary(JITCodeLibrary):
+    """The code of a kernel. What it calls has no name outside: names number the functions of a
+    process, so that in kernels that two processes compiled the same one may stand for two."""
+
+    def _optimize_final_module(self):
+        for one in self._final_module.functions:
+            if not one.is_declaration and one.linkage == Linkage.linkonce_odr:
+                one.linkage = Linkage.internal
+        super()._optimize_final_module()
+
+
 @compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
 class KernelLowering(typed_passes.NativeLowering):
     """Write the code of a kernel."""
@@ -278,9 +290,14 @@ class KernelLowering(typed_passes.NativeLowering):
         """The class that writes it."""
         return OfKernel
 
+    def run_pass(self, state):
+        """Return that the state has changed: by a library of its own."""
+        state.library = KernelLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        return super().run_pass(state)
+
 
 @compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
-class Lowering(KernelLowering):
+class Lowering(typed_passes.NativeLowering):
     """Write the code of a formula, and tell its callers where it is.
 
     Arrays of a type that is `distinct` do not overlap: loops over them need no check of that.

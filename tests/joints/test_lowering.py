@@ -7,6 +7,8 @@ hand on exceptions, as Python's do.
 """
 
 import operator
+import os
+import subprocess
 import sys
 from itertools import product
 from typing import NamedTuple
@@ -18,7 +20,7 @@ from numba.core.runtime import _nrt_python, rtsys
 
 from joints.compiler.calls import raises
 from joints.compiler.lowering import INSTRUCTIONS
-from joints.formula import formula, kernel_options
+from joints.formula import KNOWN, formula, kernel_options
 
 
 def from_to(n, m):
@@ -307,6 +309,9 @@ def test_what_a_formula_raises_reaches_the_caller_of_the_kernel(function):
         kernel(1, 8, 0)
 
 
+@pytest.mark.skipif(
+    numba.version_info.short not in KNOWN, reason="this numba looks for them everywhere"
+)
 def test_nothing_looks_for_an_exception_where_a_formula_never_raises(monkeypatch):
     found = []
 
@@ -337,3 +342,33 @@ def test_a_formula_may_return_nothing():
         return -1.0 if found is None else 2.0 * found
 
     assert (kernel(3.0), kernel(-3.0)) == (6.0, -1.0)
+
+
+KERNELS = """
+import sys
+from joints.formula import apart
+from numerics.jit import jitted_for
+
+def kernel_for(factor):
+    @apart
+    def part(x):
+        return factor * x
+
+    @jitted_for(factor)
+    def kernel(x):
+        return part(x)
+
+    return kernel
+
+print(*(kernel_for(float(factor))(1.0) for factor in sys.argv[1:]))
+"""
+
+
+def test_kernels_of_two_processes_call_their_own_functions(tmp_path):
+    """Both processes number the part alike; a third one loads both kernels."""
+    file = tmp_path / "kernels.py"
+    file.write_text(KERNELS)
+    place = os.environ | {"XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": os.pathsep.join(sys.path)}
+    for factors in (["2"], ["3"], ["2", "3"], ["3", "2"]):
+        found = subprocess.check_output([sys.executable, file, *factors], env=place, text=True)
+        assert found.split() == [f"{factor}.0" for factor in factors]
