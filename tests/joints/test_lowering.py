@@ -22,6 +22,10 @@ from joints.compiler.calls import raises
 from joints.compiler.lowering import INSTRUCTIONS
 from joints.formula import KNOWN, formula, kernel_options
 
+ours = pytest.mark.skipif(
+    numba.version_info.short not in KNOWN, reason="this numba writes its own code"
+)
+
 
 def from_to(n, m):
     total = 0
@@ -216,6 +220,7 @@ def test_a_flag_is_known_where_it_is_given_and_where_it_is_a_variable():
     assert kernel(2.0, False) == (3.0, 1.0, 1.0)
 
 
+@ours
 def test_what_unpacks_arguments_is_not_optimised_but_the_kernel_is():
     @numba.njit(**kernel_options)
     def kernel(a):
@@ -309,9 +314,7 @@ def test_what_a_formula_raises_reaches_the_caller_of_the_kernel(function):
         kernel(1, 8, 0)
 
 
-@pytest.mark.skipif(
-    numba.version_info.short not in KNOWN, reason="this numba looks for them everywhere"
-)
+@ours
 def test_nothing_looks_for_an_exception_where_a_formula_never_raises(monkeypatch):
     found = []
 
