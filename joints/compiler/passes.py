@@ -293,6 +293,7 @@ class KernelLowering(typed_passes.NativeLowering):
     def run_pass(self, state):
         """Return that the state has changed: by a library of its own."""
         state.library = KernelLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
         return super().run_pass(state)
 
 

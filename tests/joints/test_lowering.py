@@ -368,10 +368,11 @@ print(*(kernel_for(float(factor))(1.0) for factor in sys.argv[1:]))
 
 
 def test_kernels_of_two_processes_call_their_own_functions(tmp_path):
-    """Both processes number the part alike; a third one loads both kernels."""
+    """Both processes number the part alike; a third one loads both kernels from the cache."""
     file = tmp_path / "kernels.py"
     file.write_text(KERNELS)
     place = os.environ | {"XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": os.pathsep.join(sys.path)}
     for factors in (["2"], ["3"], ["2", "3"], ["3", "2"]):
         found = subprocess.check_output([sys.executable, file, *factors], env=place, text=True)
         assert found.split() == [f"{factor}.0" for factor in factors]
+    assert len(list(tmp_path.rglob("*.nbc"))) == 2
