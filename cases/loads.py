@@ -63,8 +63,8 @@ def step_means(load: LoadHistory, dt: float, count: int, first: int = 0) -> np.n
 
 
 def until_it_ends(steps: np.ndarray) -> np.ndarray:
-    """Return what acts in each step [n], up to the last in which something does."""
-    acts = np.flatnonzero(steps)
+    """Return what acts in each step [n] or [n, k], up to the last in which something does."""
+    acts = np.flatnonzero(steps.any(axis=tuple(range(1, steps.ndim))))
     return steps[: acts[-1] + 1 if acts.size else 0]
 
 

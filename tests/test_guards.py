@@ -80,8 +80,9 @@ def test_it_stops_within_so_many_steps_of_leaving_its_bounds(pillar):
     model, state, time, _ = build(scene)
     speed = highest_speed(model, state, time)
     samples, left = buffers(model, state, time.samples), None
+    take = marcher(model, state, samples, 1)
     for n in range(time.steps):
-        marcher(model, state, samples, 1)(n, n + 1)
+        take(n, n + 1)
         if left is None and np.abs(state.v).max() > RUNAWAY * speed:
             left = n + 1
     model, state, time, _ = build(scene)

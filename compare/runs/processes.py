@@ -10,10 +10,11 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from time import monotonic, sleep
+from time import sleep
 from typing import Any, NoReturn, TextIO, TypeVar
 
 from cases.errors import SceneError
+from numerics.waiting import arrive
 
 #: Number of processes, as set by launchers: Open MPI, MPICH and its relatives, MVAPICH.
 SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE")
@@ -99,7 +100,7 @@ class Processes:
                 done = work()
             except Exception as raised:
                 error = raised
-        self._all_arrive()
+        arrive(self._own)
         error = self._own.bcast(error)
         if error is not None:
             raise error
@@ -109,7 +110,7 @@ class Processes:
         """Print one line and exit with a code: all processes together, else by aborting all."""
         if self.is_first:
             self._tell(message)
-        if self._own is not None and not self._all_arrive(PATIENCE):
+        if self._own is not None and not arrive(self._own, PATIENCE):
             if not self.is_first:
                 self._tell(message)
             sleep(GRACE)
@@ -119,15 +120,6 @@ class Processes:
     def _tell(self, message: str) -> None:
         with suppress(OSError):  # the reader may have closed it
             print(message, file=self.stderr, flush=True)
-
-    def _all_arrive(self, patience: float = float("inf")) -> bool:
-        """Sleep until all processes arrive, and return whether they do so within `patience` (s)."""
-        began, request = monotonic(), self._own.Ibarrier()
-        while not request.Test():
-            if monotonic() - began > patience:
-                return False
-            sleep(0.01)
-        return True
 
 
 ALONE = Processes()

@@ -13,10 +13,10 @@ from continuum.parallel.communicator import Communicator
 from continuum.parallel.graph import ranks_by_graph
 from continuum.parallel.identity import Border, border
 from continuum.parallel.partition import Share, cells_enough, copies_of, ranks_of_cells, restrict
-from continuum.parallel.waiting import arrive
 from continuum.space.body import Body, build_body, cell_geometry
 from continuum.space.elasticity import Material, Rock, Section
 from continuum.space.interface import Jumps, jumps
+from numerics.waiting import arrive
 
 NOTHING = Material(0.0, 0.0, 0.0)  # material of ghost cells
 

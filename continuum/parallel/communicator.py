@@ -13,8 +13,8 @@ from continuum.explicit.march import march
 from continuum.parallel.exchange import TAG, add_shares, connect, release
 from continuum.parallel.identity import Border, joined
 from continuum.parallel.serial import Pieces, Serial, T
-from continuum.parallel.waiting import arrive
 from numerics.divergence import EVERY
+from numerics.waiting import arrive
 
 
 class Communicator(Serial):

@@ -116,20 +116,14 @@ def compose(scene: Scene, time: Clock) -> Composition:
     return Composition(
         drifts=dt * np.array(DRIFTS),
         kicks=dt * np.array(KICKS) / calibrate(scene).block_mass,
-        loads=_acting(force * load.value(edges[:, 1:-1])),
-        impulses=_acting(force * np.diff(load.impulse(edges), axis=1)),
+        loads=until_it_ends(force * load.value(edges[:, 1:-1])),
+        impulses=until_it_ends(force * np.diff(load.impulse(edges), axis=1)),
     )
 
 
 def _unit_force(scene: Scene) -> float:
     """Return the force of a unit of load, along y, m2."""
     return scene.load.direction[1] * scene.pillar.area
-
-
-def _acting(values: np.ndarray) -> np.ndarray:
-    """Return rows up to the last that is not zero."""
-    acting = np.flatnonzero(values.any(axis=1))
-    return np.ascontiguousarray(values[: acting[-1] + 1 if acting.size else 0])
 
 
 def marcher(

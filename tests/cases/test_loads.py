@@ -130,7 +130,10 @@ def test_whole_cycles_leave_no_momentum(amplitude, period, cycles):
     ],
 )
 def test_what_acts_ends_with_its_last_step(steps, count):
-    np.testing.assert_array_equal(until_it_ends(np.array(steps)), steps[:count])
+    steps = np.array(steps)
+    np.testing.assert_array_equal(until_it_ends(steps), steps[:count])
+    several = np.column_stack([np.zeros_like(steps), steps])
+    np.testing.assert_array_equal(until_it_ends(several), several[:count])
 
 
 def test_sine_begins_in_compression():

@@ -6,7 +6,7 @@ import json
 LATE = """
 import json, time
 from mpi4py import MPI
-from continuum.parallel.waiting import arrive
+from numerics.waiting import arrive
 
 world = MPI.COMM_WORLD
 arrive(world)
