@@ -71,7 +71,8 @@ def implicit_engine(run: Run, monitor: Monitor) -> Engine:
     from continuum.implicit.run import Implicit
 
     rho, stride = run.scene.numerics.continuum.spectral_radius, run.choice.time.stride
-    steps = Implicit(run.model, run.state, implicit_matrices(run.discrete.body), rho)
+    matrices = implicit_matrices(run.discrete.body)
+    steps = Implicit(run.model, run.state, run.samples, matrices, rho)
 
     def attributes() -> dict[str, Any]:
         return {
@@ -82,8 +83,8 @@ def implicit_engine(run: Run, monitor: Monitor) -> Engine:
         }
 
     return Engine(
-        lambda: steps.compile(run.samples),
-        lambda first, last: steps.run(run.samples, stride, first, last, monitor),
+        steps.compile,
+        lambda first, last: steps.run(stride, first, last, monitor),
         0.0,
         attributes,
         steps.parts,

@@ -100,7 +100,6 @@ def interfaces(
     return Interfaces(
         jump=jump,
         stencils=stencils(jump),
-        spread=jump.T,
         directions=len(jumps.matrices),
         area=jumps.weight,
         law=law,

@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from scipy.sparse import csc_matrix, csr_matrix
+from scipy.sparse import csr_matrix
 
 from continuum.space.operator import Operator
 from continuum.space.stencils import Stencils
@@ -96,8 +96,7 @@ class Interfaces(NamedTuple):
     """The joints, at their q quadrature points.
 
     jump : B [directions * q, n], displacements to the gap of all points, then to their slip along
-        x, then z; stencils : the same for compiled code; spread : B^T, which implicit steps would
-        make many times. directions : 1, 2 or 3.
+        x, then z; stencils : the same for explicit steps. directions : 1, 2 or 3.
     area : W [q], m2.
     law : per unit area; parameters are one number or an array [q]. table, parts : the same as
         compiled code takes it.
@@ -109,7 +108,6 @@ class Interfaces(NamedTuple):
 
     jump: csr_matrix
     stencils: Stencils
-    spread: csc_matrix
     directions: int
     area: np.ndarray
     law: Law

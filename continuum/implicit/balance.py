@@ -1,24 +1,28 @@
 """The forces of a trial state that an implicit step has to balance, and the joints' tangents.
 
-A trial starts from what the state before the step remembers, and changes nothing of it. Rock and
-ends are linear, sums of arrays; the law of the joints is compiled.
+A trial starts from what the state before the step remembers, and changes nothing of it.
 """
 
+from collections.abc import Callable
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
+from continuum.explicit.leapfrog import read
+from continuum.explicit.march import Readings
 from continuum.implicit.substeps import Applied
-from continuum.implicit.vectors import Matrix, largest, mean_velocity, rock_forces
+from continuum.implicit.vectors import add_transposed, larger, row_times
 from continuum.model import Model
 from continuum.parallel.serial import SERIAL, Serial
 from continuum.space.body import Body, rock_matrices
 from continuum.space.tractions import joint_energy, joint_loads, joint_tangents
 from continuum.state import STATES, Samples, State
+from joints.formula import formula
+from numerics.arguments import Packed, unpacked
 from numerics.denormals import flush_tiny, restore_tiny
-from numerics.jit import jitted
+from numerics.jit import jitted_for
 
 
 class Matrices(NamedTuple):
@@ -38,8 +42,7 @@ def implicit_matrices(body: Body) -> Matrices:
     stiffness, viscosity = rock_matrices(body)
     mass = csr_matrix(diags(body.mass)) if body.consistent is None else body.consistent
     moves = body.communicator.total(stiffness.diagonal()) > 0
-    viscosity = None if viscosity is None else Matrix(viscosity)
-    return Matrices(Matrix(stiffness), viscosity, Matrix(mass), moves, body.communicator)
+    return Matrices(stiffness, viscosity, mass, moves, body.communicator)
 
 
 def balance(
@@ -51,182 +54,291 @@ def balance(
     r: float,
     tangents: np.ndarray,
 ) -> float:
-    """Set the forces of a trial state and what it would remember, and the joints' tangents.
+    """Set the forces of a trial state once: `trial_forces` for these loads."""
+    return trial_forces(model, rock, now, trial, tangents, r)(applied)
+
+
+def trial_forces(
+    model: Model,
+    rock: Matrices,
+    now: State,
+    trial: State,
+    tangents: np.ndarray,
+    r: float = 0.0,
+    alpha: float = 0.0,
+) -> Callable[[Applied], float]:
+    """Return the function of the loads that sets the forces of a trial state and what it would
+    remember, and the joints' tangents.
 
     now : state at the beginning of the step. trial : u and v are given; v_before is set to the
     mean velocity of the step, and the reactions of the ends count among the forces.
-    applied : of the loads. r : rate factor, 1/s (`joints.tangent`).
-    Returns the largest force (N) that is summed up, of rock, dashpots, load and weight.
+    r : rate factor, 1/s (`joints.tangent`). alpha : of mass-proportional damping, 1/s.
+    The function returns the largest force (N) that is summed up, of rock, dashpots, load and
+    weight. It is for these arrays, and for as long as they live.
     """
-    u, mean, force, K = trial.u, trial.v_before, trial.force, rock.stiffness
-    mean_velocity(u, now.u, model.dt, mean)
-    for own, before in zip(_history(trial), _history(now), strict=True):
-        if own is not None:
-            own[:] = before
-    if trial.ledger is not None:
-        trial.ledger[:] = now.ledger
-    memory = model.rock.memory
-    if memory is None:
-        sizes = [rock_forces(K.indptr, K.indices, K.data, u, force)]
-    else:
-        force[:], sizes = 0.0, [0.0]
-    if trial.at.rate is not None:
-        v = trial.v
-        trial.rate[:] = v
-        trial.drag[:] = 0.0 if rock.viscosity is None else -(rock.viscosity @ v)
-        sizes.append(largest(trial.drag))
-    if memory is not None:
-        trial.elongation[:] = memory.advanced(now.elongation, mean)
-        trial.strained[:] = memory.strained(u, trial.elongation)
-        trial.drag[:] = -(K @ trial.strained)  # all of it counts as viscous
-        sizes.append(largest(trial.drag))
-    if model.weight is not None:
-        sizes.append(largest(model.weight))
-    if model.ends.loaded is not None:
-        sizes.append(largest(model.ends.loaded.share * applied.pressure))
-    if applied.driven is not None:
-        sizes.append(largest(applied.driven))
-    if model.interfaces is not None:
-        _add_joint_forces(model, now, trial, r, tangents)
-    if trial.drag is not None:
-        force += trial.drag
-    if model.weight is not None:
-        force += model.weight
-    if model.ends.loaded is not None:
-        force[model.ends.loaded.freedom] += model.ends.loaded.share * applied.pressure
-    if applied.driven is not None:
-        force[model.ends.driven.freedom] += applied.driven
-    _add_ends(model, now, trial)
-    return max(sizes)
+    joints, driven = model.interfaces, model.ends.driven
+    drive = None if driven is None else np.zeros(driven.freedom.size)
+    kernel = forces_for(*(2 * (None,) if joints is None else (joints.parts, joints.directions)))
+    given = arguments(model, rock, now, trial, tangents, drive, r, alpha)
+
+    def set_forces(applied: Applied) -> float:
+        if drive is not None:
+            drive[:] = applied.driven
+        return kernel(given, applied.pressure)
+
+    return set_forces
 
 
-def _history(state: State) -> tuple:
-    return state.opening, state.slide, state.cohesion, state.path
-
-
-def _add_joint_forces(
-    model: Model, now: State, trial: State, r: float, tangents: np.ndarray
-) -> None:
-    """Add the forces of the joints, and set their tangents."""
-    joints, shape = model.interfaces, trial.jump.shape
-    # A joint slides by what it slips in the step, whatever the velocity at the end of it.
-    for jump, moved in (
-        (trial.jump, trial.u),
-        (trial.jump_rate, trial.rate),
-        (trial.slip_rate, trial.v_before),
-    ):
-        if jump is not None:
-            jump[:] = (joints.jump @ moved).reshape(shape)
-    loads, drags = trial.loads, trial.drags
-    work = joint_balance_for(joints.parts, joints.directions)(
-        joints.table, joints.area, joints.prestress,
-        trial.jump, trial.jump_rate, trial.slip_rate,
-        trial.opening, trial.slide, trial.cohesion, trial.path, loads, drags, model.dt,
-        now.opening, now.slide, now.cohesion, now.path, r, tangents,
-    )  # fmt: skip
-    if trial.ledger is not None:
-        trial.ledger[1] += work
-    force = trial.force
-    force += joints.spread @ loads.ravel()
-    if drags is not None:
-        trial.drag[:] += joints.spread @ drags.ravel()
-
-
-def _add_ends(model: Model, now: State, trial: State) -> None:
-    """Add what absorbs at the ends; springs in front of dashpots close by the mean velocity."""
-    quiet, dashpots = model.ends.quiet, model.ends.dashpots
-    if dashpots is not None:
-        (x, y), (xx, yy, xy) = trial.v[dashpots.freedom].T, dashpots.viscosity.T
-        trial.braking[:] = np.stack([xx * x + xy * y, xy * x + yy * y], axis=1)
-        trial.force[dashpots.freedom] -= trial.braking
-    if quiet is None:
-        return
-    trial.reaction[:] = quiet.viscosity * trial.v[quiet.freedom]
-    if now.closure is not None:
-        springs = quiet.springs
-        moved = springs.gain * trial.v_before[quiet.freedom]
-        trial.closure[:] = springs.decay * now.closure + moved
-        trial.reaction[:] += springs.stiffness * trial.closure
-    np.subtract.at(trial.force, quiet.freedom, trial.reaction)
-
-
-@cache
-def joint_balance_for(parts, directions):
-    """Return the kernel of the joints in a trial state, for a law with these parts and jumps in so
-    many directions."""
-    shears = True if directions != 1 else None
-
-    @jitted
-    def joint_balance(
-        table, area, prestress, jump, jump_rate, slip_rate, opening, slide, cohesion, path, loads,
-        drags, dt, opening_before, slide_before, cohesion_before, path_before, r, tangents,
-    ):  # fmt: skip
-        """Set forces, history and tangents of all points; return the work of sliding, J."""
-        flushing = flush_tiny()
-        joint_tangents(
-            parts, directions, shears, table, area, prestress, jump, jump_rate,
-            opening_before, slide_before, cohesion_before, path_before, dt, r, tangents,
-        )  # fmt: skip
-        sliding = joint_loads(
-            parts, directions, shears, table, area, prestress,
-            jump, jump_rate, slip_rate, opening, slide, cohesion, path, loads, drags, dt,
-        )  # fmt: skip
-        restore_tiny(flushing)
-        return sliding
-
-    return joint_balance
-
-
-@cache
-def joint_energy_for(parts, directions):
-    """Return the kernel of `continuum.space.tractions.joint_energy`."""
-
-    @jitted
-    def energy(table, area, prestress, jump, opening, slide, path, loads):
-        """Return elastic energy and what opening has spent, J."""
-        return joint_energy(
-            parts, directions, table, area, prestress, jump, opening, slide, path, loads
-        )
-
-    return energy
-
-
-def record(
+def arguments(
     model: Model,
     rock: Matrices,
-    receivers: tuple[csr_matrix, np.ndarray],
+    now: State,
+    trial: State,
+    tangents: np.ndarray,
+    drive: Any,
+    r: float,
+    alpha: float,
+) -> Packed:
+    """Return what the kernel of `forces_for` is given, in its order; None for what is absent."""
+    memory, joints, ends = model.rock.memory, model.interfaces, model.ends
+    springs = None if ends.quiet is None else ends.quiet.springs
+    relaxed = None if memory is None else (memory.relaxed, memory.share, memory.decay, memory.gain)
+    points = None if joints is None else (joints.table, joints.area, joints.prestress)
+    return Packed(
+        *(trial.u, now.u, trial.v, trial.v_before, trial.rate, trial.force, trial.drag),
+        *(_csr(rock.stiffness), _csr(rock.viscosity), _csr(rock.mass if alpha else None)),
+        *(model.dt, r, alpha, model.weight, relaxed, trial.strained),
+        *(trial.elongation, now.elongation, _csr(joints and joints.jump), points),
+        *(trial.jump, trial.jump_rate, trial.slip_rate),
+        *map(_flat, (trial.jump, trial.jump_rate, trial.slip_rate)),
+        *(trial.opening, trial.slide, trial.cohesion, trial.path),
+        *(now.opening, now.slide, now.cohesion, now.path),
+        *(trial.loads, trial.drags, _flat(trial.loads), _flat(trial.drags), tangents),
+        *(trial.ledger, now.ledger, ends.loaded and ends.loaded[:2]),
+        *(None if drive is None else (ends.driven.freedom, drive), ends.dashpots, trial.braking),
+        *(ends.quiet and ends.quiet[:2], trial.reaction),
+        *(springs and tuple(springs), trial.closure, now.closure),
+    )
+
+
+def _csr(matrix: Any) -> Any:
+    """Return a matrix as compiled code takes it, None if absent."""
+    return None if matrix is None else (matrix.indptr, matrix.indices, matrix.data)
+
+
+def _flat(points: np.ndarray | None) -> np.ndarray | None:
+    return None if points is None else points.reshape(-1)
+
+
+@cache
+def forces_for(parts, directions):
+    """Return the kernel of `trial_forces` for joints of a law with these parts and jumps in so
+    many directions, both None without joints."""
+    shears = True if directions != 1 else None
+
+    @formula
+    def trial(
+        pressure,
+        u, old_u, v, mean, rate, force, drag, stiffness, viscosity, mass, dt, r, alpha, weight,
+        memory, strained, elongation, old_elongation, jumps, points,
+        jump, jump_rate, slip_rate, jump_vector, jump_rate_vector, slip_rate_vector,
+        opening, slide, cohesion, path, old_opening, old_slide, old_cohesion, old_path,
+        loads, drags, load_vector, drag_vector, tangents, ledger, old_ledger, loaded, driven,
+        dashpots, braking, quiet, reaction, springs, closure, old_closure,
+    ):  # fmt: skip
+        """Set the forces; return the largest that is summed up, N."""
+        flushing, found = flush_tiny(), 0.0
+        for i in range(u.size):
+            mean[i] = (u[i] - old_u[i]) / dt
+        if ledger is not None:
+            for term in range(ledger.size):
+                ledger[term] = old_ledger[term]
+
+        # The rock. All of the force of one that remembers counts as viscous.
+        if memory is None:
+            for i in range(u.size):
+                force[i] = -row_times(*stiffness, u, i)
+                found = larger(found, force[i])
+        if rate is not None:
+            for i in range(u.size):
+                rate[i], drag[i] = v[i], 0.0
+            if viscosity is not None:
+                for i in range(u.size):
+                    drag[i] = -row_times(*viscosity, v, i)
+                    found = larger(found, drag[i])
+        if memory is not None:
+            relaxed, shares, decays, gains = memory
+            for i in range(u.size):
+                force[i], strained[i] = 0.0, relaxed * u[i]
+                for k in range(shares.size):
+                    elongation[k, i] = decays[k] * old_elongation[k, i] + gains[k] * mean[i]
+                    strained[i] += shares[k] * elongation[k, i]
+            for i in range(u.size):
+                drag[i] = -row_times(*stiffness, strained, i)
+                found = larger(found, drag[i])
+
+        # The joints, which slide by what they slip in the step, whatever the velocity at its end.
+        if points is not None:
+            table, area, prestress = points
+            for k in range(jump_vector.size):
+                jump_vector[k] = row_times(*jumps, u, k)
+            if jump_rate is not None:
+                for k in range(jump_vector.size):
+                    jump_rate_vector[k] = row_times(*jumps, rate, k)
+            if slip_rate is not None:
+                for k in range(jump_vector.size):
+                    slip_rate_vector[k] = row_times(*jumps, mean, k)
+            for q in range(area.size):
+                if opening is not None:
+                    opening[q] = old_opening[q]
+                if cohesion is not None:
+                    cohesion[q] = old_cohesion[q]
+                if path is not None:
+                    path[q] = old_path[q]
+                if slide is not None:
+                    for d in range(slide.shape[0]):
+                        slide[d, q] = old_slide[d, q]
+            joint_tangents(
+                parts, directions, shears, table, area, prestress, jump, jump_rate,
+                old_opening, old_slide, old_cohesion, old_path, dt, r, tangents,
+            )  # fmt: skip
+            sliding = joint_loads(
+                parts, directions, shears, table, area, prestress,
+                jump, jump_rate, slip_rate, opening, slide, cohesion, path, loads, drags, dt,
+            )  # fmt: skip
+            if ledger is not None:
+                ledger[1] += sliding
+            add_transposed(*jumps, load_vector, force)
+            if drags is not None:
+                add_transposed(*jumps, drag_vector, drag)
+
+        # What acts on the freedoms, and what absorbs there.
+        if drag is not None:
+            for i in range(u.size):
+                force[i] += drag[i]
+        if weight is not None:
+            for i in range(u.size):
+                force[i] += weight[i]
+                found = larger(found, weight[i])
+        if loaded is not None:
+            freedom, share = loaded
+            for k in range(freedom.size):
+                force[freedom[k]] += share[k] * pressure
+                found = larger(found, share[k] * pressure)
+        if driven is not None:
+            freedom, drive = driven
+            for k in range(freedom.size):
+                force[freedom[k]] += drive[k]
+                found = larger(found, drive[k])
+        if dashpots is not None:
+            for k in range(dashpots.freedom.shape[0]):
+                i, j = dashpots.freedom[k, 0], dashpots.freedom[k, 1]
+                xx, yy, xy = (
+                    dashpots.viscosity[k, 0], dashpots.viscosity[k, 1], dashpots.viscosity[k, 2],
+                )  # fmt: skip
+                braking[k, 0], braking[k, 1] = xx * v[i] + xy * v[j], xy * v[i] + yy * v[j]
+                force[i] -= braking[k, 0]
+                force[j] -= braking[k, 1]
+        if quiet is not None:
+            freedom, resistance = quiet
+            for k in range(freedom.size):
+                i = freedom[k]
+                reaction[k] = resistance[k] * v[i]
+                if springs is not None:
+                    stiff, decay, gain = springs
+                    closure[k] = decay[k] * old_closure[k] + gain[k] * mean[i]
+                    reaction[k] += stiff[k] * closure[k]
+                force[i] -= reaction[k]
+        if mass is not None:
+            for i in range(u.size):
+                force[i] -= alpha * row_times(*mass, v, i)
+        restore_tiny(flushing)
+        return found
+
+    @jitted_for(parts, directions)
+    def forces(given, pressure):
+        return trial(pressure, *unpacked(given))
+
+    return forces
+
+
+def recorder(
+    model: Model,
+    rock: Matrices,
+    readings: Readings,
     state: State,
     acceleration: np.ndarray,
     samples: Samples,
-    s: int,
-) -> None:
-    """Record sample s of a state in balance: receivers and ledger.
+) -> Callable[[int], None]:
+    """Return the function of s that records sample s of a state in balance: receivers and ledger.
 
-    receivers : of `continuum.explicit.march.readings`, which take velocities half a step before and
-    after. acceleration : m/s2.
+    readings : of `continuum.explicit.march.readings`, which take velocities half a step before and
+    after. acceleration : [n], m/s2, as it is then.
     """
-    matrix, added = receivers
-    fields, half = state.fields.copy(), 0.5 * model.dt * acceleration
-    fields[state.at.v], fields[state.at.v_before] = state.v + half, state.v - half
-    samples.waves[:, s] = matrix @ fields + added
-    if samples.energy is None:
-        return
-    stored, spent, joints = 0.0, 0.0, model.interfaces
-    if joints is not None:
-        stored, spent = joint_energy_for(joints.parts, joints.directions)(
-            joints.table, joints.area, joints.prestress,
-            state.jump, state.opening, state.slide, state.path, state.loads,
-        )  # fmt: skip
-    elastic = elastic_energy(model, rock, state)
-    samples.energy[:STATES, s] = (
-        state.v @ (rock.mass @ state.v) / 2,
-        elastic + stored,
-        spent,
-        0.0 if model.weight is None else -(model.weight @ state.u),
+    matrix, added = readings
+    memory, joints, seen = model.rock.memory, model.interfaces, np.zeros_like(state.fields)
+    points = joints and (joints.table, joints.area, joints.prestress)
+    springs = memory and (memory.relaxed, memory.share * memory.stored)
+    given = Packed(
+        *(state.fields, seen, seen[state.at.v], seen[state.at.v_before], acceleration, model.dt),
+        *(_csr(matrix), added, samples.waves, samples.energy, state.u, state.v),
+        *(_csr(rock.mass), _csr(rock.stiffness), model.weight, springs, state.elongation),
+        *(points, state.jump, state.opening, state.slide, state.path, state.loads, state.ledger),
     )
-    samples.energy[STATES:, s] = state.ledger
-    if model.rock.memory is not None:
-        samples.energy[STATES, s] -= elastic
+    kernel = sample_for(*(2 * (None,) if joints is None else (joints.parts, joints.directions)))
+    return lambda s: kernel(given, s)
+
+
+@cache
+def sample_for(parts, directions):
+    """Return the kernel of `recorder` for joints of a law with these parts and jumps in so many
+    directions, both None without joints."""
+
+    @formula
+    def take(
+        s,
+        fields, seen, seen_v, seen_v_before, acceleration, dt, readings, added, waves, energy,
+        u, v, mass, stiffness, weight, springs, elongation,
+        points, jump, opening, slide, path, loads, ledger,
+    ):  # fmt: skip
+        """Take sample s."""
+        for i in range(fields.size):
+            seen[i] = fields[i]
+        for i in range(v.size):
+            half = 0.5 * dt * acceleration[i]
+            seen_v[i], seen_v_before[i] = v[i] + half, v[i] - half
+        read(seen, *readings, added, waves, s)
+        if energy is not None:
+            stored, spent, kinetic, elastic, fallen = 0.0, 0.0, 0.0, 0.0, 0.0
+            if points is not None:
+                table, area, prestress = points
+                stored, spent = joint_energy(
+                    parts, directions, table, area, prestress,
+                    jump, opening, slide, path, loads,
+                )  # fmt: skip
+            relaxed = 1.0 if springs is None else springs[0]
+            for i in range(u.size):
+                kinetic += 0.5 * v[i] * row_times(*mass, v, i)
+                elastic += 0.5 * relaxed * u[i] * row_times(*stiffness, u, i)
+                if weight is not None:
+                    fallen += weight[i] * u[i]
+            if springs is not None:
+                for k in range(elongation.shape[0]):
+                    e = elongation[k]
+                    for i in range(u.size):
+                        elastic += 0.5 * springs[1][k] * e[i] * row_times(*stiffness, e, i)
+            energy[0, s], energy[1, s] = kinetic, elastic + stored
+            energy[2, s], energy[3, s] = spent, -fallen
+            for term in range(ledger.size):
+                energy[STATES + term, s] = ledger[term]
+            if springs is not None:
+                energy[STATES, s] -= elastic
+
+    @jitted_for(parts, directions)
+    def sample(given, s):
+        take(s, *unpacked(given))
+
+    return sample
 
 
 def elastic_energy(model: Model, rock: Matrices, state: State) -> float:

@@ -4,15 +4,16 @@ Such a step is taken in halves, down to a 1024th of the whole; halves that are d
 longer ones again, so that whole steps end on the clock.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from cases.errors import StoppedError
 from continuum.explicit.march import readings
-from continuum.implicit.balance import Matrices, record
+from continuum.implicit.balance import Matrices, recorder
 from continuum.implicit.newton import Outcome
-from continuum.implicit.step import Moment, Stepper
+from continuum.implicit.step import Stepper
 from continuum.implicit.substeps import Applied, applied_at, move
-from continuum.implicit.vectors import Matrix
 from continuum.model import Model
 from continuum.monitor import Monitor
 from continuum.state import Samples, State
@@ -29,7 +30,7 @@ class Implicit:
     ----------
     model, state : constants and initial state, as for explicit steps. The state follows the run,
         at whole steps: v_before equals v, `force` is the sum of all forces.
-    matrices : of the rock, as `model.rock` has them.
+    samples : what is recorded. matrices : of the rock, as `model.rock` has them.
     rho : spectral radius, 0 .. 1.
 
     Attributes
@@ -39,18 +40,17 @@ class Implicit:
         none. parts : all arrays that change beside the state.
     """
 
-    def __init__(self, model: Model, state: State, matrices: Matrices, rho: float) -> None:
-        self.stepper, self.state = Stepper(model, matrices, rho), state
-        self.model = self.stepper.model
-        self.now, self.trial = (
-            Moment(s, np.zeros_like(state.u), np.zeros(1)) for s in (state, copied(state))
-        )
+    def __init__(
+        self, model: Model, state: State, samples: Samples, matrices: Matrices, rho: float
+    ) -> None:
+        self.stepper, self.state, self.model = Stepper(model, state, matrices, rho), state, model
+        self.now, self.trial = self.stepper.now, self.stepper.trial
         self.communicator = matrices.communicator
         mass = self.communicator.total(model.rock.mass)
         self.mass = np.where(mass > 0, mass, np.inf)  # massless freedoms do not move
         self.counts = np.array([0, -1])
-        matrix, added = readings(model, state)
-        self.receivers = Matrix(matrix), added
+        self._balancing, self._samples = np.zeros_like(state.u), samples
+        self._sample = self._recorder(state, samples)
         self._pairs = list(zip(arrays(self.now), arrays(self.trial), strict=True))
         self.outcome: Outcome | None = None
         self.parts = self.now[1:], self.trial, self.counts, self.stepper.counts
@@ -60,9 +60,7 @@ class Implicit:
         """How many steps were halved."""
         return int(self.counts[0])
 
-    def run(
-        self, samples: Samples, stride: int, first: int, last: int, monitor: Monitor | None = None
-    ) -> None:
+    def run(self, stride: int, first: int, last: int, monitor: Monitor | None = None) -> None:
         """Go from step first - 1 to each of first .. last - 1, and take a sample at every step that
         `stride` divides. Raises StoppedError where a step does not converge; ends where the
         monitor finds the run out of bounds."""
@@ -73,26 +71,23 @@ class Implicit:
                 self._reach(n, stride)
             self.counts[1] = n
             if n % stride == 0:
-                self._record(samples, n // stride)
+                self._record(n // stride)
             if monitor is not None and monitor.finds(n):
                 break
 
-    def compile(self, samples: Samples) -> None:
-        """Compile every kernel of the run, and change nothing."""
-        spare = Moment(copied(self.state), np.zeros(1), np.zeros(1))
-        one, rock = changed(samples, lambda rows: rows[:, :1].copy()), self.stepper.rock
-        still = np.zeros_like(self.state.u)
+    def compile(self) -> None:
+        """Compile the kernels of the run, and change nothing."""
+        spare, one = copied(self.state), changed(self._samples, lambda rows: rows[:, :1].copy())
         with self.communicator.in_turn():
-            applied = applied_at(self.model, 0, 0.0)
-            self.stepper.set_forces(self.model, self.now, spare, applied)
-            record(self.model, rock, self.receivers, spare.state, still, one, 0)
+            self.stepper.forces_of(spare)(applied_at(self.model, 0, 0.0))
+            self._recorder(spare, one)(0)
 
     def _begin(self) -> None:
         """Balance the forces of the first moment by its acceleration."""
         now, trial, stepper = self.now, self.trial, self.stepper
         move(stepper.fixed, now.state, now.acceleration, 0, 0.0)
         fill(trial.state, now.state)
-        stepper.set_forces(self.model, now, trial, applied_at(self.model, 0, 0.0))
+        trial.size[0] = stepper.forces_of(trial.state)(applied_at(self.model, 0, 0.0))
         trial.acceleration[:] = now.acceleration
         stepper.balance(trial)
         self._accept(0, 0.0, 0.0)
@@ -103,7 +98,7 @@ class Implicit:
         while done < WHOLE:
             part = WHOLE >> halvings
             share = (done + part) / WHOLE
-            self.outcome = self.stepper.step(self.now, self.trial, n - 1, share, halvings)
+            self.outcome = self.stepper.step(n - 1, share, halvings)
             if self.outcome.converged:
                 self._accept(n - 1, done / WHOLE, share)
                 done += part
@@ -159,10 +154,14 @@ class Implicit:
             gained = (mass @ (trial.v - now.v))[fixed] @ (now.v + trial.v)[fixed]
             ledger[3] += (gained - (now.force + trial.force)[fixed] @ moved[fixed]) / 2
 
-    def _record(self, samples: Samples, s: int) -> None:
+    def _record(self, s: int) -> None:
         """Take sample s. Accelerations are those that balance the forces at the step itself: those
         of the scheme are of an earlier time, by alpha_f - alpha_m of a step."""
-        state, fixed = self.now.state, self.stepper.fixed.freedom
-        balancing = self.communicator.total(state.force) / self.mass
+        fixed, balancing = self.stepper.fixed.freedom, self._balancing
+        np.divide(self.communicator.total(self.state.force), self.mass, out=balancing)
         balancing[fixed] = self.now.acceleration[fixed]
-        record(self.model, self.stepper.rock, self.receivers, state, balancing, samples, s)
+        self._sample(s)
+
+    def _recorder(self, state: State, samples: Samples) -> Callable[[int], None]:
+        rock, read = self.stepper.rock, readings(self.model, state)
+        return recorder(self.model, rock, read, state, self._balancing, samples)

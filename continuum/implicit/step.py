@@ -9,12 +9,13 @@ displacement is the inertia over beta dt^2 and (1 - alpha_f) times stiffness, da
 factor r = gamma / (beta dt), and tangents of the joints; it is factorised only when it changes.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from continuum.explicit.march import mass_damping
-from continuum.implicit.balance import Matrices, balance
+from continuum.implicit.balance import Matrices, trial_forces
 from continuum.implicit.generalised_alpha import scheme
 from continuum.implicit.newton import Outcome, newton
 from continuum.implicit.pattern import System
@@ -27,9 +28,11 @@ from continuum.implicit.substeps import (
     move,
     shortened,
 )
-from continuum.implicit.vectors import compiled_joints, move_free, out_of_balance
+from continuum.implicit.vectors import Vectors, differ, move_free, out_of_balance, predict
 from continuum.model import Model
 from continuum.state import State
+from numerics.arguments import Packed
+from results.arrays import copied
 
 RESIDUAL = 1e-10  # tolerance over the largest summed force
 #: Of a displacement, and of the prestress that joints carry: what they weigh cannot be balanced.
@@ -48,13 +51,14 @@ class Moment(NamedTuple):
 
 
 class Length(NamedTuple):
-    """A length of steps: the model with its dt and half joints; the rate factor r, 1/s; the matrix
-    without the joints [nnz], N/m, and what of it is inertia."""
+    """A length of steps: dt, s; the matrix without the joints [nnz], N/m, and what of it is
+    inertia; what sets the forces of the trial, and what its vectors are given (`Vectors`)."""
 
-    model: Model
-    r: float
+    dt: float
     fixed: np.ndarray
     inertia: np.ndarray
+    set_forces: Callable[[Applied], float]
+    vectors: Packed
 
 
 class Stepper:
@@ -62,15 +66,15 @@ class Stepper:
 
     Parameters
     ----------
-    model, matrices : of one run; rho : spectral radius of the scheme, 0 .. 1.
+    model, state, matrices : of one run; rho : spectral radius of the scheme, 0 .. 1.
 
     Attributes
     ----------
+    now, trial : the moment that steps start from, of `state` itself, and the one they try to reach.
     counts : int array [2], how many corrections and factorisations there have been.
     """
 
-    def __init__(self, model: Model, matrices: Matrices, rho: float) -> None:
-        model = model._replace(interfaces=compiled_joints(model.interfaces))
+    def __init__(self, model: Model, state: State, matrices: Matrices, rho: float) -> None:
         self.model, self.scheme = model, scheme(rho)
         self.rock, self.mass, self.communicator = matrices, matrices.mass, matrices.communicator
         self.mass_damping = mass_damping(model.rock.decay, model.dt)
@@ -85,53 +89,47 @@ class Stepper:
         every = self.free.size == matrices.mass.shape[0]
         self._moves: slice | np.ndarray = slice(None) if every else self.free
         self._factored: tuple[Length, np.ndarray] | None = None
-        self._weight = np.zeros(self.free.size)
         self._carried = _prestress(model)
         self._lengths: dict[int, Length] = {}
+        self.now, self.trial = (
+            Moment(s, np.zeros_like(state.u), np.zeros(1)) for s in (state, copied(state))
+        )
+        self._moved, self._weight = np.zeros((2, self.free.size))
+        self._drift, self._kept, self._before, self._rest = np.zeros((4, state.u.size))
         self.counts = np.zeros(2, dtype=np.int64)
 
-    def step(self, now: Moment, trial: Moment, n: int, share: float, halvings: int) -> Outcome:
+    def step(self, n: int, share: float, halvings: int) -> Outcome:
         """Try a step of dt / 2**halvings to a share of the way from step n to n + 1; the end is
         left in `trial`."""
-        length, (alpha_m, alpha_f, beta, gamma) = self._length(halvings), self.scheme
-        old, dt, free, mass = now.state, length.model.dt, self.free, self.mass
-        old_u, old_v, square = old.u, old.v, beta * dt**2
-        drift = dt * old_v + (0.5 - beta) * dt**2 * now.acceleration
-        before = alpha_f * old.force - alpha_m * (mass @ now.acceleration)
+        length, now, trial = self.length(halvings), self.now, self.trial
+        predict(length.vectors)
         move(self.fixed, trial.state, trial.acceleration, n, share)
-        # What no iteration changes: Newton's method takes two of a linear step.
-        applied, a, force = applied_at(self.model, n, share), trial.acceleration, trial.state.force
-        u, v, rest = trial.state.u, trial.state.v, np.empty_like(old_u)
-        matrix, kept = (mass.indptr, mass.indices, mass.data), (1 - gamma) * now.acceleration
-        of_step = old_u, old_v, drift, kept, dt, gamma, square
+        applied = applied_at(self.model, n, share)
 
         def residual(moved: np.ndarray) -> tuple[np.ndarray, float]:
-            moves = move_free(free, moved, *of_step, self._weight, a, u, v)
-            self.set_forces(length.model, now, trial, applied, length.r)
-            inertia = out_of_balance(*matrix, a, force, before, 1 - alpha_f, 1 - alpha_m, rest)
+            self._moved[:] = moved
+            moves = move_free(length.vectors)
+            trial.size[0] = length.set_forces(applied)
+            inertia = out_of_balance(length.vectors)
             size = max(trial.size[0], now.size[0], inertia)
             left = RESIDUAL * size + LAST_DIGITS * (moves + self._carried)
-            return self.communicator.total(rest)[self._moves], left
+            return self.communicator.total(self._rest)[self._moves], left
 
         def correction(rest: np.ndarray) -> np.ndarray:
             self._factorise(length)
             self.counts[0] += 1
             return self._system.solve(rest)
 
-        start = (drift + square * now.acceleration)[self._moves].copy()
-        return newton(residual, correction, start, self.communicator)
+        return newton(residual, correction, self._moved, self.communicator)
 
-    def set_forces(
-        self, model: Model, now: Moment, trial: Moment, applied: Applied, r: float = 0.0
-    ) -> None:
-        """Set the forces and tangents of a trial moment whose displacement and velocity are given;
-        r : rate factor, 1/s."""
-        state = trial.state
-        trial.size[0] = balance(
-            model, self.rock, now.state, state, applied, r, self._system.tangents
-        )
-        if self.mass_damping:
-            state.force[:] -= self.mass_damping * (self.mass @ state.v)
+    def forces_of(self, trial: State, r: float = 0.0) -> Callable[[Applied], float]:
+        """Return what sets the forces and tangents of a trial state whose displacement and
+        velocity are given, in whole steps; r : rate factor, 1/s."""
+        return self._forces(self.model, trial, r)
+
+    def _forces(self, model: Model, trial: State, r: float) -> Callable[[Applied], float]:
+        tangents, alpha = self._system.tangents, self.mass_damping
+        return trial_forces(model, self.rock, self.now.state, trial, tangents, r, alpha)
 
     def balance(self, moment: Moment) -> None:
         """Set the acceleration of the freedoms that move by the forces of a moment."""
@@ -140,7 +138,8 @@ class Stepper:
         self._factored = None
         moment.acceleration[self.free] += self._system.solve(rest[self.free])
 
-    def _length(self, halvings: int) -> Length:
+    def length(self, halvings: int) -> Length:
+        """Return what steps need that are halved so often."""
         if halvings not in self._lengths:
             self._lengths[halvings] = self._make_length(0.5**halvings)
         return self._lengths[halvings]
@@ -158,22 +157,32 @@ class Stepper:
             freedom, resistance = end_resistance(model.ends.quiet, r, model.dt)
             place = self._pattern.diagonal[np.searchsorted(self.free, freedom)]
             np.add.at(forces, place, resistance)
-        return Length(model, r, inertia + (1 - alpha_f) * forces, inertia)
+        fixed = inertia + (1 - alpha_f) * forces
+        set_forces = self._forces(model, self.trial.state, r)
+        return Length(model.dt, fixed, inertia, set_forces, self._vectors(model.dt))
+
+    def _vectors(self, dt: float) -> Packed:
+        now, trial, mass = self.now, self.trial, self.mass
+        scratch = self._drift, self._kept, self._before
+        moments = now.state.u, now.state.v, now.acceleration, now.state.force
+        ends = trial.state.u, trial.state.v, trial.acceleration, trial.state.force, self._rest
+        free = self.free, self._moved, self._weight
+        matrix = mass.indptr, mass.indices, mass.data
+        return Packed(Vectors(*free, *moments, *scratch, *ends, *matrix, *self.scheme, dt))
 
     def _factorise(self, length: Length) -> None:
         """Take the matrix of the last trial moment, unless it is that of the one before."""
         if self._factored is not None:
             last, tangents = self._factored
-            if last is length and self.communicator.all(
-                np.array_equal(tangents, self._system.tangents)
-            ):
+            changed = differ(tangents.reshape(-1), self._system.tangents.reshape(-1))
+            if last is length and self.communicator.all(changed == 0):
                 return
         values = self._system.with_joints(length.fixed, 1 - self.scheme.alpha_f)
         self._system.factorise(values)
         self.counts[1] += 1
         diagonal = np.zeros(self.mass.shape[0])
         diagonal[self.free] = (values - length.inertia)[self._pattern.diagonal]
-        self._weight = np.abs(self.communicator.total(diagonal)[self.free])
+        self._weight[:] = np.abs(self.communicator.total(diagonal)[self.free])
         self._factored = length, self._system.tangents.copy()
 
 

@@ -1,37 +1,51 @@
-"""Products and norms of vectors that implicit steps take in every iteration.
+"""What implicit steps do to vectors of freedoms, compiled.
 
-scipy and numpy check their operands anew each time, which takes longer than the work itself for a
-short pillar. Sums have scipy's order, so results are bit-identical.
+numpy and scipy check their operands in every product and sum, which takes longer than the work
+itself for a short pillar.
 """
 
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_matrix
 
-from continuum.model import Interfaces
 from joints.formula import formula
+from numerics.arguments import unpacked
 from numerics.jit import jitted
 
 
-class Matrix(csr_matrix):
-    """A sparse matrix whose products with vectors are compiled."""
+class Vectors(NamedTuple):
+    """What steps of one length go through; [n] of all freedoms, [k] of those that move.
 
-    def __matmul__(self, other: Any) -> Any:
-        """Return the product with a vector, or what scipy returns for anything else."""
-        rows, columns = self._shape  # scipy's property makes a tuple of numbers first
-        if type(other) is not np.ndarray or other.ndim != 1 or other.size != columns:
-            return super().__matmul__(other)
-        product = np.empty(rows)
-        multiply(self.indptr, self.indices, self.data, np.ascontiguousarray(other), product)
-        return product
+    free : int array [k]. moved [k], m, by how much each moves in the trial; weight [k], N/m, what
+        its last digits weigh. old_u, old_v, old_a, old_force [n] : at the beginning of the step.
+    drift, kept, before [n] : what `predict` makes of it for all trials: m, m/s2, N.
+    u, v, a, force [n] : of the trial. rest [n] : what is out of balance, N.
+    start, column, value : the mass (CSR), kg. The rest as in `generalised_alpha`; dt, s.
+    """
 
-
-@jitted
-def multiply(start, column, value, x, product):
-    """Set the product of a matrix (CSR) and a vector."""
-    for i in range(product.size):
-        product[i] = row_times(start, column, value, x, i)
+    free: np.ndarray
+    moved: np.ndarray
+    weight: np.ndarray
+    old_u: np.ndarray
+    old_v: np.ndarray
+    old_a: np.ndarray
+    old_force: np.ndarray
+    drift: np.ndarray
+    kept: np.ndarray
+    before: np.ndarray
+    u: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    force: np.ndarray
+    rest: np.ndarray
+    start: np.ndarray
+    column: np.ndarray
+    value: np.ndarray
+    alpha_m: float
+    alpha_f: float
+    beta: float
+    gamma: float
+    dt: float
 
 
 @formula
@@ -43,13 +57,12 @@ def row_times(start, column, value, x, i):
     return total
 
 
-@jitted
-def largest(values):
-    """Return the largest magnitude of an array [n], 0 if it is empty, NaN if any is NaN."""
-    found = 0.0
-    for value in values:
-        found = larger(found, value)
-    return found
+@formula
+def add_transposed(start, column, value, x, product):
+    """Add the product of a transposed matrix (CSR before) and a vector."""
+    for i in range(x.size):
+        for k in range(start[i], start[i + 1]):
+            product[column[k]] += value[k] * x[i]
 
 
 @formula
@@ -60,50 +73,60 @@ def larger(found, value):
 
 
 @jitted
-def move_free(free, moved, old_u, old_v, drift, kept, dt, gamma, square, weight, a, u, v):
-    """Set acceleration, displacement and velocity [n] of free freedoms [k] that have moved by so
-    much in a step; square : beta dt^2. Return the largest displacement times its weight [k]."""
+def largest(values):
+    """Return the largest magnitude of an array [n], 0 if it is empty, NaN if any is NaN."""
     found = 0.0
-    for k in range(free.size):
-        i = free[k]
-        a[i] = (moved[k] - drift[i]) / square
-        u[i] = old_u[i] + moved[k]
-        v[i] = old_v[i] + dt * (kept[i] + gamma * a[i])
-        found = larger(found, weight[k] * u[i])
+    for value in values:
+        found = larger(found, value)
     return found
 
 
 @jitted
-def out_of_balance(start, column, value, a, force, before, of_force, of_inertia, rest):
-    """Set the forces that are out of balance with inertia, of a mass (CSR), and return the largest
-    inertia; shares of both count, beside what the beginning of the step adds."""
+def differ(one, other):
+    """Return how many numbers of two arrays [n] differ."""
+    count = 0
+    for i in range(one.size):
+        count += one[i] != other[i]
+    return count
+
+
+@jitted
+def predict(given):
+    """Set what no trial of a step changes, and where the first one moves to."""
+    (s,) = unpacked(given)
+    square = s.dt**2
+    for i in range(s.old_a.size):
+        inertia = row_times(s.start, s.column, s.value, s.old_a, i)
+        s.kept[i] = (1.0 - s.gamma) * s.old_a[i]
+        s.drift[i] = s.dt * s.old_v[i] + (0.5 - s.beta) * square * s.old_a[i]
+        s.before[i] = s.alpha_f * s.old_force[i] - s.alpha_m * inertia
+    for k in range(s.free.size):
+        s.moved[k] = s.drift[s.free[k]] + s.beta * square * s.old_a[s.free[k]]
+
+
+@jitted
+def move_free(given):
+    """Set acceleration, displacement and velocity of the freedoms that move; return the largest
+    displacement times its weight, N."""
+    (s,) = unpacked(given)
+    found, square = 0.0, s.beta * s.dt**2
+    for k in range(s.free.size):
+        i = s.free[k]
+        s.a[i] = (s.moved[k] - s.drift[i]) / square
+        s.u[i] = s.old_u[i] + s.moved[k]
+        s.v[i] = s.old_v[i] + s.dt * (s.kept[i] + s.gamma * s.a[i])
+        found = larger(found, s.weight[k] * s.u[i])
+    return found
+
+
+@jitted
+def out_of_balance(given):
+    """Set the forces that are out of balance with inertia, and return the largest inertia; shares
+    of both count, beside what the beginning of the step adds."""
+    (s,) = unpacked(given)
     found = 0.0
-    for i in range(rest.size):
-        inertia = row_times(start, column, value, a, i)
-        rest[i] = of_force * force[i] + before[i] - of_inertia * inertia
+    for i in range(s.rest.size):
+        inertia = row_times(s.start, s.column, s.value, s.a, i)
+        s.rest[i] = (1.0 - s.alpha_f) * s.force[i] + s.before[i] - (1.0 - s.alpha_m) * inertia
         found = larger(found, inertia)
     return found
-
-
-@jitted
-def rock_forces(start, column, value, u, force):
-    """Set the forces of rock of a stiffness (CSR), and return the largest."""
-    found = 0.0
-    for i in range(force.size):
-        force[i] = -row_times(start, column, value, u, i)
-        found = larger(found, force[i])
-    return found
-
-
-@jitted
-def mean_velocity(u, before, dt, mean):
-    """Set the mean velocity between two displacements a time dt apart."""
-    for i in range(mean.size):
-        mean[i] = (u[i] - before[i]) / dt
-
-
-def compiled_joints(interfaces: Interfaces | None) -> Interfaces | None:
-    """Return joints whose operators have compiled products."""
-    if interfaces is None:
-        return None
-    return interfaces._replace(jump=Matrix(interfaces.jump), spread=Matrix(interfaces.spread))

@@ -11,13 +11,15 @@ from continuum import applies, simulate
 from continuum.build import discretise
 from continuum.explicit.leapfrog import leapfrog_for
 from continuum.explicit.march import arguments, readings
-from continuum.implicit.balance import joint_balance_for
+from continuum.implicit.balance import arguments as arguments_of_trials
+from continuum.implicit.balance import forces_for, implicit_matrices
 from continuum.implicit.pattern import empty_tangents
 from continuum.joints import interfaces
 from continuum.model import Quiet
 from continuum.run import discrete_and_steps
 from continuum.state import state_at_rest
 from numerics.divergence import guard
+from results.arrays import copied
 
 SUDDEN = {"direction": [0.0, 1.0, 0.0], "static": False}
 SHAKEN = {"shape": "sine", "amplitude": 0.1, "period": 1e-3, "quantity": "velocity"}
@@ -217,19 +219,32 @@ def test_a_prestress_divides(count):
     assert count("fdiv", dim=2) == 0 < count("fdiv", dim=2, prestress={"normal": 1e5})
 
 
-def test_joints_of_the_bar_have_no_shear(short, ready, instructions):
-    """Told by the kernel of the joints alone, without the vectorised loops over the rock."""
+@pytest.fixture
+def in_trials(short, ready, instructions):
+    """Return a function that counts one kind of instruction in the forces of implicit steps."""
 
-    def count(dim):
-        at = ready(short(**SILENT), "jointed", dim)
-        joints, state = at.model.interfaces, at.state
-        given = (
-            *(joints.table, joints.area, None, state.jump, *6 * [None]),
-            *(state.loads, None, at.model.dt, *4 * [None], 0.0, empty_tangents(at.model)),
-        )
-        return instructions(joint_balance_for(joints.parts, joints.directions), given, "fmul")
+    def counted(kind, dim=None, **changes):
+        at = ready(short(**SILENT, **changes), "jointed", dim)
+        joints, matrices = at.model.interfaces, implicit_matrices(at.discrete.body)
+        now, tangents = copied(at.state), empty_tangents(at.model)
+        given = arguments_of_trials(at.model, matrices, now, at.state, tangents, None, 1.0, 0.0)
+        kernel = forces_for(joints.parts, joints.directions)
+        return instructions(kernel, (given, 0.0), kind, unrolled=False)
 
-    assert count(1) < count(2)
+    return counted
+
+
+def test_joints_of_the_bar_have_no_shear(in_trials):
+    """Told by the trial forces of implicit steps: jumps and tractions along joints are not read."""
+    assert in_trials("load", dim=1) < in_trials("load", dim=2)
+
+
+def test_absent_effects_leave_no_instruction_in_trials(in_trials):
+    """Joints that hold ask for nothing but what every sum over a matrix and the largest force do."""
+    assert in_trials("fcmp") < in_trials("fcmp", joints__tension=False)
+    assert in_trials("fadd") < in_trials("fadd", joints__damping_ratio=0.02)
+    assert in_trials("fmul") < in_trials("fmul", ends__end="quiet")
+    assert in_trials("fadd") < in_trials("fadd", gravity=SUDDEN)
 
 
 def test_absent_effects_of_the_rock_leave_no_instruction(count, in_runs):

@@ -79,11 +79,11 @@ def drive_implicitly(problem, dt, steps, frequency, rho=1.0):
     speed = frequency * np.cos(motion.start)
     state.u[:], state.v[:] = motion.history(0.0) * start, speed * start
     samples = empty_samples(model, state, 1)
-    stepper = Implicit(model, state, implicit_matrices(problem.body), rho)
+    stepper = Implicit(model, state, samples, implicit_matrices(problem.body), rho)
     for k in range(steps + 1):
         load = problem.elastic - frequency**2 * problem.inertia
         model.weight[:] = motion.history(k * dt) * load
-        stepper.run(samples, steps + 1, k, k + 1)
+        stepper.run(steps + 1, k, k + 1)
     return state.u
 
 

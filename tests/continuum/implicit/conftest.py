@@ -23,7 +23,7 @@ class Run(NamedTuple):
     implicit: Any
 
     def go(self):
-        self.implicit.run(self.samples, self.clock.stride, 0, self.clock.steps + 1)
+        self.implicit.run(self.clock.stride, 0, self.clock.steps + 1)
         return self
 
     def energy(self, term):
@@ -40,13 +40,14 @@ def implicit():
 
     def make(scene, rho=1.0, stride=1, kind="jointed", dim=None, change=None, ledger=True):
         discrete = discretise(scene, kind, dim)
-        samples = int(scene.time.duration / scene.interval + 1e-9) + 1
-        clock = Clock(scene.interval / stride, stride, samples)
+        count = int(scene.time.duration / scene.interval + 1e-9) + 1
+        clock = Clock(scene.interval / stride, stride, count)
         model = build_model(scene, discrete, kind, clock)
         model = model if change is None else change(model)
         state = state_at_rest(model, ledger)
-        stepper = Implicit(model, state, implicit_matrices(discrete.body), rho)
-        return Run(discrete, model, state, empty_samples(model, state, samples), clock, stepper)
+        samples = empty_samples(model, state, count)
+        stepper = Implicit(model, state, samples, implicit_matrices(discrete.body), rho)
+        return Run(discrete, model, state, samples, clock, stepper)
 
     return make
 

@@ -19,8 +19,8 @@ def watched(run, refuse):
     """
     taken, step = [], run.implicit.stepper.step
 
-    def one(now, trial, n, share, halvings):
-        outcome = step(now, trial, n, share, halvings)
+    def one(n, share, halvings):
+        outcome = step(n, share, halvings)
         if refuse(n, share, halvings):
             return outcome._replace(converged=False)
         taken.append((n, share, halvings))
@@ -34,7 +34,7 @@ def test_halves_end_on_the_clock_and_make_way_again(short, implicit):
     """Step 2 is refused but in quarters until its middle, where a half will do."""
     run = implicit(short())
     taken = watched(run, lambda n, share, k: n == 2 and k < (2 if share <= 0.5 or k == 0 else 1))
-    run.implicit.run(run.samples, 1, 0, 5)
+    run.implicit.run(1, 0, 5)
     assert taken == [
         (0, 1.0, 0),
         (1, 1.0, 0),
@@ -155,7 +155,7 @@ def test_compiling_changes_nothing(short, implicit):
     """State and samples are as before, and the run is the same to the last bit."""
     scene = short(joints__tensile_strength=1e5, joints__fracture_energy=10.0)
     plain, warm = implicit(scene), implicit(scene)
-    warm.implicit.compile(warm.samples)
+    warm.implicit.compile()
     assert not any(rows.any() for rows in arrays(warm.samples))
     plain.go(), warm.go()
     assert (plain.samples.stress == warm.samples.stress).all()

@@ -128,12 +128,12 @@ def test_slip_that_turns_converges_quadratically(pillar, implicit, monkeypatch, 
         **({} if zeta is None else {"joints__damping_ratio": zeta}),
     )
     run = implicit(scene, rho=0.9)
-    body, state, now, trial = run.discrete.body, run.state, run.implicit.now, run.implicit.trial
+    body, state = run.discrete.body, run.state
     for component, speed in ((0, 1.0), (2, 0.5)):
         state.v[body.freedom(body.cells[-1], component)] = speed
-    run.implicit.run(run.samples, 1, 0, 4)
+    run.implicit.run(1, 0, 4)
     assert run.energy("friction")[3] > 0
-    solution = run.implicit.stepper.step(now, trial, 3, 1.0, 0).x
+    solution = run.implicit.stepper.step(3, 1.0, 0).x
     way = np.abs(solution).max() * np.random.default_rng(1).standard_normal(solution.size)
     errors = []
     for distance in (1e-2, 1e-3, 1e-4):
@@ -143,7 +143,7 @@ def test_slip_that_turns_converges_quadratically(pillar, implicit, monkeypatch, 
             "newton",
             lambda rest, correct, _, communicator, x=start: newton(rest, correct, x),
         )
-        errors.append(run.implicit.stepper.step(now, trial, 3, 1.0, 0).errors[:2])
+        errors.append(run.implicit.stepper.step(3, 1.0, 0).errors[:2])
     orders = np.log10(np.divide(errors[:-1], errors[1:]))
     assert orders == pytest.approx(np.array([[1, 2], [1, 2]]), abs=0.1)
 

@@ -195,8 +195,8 @@ def test_a_step_that_fails_half_way_says_when(implicit, pillar, monkeypatch):
     run = implicit(scene, kind="equivalent", dim=1, stride=2)
     took, longest = run.implicit.stepper.step, []
 
-    def step(now, trial, n, share, halvings):
-        outcome = took(now, trial, n, share, halvings)
+    def step(n, share, halvings):
+        outcome = took(n, share, halvings)
         fails = n + share > 3.5
         longest.append((n + share, halvings))
         return outcome._replace(converged=False) if fails else outcome
