@@ -10,8 +10,9 @@ import numpy as np
 
 from cases.errors import StoppedError
 from continuum.explicit.march import readings
-from continuum.implicit.balance import Matrices, recorder
+from continuum.implicit.balance import Matrices
 from continuum.implicit.newton import Outcome
+from continuum.implicit.record import recorder
 from continuum.implicit.step import Stepper
 from continuum.implicit.substeps import Applied, applied_at, move
 from continuum.model import Model

@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cases.errors import SceneError
-from continuum.implicit.balance import Matrices, balance, elastic_energy, implicit_matrices
+from continuum.implicit.balance import Matrices, implicit_matrices, trial_forces
 from continuum.implicit.newton import Outcome, newton
 from continuum.implicit.pattern import System
+from continuum.implicit.record import elastic_energy
 from continuum.implicit.substeps import UNLOADED
 from continuum.model import Ends, Model
 from continuum.space.body import Body
@@ -113,12 +114,11 @@ class _Static:
         """Try to balance a share of the weight; what comes of it is kept where that succeeds."""
         model = self.model._replace(weight=share * self.model.weight)
         system, communicator = self.system, self.rock.communicator
+        set_forces = trial_forces(model, self.rock, self.state, self.trial, system.tangents)
 
         def residual(u: np.ndarray) -> tuple[np.ndarray, float]:
             self.trial.u[system.free] = u
-            self.size = balance(
-                model, self.rock, self.state, self.trial, UNLOADED, 0.0, system.tangents
-            )
+            self.size = set_forces(UNLOADED)
             return communicator.total(self.trial.force)[system.free], TOLERANCE * self.size
 
         def correction(rest: np.ndarray) -> np.ndarray:

@@ -41,6 +41,8 @@ def move(
 ) -> None:
     """Give fixed freedoms their displacement, velocity and acceleration at step n and a share of
     the next."""
+    if fixed_motion.freedom.size == 0:
+        return
     given: np.ndarray = np.zeros(3)
     if fixed_motion.motion is not None:
         first = fixed_motion.motion[:, n]

@@ -240,7 +240,7 @@ def test_joints_of_the_bar_have_no_shear(in_trials):
 
 
 def test_absent_effects_leave_no_instruction_in_trials(in_trials):
-    """Joints that hold ask for nothing but what every sum over a matrix and the largest force do."""
+    """Dashpots, quiet ends and weight add to forces; joints that cannot open compare nothing."""
     assert in_trials("fcmp") < in_trials("fcmp", joints__tension=False)
     assert in_trials("fadd") < in_trials("fadd", joints__damping_ratio=0.02)
     assert in_trials("fmul") < in_trials("fmul", ends__end="quiet")

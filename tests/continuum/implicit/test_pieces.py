@@ -6,10 +6,11 @@ import pytest
 from cases.errors import SceneError, StoppedError
 from cases.sampling import Clock
 from continuum.build import build_model, discretise
-from continuum.implicit.balance import balance, implicit_matrices
+from continuum.implicit.balance import implicit_matrices, trial_forces
 from continuum.implicit.pattern import System
 from continuum.implicit.static import settle_static
 from continuum.implicit.substeps import (
+    UNLOADED,
     Applied,
     applied_at,
     end_resistance,
@@ -144,7 +145,7 @@ def test_largest_force_of_a_trial(built):
     def size(u=0.0, v=0.0, pressure=0.0):
         trial.u[:], trial.v[:] = 0.0, 0.0
         trial.u[1], trial.v[1] = u, v
-        return balance(model, rock, now, trial, Applied(pressure, None), 0.0, tangents)
+        return trial_forces(model, rock, now, trial, tangents)(Applied(pressure, None))
 
     k, c = (np.abs(m.toarray()[:, 1]).max() for m in (rock.stiffness, rock.viscosity))
     share = np.abs(model.ends.loaded.share).max()
@@ -160,7 +161,7 @@ def test_a_trial_starts_from_the_ledger_before_it(built):
     trial, rock = state_at_rest(model, True), implicit_matrices(discrete.body)
     now.ledger[:] = 1.0, 2.0, 3.0, 4.0
     trial.ledger[:] = 5.0
-    balance(model, rock, now, trial, Applied(0.0, None), 0.0, np.zeros((6, 0)))
+    trial_forces(model, rock, now, trial, np.zeros((6, 0)))(UNLOADED)
     assert trial.ledger.tolist() == [1.0, 2.0, 3.0, 4.0]
 
 

@@ -6,7 +6,7 @@ import pytest
 from cases.errors import SceneError
 from continuum import applies, simulate
 from continuum.explicit.march import readings
-from continuum.implicit.balance import balance, implicit_matrices
+from continuum.implicit.balance import implicit_matrices, trial_forces
 from continuum.implicit.static import settle_static
 from continuum.implicit.substeps import UNLOADED
 from continuum.plane.receivers import receivers
@@ -24,7 +24,7 @@ def forces(run):
     trial = copied(run.state)
     tangents = np.zeros((6, run.model.interfaces.area.size))
     matrices = implicit_matrices(run.discrete.body)
-    balance(model, matrices, run.state, trial, UNLOADED, 0.0, tangents)
+    trial_forces(model, matrices, run.state, trial, tangents)(UNLOADED)
     return trial.force
 
 
