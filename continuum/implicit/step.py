@@ -122,14 +122,13 @@ class Stepper:
 
         return newton(residual, correction, self._moved, self.communicator)
 
-    def forces_of(self, trial: State, r: float = 0.0) -> Callable[[Applied], float]:
+    def forces_of(
+        self, trial: State, model: Model | None = None, r: float = 0.0
+    ) -> Callable[[Applied], float]:
         """Return what sets the forces and tangents of a trial state whose displacement and
-        velocity are given, in whole steps; r : rate factor, 1/s."""
-        return self._forces(self.model, trial, r)
-
-    def _forces(self, model: Model, trial: State, r: float) -> Callable[[Applied], float]:
-        tangents, alpha = self._system.tangents, self.mass_damping
-        return trial_forces(model, self.rock, self.now.state, trial, tangents, r, alpha)
+        velocity are given; model : None for that of whole steps. r : rate factor, 1/s."""
+        tangents, now, model = self._system.tangents, self.now.state, model or self.model
+        return trial_forces(model, self.rock, now, trial, tangents, r, self.mass_damping)
 
     def balance(self, moment: Moment) -> None:
         """Set the acceleration of the freedoms that move by the forces of a moment."""
@@ -158,7 +157,7 @@ class Stepper:
             place = self._pattern.diagonal[np.searchsorted(self.free, freedom)]
             np.add.at(forces, place, resistance)
         fixed = inertia + (1 - alpha_f) * forces
-        set_forces = self._forces(model, self.trial.state, r)
+        set_forces = self.forces_of(self.trial.state, model, r)
         return Length(model.dt, fixed, inertia, set_forces, self._vectors(model.dt))
 
     def _vectors(self, dt: float) -> Packed:
