@@ -59,19 +59,38 @@ def march(
     drive : float array [last - first, h, 3], N and N m, forces on held blocks in each step.
     shake : float array [last - first, walls, 2], the velocity of walls in each step, m/s.
     """
-    form, b, contacts, (first, last) = model.form, model.blocks, model.contacts, steps
+    take = marcher(model, state, samples, steps[1] - steps[0], drive, shake, threads)
+    take(stride, *steps)
+
+
+def marcher(
+    model: PlaneModel,
+    state: PlaneState,
+    samples: PlaneSamples,
+    most: int,
+    drive: np.ndarray | None = None,
+    shake: np.ndarray | None = None,
+    threads: int = 1,
+) -> Callable[..., None]:
+    """Return a function of (stride, first, last) that does what `march` does, as often as it is
+    called, and at most so many steps at a time.
+
+    drive, shake : of the first of the steps on, as they are then. The function may be given what
+    mass-proportional damping leaves of a velocity in a step, `keep`, in place of the model's.
+    """
+    form, b, contacts = model.form, model.blocks, model.contacts
     held, first_held = model.held or (None, None, None, None), None
     if model.held is None:
         drive = None  # one kernel, whoever asks
     else:
         first_held = np.searchsorted(model.held.block, contacts.first_block)
         if drive is None:
-            drive = np.zeros((last - first, len(model.held.block), 3))
+            drive = np.zeros((most, len(model.held.block), 3))
     walls = None if shake is None else motion_of_walls(state, shake, b.dt)
     widest = np.diff(contacts.first_block).max()
-    bands = -(-(last - first) // depth_of(contacts, state.history, threads))
+    bands = -(-most // depth_of(contacts, state.history, threads))
     bands = max(1, bands + -bands % threads)  # as many for each thread
-    depth = max(1, -(-(last - first) // bands))
+    depth = max(1, -(-most // bands))
     buffers = zeros((threads, BEFORE + 3 * int(widest)))
     ledgers = zeros((threads * depth, 2 * AFTER)) if form.ledger else None
     progress = np.zeros(threads + 1, dtype=np.int64)
@@ -84,22 +103,31 @@ def march(
         state.v.reshape(-1), state.history, drive, walls, force,
         *marks(model.places, contacts.first_block),
         *marks(contacts.place[model.watched], LANES * contacts.first_chunk),
-        *samples, state.sums, ledgers, buffers, progress, len(contacts.place), b.dt, b.keep,
+        *samples, state.sums, ledgers, buffers, progress, len(contacts.place), b.dt,
         b.local, b.gravity_x, b.gravity_y, depth, distinct=True,
     )  # fmt: skip
 
-    def share(thread: int) -> None:
-        loop(given, thread, first, last, stride)
+    def take(stride: int, first: int, last: int, keep: float = b.keep) -> None:
+        count = last - first
+        if count > most:
+            raise ValueError(f"{count} steps at a time, at most {most}")
+        progress[:] = 0
+        if walls is not None and shake is not None:
+            walls[: count + 1] = motion_of_walls(state, shake[:count], b.dt)
 
-    if threads == 1 or first == last:  # nothing to take: compiles
-        share(0)
-    else:
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(share, range(threads)))
-    if walls is not None:
-        state.u[-model.walls :, :2], state.v[-model.walls :, :2] = walls[-1].reshape(2, -1, 3)[
-            :, 1:, :2
-        ]
+        def share(thread: int) -> None:
+            loop(given, thread, first, last, stride, keep)
+
+        if threads == 1 or first == last:  # nothing to take: compiles
+            share(0)
+        else:
+            with ThreadPoolExecutor(threads) as pool:
+                list(pool.map(share, range(threads)))
+        if walls is not None:
+            u, v = walls[count].reshape(2, -1, 3)[:, 1:, :2]
+            state.u[-model.walls :, :2], state.v[-model.walls :, :2] = u, v
+
+    return take
 
 
 def motion_of_walls(state: PlaneState, shake: np.ndarray, dt: float) -> np.ndarray:
@@ -121,7 +149,7 @@ def loop_for(form: PlaneForm) -> Callable:
     ledger = form.ledger
 
     @jitted_for(form)
-    def loop(given, thread, first, last, stride):
+    def loop(given, thread, first, last, stride, keep):
         """Take this thread's share of the steps first .. last - 1, in turn with the others.
 
         Band B of `depth` steps belongs to thread B modulo their number; its diagonal k has tile
@@ -137,7 +165,7 @@ def loop_for(form: PlaneForm) -> Callable:
             pair, table, laws, rules, first_chunk, first_block, inertia, inverse, first_held, block,
             keeps, moves, dashpot, u, v, history, drive, walls, force, first_place, place,
             place_row, first_seen, seen, seen_row, displacement, velocity, contact, energy, sums,
-            ledgers, buffers, progress, contacts, dt, keep, local, g_x, g_y, depth,
+            ledgers, buffers, progress, contacts, dt, local, g_x, g_y, depth,
         ) = unpacked(given)  # fmt: skip
         tiles, size, threads = first_chunk.size - 1, inertia.size, progress.size - 1
         buffer, own = buffers[thread], None

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cases.material.prestress import refuse_beyond_strength
-from dem.blocks.leapfrog import march, samples_for
+from dem.blocks.leapfrog import marcher, samples_for
 from dem.blocks.model import PlaneState, held_by, state_at_rest
 from dem.blocks.sources import Sources, reactions
 from dem.blocks.stability import critical_plane_step
@@ -80,8 +80,12 @@ class PlaneRelaxation:
         held = held_by(nothing, rows, own.inertia, dt) if model.form.held else None
         self.model = model._replace(blocks=own, laws=laws, held=held)
         self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 0)
-        self.count = len(own.inertia)
-        self.threads = system.threads
+        self.count, most = len(own.inertia), STEPS_BETWEEN_LOOKS
+        self._drive = np.zeros((most, *self.steady.shape))
+        shake = np.zeros((most, model.walls, 2)) if model.form.shaken else None
+        self._take = marcher(
+            self.model, self.state, self.samples, most, self._drive, shake, system.threads
+        )
         self.mass = blocks.masses.ravel()
         g = np.hypot(own.gravity_x, own.gravity_y)
         pressed = 0.0 if stress is None else max(map(abs, (stress.xx, stress.yy, stress.xy)))
@@ -108,12 +112,9 @@ class PlaneRelaxation:
     def advance(self, steps: int, alpha: float) -> None:
         """Take steps under mass-proportional damping alpha, 1/s."""
         drag = 0.5 * self.model.blocks.dt * alpha
-        blocks = self.model.blocks._replace(keep=(1 - drag) / (1 + drag))
-        drive = np.broadcast_to(self.steady, (steps, *self.steady.shape)).copy()
+        self._drive[:] = self.steady
         # From step 1: only step 0 would be a sample.
-        model = self.model._replace(blocks=blocks)
-        shake = np.zeros((steps, model.walls, 2)) if model.form.shaken else None
-        march(model, self.state, self.samples, NEVER, (1, 1 + steps), drive, shake, self.threads)
+        self._take(NEVER, 1, 1 + steps, (1 - drag) / (1 + drag))
 
     def unbalanced(self) -> np.ndarray:
         """Return the net force and moment on every freedom, from the step that they would cause."""

@@ -292,11 +292,12 @@ def test_a_static_start_takes_the_kernel_of_the_motion_without_its_damping(rock_
     relaxation.advance(1, 0.0)
     at_first = 1e-8 * np.random.default_rng(1).normal(size=u.shape)  # m: too little to slide
     u[:], v[:] = at_first, 0.0
-    relaxation.advance(40, 0.0)
-    relaxation.advance(1, 0.0)
+    for steps in (10, 10, 10, 10, 1):
+        relaxation.advance(steps, 0.0)
     u -= relaxation.model.blocks.dt * v
     v *= -1
-    relaxation.advance(40, 0.0)
+    for _ in range(4):
+        relaxation.advance(10, 0.0)
     assert np.abs(u - at_first).max() < 81 * 1e-16 * 3e-4
     step(system, state_at_rest(system.model), samples_for(system.model, 100), 0, 40)
     assert relaxation.model.form == system.model.form
