@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cases.schema.allowed import in_words
-from cases.schema.field_docs import field_comments
+from cases.schema.keys import field_comments, in_words
 from cases.schema.keys import keys as all_keys
 from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene

@@ -13,9 +13,7 @@ from textwrap import wrap
 
 import cases
 from cases.errors import SceneError
-from cases.schema.allowed import in_words, model_in
-from cases.schema.field_docs import field_comments
-from cases.schema.keys import TableOf, default_of, tables
+from cases.schema.keys import TableOf, default_of, field_comments, in_words, model_in, tables
 from compare.cli.templates import PILLAR, Template
 from compare.runs.output import create
 from compare.scenes import find, load

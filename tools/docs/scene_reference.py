@@ -6,9 +6,15 @@ from typing import Any, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from cases.schema.allowed import SOLVERS, in_words, model_in
-from cases.schema.field_docs import field_comments
-from cases.schema.keys import TableOf, default_of, tables
+from cases.schema.keys import (
+    SOLVERS,
+    TableOf,
+    default_of,
+    field_comments,
+    in_words,
+    model_in,
+    tables,
+)
 from cases.schema.scene import Scene
 from compare.engines import names
 

@@ -12,11 +12,19 @@ from cases.errors import SceneError
 from cases.kinds import AnyScene
 from compare.engines import solve
 from compare.experiments.common import FAILURES, reason_of
-from compare.experiments.planner.choices import Choice, furthest_off, measured, steps
 from compare.experiments.planner.families import Family, configured, effort, families_of
 from compare.experiments.planner.planner import Plan, options_of, plan
 from compare.experiments.planner.reference import OwnModel, References
-from compare.experiments.planner.trials import FINEST, Trial, is_hopeless, trial
+from compare.experiments.planner.trials import (
+    FINEST,
+    Choice,
+    Trial,
+    furthest_off,
+    is_hopeless,
+    measured,
+    steps,
+    trial,
+)
 
 #: A family ends where a run takes so many times the seconds of the cheapest that does, as finer
 #: steps cost more. It is not begun where it would even at half the seconds that a freedom-step has

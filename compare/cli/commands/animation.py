@@ -17,8 +17,6 @@ from compare.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from compare.figures.animation.frame import Frame
-    from compare.figures.animation.plane import PlaneFrame
     from compare.figures.animation.snapshots import SceneSnapshots
     from compare.figures.animation.view_settings import ViewSettings
 
@@ -58,24 +56,14 @@ def animate(
     (one,) = load(scene, changes, variant, strict)
     path = out or Path(f"{_name(scene, one)}.mp4")
     video.refuse(path, frames)
+    from compare.figures.animation.frame import Frame, PlaneFrame
+
     simulated, settings = _simulate(one, frames, scale)
     with terminal.progress("pictures") as advance:
-        frame = _kind_of_frame(one)(simulated, settings, video.DOTS[path.suffix])
+        kind = Frame if one.kind == "pillar" else PlaneFrame
+        frame = kind(simulated, settings, video.DOTS[path.suffix])
         video.write_video(path, frame.image, frames, seconds, advance)
     _show(path, simulated, settings.scale, as_json)
-
-
-def _kind_of_frame(scene: "AnyScene") -> "type[Frame] | type[PlaneFrame]":
-    """Return what draws each instant of a scene of this kind."""
-    from cases.schema.scene import Scene
-
-    if isinstance(scene, Scene):
-        from compare.figures.animation.frame import Frame
-
-        return Frame
-    from compare.figures.animation.plane import PlaneFrame
-
-    return PlaneFrame
 
 
 def _simulate(

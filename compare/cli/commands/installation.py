@@ -47,8 +47,7 @@ def doctor(as_json: JsonOption = False) -> None:
     compiles kernels, which takes up to a minute.
     """
     from compare.cli import terminal
-    from compare.cli.diagnostics.doctor import examine
-    from compare.cli.diagnostics.show import show_health
+    from compare.cli.diagnostics.doctor import examine, show_health
 
     with terminal.progress("looking") as advance:
         found = examine(advance)

@@ -95,8 +95,8 @@ def run(
     wanted = jobs.wanted([e.value for e in engine], model or [])
     if swept or members:
         from compare.experiments.sweep.case import Running
-        from compare.experiments.sweep.command import sweep
         from compare.experiments.sweep.runner import sweep_of
+        from compare.experiments.sweep.summary import sweep
 
         asked_for = sweep_of(scene, changes, variant, swept, out, members)
         sweep(asked_for, Running(wanted, vtx), workers, dry, as_json, strict)
@@ -130,8 +130,7 @@ def explain(
 ) -> None:
     """Print the effects of a scene, its critical steps, the exact solutions that apply, and the
     reference; for a rock mass also its blocks."""
-    from compare.cli import views
-    from compare.cli.explain import explanation
+    from compare.cli.explain import explanation, show_explanation
 
     for one in load(scene, changes, variant or "", strict):
-        views.show_explanation(explanation(one, measured), as_json)
+        show_explanation(explanation(one, measured), as_json)

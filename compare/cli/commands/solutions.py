@@ -81,8 +81,8 @@ def compare(
 
     if swept or members:
         from compare.experiments.sweep.case import Comparing
-        from compare.experiments.sweep.command import sweep
         from compare.experiments.sweep.runner import sweep_of
+        from compare.experiments.sweep.summary import sweep
 
         asked = sweep_of(scene, changes, variant, swept, out, members)
         curves = _read_curves(given, asked.scenes, align)

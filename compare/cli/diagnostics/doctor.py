@@ -10,13 +10,14 @@ import subprocess
 import sys
 from collections.abc import Callable
 from importlib.metadata import version
-from math import nan
+from math import isnan, nan
 from pathlib import Path
 from shutil import which
 from typing import NamedTuple
 
 from compare.cli.diagnostics.accuracy import PAIRS, Check, bound_of
 from compare.cli.diagnostics.components import PROBES
+from compare.cli.terminal import print_json, say, show_table
 
 PATIENCE = 120.0  # s, for what only looks
 COMPILING = 1200.0  # s, for the self-check, which compiles where the cache is empty
@@ -30,6 +31,8 @@ if MPI.COMM_WORLD.rank == 0:  # one speaks: lines of several ranks may run into 
 
 #: What a self-check needs that an installation may be without.
 NEEDS = {PAIRS[1]: "basix"}
+
+COLOURS = {"missing": "yellow", "broken": "bold red"}
 
 
 class Component(NamedTuple):
@@ -177,3 +180,32 @@ def _end(done: subprocess.CompletedProcess[str]) -> str:
     lines = [line.strip() for line in done.stderr.splitlines() if any(map(str.isalnum, line))]
     how = f"signal {-done.returncode}" if done.returncode < 0 else f"exit code {done.returncode}"
     return f"{lines[-1][:300]} ({how})" if lines else f"ended with {how}"
+
+
+def show_health(found: Health, as_json: bool) -> None:
+    """Print every part, and what the engines' checks came to."""
+    if as_json:
+        checks = [{**check._asdict(), "holds": check.holds} for check in found.checks]
+        parts = [part._asdict() for part in found.parts]
+        print_json({"parts": parts, "self_check": checks, "well": found.is_well})
+        return
+    rows = [[p.group, p.part, p.state, _said(p.found, p.hint)] for p in found.parts]
+    show_table(["", "part", "state", ""], rows, [COLOURS.get(p.state, "") for p in found.parts])
+    say("")
+    for check in found.checks:
+        say(_sentence(check), "green" if check.holds else "bold red")
+    say("all checks pass" if found.is_well else "a check fails: see the self-check above")
+
+
+def _said(found: str, hint: str) -> str:
+    return f"{found}; {hint}" if hint else found
+
+
+def _sentence(check: Check) -> str:
+    verdict = "holds" if check.holds else "FAILS"
+    if isnan(check.misfit):
+        return f"self-check {check.pair}: {verdict}, {check.reason}"
+    return (
+        f"self-check {check.pair}: {verdict}, relative L2 misfit {check.misfit:.3g}, "
+        f"at most {check.bound:g}, in {check.seconds:.1f} s"
+    )

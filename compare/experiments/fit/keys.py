@@ -11,8 +11,7 @@ from pydantic.fields import FieldInfo
 
 from cases.errors import SceneError
 from cases.kinds import AnyScene, Either, checked
-from cases.schema.allowed import model_in
-from cases.schema.field_docs import field_comments
+from cases.schema.keys import field_comments, model_in
 from cases.schema.pulse import Pulse
 
 CLOCK = "clock"  # shift added to the times of the files, s

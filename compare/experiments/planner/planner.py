@@ -17,7 +17,6 @@ from cases.errors import StoppedError
 from cases.kinds import AnyScene
 from compare.engines import Progress
 from compare.experiments.common import FAILURES, ErrorReference, reason_of
-from compare.experiments.planner.choices import MARGIN, Choice, cheapest, measured, predicted
 from compare.experiments.planner.families import (
     Effort,
     Family,
@@ -30,8 +29,13 @@ from compare.experiments.planner.reference import OwnModel, References
 from compare.experiments.planner.trials import (
     FINEST,
     LONGEST,
+    MARGIN,
+    Choice,
     Trial,
+    cheapest,
     is_trusted,
+    measured,
+    predicted,
     timed,
     trial,
 )

@@ -4,8 +4,8 @@ from typing import Any
 
 from compare.cli.terminal import print_json, say, show_table
 from compare.experiments.common import ErrorReference
-from compare.experiments.planner.choices import Choice
 from compare.experiments.planner.planner import Plan, options_of
+from compare.experiments.planner.trials import Choice
 from compare.report.tables import percent
 
 

@@ -1,17 +1,179 @@
 """Amplitude spectra of the waveforms, with the characteristic frequencies of the scene."""
 
+from math import cos, isfinite, pi, sin
+from typing import NamedTuple
+
 import numpy as np
 import pandas as pd
 
+from cases.material.calibrate import Properties, calibrate
+from cases.schema.scene import Scene
 from compare.figures.charts.chart import Chart, ChartLine, Mark, Subplot, solutions_legend
-from compare.figures.charts.spectrum import Spectra, spectra_of
 from compare.figures.figure import SceneFigure, chart_figure
+from compare.figures.overlays import UNITS as DRAWN_IN
 from compare.figures.style import style
-from compare.figures.subplots import UNITS, in_page, panels
+from compare.figures.subplots import UNITS, Panel, in_page, panels
 from compare.misfit.pairs import Comparison
 
 DECADES = 5  # drawn below the largest amplitude
 NEAR = 1.25  # ratio of two marks below which their names are on opposite sides
+
+
+class Frequency(NamedTuple):
+    """A frequency (Hz) and its meaning, short and in words."""
+
+    name: str
+    frequency: float
+    words: str
+
+
+def marks_of(panel: Panel) -> list[Frequency]:
+    """Return the marks of a panel's scene for longitudinal waves or, if blocks do not rotate, shear
+    waves; in order of frequency. Only the load's for other motion, which is dispersive, and for a
+    rock mass."""
+    scene = panel.comparison.scene
+    periods = {one.period for one in scene.pulses if one.period}
+    found = [Frequency("load", 1 / period, "1/T of the load") for period in periods]
+    if not isinstance(scene, Scene):
+        return sorted(found, key=lambda mark: mark.frequency)
+    p = calibrate(scene)
+    if len(p.each) > 1:
+        least = min(one.bar_speed / (pi * one.spacing) for one in p.each)
+        found.append(Frequency("chain cut-off", least, "least cut-off of the chain of blocks"))
+        return sorted(found, key=lambda mark: mark.frequency)
+    if panel.component is None or (panel.quantity == "velocity" and panel.component == 1):
+        found += _of_waves(scene, p, p.bar_speed) + _of_layers(p) + _of_joints(p)
+    elif scene.motion.rotation == "none" and panel.quantity != "rotation":
+        found += _of_waves(scene, p, p.shear_speed)
+    return sorted(found, key=lambda mark: mark.frequency)
+
+
+def _of_waves(scene: Scene, p: Properties, speed: float) -> list[Frequency]:
+    """Return the cut-off of the chain, omega = 2 sqrt(k/m) = 2 c/d (Brillouin 1946), and the first
+    mode of a pillar whose ends both reflect."""
+    marks = [Frequency("chain cut-off", speed / (pi * p.spacing), "cut-off of the chain of blocks")]
+    ends = {scene.ends.start, scene.ends.end}
+    if ends <= {"free", "fixed"}:
+        waves = 2 if len(ends) == 1 else 4  # pillar lengths per wavelength
+        length = p.spacing * p.block_count
+        marks.append(Frequency("first mode", speed / (waves * length), "first mode of the pillar"))
+    return marks
+
+
+def _of_layers(p: Properties) -> list[Frequency]:
+    """Return where a soft layer transmits half the energy, kappa = K / (Z omega) = 1/2
+    (Pyrak-Nolte, Myer & Cook 1990)."""
+    compliances = {c for c in p.excess_compliance[p.soft].tolist() if c > 0}
+    return [
+        Frequency(
+            "soft layer", 1 / (pi * p.impedance * c), "half-energy frequency of the soft layer"
+        )
+        for c in compliances
+    ]
+
+
+def _of_joints(p: Properties) -> list[Frequency]:
+    """Return the end of the first pass band of equal joints in elastic rock."""
+    if p.intact_modulus is None or not isfinite(p.regular_own_stiffness):
+        return []
+    speed = (p.intact_modulus / p.density) ** 0.5
+    edge = band_edge(p.density * speed, p.regular_own_stiffness, p.spacing / speed)
+    return [Frequency("joints' band edge", edge, "end of the first pass band of joints in rock")]
+
+
+def band_edge(impedance: float, stiffness: float, crossing: float) -> float:
+    """Return the frequency (Hz) at which the first pass band of equal joints ends.
+
+    impedance : of the rock, Pa s/m. stiffness : of a joint, Pa/m. crossing : of the rock between
+    two joints, s. There cos(phi) = cos(theta) - sin(theta) / (2 kappa) is -1 (Cai & Zhao, Int. J.
+    Rock Mech. Min. Sci. 37, 2000); divided by 2 cos(theta/2), which vanishes at the band's other
+    edge, this is cos(theta/2) = sin(theta/2) / (2 kappa).
+    """
+    from scipy.optimize import brentq
+
+    def bloch(theta: float) -> float:
+        return cos(theta / 2) - sin(theta / 2) * theta * impedance / (2 * stiffness * crossing)
+
+    return float(brentq(bloch, 0.0, pi, xtol=1e-14) / (2 * pi * crossing))
+
+
+TAPERED = 0.1  # of the waveform, at its end
+PADDED = 2  # times its length, at least, to the next power of two
+BEYOND = 2.5  # times the highest mark: where spectra end
+OF_LOAD = 25.0  # times the load's frequency, at least
+
+
+def tapered(values: np.ndarray) -> np.ndarray:
+    """Return a waveform [n] whose last tenth is brought to zero by half a cosine (Harris 1978)."""
+    count = len(values)
+    room = max(1, round(TAPERED * count))
+    window = np.ones(count)
+    window[count - room :] = 0.5 * (1 + np.cos(np.pi * (np.arange(room) + 1) / room))
+    return values * window
+
+
+def spectrum(values: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return frequencies (Hz) and dt |DFT| of the tapered waveform, padded by zeros: the size of
+    its Fourier transform, per Hz.
+
+    By Parseval's theorem the integral of twice its square over frequency is that of the squared
+    tapered waveform over time.
+    """
+    length = 1 << int(np.ceil(np.log2(PADDED * len(values))))
+    return np.fft.rfftfreq(length, dt), dt * np.abs(np.fft.rfft(tapered(values), length))
+
+
+class Spectra(NamedTuple):
+    """The spectra of one panel, over the drawn frequencies.
+
+    marks : in order of frequency. curves : amplitude per Hz, SI, over frequency (Hz), by solution.
+    """
+
+    panel: Panel
+    marks: list[Frequency]
+    curves: dict[str, pd.Series]
+
+    @property
+    def heading(self) -> str:
+        """Receiver and variant."""
+        return f"{self.panel.heading}, {self.panel.variant}"
+
+    @property
+    def unit(self) -> str:
+        """The drawn unit."""
+        return f"{DRAWN_IN[self.panel.quantity][1]}/Hz"
+
+    @property
+    def factor(self) -> float:
+        """Factor from SI to the drawn unit."""
+        return DRAWN_IN[self.panel.quantity][0]
+
+    @property
+    def peak(self) -> float:
+        """The largest amplitude, in the drawn unit."""
+        return self.factor * max(float(curve.max()) for curve in self.curves.values())
+
+    def amplitude(self, frequency: float) -> float:
+        """Return the largest of all curves at a frequency (Hz), in the drawn unit."""
+        at = [np.interp(frequency, curve.index, curve.values) for curve in self.curves.values()]
+        return self.factor * float(max(at))
+
+
+def spectra_of(panel: Panel) -> Spectra:
+    """Return the spectra of a panel's solutions."""
+    marks = marks_of(panel)
+    curves = {name: _drawn(curve, marks) for name, curve in panel.curves.items()}
+    return Spectra(panel, marks, curves)
+
+
+def _drawn(waveform: pd.Series, marks: list[Frequency]) -> pd.Series:
+    """Return a spectrum from one wave in the waveform's duration to beyond the marks."""
+    time = waveform.index.values
+    frequency, amplitude = spectrum(waveform.values, float(time[1] - time[0]))
+    loads = [OF_LOAD * mark.frequency for mark in marks if mark.name == "load"]
+    highest = max([BEYOND * mark.frequency for mark in marks] + loads, default=frequency[-1])
+    kept = (frequency >= 1 / (time[-1] - time[0])) & (frequency <= highest)
+    return pd.Series(amplitude[kept], np.round(frequency[kept], 9))
 
 
 def spectra(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:

@@ -17,8 +17,17 @@ from cases.schema.joint import SoftLayer
 from cases.schema.scene import Scene
 from cases.schema.segment import regions
 from compare.figures.drawing import symbols
-from compare.figures.drawing.actions import ASIDE, draw_forces, draw_load, gravity_at, gravity_words
-from compare.figures.drawing.placement import HEIGHT, WIDTH, Placement, placement
+from compare.figures.drawing.actions import (
+    ASIDE,
+    HEIGHT,
+    WIDTH,
+    Placement,
+    draw_forces,
+    draw_load,
+    gravity_at,
+    gravity_words,
+    placement,
+)
 from compare.figures.drawing.symbols import CHARACTER, EDGE, INK, LAYER, RECEIVER, ROCK, SOFT, note
 from compare.figures.units import unit_for
 

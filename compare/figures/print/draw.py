@@ -1,5 +1,7 @@
 """A figure for a paper, drawn from comparisons: one panel per variant and receiver."""
 
+from typing import NamedTuple
+
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
@@ -9,16 +11,115 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from cases.errors import SceneError
+from compare.engines import names, solver
 from compare.figures import fonts
-from compare.figures.print.appearance import MM, Appearance
-from compare.figures.print.layout import Cell, add_axes, add_legend, arrange, cells, set_titles
-from compare.figures.print.text import WORDS, Words
+from compare.figures.print.layout import (
+    MM,
+    Appearance,
+    Cell,
+    add_axes,
+    add_legend,
+    arrange,
+    cells,
+    set_titles,
+)
 from compare.figures.style import in_order
 from compare.figures.subplots import UNITS, Panel, panels
 from compare.figures.units import Unit, unit_for
 from compare.misfit.pairs import Comparison
 
 MEASURED = 200  # dots per inch for measuring text
+
+
+class Words(NamedTuple):
+    """The words of one language.
+
+    solutions : the field of a solver's words with its label. quantities : by name. place : with
+    {quantity} and {at}. static : with {value}, the static state not drawn. parts : of variants'
+    names from jointwave; those of the user are not translated. comma : between place and variant.
+    """
+
+    solutions: str
+    quantities: dict[str, str]
+    place: str
+    static: str
+    time: str
+    parts: dict[str, str]
+    comma: str
+
+    def solution(self, name: str) -> str:
+        """Return the legend label of an engine or exact solution."""
+        return getattr(solver(name).words, self.solutions) if name in names() else name
+
+    def axis(self, panel: Panel, unit: str) -> str:
+        """Return the label of a panel's ordinate."""
+        return f"{self.quantities[panel.quantity]} ({unit})"
+
+    @staticmethod
+    def _at(panel: Panel) -> str:
+        """Return a receiver's position: y in a pillar, x and y in a rock mass."""
+        at = panel.place.at
+        return f"y\u00a0=\u00a0{at[0]:g}" if len(at) == 1 else f"[{at[0]:g},\u00a0{at[1]:g}]"
+
+    def title(self, panel: Panel) -> str:
+        """Return the title of a panel."""
+        quantity = " ".join([self.quantities[panel.quantity], panel.place.component]).strip()
+        parts = [self.parts.get(part, part) for part in panel.variant.split(", ")]
+        place = [self.place.format(quantity=quantity, at=self._at(panel))]
+        if rest := panel.at_rest:
+            unit = unit_for(UNITS[panel.quantity], abs(rest))
+            place.append(self.static.format(value=f"{rest / unit.size:.4g}\u00a0{unit.name}"))
+        return self.comma.join([*place, *parts])
+
+
+ENGLISH = Words(
+    solutions="english",
+    quantities={
+        "stress": "stress",
+        "shear": "shear stress",
+        "traction": "traction",
+        "velocity": "velocity",
+        "rotation": "rotation",
+    },
+    place="{quantity} at {at}\u00a0m",
+    static="minus the static {value}",
+    time="time (ms)",
+    parts={},
+    comma=", ",
+)
+
+CHINESE = Words(
+    solutions="chinese",
+    quantities={
+        "stress": "应力",
+        "shear": "剪应力",
+        "traction": "节理面应力",
+        "velocity": "速度",
+        "rotation": "转角",
+    },
+    place="{quantity}，{at}\u00a0m",
+    static="减去静态值 {value}",
+    time="时间 (ms)",
+    parts={
+        "undamped": "无阻尼",
+        "soft layer": "含软弱层",
+        "no soft layer": "无软弱层",
+        "no tension": "不抗拉",
+        "tension": "抗拉",
+        "base scene": "原场景",
+        "free start": "起端自由",
+        "quiet start": "起端吸收",
+        "matched start": "起端匹配",
+        "fixed start": "起端固定",
+        "free": "自由端",
+        "quiet": "吸收端",
+        "matched": "匹配端",
+        "fixed": "固定端",
+    },
+    comma="，",
+)
+
+WORDS = {"en": ENGLISH, "zh": CHINESE}
 
 
 def draw(

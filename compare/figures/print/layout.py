@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Sequence
 from itertools import groupby
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +13,11 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
 
-from compare.figures.print.appearance import MM, POINT, Appearance
+from compare.engines import names, solver
+from compare.figures.style import GIVEN, RC, style
+
+MM = 1 / 25.4  # inches
+POINT = 25.4 / 72  # mm
 
 SPACELESS = "\u2e80-\u9fff\uac00-\ud7a3\uf900-\ufaff\uff00-\uffef"  # scripts without spaces
 #: Unbreakable unit: a word, or a letter of such a script, with the space or bracket before it and
@@ -25,6 +30,63 @@ BESIDE = 14.0  # mm beside a panel, for its ordinate
 TICK = 10.0  # least mm per number along the time axis
 
 Cell = tuple[int, int]
+
+
+class Appearance(NamedTuple):
+    """widths : mm, of one and of two columns. most : largest number of panels side by side in each.
+    tallest : mm. panel, least : mm, preferred and smallest height of a panel. text, small :
+    points, of titles and labels, and of ticks and legend. handle : length of a line in the legend,
+    in letters. prints : whether dashes distinguish curves without colour. dpi : of a PNG."""
+
+    widths: tuple[float, float]
+    most: tuple[int, int]
+    tallest: float
+    panel: float
+    least: float
+    text: float
+    small: float
+    handle: float
+    prints: bool
+    dpi: int
+
+    def rc(self, families: list[str]) -> dict[Any, Any]:
+        """Return matplotlib's settings; families : of the fonts, in order of preference."""
+        return RC | {
+            "font.family": families,
+            "font.size": self.text,
+            "axes.titlesize": self.text,
+            "axes.labelsize": self.text,
+            "xtick.labelsize": self.small,
+            "ytick.labelsize": self.small,
+            "legend.fontsize": self.small,
+            "axes.linewidth": 0.5,
+            "xtick.major.width": 0.5,
+            "ytick.major.width": 0.5,
+            "xtick.major.size": 2.5,
+            "ytick.major.size": 2.5,
+            "text.hinting": "none",  # letters as wide in print as they are measured
+            "pdf.fonttype": 42,  # TrueType, not outlines of single letters
+            "svg.fonttype": "none",  # letters stay letters; the font is put into the file
+        }
+
+    def of_line(self, name: str) -> dict[str, Any]:
+        """Return the line style of a solution, as arguments of matplotlib's plot."""
+        line = style(name).of_line()
+        if self.prints and name in names():
+            own = solver(name).line
+            dashes = (0, own.printed) if own.printed else "-"
+            line |= {"linewidth": own.printed_width, "linestyle": dashes}
+        return line
+
+    def of_given(self, k: int) -> dict[str, Any]:
+        """Return the line style of the k-th external file."""
+        return GIVEN[k % len(GIVEN)].of_line()
+
+
+STYLES = {
+    "journal": Appearance((90.0, 190.0), (2, 4), 240.0, 42.0, 26.0, 8.0, 7.5, 2.8, True, 600),
+    "screen": Appearance((160.0, 280.0), (2, 4), 900.0, 58.0, 40.0, 10.0, 9.0, 4.5, False, 160),
+}
 
 
 def cells(

@@ -18,8 +18,8 @@ from cases.kinds import AnyScene
 from compare.engines import EXACT, Progress, applies, names, solve
 from compare.figures import fonts
 from compare.figures.export import write_drawing
-from compare.figures.print.appearance import MM, STYLES
 from compare.figures.print.draw import draw, families_of
+from compare.figures.print.layout import MM, STYLES
 from compare.misfit.alignment import lay_beside
 from compare.misfit.pairs import Comparison
 from compare.runs.jobs import names_of

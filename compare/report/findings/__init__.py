@@ -7,7 +7,7 @@ What lies between the engines and the exact solutions is in the tables of misfit
 from collections.abc import Callable
 
 from compare.misfit.pairs import Comparison
-from compare.report.findings import ends, joints, pillar, travel
+from compare.report.findings import joints, pillar, travel
 from compare.report.findings.finding import Finding
 
 __all__ = ["FINDINGS", "Finding", "findings"]
@@ -17,7 +17,7 @@ FINDINGS: dict[int, tuple[Callable[[list[Comparison]], Finding], ...]] = {
     2: (pillar.one_sine_cycle,),
     3: (pillar.three_pulses, pillar.falls_with_distance, pillar.falls_with_damping),
     4: (travel.travels, travel.reflection, travel.superposition),
-    5: (ends.quiet_end, ends.what_the_quiet_end_leaves, ends.matched_end),
+    5: (travel.quiet_end, travel.what_the_quiet_end_leaves, travel.matched_end),
     6: (pillar.broader, pillar.second_half_weaker),
     7: (joints.reflects_in_front, joints.smaller_and_later),
     8: (joints.reflects_in_front, joints.smaller_and_later),

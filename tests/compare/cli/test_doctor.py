@@ -127,7 +127,7 @@ def test_what_takes_too_long_is_broken():
 
 def test_it_is_shown_in_words(capsys):
     """Every part with its hint, and the verdict with its numbers or its reason."""
-    from compare.cli.diagnostics.show import show_health
+    from compare.cli.diagnostics.doctor import show_health
 
     parts = [Component("optional", "ffmpeg", "missing", "is not on the PATH", "apt install ffmpeg")]
     right = Check("a ~ b", 1e-3, 2e-3, 1.0)

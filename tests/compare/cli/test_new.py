@@ -7,8 +7,7 @@ import pytest
 
 import cases
 from cases.errors import SceneError
-from cases.schema.field_docs import field_comments
-from cases.schema.keys import keys
+from cases.schema.keys import field_comments, keys
 from cases.schema.tables import Pillar
 from cases.warnings import warnings
 from compare.cli.new import WIDTH, starter, write_new

@@ -10,10 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, Rectangle
 
 import cases
-from compare.figures.drawing.placement import THICK, WIDTH, placement
+from compare.figures.drawing.actions import THICK, WIDTH, placement
 from compare.figures.drawing.pulses import pulse_curve
-from compare.figures.drawing.scene import scene_figure
-from compare.figures.drawing.section import draw_section
+from compare.figures.drawing.scene import draw_section, scene_figure
 from compare.figures.drawing.side import MOST, _apart, draw_strip
 from compare.misfit.pairs import Comparison
 from compare.scenes import find

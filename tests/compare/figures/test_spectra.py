@@ -9,11 +9,11 @@ import pytest
 from cases.material.calibrate import calibrate
 from closed_forms.parallel_joints import transmission
 from compare.figures.charts.interactive import BITS, unpacked
-from compare.figures.charts.spectra import spectra
-from compare.figures.charts.spectrum import (
+from compare.figures.charts.spectra import (
     TAPERED,
     band_edge,
     marks_of,
+    spectra,
     spectra_of,
     spectrum,
     tapered,

@@ -9,7 +9,7 @@ import cases
 from compare.engines import solve
 from compare.exact.blocks import lattice, no_tension
 from compare.misfit.pairs import Comparison
-from compare.report.findings import FINDINGS, ends, joints, pillar, travel
+from compare.report.findings import FINDINGS, joints, pillar, travel
 from compare.report.findings.pillar import mostly_dispersion
 from compare.report.section import PAPER as SCENES
 
@@ -106,9 +106,9 @@ FALSE = {
     travel.travels: every("stress", late_at_the_last),
     travel.reflection: every("stress", after(0.045, -1)),
     travel.superposition: every("stress", first_only),
-    ends.quiet_end: end_as("quiet", "free"),
-    ends.what_the_quiet_end_leaves: end_as("quiet", "matched"),
-    ends.matched_end: end_as("matched", "quiet"),
+    travel.quiet_end: end_as("quiet", "free"),
+    travel.what_the_quiet_end_leaves: end_as("quiet", "matched"),
+    travel.matched_end: end_as("matched", "quiet"),
     pillar.broader: swapped,
     pillar.second_half_weaker: swapped,
     joints.reflects_in_front: alike(0),
@@ -141,7 +141,7 @@ def test_superposition_needs_a_section_where_pulses_meet():
 
 def test_theory_gives_what_the_quiet_end_leaves(chains):
     """tan(kh/4) of a harmonic is 5.8 % at the default period."""
-    finding = ends.what_the_quiet_end_leaves(chains(5))
+    finding = travel.what_the_quiet_end_leaves(chains(5))
     assert "5.8 % at the load's period" in finding.sentence
 
 

@@ -12,13 +12,12 @@ from cases.errors import SceneError
 from cases.read import parse_override
 from compare.engines import solve
 from compare.experiments.cost.scenes import PILLAR
-from compare.experiments.planner import choices, families, planner
+from compare.experiments.planner import families, planner
 from compare.experiments.planner import reference as plan_reference
 from compare.experiments.planner import trials as plan_trials
-from compare.experiments.planner.choices import Choice
 from compare.experiments.planner.families import Family, plain
 from compare.experiments.planner.planner import options_of, plan
-from compare.experiments.planner.trials import Trial
+from compare.experiments.planner.trials import Choice, Trial
 from compare.misfit.metrics import Stack, misfit, stacked, worst
 from compare.scenes import find
 
@@ -285,17 +284,17 @@ def test_a_finer_step_that_is_worse_takes_the_credit_of_a_coarser_one():
     errors = (0.071, 0.021, 0.0096, 0.017, 0.019)
     family = Family("dem", {}, 2)
     along = [Choice(family, {}, 2**k, e, 0.0, 2.0**k, True) for k, e in enumerate(errors)]
-    assert choices.cheapest(along, 0.01, None) is None
-    assert choices.cheapest(along, 0.02, None).misfit == 0.0096
-    assert choices.cheapest(along[:3], 0.01, None).misfit == 0.0096
+    assert plan_trials.cheapest(along, 0.01, None) is None
+    assert plan_trials.cheapest(along, 0.02, None).misfit == 0.0096
+    assert plan_trials.cheapest(along[:3], 0.01, None).misfit == 0.0096
 
 
 def test_errors_add_up_and_a_margin_is_kept_of_the_numerical_one():
     told = choice(0.005, 1.0)._replace(modelling=0.0049)
     assert told.misfit == pytest.approx(0.0099)
-    assert choices.cheapest([told], 0.01, None) == told
-    assert choices.cheapest([told._replace(measured=False)], 0.01, None) is None
-    assert choices.cheapest([told._replace(modelling=0.0051)], 0.01, None) is None
+    assert plan_trials.cheapest([told], 0.01, None) == told
+    assert plan_trials.cheapest([told._replace(measured=False)], 0.01, None) is None
+    assert plan_trials.cheapest([told._replace(modelling=0.0051)], 0.01, None) is None
 
 
 def test_a_reference_that_does_not_know_itself_well_enough_judges_nothing(pillar, monkeypatch):
@@ -366,12 +365,12 @@ def test_a_family_whose_model_is_too_far_is_given_up_after_two_runs():
 
 def test_seconds_are_a_start_and_so_much_a_step():
     coarse, fine, _ = trials(2.0)
-    assert choices.seconds_of(coarse, fine) == pytest.approx((2e-3, 1e-3))
+    assert plan_trials.seconds_of(coarse, fine) == pytest.approx((2e-3, 1e-3))
 
 
 def test_steps_are_so_many_to_a_doubling():
-    assert choices.steps(1, 8, 2) == [1, 2, 3, 4, 6, 8]
-    assert choices.steps(5, 10, 1) == [5, 10]
+    assert plan_trials.steps(1, 8, 2) == [1, 2, 3, 4, 6, 8]
+    assert plan_trials.steps(5, 10, 1) == [5, 10]
 
 
 def test_finer_families_cost_more():
@@ -407,13 +406,13 @@ def choice(numerical, seconds):
 )
 def test_the_cheapest_that_meets_it_or_the_best_in_time(target, seconds, expected):
     given = [choice(0.05, 1.0), choice(0.02, 2.0), choice(0.01, 4.0), choice(0.2, 0.5)]
-    found = choices.cheapest(given, target, seconds)
+    found = plan_trials.cheapest(given, target, seconds)
     assert expected == (None if found is None else (found.misfit, found.seconds))
 
 
 def test_what_is_predicted_keeps_a_margin():
     """Two steps leave the next term of the error: what is measured may be as much as is asked."""
     told = choice(0.01, 1.0)._replace(measured=False)
-    assert choices.cheapest([told], 0.01, None) is None
-    assert choices.cheapest([choice(0.01, 1.0)], 0.01, None) is not None
-    assert choices.cheapest([told], 0.01 / choices.MARGIN, None) == told
+    assert plan_trials.cheapest([told], 0.01, None) is None
+    assert plan_trials.cheapest([choice(0.01, 1.0)], 0.01, None) is not None
+    assert plan_trials.cheapest([told], 0.01 / plan_trials.MARGIN, None) == told

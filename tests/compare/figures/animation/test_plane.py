@@ -8,7 +8,7 @@ import pytest
 from cases import SceneError
 from cases.read import load_tables
 from compare.figures.animation import offscreen
-from compare.figures.animation.plane import PlaneFrame, cells_at, speeds
+from compare.figures.animation.frame import PlaneFrame, cells_at, speeds
 from compare.figures.animation.snapshots import SceneSnapshots, at_instants, until
 from compare.figures.animation.view_settings import DISPLACEMENT, scale_of, settings_for
 from results.snapshots import snapshots

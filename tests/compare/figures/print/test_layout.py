@@ -10,11 +10,9 @@ from pdfminer.layout import LAParams, LTTextLine
 
 from cases.errors import SceneError
 from compare.figures import fonts
-from compare.figures.print.appearance import STYLES
-from compare.figures.print.draw import draw
-from compare.figures.print.layout import wrapped
+from compare.figures.print.draw import WORDS, draw
+from compare.figures.print.layout import STYLES, wrapped
 from compare.figures.print.make import save
-from compare.figures.print.text import WORDS
 
 FEW = ("dem", "continuum-jointed", "jointed-bar")
 POINT = 25.4 / 72  # mm

@@ -20,10 +20,9 @@ from cases.errors import SceneError
 from compare.engines import ENGINES, names
 from compare.exact.blocks import lattice
 from compare.figures import fonts
-from compare.figures.print.appearance import MM, STYLES
-from compare.figures.print.draw import draw
+from compare.figures.print.draw import CHINESE, WORDS, draw
+from compare.figures.print.layout import MM, STYLES
 from compare.figures.print.make import FigureRequest, make, save
-from compare.figures.print.text import CHINESE, WORDS
 from compare.figures.style import style
 from compare.misfit.pairs import Comparison
 
