@@ -33,13 +33,14 @@ ALL_TERMS = (
 )
 TERMS = ("kinetic", "elastic", "viscous", "boundary", "work")
 
-#: Quantities for which computed solutions bound their own error, and the bound's dimensions.
-ERRORS = {
+#: Dimensions of each quantity except time, its receivers or the terms of the ledger first.
+DIMENSIONS: dict[str, tuple[str, ...]] = {
     "stress": ("stress_y",),
     "shear": ("stress_y", "across"),
     "velocity": ("velocity_y", "axis"),
     "displacement": ("velocity_y", "axis"),
     "rotation": ("velocity_y", "axis"),
+    "energy": ("term",),
 }
 
 #: Of the energy at rest: a million times the round-off of double precision.
@@ -110,50 +111,55 @@ def fields(
     rotation : float array [len(record.velocity), n, 3], about x, y, z, rad; likewise.
     terms : names of the rows of `energy`, from ALL_TERMS.
     errors : for a computed solution, an upper bound on the root-mean-square error over time
-        of each waveform, by its quantity (a key of ERRORS) and in its unit: float arrays of that
-        quantity's shape without time. A closed form has none.
+        of each waveform, by its quantity (a key of DIMENSIONS) and in its unit: float arrays of
+        that quantity's shape without time. A closed form has none.
     attributes : numbers and texts about the run (dt, steps, seconds, ...).
 
     Inputs are at the scale of `cases.loads.load_history`, the result at that of the scene's load.
     """
-    points = ("velocity_y", "time", "axis")
     record, spatial, scale = scene.record, velocity.ndim == 3, scene.load.scale
     if scale != 1:
         stress, velocity = scale * stress, scale * velocity
         displacement = None if displacement is None else scale * displacement
         energy = None if energy is None else scale * (scale * energy)
         errors = {name: scale * np.asarray(bound) for name, bound in (errors or {}).items()}
-    coords: dict[str, Variable] = {
-        "time": (("time",), time, label("time")),
-        "stress_y": (("stress_y",), np.array(record.stress, dtype=float), label("stress_y")),
-        "velocity_y": (
-            ("velocity_y",),
-            np.array(record.velocity, dtype=float),
-            label("velocity_y"),
-        ),
-        "axis": (("axis",), np.array(list("xyz") if spatial else ["y"]), label("axis")),
+    quantities = {
+        "stress": stress,
+        "velocity": _with_axis(velocity),
+        "displacement": None if displacement is None else _with_axis(displacement),
+        "shear": shear,
+        "rotation": rotation,
+        "energy": energy,
     }
-    variables: dict[str, Variable] = {
-        "stress": (("stress_y", "time"), stress, label("stress")),
-        "velocity": (points, _with_axis(velocity), label("velocity")),
-    }
-    if displacement is not None:
-        variables["displacement"] = (points, _with_axis(displacement), label("displacement"))
-    if shear is not None:
-        variables["shear"] = (("stress_y", "time", "across"), shear, label("shear"))
-        coords["across"] = (("across",), np.array(["x", "z"]), label("across"))
-    if rotation is not None:
-        variables["rotation"] = (points, rotation, label("rotation"))
-    if energy is not None:
-        variables["energy"] = (("term", "time"), energy, label("energy"))
-        coords["term"] = (("term",), np.array(list(terms)), label("term"))
-    for name, bound in (errors or {}).items():
-        variables[f"{name}_error"] = (
-            ERRORS[name],
-            _of_receivers(name, bound),
-            label(f"{name}_error"),
-        )
+    places = {"stress_y": record.stress, "velocity_y": record.velocity}
+    coords: dict[str, Variable] = {"time": (("time",), time, label("time"))}
+    coords |= {name: ((name,), np.array(at, float), label(name)) for name, at in places.items()}
+    components = {"axis": "xyz" if spatial else "y", "across": "xz", "term": terms}
+    variables = variables_of(quantities, DIMENSIONS, components, errors or {}, coords)
     return Fields(variables, coords, attributes_of(scene, engine, attributes))
+
+
+def variables_of(
+    quantities: Mapping[str, np.ndarray | None],
+    dimensions: Mapping[str, tuple[str, ...]],
+    components: Mapping[str, Sequence[str]],
+    errors: Mapping[str, np.ndarray],
+    coords: dict[str, Variable],
+) -> dict[str, Variable]:
+    """Return the quantities that are known, and the bounds of their errors, as variables; add the
+    names of their components, by dimension, to `coords`."""
+    variables: dict[str, Variable] = {}
+    for name, values in quantities.items():
+        if values is not None:
+            receivers, *others = dimensions[name]
+            variables[name] = ((receivers, "time", *others), values, label(name))
+            for one in components.keys() & dimensions[name]:
+                coords[one] = ((one,), np.array(list(components[one])), label(one))
+    for name, bound in errors.items():
+        found = np.asarray(bound, dtype=float)
+        found = found[:, None] if found.ndim < len(dimensions[name]) else found  # one axis
+        variables[f"{name}_error"] = (dimensions[name], found, label(f"{name}_error"))
+    return variables
 
 
 def attributes_of(scene: AnyScene, engine: str, own: Mapping[str, Any]) -> dict[str, Any]:
@@ -207,12 +213,6 @@ def imbalance(energy: np.ndarray, terms: Sequence[str] = TERMS) -> float:
     scale = float(np.abs(work if work.any() else since).max())
     scale = max(scale, AT_REST * float(np.abs(energy[:, 0]).max()))
     return float(np.abs(balance).max()) / scale if scale > 0 else 0.0
-
-
-def _of_receivers(name: str, bound: np.ndarray) -> np.ndarray:
-    """Return a bound with its dimensions in ERRORS; axial motion has one axis."""
-    found = np.asarray(bound, dtype=float)
-    return found[:, None] if found.ndim < len(ERRORS[name]) else found
 
 
 def _with_axis(values: np.ndarray) -> np.ndarray:

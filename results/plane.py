@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from results.dataset import Fields, Variable, attributes_of
+from results.dataset import Fields, Variable, attributes_of, variables_of
 from results.labels import label
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
 
-#: Dimensions of each quantity except time, its receivers first.
+#: Dimensions of each quantity except time, its receivers or the terms of the ledger first.
 DIMENSIONS: dict[str, tuple[str, ...]] = {
     "velocity": ("point", "axis"),
     "displacement": ("point", "axis"),
@@ -21,6 +21,7 @@ DIMENSIONS: dict[str, tuple[str, ...]] = {
     "traction": ("joint_point", "joint_axis"),
     "gap": ("joint_point",),
     "slip": ("joint_point",),
+    "energy": ("term",),
 }
 #: Names of the components of a quantity.
 COMPONENTS = {
@@ -70,15 +71,7 @@ def plane_fields(
         coords[name] = ((name,), np.arange(len(at), dtype=np.int32), label(name))
         for k, axis in enumerate("xy"):
             coords[f"{name}_{axis}"] = ((name,), at[:, k], label(f"{name}_{axis}"))
-    variables: dict[str, Variable] = {}
-    for name, values in quantities.items():
-        receivers, *components = DIMENSIONS[name]
-        variables[name] = ((receivers, "time", *components), values, label(name))
-        for one in components:
-            coords[one] = ((one,), np.array(COMPONENTS[one]), label(one))
-    if energy is not None:
-        variables["energy"] = (("term", "time"), energy, label("energy"))
-        coords["term"] = (("term",), np.array(list(terms)), label("term"))
-    for name, bound in (errors or {}).items():
-        variables[f"{name}_error"] = (DIMENSIONS[name], np.asarray(bound), label(f"{name}_error"))
+    components = COMPONENTS | {"term": tuple(terms)}
+    every = {**quantities, "energy": energy}
+    variables = variables_of(every, DIMENSIONS, components, errors or {}, coords)
     return Fields(variables, coords, attributes_of(scene, engine, attributes))

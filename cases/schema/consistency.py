@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from cases.schema.discretisation import check_discretisation, check_scheme
 from cases.schema.joint import ACROSS, JointLaw
 from cases.schema.plausible import INTACT, meant
-from cases.schema.segment import Segment
-from cases.schema.segment_checks import check_segments
+from cases.schema.segment import Segment, check_segments
 from cases.schema.shared_checks import (
     SNAP,
     check_fields,

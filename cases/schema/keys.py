@@ -1,4 +1,6 @@
-"""Every table and key of a scene file, from the models that read it."""
+"""Every table and key of a scene file, its meaning and its allowed values, from the models that
+read it.
+"""
 
 import ast
 import inspect

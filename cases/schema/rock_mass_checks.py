@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.schema.joint_set_checks import check_sets
+from cases.schema.joint_set import check_sets
 from cases.schema.region import check_regions
 from cases.schema.shared_checks import check_fields, check_quality, check_time
 from cases.schema.values import contradiction

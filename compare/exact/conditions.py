@@ -1,6 +1,8 @@
-"""The physics of a scene that an exact solution must cover."""
+"""The excitation of a scene, and the physics that an exact solution of it must cover."""
 
 from cases.effects import is_spatial
+from cases.histories import LoadHistory
+from cases.loads import load_history, velocity_of
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.joint import PARTS
 from cases.schema.scene import Scene
@@ -61,3 +63,11 @@ def joints_are_damped(p: Properties) -> bool:
 def has_thick_layer(scene: Scene) -> bool:
     """Return whether a soft layer is rock with a thickness, not a joint."""
     return any(layer.thickness is not None for layer in scene.soft_layers)
+
+
+def drive(scene: Scene) -> LoadHistory:
+    """Return the end stress (Pa) or, where the load is a motion, the base's velocity (m/s)."""
+    load = scene.load
+    if scene.shakes_base:
+        return velocity_of(load, load.amplitude / load.scale)
+    return load_history(scene)

@@ -12,22 +12,14 @@ import xarray as xr
 from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from compare.figures.style import in_order
-from compare.misfit.metrics import FAINT, motion
+from compare.misfit.metrics import FAINT, QUANTITIES, motion
 from compare.misfit.pairs import Comparison
 from compare.misfit.places import Place, places_of, recorded
 from compare.misfit.ranking import finest
+from results.labels import label
 
-#: SI units of the panels' quantities.
-UNITS = {
-    "stress": "Pa",
-    "shear": "Pa",
-    "traction": "Pa",
-    "velocity": "m/s",
-    "displacement": "m",
-    "gap": "m",
-    "slip": "m",
-    "rotation": "rad",
-}
+#: SI units of the quantities of waveforms.
+UNITS = {name: label(name)["units"] for name in QUANTITIES}
 
 FORCES, MOTION, ROTATION = ("stress", "shear"), ("velocity",), ("rotation",)
 #: Quantities of panels at the receivers of a pillar, by their key of [record]: the first group that

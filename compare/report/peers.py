@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from cases.errors import SceneError
 from cases.files import read_text
 from compare.experiments.study.diagram import draw as draw_study
-from compare.experiments.study.pareto import assured
+from compare.experiments.study.findings import assured
 from compare.experiments.study.study import Curve, Study
 from compare.experiments.summary import Summary
 from compare.figures.export import save

@@ -12,7 +12,7 @@ from results.arrays import size_of
 from results.dataset import (
     ALL_TERMS,
     AT_REST,
-    ERRORS,
+    DIMENSIONS,
     TERMS,
     dataset,
     energy_residual,
@@ -108,7 +108,7 @@ def test_the_bounds_of_a_spatial_result_have_its_axes(scene_with):
     errors = {name: np.ones(size) for name, size in (sizes | {"rotation": (2, 3)}).items()}
     found = dataset(scene, "own", sample_times(scene), *waves, waves[1], errors=errors)
     for name in errors:
-        assert found[f"{name}_error"].dims == tuple(d for d in ERRORS[name])
+        assert found[f"{name}_error"].dims == tuple(d for d in DIMENSIONS[name])
         assert found[f"{name}_error"].shape == errors[name].shape
 
 

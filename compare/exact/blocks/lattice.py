@@ -23,8 +23,7 @@ from cases.histories import Step
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
 from compare.exact.blocks.chain import Chain, chain, rates, receivers
-from compare.exact.conditions import DAMPED, LAYERS, holds
-from compare.exact.drive import drive
+from compare.exact.conditions import DAMPED, LAYERS, drive, holds
 from compare.exact.linear import errors, twins
 from compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, thin
 from results.dataset import dataset

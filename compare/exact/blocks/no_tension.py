@@ -21,8 +21,7 @@ from cases.schema.scene import Scene
 from compare.exact.blocks.chain import Chain, chain, contact_forces, receivers, split
 from compare.exact.blocks.events import integrate
 from compare.exact.blocks.lattice import HELD, at_rest
-from compare.exact.conditions import holds
-from compare.exact.drive import drive
+from compare.exact.conditions import drive, holds
 from compare.exact.linear import errors
 from compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, no, thin
 from results.dataset import dataset

@@ -1,4 +1,4 @@
-"""Trial runs of a family, and predictions for finer steps.
+"""Trial runs of a family, predictions for finer steps, and the choice among both.
 
 The error of a family falls with some order q, so that each of its waveforms at n steps per sample
 is w + c n^-q (Richardson): from two runs its misfit from the engine's own model is known for every

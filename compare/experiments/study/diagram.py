@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from compare.engines import names
+from compare.experiments.study.findings import floor, front, is_known, measured
 from compare.experiments.study.measure import PointRow
-from compare.experiments.study.pareto import floor, front, is_known, measured
 from compare.experiments.study.study import Study
 from compare.figures.export import Drawn, blank, save
 from compare.figures.style import style

@@ -1,25 +1,147 @@
-"""The findings of a study: orders of convergence with theory, and results in sentences."""
+"""The findings of a study: orders of convergence, the Pareto front, and results in sentences.
+
+A point counts with the largest error of itself and all finer points of its curve: accuracy lost in
+a finer step was luck.
+"""
 
 import math
 from itertools import pairwise
 from math import isfinite, isnan
-from typing import NamedTuple
+from operator import itemgetter
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from compare.experiments.study.check import ARGUMENTS
 from compare.experiments.study.measure import PointRow
-from compare.experiments.study.pareto import (
-    Cheapest,
-    cheapest,
-    digits_per_second,
-    floor,
-    most_digits_per_second,
-)
 from compare.experiments.study.study import Curve, FineRun, Study
+from compare.misfit.metrics import JUDGED
 from compare.report.tables import percent
+
+TARGETS = (0.1, 0.01, 1e-3, 1e-4)
+CLEARLY = 0.9  # of the expected error: a smaller one is due to cancellation
 
 ROUND_OFF = 1e-11  # below, an error no longer falls
 KNOWN = 10  # least ratio of an error to its floor for an order accurate to some per cent
+
+
+def judged(rows: list[PointRow]) -> list[PointRow]:
+    """Return the rows with the error assigned to each, and whether errors cancel in it."""
+    totals, numericals = assured(rows, "total"), assured(rows, "numerical")
+    found = []
+    for row, total, numerical in zip(rows, totals, numericals, strict=True):
+        held = numerical if math.isnan(total) else total
+        # More accurate than the larger of its errors, or than a finer point.
+        alone = max(row.numerical, row.modelling)
+        cancels = row.measured < CLEARLY * alone or _counted(row) < CLEARLY * held
+        found.append(row._replace(held=held, cancels=cancels))
+    return found
+
+
+def _counted(row: PointRow) -> float:
+    return row.numerical if math.isnan(row.total) else row.total
+
+
+def assured(rows: list[PointRow], error: str) -> list[float]:
+    """Return the largest error of each row and of all finer points of its curve; nan if a point has
+    none."""
+    errors = np.array([getattr(r, error) if r.state == "done" else math.nan for r in rows])
+    size = np.array([(r.freedoms, r.steps) for r in rows])
+    model = np.array([f"{r.curve} {_physics(r)}" for r in rows])
+    least = np.nan_to_num(errors, nan=0.0)
+    return [
+        float(np.max(least, where=_finer(size, i) & (model == model[i]), initial=errors[i]))
+        for i in range(len(rows))
+    ]
+
+
+def _finer(size: np.ndarray, i: int) -> np.ndarray:
+    """Return which points are at least as fine as point i: in freedoms and steps or, if these are
+    not counted, by their position in the curve."""
+    if np.isnan(size[i]).any():
+        return np.arange(len(size)) >= i
+    return (size >= size[i]).all(axis=1)
+
+
+def _physics(row: PointRow) -> dict[str, Any]:
+    """Return the varied keys other than numerics and block size: these change the problem."""
+    free = {"pillar.block", *ARGUMENTS}
+    found = sorted(row.settings.items())
+    return {k: v for k, v in found if k not in free and not k.startswith("numerics.")}
+
+
+class Cheapest(NamedTuple):
+    """The cheapest point within a misfit, and that of another curve; None if there is none."""
+
+    misfit: float
+    row: PointRow
+    next_best: PointRow | None
+
+
+def measured(rows: list[PointRow], error: str, cost: str) -> list[PointRow]:
+    """Return the rows that have both numbers, of points that were done."""
+    return [
+        row
+        for row in rows
+        if row.state == "done" and getattr(row, error) > 0 and getattr(row, cost) > 0
+    ]
+
+
+def front(rows: list[PointRow], error: str = "total", cost: str = "seconds") -> list[PointRow]:
+    """Return the points not dominated in both numbers, the cheapest first (Pareto front), with the
+    error assigned to each."""
+    found: list[PointRow] = []
+    least = math.inf
+    held = {id(row): value for row, value in zip(rows, assured(rows, error), strict=True)}
+    points = [(getattr(row, cost), held[id(row)], row) for row in measured(rows, error, cost)]
+    for _, value, row in sorted(points, key=itemgetter(0, 1)):
+        if value < least:
+            least = value
+            found.append(row)
+    return found
+
+
+def cheapest(rows: list[PointRow]) -> list[Cheapest]:
+    """Return the cheapest point within each of `TARGETS`, if there is one and if the reference of
+    errors is known to a tenth of the target."""
+    found, rows = [], sorted(judged(measured(rows, "total", "seconds")), key=lambda r: r.seconds)
+    for target in TARGETS:
+        within = [r for r in rows if r.held <= target and JUDGED * r.total_floor <= target]
+        if within:
+            best = within[0]
+            others = (r for r in within if r.curve != best.curve)
+            found.append(Cheapest(target, best, next(others, None)))
+    return found
+
+
+def floor(rows: list[PointRow], error: str) -> float:
+    """Return the error below which errors are not known; 0 against exact solutions. For totals it
+    is that of the finest physics, without that of each curve's own model."""
+    if error == "total":
+        of_finest = [r.total_floor - r.numerical_floor for r in rows]
+        return _largest(of_finest) or _largest([r.total_floor for r in rows])
+    return _largest([getattr(row, f"{error}_floor", 0.0) for row in rows])
+
+
+def _largest(floors: list[float]) -> float:
+    return max((value for value in floors if not math.isnan(value)), default=0.0)
+
+
+def is_known(row: PointRow, error: str) -> bool:
+    """Return whether a point's error is at least the floor of its reference."""
+    return getattr(row, error) >= floor([row], error)
+
+
+def most_digits_per_second(rows: list[PointRow]) -> PointRow | None:
+    """Return the point with the most digits of the finest physics per second, None without."""
+    known = measured(rows, "total", "seconds")
+    return max(judged(known), key=digits_per_second, default=None)
+
+
+def digits_per_second(row: PointRow) -> float:
+    """Return the correct decimal digits of a judged point per second of stepping: of the finest
+    physics if that is known, else of its own model; nan without either."""
+    return -math.log10(row.held) / row.seconds if row.held > 0 and row.seconds > 0 else math.nan
 
 
 class Order(NamedTuple):

@@ -10,9 +10,8 @@ from compare.experiments.cost.timings import machine
 from compare.experiments.pool import Pool, alone
 from compare.experiments.store import Store
 from compare.experiments.study.diagram import write_diagram
-from compare.experiments.study.findings import Order, orders, sentences
+from compare.experiments.study.findings import Order, digits_per_second, judged, orders, sentences
 from compare.experiments.study.measure import PointRow, measure
-from compare.experiments.study.pareto import digits_per_second, judged
 from compare.experiments.study.study import Study, StudyPoint, load
 from compare.experiments.summary import Summary, frame, grouped, number, write_tables
 from compare.report.tables import Table

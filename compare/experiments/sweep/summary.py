@@ -1,4 +1,6 @@
-"""The summary of a sweep: a tidy table, and a grid with the swept keys as dimensions."""
+"""`--sweep` of a command, and its summary: a tidy table, and a grid with the swept keys as
+dimensions.
+"""
 
 import json
 from collections.abc import Iterable, Sequence

@@ -1,4 +1,4 @@
-"""One frame of an animation: the pillars, the wave along them, and the clock."""
+"""One frame of an animation: the pillars and the wave along them, or a rock mass; the clock."""
 
 from functools import cached_property
 from math import ceil, log10
@@ -215,7 +215,7 @@ def _bold(text: str) -> dict[str, Any]:
 
 
 class PlaneFrame:
-    """The frame of every instant, as pixels."""
+    """The frame of every instant of a rock mass, its blocks by each engine, as pixels."""
 
     def __init__(self, simulated: SceneSnapshots, settings: ViewSettings, dots: int = 100) -> None:
         self.simulated, self.time, self.scale = simulated, simulated.time, settings.scale

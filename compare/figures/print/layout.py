@@ -1,4 +1,8 @@
-"""Layout of a figure for a paper: panels, titles, legend."""
+"""Appearance and layout of a figure for a paper: widths, fonts, lines; panels, titles, legend.
+
+The widths are those of Elsevier's artwork (International Journal of Rock Mechanics and Mining
+Sciences and others): 90 mm for one column, 190 mm for two, at most 240 mm high.
+"""
 
 import re
 from collections.abc import Callable, Sequence

@@ -1,4 +1,6 @@
-"""Figure 4: how a pulse travels, comes back from the free end, and meets its own reflection."""
+"""Figure 4: how a pulse travels, comes back from the free end, and meets its own reflection; figure
+5: what a non-reflecting end leaves of the reflected pulse.
+"""
 
 import numpy as np
 import pandas as pd

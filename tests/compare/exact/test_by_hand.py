@@ -17,8 +17,7 @@ from closed_forms.spall import advance
 from compare.exact.bar import equivalent_bar, images, jointed_bar, series
 from compare.exact.blocks import lattice, sliding_block
 from compare.exact.blocks.chain import chain, contact_forces, rates
-from compare.exact.conditions import joints_are_damped
-from compare.exact.drive import drive
+from compare.exact.conditions import drive, joints_are_damped
 from compare.exact.joint import one_joint
 from compare.exact.schemes.leapfrog import modes
 

@@ -20,7 +20,7 @@ from compare.exact.blocks.bernstein import of_powers, sign_changes
 from compare.exact.blocks.chain import chain, receivers
 from compare.exact.blocks.events import integrate
 from compare.exact.blocks.lattice import at_rest
-from compare.exact.drive import drive
+from compare.exact.conditions import drive
 
 D, C = 0.5, 1350.0  # m, about the paper's bar speed, m/s
 ENDS = [("free", "free"), ("free", "fixed"), ("quiet", "fixed"), ("free", "quiet")]

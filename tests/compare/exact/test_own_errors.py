@@ -11,9 +11,8 @@ from compare.exact.blocks import lattice, spatial_lattice
 from compare.exact.blocks.chain import chain, receivers
 from compare.exact.blocks.events import integrate
 from compare.exact.blocks.spatial import PLANES, plane, row
-from compare.exact.blocks.spatial_lattice import _rows, drive_vector
-from compare.exact.blocks.spatial_system import system
-from compare.exact.drive import drive
+from compare.exact.blocks.spatial_lattice import _rows, drive_vector, system
+from compare.exact.conditions import drive
 from compare.exact.joint import one_joint
 
 QUANTITIES = ("stress", "velocity", "displacement")

@@ -12,7 +12,7 @@ from cases.material.face import face_points
 from cases.sampling import sample_times
 from closed_forms import leapfrog
 from compare.exact.blocks import lattice, spatial, spatial_lattice
-from compare.exact.drive import drive
+from compare.exact.conditions import drive
 
 ACROSS = {"direction": [1.0, 0.0, 0.0]}
 OBLIQUE = [0.48, 0.6, -0.64]

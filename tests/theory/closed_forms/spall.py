@@ -25,7 +25,7 @@ from cases.sampling import sample_times
 from cases.schema.scene import Scene
 from compare.exact.blocks.chain import chain, contact_forces
 from compare.exact.blocks.lattice import at_rest, state_space
-from compare.exact.drive import drive
+from compare.exact.conditions import drive
 from compare.exact.linear import _gauss, _load_on_nodes, twins
 
 PIECES = 400  # of a polygon

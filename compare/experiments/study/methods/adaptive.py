@@ -12,8 +12,7 @@ from cases.sampling import sample_times
 from cases.schema.scene import Scene
 from compare.exact.blocks.chain import chain, rates, receivers
 from compare.exact.blocks.lattice import HELD, at_rest
-from compare.exact.conditions import holds
-from compare.exact.drive import drive
+from compare.exact.conditions import drive, holds
 from compare.solvers.dem import DEM
 from compare.solvers.record import Answer
 from results.dataset import dataset

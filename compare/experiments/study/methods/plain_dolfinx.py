@@ -20,8 +20,7 @@ from cases.material.calibrate import calibrate
 from cases.sampling import Clock, clock
 from cases.schema.scene import Scene
 from compare.exact.bar import equivalent_bar
-from compare.exact.conditions import joints_are_damped
-from compare.exact.drive import drive
+from compare.exact.conditions import drive, joints_are_damped
 from compare.solvers.continuum import EQUIVALENT_ROCK
 from compare.solvers.record import YES, Answer, no
 from results.dataset import dataset

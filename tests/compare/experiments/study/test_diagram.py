@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from compare.experiments.study.diagram import draw, line_style
-from compare.experiments.study.findings import sentences
-from compare.experiments.study.pareto import cheapest, judged, measured
+from compare.experiments.study.findings import cheapest, judged, measured, sentences
 from compare.experiments.study.study import load
 from compare.experiments.study.summary import cells, run
 
