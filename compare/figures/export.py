@@ -39,12 +39,16 @@ PLACE = re.compile(r"([ML]) (-?[\d.]+(?:e-?\d+)?) (-?[\d.]+(?:e-?\d+)?) ?\n?")
 
 @contextmanager
 def blank(
-    height: float, width: float = WIDTH, laid_out: bool = False, rc: dict[Any, Any] = RC
+    height: float,
+    width: float = WIDTH,
+    laid_out: bool = False,
+    rc: dict[Any, Any] = RC,
+    dpi: float | None = None,
 ) -> Iterator[Figure]:
     """Yield an empty figure, sizes in inches; it is laid out by constraints afterwards, unless the
     drawing lays it out itself."""
     with matplotlib.rc_context(rc):
-        figure = Figure(figsize=(width, height))
+        figure = Figure(figsize=(width, height), dpi=dpi)
         FigureCanvasAgg(figure)
         yield figure
         if not laid_out:

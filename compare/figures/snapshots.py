@@ -3,11 +3,9 @@
 from pathlib import Path
 from typing import NamedTuple
 
-import matplotlib
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
@@ -18,8 +16,8 @@ from cases.kinds import pillar_of
 from cases.material.calibrate import calibrate
 from compare.figures.animation.surface import Wave
 from compare.figures.animation.view_settings import STRESS, ViewSettings, round_down
-from compare.figures.export import Drawn, save
-from compare.figures.style import FIELD, RC, WIDTH
+from compare.figures.export import Drawn, blank, save
+from compare.figures.style import FIELD, WIDTH
 from compare.scenes import find
 from results.snapshots import Snapshots, snapshots_of
 
@@ -40,8 +38,12 @@ def draw_snapshots(name: str, s: Snapshots) -> Figure:
     stress = 1e-6 * wave.values
     peak = float(np.abs(stress).max()) or 1.0
     colour = ScalarMappable(Normalize(-peak, peak), FIELD)
-    with matplotlib.rc_context(RC):
-        figure, axes = _strips(*wave.reach(), len(s.time))
+    low, high = wave.reach()
+    margin = MARGIN * (high[1] - low[1])
+    low, high = low - margin, high + margin
+    strip = (WIDTH - LEFT - RIGHT) * (high[1] - low[1]) / (high[0] - low[0])
+    with blank(TOP + BOTTOM + len(s.time) * strip, laid_out=True) as figure:
+        axes = _strips(figure, low, high, len(s.time))
         for i, ax in enumerate(axes):
             polygons, faces, _ = wave.drawn(i)
             pillar = PolyCollection(list(polygons), edgecolors="#333333", linewidths=0.4)
@@ -61,14 +63,9 @@ def exaggeration(s: Snapshots) -> float:
     return round_down(LARGEST * float(np.ptp(s.points[:, 0])) / largest) if largest else 1.0
 
 
-def _strips(low: np.ndarray, high: np.ndarray, count: int) -> tuple[Figure, list[Axes]]:
-    """Return a figure of strips from `low` to `high` (m), to the same scale in both directions."""
-    margin = MARGIN * (high[1] - low[1])
-    low, high = low - margin, high + margin
-    strip = (WIDTH - LEFT - RIGHT) * (high[1] - low[1]) / (high[0] - low[0])
-    total = TOP + BOTTOM + count * strip
-    figure = Figure(figsize=(WIDTH, total))
-    FigureCanvasAgg(figure)
+def _strips(figure: Figure, low: np.ndarray, high: np.ndarray, count: int) -> list[Axes]:
+    """Return the axes of strips from `low` to `high` (m), to the same scale in both directions."""
+    total = figure.get_figheight()
     axes = figure.subplots(count, 1, sharex=True, sharey=True, squeeze=False)[:, 0]
     figure.subplots_adjust(
         LEFT / WIDTH, BOTTOM / total, 1 - RIGHT / WIDTH, 1 - TOP / total, hspace=0
@@ -77,7 +74,7 @@ def _strips(low: np.ndarray, high: np.ndarray, count: int) -> tuple[Figure, list
     for ax in axes:
         ax.spines[:].set_visible(False)
         ax.tick_params(left=False, bottom=False, labelleft=False)
-    return figure, list(axes)
+    return list(axes)
 
 
 def _add_colour_bar(figure: Figure, colour: ScalarMappable, scale: float) -> None:

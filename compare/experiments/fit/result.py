@@ -1,4 +1,4 @@
-"""The result of a fit, keys with their intervals and waveforms as measured and fitted; its output."""
+"""The result of a fit: keys with their intervals, waveforms as measured and fitted; its output."""
 
 import math
 import shlex

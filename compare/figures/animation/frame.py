@@ -3,9 +3,8 @@
 from functools import cached_property
 from math import ceil, log10
 from textwrap import fill
-from typing import Any
+from typing import Any, cast
 
-import matplotlib
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -13,7 +12,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
@@ -22,6 +20,7 @@ from compare.figures import fonts
 from compare.figures.animation.snapshots import SceneSnapshots
 from compare.figures.animation.surface import Wave
 from compare.figures.animation.view_settings import ViewSettings, caption
+from compare.figures.export import blank
 from compare.figures.print.layout import wrapped
 from compare.figures.style import FIELD, RC, UNSIGNED, style
 from compare.figures.subplots import UNITS, Panel, panels
@@ -43,6 +42,10 @@ LETTERS = 160  # per line
 LOUDEST = 99.8  # percentile of speeds shown by the last colour
 
 
+def _rc() -> dict[Any, Any]:
+    return RC | {"font.size": 10.0, "font.family": fonts.families()}
+
+
 class Frame:
     """The frame of every instant, as pixels; static parts are drawn once."""
 
@@ -54,10 +57,9 @@ class Frame:
         peak = max(float(np.abs(w.profile).max()) for w in self.waves.values())
         self.peak = peak * settings.quantity.factor or 1.0
         self.colour = ScalarMappable(Normalize(-self.peak, self.peak), FIELD)
-        with matplotlib.rc_context(RC | {"font.size": 10.0, "font.family": fonts.families()}):
-            self.figure = Figure(figsize=SIZE, dpi=dots)
-            self.canvas = FigureCanvasAgg(self.figure)
+        with blank(SIZE[1], SIZE[0], True, _rc(), dots) as self.figure:
             self._lay_out()
+        self.canvas = cast(FigureCanvasAgg, self.figure.canvas)
         self.canvas.draw()
         self.background = self.canvas.copy_from_bbox(self.figure.bbox)
 
@@ -223,10 +225,9 @@ class PlaneFrame:
         peak = max(float(np.percentile(x, LOUDEST)) for x in self.speeds.values()) or 1.0
         self.unit = unit_for("m/s", 1.001 * peak)
         self.colour = ScalarMappable(Normalize(0.0, peak / self.unit.size), UNSIGNED)
-        with matplotlib.rc_context(RC | {"font.size": 10.0, "font.family": fonts.families()}):
-            self.figure = Figure(figsize=SIZE, dpi=dots)
-            self.canvas = FigureCanvasAgg(self.figure)
+        with blank(SIZE[1], SIZE[0], True, _rc(), dots) as self.figure:
             self._lay_out()
+        self.canvas = cast(FigureCanvasAgg, self.figure.canvas)
 
     def image(self, i: int) -> np.ndarray:
         """Return the frame of instant i, uint8 array [height, width, 4]."""

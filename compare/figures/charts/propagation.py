@@ -5,8 +5,6 @@ speed that of the f-k spectrum of all of them (`compare.readings`), with the the
 pillar (`dispersion_theory`).
 """
 
-from typing import NamedTuple
-
 import numpy as np
 import pandas as pd
 
@@ -39,27 +37,24 @@ CAPTION = (
 )
 
 
-class ReceiverRow(NamedTuple):
-    """The variant, and its curves by solution or theory and by NAMES, over frequency (Hz)."""
-
-    variant: str
-    curves: dict[str, dict[str, pd.Series]]
+#: Curves by solution or theory and by NAMES, over frequency (Hz).
+Curves = dict[str, dict[str, pd.Series]]
 
 
 def propagation(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     """Return the figure of all variants with a row of receivers; empty if there is none."""
     named = zip(variant_names(comparisons), comparisons, strict=True)
-    rows = [row for variant, one in named if (row := row_of(variant, one)).curves]
+    rows = {variant: curves for variant, one in named if (curves := curves_of(one))}
     if not rows:
         return []
     legend = solutions_legend(comparisons, given=False)
-    theory = dict.fromkeys(k for row in rows for k in row.curves if k.endswith("theory"))
+    theory = dict.fromkeys(k for row in rows.values() for k in row if k.endswith("theory"))
     if theory:
         legend["Theory"] = [Entry(k, k, _style(k)) for k in theory]
     chart = Chart(
         [
-            [[_subplot(row, what, f"{i}-{j}")] for j, what in enumerate(NAMES)]
-            for i, row in enumerate(rows)
+            [[_subplot(variant, curves, what, f"{i}-{j}")] for j, what in enumerate(NAMES)]
+            for i, (variant, curves) in enumerate(rows.items())
         ],
         "frequency (Hz)",
         legend,
@@ -70,9 +65,9 @@ def propagation(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     return [found]
 
 
-def row_of(variant: str, comparison: Comparison) -> ReceiverRow:
+def curves_of(comparison: Comparison) -> Curves:
     """Return the curves of one variant; empty if fewer than LEAST receivers have a motion."""
-    found: dict[str, dict[str, pd.Series]] = {}
+    found: Curves = {}
     for solution in in_order(set(comparison.results)):
         result = comparison.results[solution]
         if "velocity" not in result or len(result["velocity"]) < LEAST:
@@ -92,7 +87,7 @@ def row_of(variant: str, comparison: Comparison) -> ReceiverRow:
                 NAMES[1]: pd.Series(of_rock.phase_speed.values, frequency),
                 NAMES[2]: pd.Series(1 / of_rock.quality.values, frequency),
             }
-    return ReceiverRow(variant, found)
+    return found
 
 
 def _measured(result, heard: np.ndarray) -> dict[str, pd.Series]:
@@ -109,12 +104,12 @@ def _measured(result, heard: np.ndarray) -> dict[str, pd.Series]:
     return dict(zip(NAMES, series, strict=True))
 
 
-def table(rows: list[ReceiverRow]) -> pd.DataFrame:
-    """Return all curves, frequency first."""
+def table(rows: dict[str, Curves]) -> pd.DataFrame:
+    """Return all curves by variant, frequency first."""
     columns = {
-        f"{name} | {what} | {row.variant}": curve
-        for row in rows
-        for name, curves in row.curves.items()
+        f"{name} | {what} | {variant}": curve
+        for variant, row in rows.items()
+        for name, curves in row.items()
         for what, curve in curves.items()
     }
     return pd.DataFrame(columns).rename_axis("frequency (Hz)").reset_index()
@@ -125,7 +120,7 @@ def _style(name: str):
     return style(THEORY[rock] if theory else name)
 
 
-def _subplot(row: ReceiverRow, what: str, place: str) -> Subplot:
+def _subplot(variant: str, row: Curves, what: str, place: str) -> Subplot:
     lines = [
         ChartLine(
             name,
@@ -135,7 +130,7 @@ def _subplot(row: ReceiverRow, what: str, place: str) -> Subplot:
             f"%{{y:.4g}} at %{{x:.4~g}} Hz<extra>{name}</extra>",
             f"{place}-{name}",
         )
-        for name, curves in row.curves.items()
+        for name, curves in row.items()
         if what in curves
     ]
-    return Subplot(row.variant, what, lines)
+    return Subplot(variant, what, lines)

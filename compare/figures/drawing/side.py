@@ -5,7 +5,6 @@ it is to scale along the pillar, and across it if there is room.
 """
 
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -120,30 +119,22 @@ def _draw_end(ax: Axes, end: str, place: Placement, x: float, outward: int) -> N
         symbols.wall(ax, far, place.middle, 0.3, outward)
 
 
-class Label(NamedTuple):
-    """A label at x (inches), and its colour."""
-
-    x: float
-    text: str
-    colour: str
-
-
 def draw_receivers(ax: Axes, scene: Scene, place: Placement) -> None:
     """Draw sections (a line and a triangle), points (a dot) and layers with their labels."""
-    labels = []
+    labels = []  # x, inches; text; colour
     for i, y in enumerate(scene.record.stress):
         x = place.x(y)
         ax.plot([x, x], [place.bottom, place.top], color=RECEIVER, linewidth=1.2, zorder=6)
         (mark,) = ax.plot([x], [place.top + 0.06], "v", color=RECEIVER, markersize=5, zorder=6)
         mark.set_gid(f"stress-{i}")
-        labels.append(Label(x, f"σ {y:g} m", RECEIVER))
+        labels.append((x, f"σ {y:g} m", RECEIVER))
     for i, y in enumerate(scene.record.velocity):
         (mark,) = ax.plot([place.x(y)], [place.middle], "o", markersize=5, zorder=7)
         mark.set(markeredgecolor=RECEIVER, markeredgewidth=1.3, markerfacecolor="white")
         mark.set_gid(f"velocity-{i}")
-        labels.append(Label(place.x(y), f"v {y:g} m", RECEIVER))
+        labels.append((place.x(y), f"v {y:g} m", RECEIVER))
     labels += [
-        Label(place.x(layer.y), _of_layer(layer, scene.pillar.block), LAYER)
+        (place.x(layer.y), _of_layer(layer, scene.pillar.block), LAYER)
         for layer in scene.soft_layers
     ]
     _write(ax, sorted(labels), place, _right(scene, place))
@@ -176,20 +167,18 @@ def _number(value: float, si: str) -> str:
     return f"{value / unit.size:.3g} {unit.name}"
 
 
-def _write(ax: Axes, labels: list[Label], place: Placement, right: float) -> None:
+def _write(ax: Axes, labels: list[tuple[float, str, str]], place: Placement, right: float) -> None:
     """Write labels in one line above the pillar, moved apart where they would overlap; none if
     there is no room: the scale then shows where receivers are."""
-    widths = np.array([CHARACTER * (len(label.text) + 1) for label in labels])
+    widths = np.array([CHARACTER * (len(text) + 1) for _, text, _ in labels])
     if not labels or widths.sum() > right:
         return
     base = place.top + ABOVE
-    wanted = np.array([label.x for label in labels])
-    for label, x in zip(labels, _apart(wanted, widths, right), strict=True):
-        if abs(x - label.x) > 0.01:
-            ax.plot(
-                [label.x, x], [place.top + 0.12, base - 0.08], color=label.colour, linewidth=0.6
-            )
-        note(ax, x, base, label.text, color=label.colour)
+    wanted = np.array([at for at, _, _ in labels])
+    for (at, text, colour), x in zip(labels, _apart(wanted, widths, right), strict=True):
+        if abs(x - at) > 0.01:
+            ax.plot([at, x], [place.top + 0.12, base - 0.08], color=colour, linewidth=0.6)
+        note(ax, x, base, text, color=colour)
 
 
 def _apart(wanted: np.ndarray, widths: np.ndarray, right: float) -> np.ndarray:

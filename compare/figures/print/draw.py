@@ -2,10 +2,8 @@
 
 from typing import NamedTuple
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
@@ -13,6 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from cases.errors import SceneError
 from compare.engines import names, solver
 from compare.figures import fonts
+from compare.figures.export import blank
 from compare.figures.print.layout import (
     MM,
     Appearance,
@@ -140,11 +139,8 @@ def draw(
     ]
     _refuse_unknown_letters(titles, families)
     _refuse_unknown_letters([b.curves.name for b in comparisons[0].besides], families)
-    with matplotlib.rc_context(appearance.rc(families)):
-        figure = Figure(
-            (appearance.widths[columns - 1] * MM, appearance.tallest * MM), dpi=MEASURED
-        )
-        FigureCanvasAgg(figure)
+    size = appearance.tallest * MM, appearance.widths[columns - 1] * MM
+    with blank(*size, True, appearance.rc(families), MEASURED) as figure:
         legend = add_legend(figure, _entries(comparisons, appearance, words), appearance)
         places = cells(by_variant, appearance, columns, legend)
         if not places:

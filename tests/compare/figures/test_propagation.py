@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cases.read import load_tables
-from compare.figures.charts.propagation import propagation, row_of
+from compare.figures.charts.propagation import curves_of, propagation
 
 Y = np.linspace(5.25, 20.25, 16).tolist()  # centres of blocks
 THEORY = "rigid blocks, theory"
@@ -31,7 +31,7 @@ def comparison(compared):
 
 def test_a_damped_chain_is_its_theory(comparison):
     """Phase speed and 1/Q of rigid blocks."""
-    curves = row_of("", comparison).curves
+    curves = curves_of(comparison)
     for solution in ("dem", "lattice"):
         speed, theory = (curves[name]["phase speed (m/s)"] for name in (solution, THEORY))
         assert len(speed) > 10
@@ -43,7 +43,7 @@ def test_a_damped_chain_is_its_theory(comparison):
 
 def test_the_transfer_function_is_what_the_loss_leaves(comparison):
     """|H| = exp(-a x), a = omega / (2 c Q), c by all receivers and not by two: some 1e-4."""
-    curves, way = row_of("", comparison).curves["dem"], Y[-1] - Y[0]
+    curves, way = curves_of(comparison)["dem"], Y[-1] - Y[0]
     speed, loss = curves["phase speed (m/s)"], curves["1/Q"]
     omega = 2 * np.pi * speed.index.values
     left = np.exp(-omega * way / (2 * speed) * loss[speed.index])
