@@ -42,11 +42,8 @@ def warnings(scene: AnyScene) -> list[str]:
         return warnings_in_plane(scene)
     p = calibrate(scene)
     wave = shortest_wave(scene, p)
-    return [line for rule in RULES for line in rule(scene, p, wave)]
-
-
-def _of_local_damping(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
-    yield from of_local_damping(scene, wave is not None)
+    found = [line for rule in RULES for line in rule(scene, p, wave)]
+    return [*implausible(scene), *found, *of_local_damping(scene, wave is not None)]
 
 
 def of_local_damping(scene: AnyScene, acts: bool) -> Iterator[str]:
@@ -56,10 +53,6 @@ def of_local_damping(scene: AnyScene, acts: bool) -> Iterator[str]:
             "damping.local distorts waves: it is meant for static states, not for a scene with a "
             "load"
         )
-
-
-def _of_units(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
-    yield from implausible(scene)
 
 
 def _of_poisson(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
@@ -259,12 +252,10 @@ def _of_quiet_ends(scene: Scene, p: Properties, wave: ShortestWave | None) -> It
 
 
 RULES: tuple[Rule, ...] = (
-    _of_units,
     _of_poisson,
     _of_times,
     _of_wavelength,
     _of_step,
     _of_arrivals,
     _of_quiet_ends,
-    _of_local_damping,
 )

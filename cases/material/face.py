@@ -14,12 +14,9 @@ def face_points(
     1 - 1/n^2 of the face's bending stiffness. gauss: tensor product of the n Gauss-Legendre points,
     which for n >= 2 carry all of it. Both are symmetric to the last bit.
     """
-    at, share = _midpoints(n) if rule == "midpoint" else np.polynomial.legendre.leggauss(n)
+    at, share = (2 * np.arange(n) + 1 - n) / n, np.full(n, 2 / n)  # on -1 .. 1
+    if rule == "gauss":
+        at, share = np.polynomial.legendre.leggauss(n)
     at, share = side / 2 * at, side / 2 * share
     x, z = np.meshgrid(at, at, indexing="ij")
     return x.ravel(), z.ravel(), np.outer(share, share).ravel()
-
-
-def _midpoints(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return points and weights of the midpoint rule on -1 .. 1."""
-    return (2 * np.arange(n) + 1 - n) / n, np.full(n, 2 / n)

@@ -24,7 +24,8 @@ Source = tuple[str, "Wave | PlaneLoad"]  # its table in the scene and itself
 
 def warnings_in_plane(scene: RockMass) -> list[str]:
     """Return warnings of probable mistakes in a rock mass, one line each."""
-    return [line for rule in RULES for line in rule(scene)]
+    found = [line for rule in RULES for line in rule(scene)]
+    return [*implausible(scene), *found, *of_local_damping(scene, bool(_sources(scene)))]
 
 
 def _sources(scene: RockMass) -> list[Source]:
@@ -34,17 +35,12 @@ def _sources(scene: RockMass) -> list[Source]:
     return [(table, one) for table, one in named if one.amplitude]
 
 
-def _of_units(scene: RockMass) -> Iterator[str]:
-    yield from implausible(scene)
+def _of_poisson(scene: RockMass) -> Iterator[str]:
     tables = ["rock", *(f"regions[{i}]" for i in range(len(scene.regions)))]
     rocks: list[IntactRock | Region] = [scene.rock, *scene.regions]
     for table, one in zip(tables, rocks, strict=True):
         if (poisson := one.intact_poisson or 0.0) < 0:
             yield f"{table}.intact_poisson = {poisson:g} is negative, which no known rock is"
-
-
-def _of_damping(scene: RockMass) -> Iterator[str]:
-    yield from of_local_damping(scene, bool(_sources(scene)))
 
 
 def _of_times(scene: RockMass) -> Iterator[str]:
@@ -124,9 +120,8 @@ def _nearest(scene: RockMass, load: PlaneLoad, place: np.ndarray) -> float:
 
 
 RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
-    _of_units,
+    _of_poisson,
     _of_times,
     _of_wavelength,
     _of_arrivals,
-    _of_damping,
 )

@@ -143,7 +143,8 @@ class PairItem(pytest.Item):
         self.user_properties.append(("misfit", float(found.misfit)))
         if not found.misfit <= self.bound:
             far = f"misfit {found.misfit:.3g} of {found.where} exceeds the bound {self.bound:g}"
-            raise Misfit(f"{self.pair}: {far}\n{self._command()}")
+            command = ["compare", str(self.path), "--variant", self.scene.name, "--out", "misfit"]
+            raise Misfit(f"{self.pair}: {far}\n{shlex.join(['jointwave', *command])}")
         if not found.judged <= self.bound:
             least = f"the reference's own error is {found.floor:.2g}; it can verify ten times that"
             raise Misfit(f"{self.pair}: {least}; the bound is {self.bound:g}")
@@ -168,10 +169,6 @@ class PairItem(pytest.Item):
             is_shared = folder.name and folder.is_dir()  # a worker may run on another machine
             results[key] = _once(folder / f"{'-'.join(key)}.nc", make) if is_shared else make()
         return results[key]
-
-    def _command(self) -> str:
-        variant = ["--variant", self.scene.name]
-        return shlex.join(["jointwave", "compare", str(self.path), *variant, "--out", "misfit"])
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style=None):
         """Return the message without a traceback."""

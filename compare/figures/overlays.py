@@ -2,7 +2,6 @@
 scale: by solution in one variant, or by variant of one engine.
 """
 
-from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -196,9 +195,3 @@ def _flat(scene: AnyScene) -> dict[str, object]:
         else:
             found[name] = value
     return found
-
-
-def legend_of(overlays: Iterable[Overlay]) -> dict[str, Style]:
-    """Return the entries of a legend, each once, references last."""
-    found = {t.name: t.style for overlay in overlays for t in overlay.traces}
-    return dict(sorted(found.items(), key=lambda entry: entry[0] == REFERENCE))

@@ -9,12 +9,10 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
 from compare.engines import ENGINES
 from compare.figures.style import in_order
-from compare.misfit.metrics import mean_period
 from compare.misfit.pairs import Comparison
 
 
@@ -70,25 +68,15 @@ def first_swing(waveform: pd.Series) -> float:
     return float(np.sign(loud.iloc[0])) if len(loud) else 0.0
 
 
-def half_cycles(waveform: pd.Series) -> tuple[float, float]:
-    """Return the largest positive value and the largest negative one after it, both positive."""
-    top = waveform.idxmax()
-    return float(waveform.max()), float(-waveform[waveform.index >= top].min())
-
-
-def pulse_period(waveform: pd.Series) -> float:
-    """Return the mean period, s."""
-    return mean_period(waveform.values, sampling(waveform))
+def second_over_first(waveform: pd.Series) -> float:
+    """Return the largest negative value after the largest positive one over the latter."""
+    after = waveform[waveform.index >= waveform.idxmax()]
+    return float(-after.min()) / float(waveform.max())
 
 
 def sampling(waveform: pd.Series) -> float:
     """Return the time between samples, s."""
     return float(waveform.index[1] - waveform.index[0])
-
-
-def load_waveform(scene: Scene, like: pd.Series) -> pd.Series:
-    """Return the end stress (Pa) at the times of a waveform."""
-    return pd.Series(load_history(scene).value(like.index.values), like.index)
 
 
 def quiet_share(waveform: pd.Series, scene: Scene) -> pd.Series:

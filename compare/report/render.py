@@ -54,14 +54,10 @@ class Page:
     snapshots: SnapshotsSection | None = None
 
     @property
-    def all_sections(self) -> list[Section]:
-        """The scenes, those of rock masses among studies too."""
-        return [*self.sections, *(self.rock_masses.sections if self.rock_masses else ())]
-
-    @property
     def is_interactive(self) -> bool:
         """Whether any figure of the scenes can be zoomed."""
-        return any(s.drawn and s.drawn.plot for one in self.all_sections for s in one.figures)
+        every = [*self.sections, *(self.rock_masses.sections if self.rock_masses else ())]
+        return any(s.drawn and s.drawn.plot for one in every for s in one.figures)
 
     @property
     def failed(self) -> list[tuple[Section, Finding]]:
@@ -76,17 +72,13 @@ class Page:
 
 def render(page: Page, out: Path) -> str:
     """Return the page, which is to stand in `out`; the files it hands out are read from there."""
-    environment = Environment(
-        loader=PackageLoader(__package__),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    loader = PackageLoader(__package__)
+    environment = Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
     environment.globals |= {
         "held_file": held_file,
         "held_plot": held_plot,
         "place": lambda file: file.relative_to(out).as_posix(),
-        "source": lambda name: Markup(_asset(environment, name)),
+        "source": lambda name: Markup(loader.get_source(environment, name)[0]),
         "colour": lambda name: style(name).colour,
         "charts": charts,
         "licences": licences,
@@ -158,8 +150,3 @@ def licences(interactive: bool) -> dict[str, str]:
 def unbroken(text: str) -> str:
     """Return text whose numbers do not break from their signs."""
     return text.replace(" %", "\u00a0%").replace("≤ ", "≤\u00a0")
-
-
-def _asset(environment: Environment, name: str) -> str:
-    assert environment.loader
-    return environment.loader.get_source(environment, name)[0]

@@ -87,11 +87,6 @@ class Chain:
         """Length of a state."""
         return 2 * self.block_count + 2
 
-    @cached_property
-    def bars_tension(self) -> bool:
-        """Whether any joint carries no tension."""
-        return not bool(self.tension.all())
-
 
 def chain(scene: Scene) -> Chain:
     """Return the scene's chain of rigid blocks."""
@@ -155,7 +150,7 @@ def contact_forces(
     gap, rate = u[..., 1:] - u[..., :-1], v[..., 1:] - v[..., :-1]
     spring = chain.prestress - chain.stiffness * gap
     force = spring - chain.viscosity * rate
-    if chain.bars_tension:
+    if not chain.tension.all():
         force[~chain.tension & ((spring < 0) | (force < 0))] = 0.0
     forces[..., 1:-1] = force
     start, first = reaction(chain.start, u[..., 0], v[..., 0], faces[..., 0], wall)

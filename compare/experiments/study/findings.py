@@ -33,13 +33,10 @@ def judged(rows: list[PointRow]) -> list[PointRow]:
         held = numerical if math.isnan(total) else total
         # More accurate than the larger of its errors, or than a finer point.
         alone = max(row.numerical, row.modelling)
-        cancels = row.measured < CLEARLY * alone or _counted(row) < CLEARLY * held
+        counted = row.numerical if math.isnan(row.total) else row.total
+        cancels = row.measured < CLEARLY * alone or counted < CLEARLY * held
         found.append(row._replace(held=held, cancels=cancels))
     return found
-
-
-def _counted(row: PointRow) -> float:
-    return row.numerical if math.isnan(row.total) else row.total
 
 
 def assured(rows: list[PointRow], error: str) -> list[float]:

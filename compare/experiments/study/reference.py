@@ -33,13 +33,10 @@ def finest_of(study: Study) -> str | FineRun | None:
         return None if study.finest == NONE else study.finest
     key = study.model_dump_json()
     if key not in _finest:
-        _finest[key] = _finest_exact(study.base)
+        scene = study.base
+        found = finest([name for name, answer in applicable(scene).items() if answer], scene)
+        _finest[key] = None if found is None or found.name in ENGINES else found.name
     return _finest[key]
-
-
-def _finest_exact(scene: AnyScene) -> str | None:
-    found = finest([name for name, answer in applicable(scene).items() if answer], scene)
-    return None if found is None or found.name in ENGINES else found.name
 
 
 def own_of(point: StudyPoint) -> str | FineRun | None:

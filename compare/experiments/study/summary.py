@@ -2,7 +2,6 @@
 
 from contextlib import nullcontext
 from pathlib import Path
-from typing import NamedTuple
 
 from compare.engines import Progress
 from compare.experiments import store
@@ -10,7 +9,7 @@ from compare.experiments.cost.timings import machine
 from compare.experiments.pool import Pool, alone
 from compare.experiments.store import Store
 from compare.experiments.study.diagram import write_diagram
-from compare.experiments.study.findings import Order, digits_per_second, judged, orders, sentences
+from compare.experiments.study.findings import digits_per_second, judged, orders, sentences
 from compare.experiments.study.measure import PointRow, measure
 from compare.experiments.study.study import Study, StudyPoint, load
 from compare.experiments.summary import Summary, frame, grouped, number, write_tables
@@ -38,12 +37,20 @@ def summarise(folder: Path, name: str, study: Study, rows: list[PointRow]) -> Su
     figure = write_diagram(folder, name, study, rows)
     files += figure.drawings if figure else []
     found = orders(study, rows)
+    in_words = [
+        f"{one.curve}: order {one.measured:.2f} with {one.key}, in theory {one.theory:g}."
+        for one in found
+    ]
     return Summary(
         name,
         study.title,
         Table(COLUMNS, grouped((row.curve, cells(row)) for row in rows)),
-        sentences(study, rows) + [_in_words(order) for order in found],
-        [f"{_of_point(r)}: {r.message}" for r in rows if r.state == "failed"],
+        sentences(study, rows) + in_words,
+        [
+            f"{', '.join(filter(None, [r.curve, _settings(r)]))}: {r.message}"
+            for r in rows
+            if r.state == "failed"
+        ],
         files,
         {"rows": rows, "orders": found, "files": [str(file) for file in files]},
         figure,
@@ -54,26 +61,18 @@ def summarise(folder: Path, name: str, study: Study, rows: list[PointRow]) -> Su
     )
 
 
-class Measured(NamedTuple):
-    """A study with its rows, and what `summarise` needs beside them."""
-
-    folder: Path
-    name: str
-    study: Study
-    rows: list[PointRow]
-
-
 def reported(
     out: Path,
     names: tuple[str, ...] = REPORTED,
     progress: Progress | None = None,
     pool: Pool | None = None,
-) -> list[Measured]:
-    """Run studies one after the other, because they are timed; points are saved in `out`."""
+) -> list[tuple[Path, str, Study, list[PointRow]]]:
+    """Run studies one after the other, because they are timed; return the arguments of `summarise`
+    for each. Points are saved in `out`."""
     measured, folder = [], out / "studies"
     for i, name in enumerate(names):
         study = load(name)
-        measured.append(Measured(folder, name, study, run(study, folder / name, pool)))
+        measured.append((folder, name, study, run(study, folder / name, pool)))
         if progress:
             progress((i + 1) / len(names))
     return measured
@@ -96,16 +95,8 @@ def cells(row: PointRow) -> list[str]:
     ]
 
 
-def _in_words(one: Order) -> str:
-    return f"{one.curve}: order {one.measured:.2f} with {one.key}, in theory {one.theory:g}."
-
-
 def _settings(row: PointRow) -> str:
     return ", ".join(f"{k.rpartition('.')[2]} {v}" for k, v in row.settings.items())
-
-
-def _of_point(row: PointRow) -> str:
-    return ", ".join(filter(None, [row.curve, _settings(row)]))
 
 
 def run(

@@ -84,13 +84,11 @@ def run(
     asked: Sweep, work: Work, pool: Pool | None = None, progress: Progress | None = None
 ) -> list[SweepOutcome]:
     """Return the outcomes of all cases, in order; completed ones are read from its folder."""
-    outcomes: Store[SweepOutcome] = Store(
-        SweepOutcome, asked.out and asked.out / POINTS, _has_files
-    )
+
+    def has_files(found: SweepOutcome) -> bool:
+        return all(Path(str(row["file"])).is_file() for row in found.rows if "file" in row)
+
+    folder = asked.out and asked.out / POINTS
+    outcomes: Store[SweepOutcome] = Store(SweepOutcome, folder, has_files)
     key_of, outcome_of = partial(key, work=work), partial(outcome, work=work)
     return outcomes.compute(asked.cases, key_of, outcome_of, pool, progress, lost=LOST)
-
-
-def _has_files(found: SweepOutcome) -> bool:
-    """Return whether the result files of a case still exist."""
-    return all(Path(str(row["file"])).is_file() for row in found.rows if "file" in row)

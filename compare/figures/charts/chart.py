@@ -85,11 +85,6 @@ class Chart(NamedTuple):
         """All subplots, in the order of the page."""
         return [subplot for row in self.grid for cell in row for subplot in cell]
 
-    @property
-    def entries(self) -> list[Entry]:
-        """All entries of the legend."""
-        return [entry for entries in self.legend.values() for entry in entries]
-
 
 def solutions_legend(comparisons: list[Comparison], given: bool = True) -> dict[str, list[Entry]]:
     """Return the entries of all results, those of a model under its name, and of external data."""

@@ -66,7 +66,8 @@ def plot(chart: Chart) -> dict[str, Any]:
     """Return the interactive figure of a chart: {"data": traces, "layout": ...}."""
     abscissa = {"title": {"text": chart.abscissa}} | ({"type": "log"} if chart.is_log else {})
     found = layout(chart.subplots, abscissa)
-    rank = {entry.name: i for i, entry in enumerate(chart.entries)}
+    entries = [entry for entries in chart.legend.values() for entry in entries]
+    rank = {entry.name: i for i, entry in enumerate(entries)}
     lines = [(line, i) for i, subplot in enumerate(chart.subplots) for line in subplot.lines]
     lines.sort(key=lambda one: one[0].style.order)
     for i, subplot in enumerate(chart.subplots):

@@ -53,17 +53,12 @@ class Diagram(NamedTuple):
     def heading(self) -> str:
         """Name and unit, and in the last line the range, or the size of a difference."""
         if self.share is None:
-            least, most = (f"{x + 0.0:.4g}".replace("-", "−") for x in self._range)
+            inner = self.values[1:-1]  # the ends' stress is that of the load
+            least, most = (f"{x + 0.0:.4g}".replace("-", "−") for x in (inner.min(), inner.max()))
             return f"{self.name}\n({self.unit.name})\nbetween the ends {least} to {most}"
         one, other = self.name.split(" − ")
         share = f"at most {100 * self.share:.2g} % of the largest"
         return f"{one}\n− {other} ({self.unit.name})\n{share}"
-
-    @property
-    def _range(self) -> tuple[float, float]:
-        """Smallest and largest value, without the ends, whose stress is that of the load."""
-        inner = self.values[1:-1]
-        return float(inner.min()), float(inner.max())
 
 
 class Diagrams(NamedTuple):

@@ -8,12 +8,12 @@ import pandas as pd
 from compare.figures.charts.chart import Chart, ChartLine, Entry, Subplot, solutions_legend
 from compare.figures.figure import SceneFigure, chart_figure
 from compare.figures.overlays import (
+    REFERENCE,
     THIN,
     Overlay,
     by_solution,
     by_variant,
     changed_key,
-    legend_of,
     subplots_of,
 )
 from compare.figures.style import style
@@ -69,8 +69,9 @@ def by_solutions(comparisons: list[Comparison]) -> Chart:
 
 def by_variants(grid: list[list[Overlay]]) -> Chart:
     """Return the variants of every engine in one pair of axes each."""
-    entries = legend_of(overlay for row in grid for overlay in row)
-    return _chart(grid, {"": [Entry(name, name, style) for name, style in entries.items()]})
+    found = {t.name: t.style for row in grid for overlay in row for t in overlay.traces}
+    in_order = sorted(found, key=lambda name: name == REFERENCE)  # last
+    return _chart(grid, {"": [Entry(name, name, found[name]) for name in in_order]})
 
 
 def _chart(grid: list[list[Overlay]], legend: dict[str, list[Entry]]) -> Chart:

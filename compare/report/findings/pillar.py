@@ -3,11 +3,12 @@
 import numpy as np
 import pandas as pd
 
+from cases.loads import load_history
 from compare.exact.bar import equivalent_bar, jointed_bar
 from compare.exact.blocks import lattice
 from compare.figures.subplots import variant_names
 from compare.misfit import pulses
-from compare.misfit.metrics import misfit, relative_l2
+from compare.misfit.metrics import mean_period, misfit, relative_l2
 from compare.misfit.pairs import Comparison
 from compare.report.findings.finding import Finding, falls, listed, percent, share
 from compare.solvers.dem import DEM
@@ -17,7 +18,7 @@ def one_sine_cycle(comparisons: list[Comparison]) -> Finding:
     """Fig. 2: the stress at the loaded end is one cycle of a sine."""
     base, load = comparisons[0], comparisons[0].scene.load
     errors = {
-        name: relative_l2(w.values, pulses.load_waveform(base.scene, w).values)
+        name: relative_l2(w.values, load_history(base.scene).value(w.index.values))
         for name, w in pulses.waveforms(base, "stress", 0).items()
     }
     return Finding(
@@ -96,7 +97,7 @@ def falls_with_damping(comparisons: list[Comparison]) -> Finding:
 def broader(comparisons: list[Comparison]) -> Finding:
     """Fig. 6: the larger the damping ratio, the longer the pulse's mean period."""
     found = [
-        {name: pulses.pulse_period(w) for name, w in _first_passages(c).items()}
+        {n: mean_period(w.values, pulses.sampling(w)) for n, w in _first_passages(c).items()}
         for c in comparisons
     ]
     return Finding(
@@ -109,10 +110,9 @@ def broader(comparisons: list[Comparison]) -> Finding:
 
 def second_half_weaker(comparisons: list[Comparison]) -> Finding:
     """Fig. 6: the larger the damping ratio, the lower the second half-cycle beside the first."""
-    found = []
-    for one in comparisons:
-        halves = {n: pulses.half_cycles(w) for n, w in _first_passages(one).items()}
-        found.append({n: second / first for n, (first, second) in halves.items()})
+    found = [
+        {n: pulses.second_over_first(w) for n, w in _first_passages(c).items()} for c in comparisons
+    ]
     return Finding(
         "large damping: second half-cycle weaker",
         f"Peak of the second half-cycle over that of the first, "
