@@ -116,6 +116,17 @@ def solve(
         raise SceneError(scene.where, "", None, f"not enough memory: {name}: {error}") from None
 
 
+def stepping(name: str, scene: AnyScene) -> Callable[[], float]:
+    """Return what takes the steps of an engine's run anew at each call and returns their seconds.
+
+    Raises the errors of `solve`.
+    """
+    again = solver(name).again
+    if again is not None:
+        return again(scene)
+    return lambda: float(solve(name, scene).attrs["seconds_stepping"])
+
+
 def solve_fields(
     name: str, scene: AnyScene, progress: Progress | None, comm=None, keeper: Keeper | None = None
 ) -> Fields:

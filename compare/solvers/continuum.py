@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from compare.solvers.incident import incident
@@ -52,6 +54,22 @@ def run(
     return simulate(scene, model=model, **about, incident=incident(scene))
 
 
+def again(scene: Scene | RockMass, model: str) -> Callable[[], float]:
+    """Return what takes the steps of a scene anew at each call and returns their seconds."""
+    from continuum.simulate import start
+
+    begun = start(scene, model, incident=incident(scene))
+    begun.engine.compile()
+    march = begun.march_again()
+
+    def seconds() -> float:
+        began = perf_counter()
+        march()
+        return perf_counter() - began
+
+    return seconds
+
+
 def prepare(scene: Scene, model: str) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
     from cases.size import estimates
@@ -92,6 +110,7 @@ def _of(model: str, **about: Any) -> Solver:
         schemes=("explicit", "implicit"),
         cost=("scheme", "dim", "cell", "order", "processes"),
         shares=True,
+        again=partial(again, model=model),
         libraries=libraries,
         **about,
     )

@@ -170,6 +170,8 @@ class Solver:
         freedoms. cost : the settings of a run that decide what a step costs.
     shares : whether several processes can share a run.
     fields : of the arguments of an engine's `run`, to plain arrays, where that saves imports.
+    again : of (scene), to what takes its steps anew at each call, set up once, and returns their
+        seconds; None where a run is set up in no time.
     libraries : the versions that decide the bits of a result, beside those of numpy and numba.
     """
 
@@ -193,6 +195,7 @@ class Solver:
     cost: tuple[str, ...] = ()
     shares: bool = False
     fields: Callable[..., Fields] | None = None
+    again: Callable[[Any], Callable[[], float]] | None = None
     libraries: Callable[[], dict[str, str]] = dict
 
     @property

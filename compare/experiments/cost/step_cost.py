@@ -19,6 +19,7 @@ from compare.solvers.record import Solver
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
+    from continuum.simulate import Start
 
 #: A function that takes some samples, and its number of block-steps.
 Stretch = tuple[Callable[[], None], int]
@@ -27,7 +28,8 @@ REPEATS = 5
 SHORTEST = 0.01  # s, least duration of a timing
 LONGEST = 0.25  # s, of stepping: longer continuum runs are not repeated
 BLOCK_STEPS = 5_000_000  # of one call, at most, unless it has a single sample
-BLOCK_STEPS_IN_SPACE = 500_000  # each takes ten times as long
+BLOCK_STEPS_IN_SPACE = 50_000  # each takes ten times as long, with every effect a hundred times
+FREEDOM_STEPS = 3_000_000  # of one call in the continuum, likewise
 
 
 class StepCost(NamedTuple):
@@ -55,13 +57,14 @@ def in_turns(scenes: Sequence[AnyScene], threads: int = 1) -> list[StepCost]:
 
 def freedoms_in_turns(engine: Solver, scenes: Sequence[AnyScene]) -> list[StepCost]:
     """Return the cost of one step of one freedom of a continuum engine: the minimum of two runs or
-    more, alternating between the scenes.
+    more of the first samples, alternating between the scenes.
 
     Raises SceneError if the engine does not apply, UnstableError if it becomes unstable.
     """
     from continuum.simulate import start
 
-    begun = [start(scene, str(engine.model), incident=incident(scene)) for scene in scenes]
+    whole = [start(scene, str(engine.model), incident=incident(scene)) for scene in scenes]
+    begun = [_shortened(one) for one in whole]
     for one in begun:
         one.engine.compile()
     timed = [one.march_again() for one in begun]
@@ -72,6 +75,14 @@ def freedoms_in_turns(engine: Solver, scenes: Sequence[AnyScene]) -> list[StepCo
     steps = [one.run.choice.time.steps for one in begun]
     freedoms = [one.run.discrete.body.degrees_of_freedom for one in begun]
     return _least(rounds, [n * count for n, count in zip(steps, freedoms, strict=True)])
+
+
+def _shortened(begun: Start) -> Start:
+    """Return a run of the continuum that ends after its first samples."""
+    run, time = begun.run, begun.run.choice.time
+    count = samples_of(time, run.discrete.body.degrees_of_freedom, FREEDOM_STEPS)
+    choice = run.choice._replace(time=time._replace(samples=count))
+    return begun._replace(run=run._replace(choice=choice))
 
 
 def _once(march: Callable[[], None]) -> float:
