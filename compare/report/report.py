@@ -59,10 +59,12 @@ class Report(NamedTuple):
 
 
 class _Untimed(NamedTuple):
-    """The hard cases, None where they are left out, and what joints reflect and pass."""
+    """The hard cases, None where they are left out, what joints reflect and pass, and the studies
+    that are not timed, by name."""
 
     stability: Summary | None
     joints: list[Summary]
+    studies: dict[str, Summary]
 
 
 def build(
@@ -102,8 +104,9 @@ def build(
                 untimed.append(beside.submit(_untimed, Path(out), hard, studies, pool, part))
 
             solved = _solved(Path(out), part("scenes"), pool, begin)
-            page = _of_paper(*solved, untimed[0].result())
-            page = _with_measured(page, Path(out), studies, others, pool, part)
+            made = untimed[0].result()
+            page = _of_paper(*solved, made)
+            page = _with_measured(page, Path(out), studies, made, others, pool, part)
     return Report(write_text(Path(out) / "index.html", render(page, Path(out))), page)
 
 
@@ -155,20 +158,19 @@ def _untimed(
 ) -> _Untimed:
     """Return what is made beside the scenes: processors are busy, and no seconds are measured.
 
-    All of it at once: where one part ends, no processor waits for the next. Points of untimed
-    studies and results without effects are only computed, and read where they are needed.
+    All of it at once: where one part ends, no processor waits for the next. Results without
+    effects are only computed, and read where they are needed.
     """
     with ThreadPoolExecutor() as threads:
         joints = threads.submit(_joints, out / "studies", pool, part("rock masses"))
-        points = threads.submit(_compute_untimed, out / "studies", studies, pool)
+        others = threads.submit(_untimed_studies, out / "studies", studies, pool)
         cases = ablation_runs.reported()
         effects = threads.submit(ablation_runs.prepared, cases, out / "effects", pool)
         tell = part("hard cases")
         stability = make_hard_cases(out / "studies", pool, False, tell) if hard else None
         tell(1.0)  # also where they are left out
-        points.result()
         effects.result()
-        return _Untimed(stability, joints.result())
+        return _Untimed(stability, joints.result(), others.result())
 
 
 def _joints(folder: Path, pool: Pool, progress: Progress) -> list[Summary]:
@@ -181,11 +183,15 @@ def _joints(folder: Path, pool: Pool, progress: Progress) -> list[Summary]:
         return [one.result() for one in [executor.submit(made, x) for x in scattering.TITLES]]
 
 
-def _compute_untimed(folder: Path, studies: tuple[str, ...], pool: Pool) -> None:
-    """Compute the points of studies that are not timed, which are saved."""
-    for name, study in ((name, load_study(name)) for name in studies):
-        if not study.timed:
-            run_study(study, folder / name, pool)
+def _untimed_studies(folder: Path, studies: tuple[str, ...], pool: Pool) -> dict[str, Summary]:
+    """Return the studies that are not timed, by name, drawn by processes of the pool."""
+    found: dict[str, Future[Summary]] = {}
+    with pool() as executor:
+        for name, study in ((name, load_study(name)) for name in studies):
+            if not study.timed:
+                rows = run_study(study, folder / name, pool)
+                found[name] = executor.submit(summarise_study, folder, name, study, rows)
+        return {name: one.result() for name, one in found.items()}
 
 
 def _of_paper(solved: Solved, snapshots: SnapshotsSection, untimed: _Untimed) -> Page:
@@ -227,6 +233,7 @@ def _with_measured(
     page: Page,
     out: Path,
     studies: tuple[str, ...],
+    untimed: _Untimed,
     others: DataFrame | None,
     pool: Pool,
     part: Callable[[str], Progress],
@@ -234,15 +241,16 @@ def _with_measured(
     """Return the page with what was measured: the seconds after everything else, and alone; drawn
     once no more are to be measured."""
     kept = out / "effects"
-    measured = reported_studies(out, studies, part("studies"), pool)
+    timed = tuple(name for name in studies if name not in untimed.studies)
+    measured = reported_studies(out, timed, part("studies"), pool)
     effects = ablation_runs.run(ablation_runs.reported(), kept, pool, part("effects"))
     with pool() as executor:
-        drawn = [executor.submit(summarise_study, *one) for one in measured]
+        drawn = {one[1]: executor.submit(summarise_study, *one) for one in measured}
         of_effects = executor.submit(summarise_ablation, kept, effects)
         section = None if others is None else peers.write_section(out / "studies", others)
         return replace(
             page,
-            studies=[one.result() for one in drawn],
+            studies=[untimed.studies.get(x) or drawn[x].result() for x in studies],
             effects=of_effects.result(),
             peers=section,
             peers_file=str(peers.PLACE),

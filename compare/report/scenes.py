@@ -89,7 +89,9 @@ def solve(
         # The most damped first, which cost most: dashpots shorten the step.
         order = sorted(unique, key=lambda key: -_damping(unique[key]))
         found = {key: executor.submit(compare, unique[key], None, True) for key in order}
-        wide = {_along(scene): scene for variants in loaded.values() for scene in variants}
+        # The last first: joints that open and close take longest.
+        every = [scene for variants in loaded.values() for scene in variants]
+        wide = {_along(scene): scene for scene in reversed(every)}
         along = {key: executor.submit(along_pillar, scene) for key, scene in wide.items()}
         tell([*found.values(), *along.values(), *besides(executor)], SOLVED)
         comparisons = {

@@ -112,9 +112,9 @@ def make_study(
 
     Rows and maps are saved in OUT/stability/. slow : also the rows that take long.
     """
-    rows = run(pool, slow, progress, out / NAME)
-    maps = run_maps(pool, out / NAME)
+    maps = run_maps(pool, out / NAME)  # before the rows: these are few, long points
     figure = save(draw(maps, drifts(pool)), out, NAME, TITLE)
+    rows = run(pool, slow, progress, out / NAME)
     files = [*write(out, rows, maps), figure.file("svg")]
     said = sentences(rows, maps)
     return Summary(
