@@ -6,9 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from cases.partition.blocks import BoundaryEdges, Contacts
-from cases.partition.faults import NonConvex
 from cases.partition.polygons import moments
-from cases.partition.subdivision import OUTSIDE, Subdivision
+from cases.partition.subdivision import OUTSIDE, NonConvex, Subdivision
 
 #: Sine of the angle between edges below which they are one side of a block.
 STRAIGHT = 1e-9

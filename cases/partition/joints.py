@@ -6,10 +6,9 @@ from math import cos, inf, radians, sin
 
 import numpy as np
 
-from cases.partition.faults import PartitionError
 from cases.partition.lines import Lines
 from cases.partition.split import split
-from cases.partition.subdivision import OUTSIDE, Subdivision
+from cases.partition.subdivision import OUTSIDE, PartitionError, Subdivision
 from cases.schema.joint_set import JointSet
 from cases.schema.region import REST, Region
 

@@ -12,8 +12,12 @@ from cases.partition.subdivision import OUTSIDE
 def block_at(partition: Partition, points: np.ndarray) -> np.ndarray:
     """Return the block that each point (float array [m, 2], m) lies in, or OUTSIDE; of blocks that
     share it, the first."""
-    ring = shapely.linearrings(_closed(partition), indices=_closed_owner(partition))
-    size = float(np.hypot(*np.ptp(partition.corners, axis=0)))
+    corners, first, whose = partition.corners, partition.first, owner(partition.first)
+    # Each ring has its first corner at its end again.
+    closed = np.insert(corners, first[1:], corners[first[:-1]], 0)
+    owners = np.insert(whose, first[1:], np.arange(partition.count))
+    ring = shapely.linearrings(closed, indices=owners)
+    size = float(np.hypot(*np.ptp(corners, axis=0)))
     which, block = shapely.STRtree(shapely.polygons(ring)).query(
         shapely.points(points), predicate="dwithin", distance=TOLERANCE * size
     )
@@ -41,15 +45,3 @@ def _first(which: np.ndarray, found: np.ndarray, count: int) -> np.ndarray:
     least = np.full(count, np.iinfo(np.int64).max)
     np.minimum.at(least, which, found)
     return np.where(least == np.iinfo(np.int64).max, OUTSIDE, least)
-
-
-def _closed(partition: Partition) -> np.ndarray:
-    """Return the corners of all blocks, each ring with its first corner at its end again."""
-    return np.insert(
-        partition.corners, partition.first[1:], partition.corners[partition.first[:-1]], 0
-    )
-
-
-def _closed_owner(partition: Partition) -> np.ndarray:
-    whose = owner(partition.first)
-    return np.insert(whose, partition.first[1:], np.arange(partition.count))

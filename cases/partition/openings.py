@@ -5,10 +5,17 @@ import numpy as np
 import shapely
 
 from cases.partition.convex import ConvexPieces
-from cases.partition.faults import NonConvex
 from cases.partition.lines import one_line
 from cases.partition.split import split
-from cases.partition.subdivision import NO_SET, OUTSIDE, Halves, Subdivision, joined, removed
+from cases.partition.subdivision import (
+    NO_SET,
+    OUTSIDE,
+    Halves,
+    NonConvex,
+    Subdivision,
+    joined,
+    removed,
+)
 
 
 def taken_out(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from cases.partition.faults import PartitionError
+from cases.partition.subdivision import PartitionError
 from cases.schema.domain import Domain
 
 SIDES = ("left", "right", "bottom", "top", "outline")

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from cases.partition.blocks import BoundaryEdges, Contacts, Partition
-from cases.partition.faults import PartitionError
-from cases.partition.subdivision import NO_SET
+from cases.partition.subdivision import NO_SET, PartitionError
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass

@@ -9,7 +9,6 @@ import numpy as np
 from cases.errors import SceneError
 from cases.partition import assemble
 from cases.partition.blocks import BoundaryEdges, Partition
-from cases.partition.faults import PartitionError, Sliver
 from cases.partition.given import subdivision_of
 from cases.partition.joints import cut_by_sets, direction_of
 from cases.partition.openings import check_convex, taken_out
@@ -18,7 +17,7 @@ from cases.partition.periodic import across_periodic
 from cases.partition.polygons import moments
 from cases.partition.regions import cut_into_regions
 from cases.partition.slivers import without_slivers
-from cases.partition.subdivision import Subdivision
+from cases.partition.subdivision import PartitionError, Sliver, Subdivision
 from cases.schema.domain import Domain
 from cases.schema.joint_set import JointSet
 from cases.schema.region import Region

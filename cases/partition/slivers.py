@@ -4,11 +4,10 @@ import numpy as np
 
 from cases.partition.assemble import Rings, rings
 from cases.partition.convex import union_is_convex
-from cases.partition.faults import Sliver
 from cases.partition.lines import one_line
 from cases.partition.polygons import least_angles, widths
 from cases.partition.split import split
-from cases.partition.subdivision import OUTSIDE, Subdivision, joined
+from cases.partition.subdivision import OUTSIDE, Sliver, Subdivision, joined
 
 #: Cuts of a sliver, at most: parts that made slivers of neighbours could pass round for ever.
 PARTS = 4

@@ -8,9 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.partition.faults import Sliver
 from cases.partition.lines import Lines
-from cases.partition.subdivision import NO_SET, OUTSIDE, Subdivision
+from cases.partition.subdivision import NO_SET, OUTSIDE, Sliver, Subdivision
 
 
 class Pieces(NamedTuple):

@@ -1,4 +1,4 @@
-"""A planar subdivision: points, and straight edges with the cell on either side.
+"""A planar subdivision: points, and straight edges with the cell on either side; faults of it.
 
 Every edge exists once, for both of its cells, and so does every point. Whatever is cut or removed,
 cells fit together exactly: their areas add up, and each inner edge belongs to two of them.
@@ -13,6 +13,26 @@ import numpy as np
 
 OUTSIDE = -1  #: in place of a cell: beyond the domain, or in an opening
 NO_SET = -1  #: in place of a joint set: the boundary, or a cut through intact rock
+
+
+class PartitionError(ValueError):
+    """A domain that is not cut into convex blocks: where in the plane, and the cause.
+
+    key : of what causes it, in the scene.
+    """
+
+    def __init__(self, at: np.ndarray | None, cause: str, key: str = "domain") -> None:
+        place = "" if at is None else f", near [{at[0]:.6g}, {at[1]:.6g}]"
+        self.at, self.cause, self.key = at, cause, key
+        super().__init__(f"{cause}{place}")
+
+
+class Sliver(PartitionError):
+    """A block too thin or too pointed to be passed on."""
+
+
+class NonConvex(PartitionError):
+    """A block that is not convex, at an opening or a corner of the outline."""
 
 
 class Halves(NamedTuple):

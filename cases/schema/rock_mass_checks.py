@@ -56,8 +56,8 @@ def _check_mesh(scene: RockMass, outline: Outline) -> None:
 
 
 def _outline(scene: RockMass) -> Outline:
-    from cases.partition.faults import PartitionError
     from cases.partition.outline import outline_of
+    from cases.partition.subdivision import PartitionError
 
     try:
         return outline_of(scene.domain)
@@ -68,10 +68,9 @@ def _outline(scene: RockMass) -> Outline:
 def _check_cuts(scene: RockMass, outline: Outline) -> None:
     """Refuse joints that miss the domain. Those of spacings that fit into it do not, and sets that
     end at others are known when they are cut."""
-    from cases.partition.faults import PartitionError
     from cases.partition.joints import cut_by_sets, direction_of, widest
     from cases.partition.regions import cut_into_regions
-    from cases.partition.subdivision import Subdivision
+    from cases.partition.subdivision import PartitionError, Subdivision
 
     whole = Subdivision.of_polygon(outline.hull)
     whole = cut_into_regions(whole, scene.regions, outline.tolerance)

@@ -1,5 +1,6 @@
 """Commands that weigh accuracy against cost over many runs: effects, plan, study, report."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -120,29 +121,24 @@ def study(
     from compare.experiments.summary import run_and_show
 
     folder = out / Path(name).stem
+    work: Callable[[Any, Any], Any]
     if name == "stability":
-        from compare.experiments.robustness.summary import TITLE as title
-        from compare.experiments.robustness.summary import make_study
+        from compare.experiments.robustness import summary as hard
 
-        def work(pool: Any, advance: Any) -> Any:
-            return make_study(out, pool, progress=advance)
+        title, work = hard.TITLE, lambda pool, tell: hard.make_study(out, pool, progress=tell)
     elif name in ("oblique-joint", "parallel-joints"):
-        from compare.experiments.scattering.summary import TITLES
-        from compare.experiments.scattering.summary import make_study as make_scattering
+        from compare.experiments.scattering import summary as joints
 
-        title = TITLES[name]
-
-        def work(pool: Any, advance: Any) -> Any:
-            return make_scattering(name, out, advance)
+        title, work = joints.TITLES[name], lambda pool, tell: joints.make_study(name, out, tell)
     else:
         from compare.experiments.study.study import load
         from compare.experiments.study.summary import run, summarise
 
         asked = load(name)
-        title = asked.title
-
-        def work(pool: Any, advance: Any) -> Any:
-            return summarise(out, folder.name, asked, run(asked, folder, pool, advance))
+        title, work = (
+            asked.title,
+            lambda pool, tell: summarise(out, folder.name, asked, run(asked, folder, pool, tell)),
+        )
 
     run_and_show(title, folder, workers, work, as_json)
 

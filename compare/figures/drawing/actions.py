@@ -33,11 +33,6 @@ class Placement(NamedTuple):
         return self.start + self.scale * y
 
     @property
-    def bottom(self) -> float:
-        """The lower side."""
-        return BASE
-
-    @property
     def middle(self) -> float:
         """The axis."""
         return BASE + self.thick / 2

@@ -18,6 +18,7 @@ from cases.schema.segment import regions
 from compare.figures.drawing import symbols
 from compare.figures.drawing.actions import (
     ASIDE,
+    BASE,
     HEIGHT,
     WIDTH,
     Placement,
@@ -49,7 +50,7 @@ def draw_strip(ax: Axes, scene: Scene) -> None:
     for i, layer in enumerate(scene.soft_layers):
         width = max(0.045, place.scale * (layer.thickness or 0.0))
         left, right = place.x(layer.y) - width / 2, place.x(layer.y) + width / 2
-        low, high = place.bottom - 0.05, place.top + 0.05
+        low, high = BASE - 0.05, place.top + 0.05
         across, up = [left, right, right, left], [low, low, high, high]
         ax.fill(across, up, color=LAYER, zorder=5, gid=f"layer-{i}")
     for end, outward in ((scene.ends.start, -1), (scene.ends.end, 1)):
@@ -59,7 +60,7 @@ def draw_strip(ax: Axes, scene: Scene) -> None:
         x = place.x(0.0 if outward < 0 else scene.pillar.length) + outward * 0.1
         x = min(x, number) if outward < 0 else max(x, number)
         words = f"{end} {'start' if outward < 0 else 'end'}"
-        symbols.note(ax, x, place.bottom - 0.21, words, "right" if outward < 0 else "left", "top")
+        symbols.note(ax, x, BASE - 0.21, words, "right" if outward < 0 else "left", "top")
     draw_load(ax, scene, place)
     draw_forces(ax, scene, place)
     draw_receivers(ax, scene, place)
@@ -89,19 +90,16 @@ def _shades(scene: Scene) -> str | list[str]:
 
 def _draw_rock(ax: Axes, scene: Scene, place: Placement) -> None:
     edges = [place.x(y) for y in block_edges(scene)]
-    corners = [
-        [(a, place.bottom), (b, place.bottom), (b, place.top), (a, place.top)]
-        for a, b in pairwise(edges)
-    ]
+    corners = [[(a, BASE), (b, BASE), (b, place.top), (a, place.top)] for a, b in pairwise(edges)]
     colours = _shades(scene)
     blocks = PolyCollection(corners, facecolors=colours, edgecolors="none", zorder=1, gid="blocks")
     ax.add_collection(blocks, autolim=False)
-    lines = [[(x, place.bottom), (x, place.top)] for x in edges[1:-1]]
+    lines = [[(x, BASE), (x, place.top)] for x in edges[1:-1]]
     width = min(0.8, 40 / len(edges))
     joints = LineCollection(lines, colors=EDGE, linewidths=width, zorder=2, gid="joints")
     ax.add_collection(joints, autolim=False)
-    outline = [(edges[0], place.bottom), (edges[-1], place.bottom), (edges[-1], place.top)]
-    outline += [(edges[0], place.top), (edges[0], place.bottom)]
+    outline = [(edges[0], BASE), (edges[-1], BASE), (edges[-1], place.top)]
+    outline += [(edges[0], place.top), (edges[0], BASE)]
     ax.plot(*zip(*outline, strict=True), color=INK, linewidth=1.0, zorder=4)
 
 
@@ -124,7 +122,7 @@ def draw_receivers(ax: Axes, scene: Scene, place: Placement) -> None:
     labels = []  # x, inches; text; colour
     for i, y in enumerate(scene.record.stress):
         x = place.x(y)
-        ax.plot([x, x], [place.bottom, place.top], color=RECEIVER, linewidth=1.2, zorder=6)
+        ax.plot([x, x], [BASE, place.top], color=RECEIVER, linewidth=1.2, zorder=6)
         (mark,) = ax.plot([x], [place.top + 0.06], "v", color=RECEIVER, markersize=5, zorder=6)
         mark.set_gid(f"stress-{i}")
         labels.append((x, f"σ {y:g} m", RECEIVER))
@@ -206,7 +204,7 @@ def ticks(scene: Scene, place: Placement) -> list[float]:
 
 def draw_scale(ax: Axes, scene: Scene, place: Placement) -> None:
     """Draw y in metres below the pillar, and the pillar's dimensions."""
-    pillar, level = scene.pillar, place.bottom - 0.14
+    pillar, level = scene.pillar, BASE - 0.14
     end = place.x(pillar.length)
     ax.plot([place.start, end], [level, level], color=INK, linewidth=0.8)
     for y in ticks(scene, place):

@@ -11,9 +11,9 @@ from scipy.linalg import eigh
 from cases.material.contact_points import contact_points, points_of
 from cases.material.rigid_step import block_stiffness, jump
 from cases.material.rock_mass import Stiffness, constrained_modulus, inertia
-from cases.partition.faults import PartitionError
 from cases.partition.periodic import periodic_contacts
 from cases.partition.scene import cut
+from cases.partition.subdivision import PartitionError
 from cases.schema.domain import Domain
 from cases.schema.joint_set import JointSet
 from cases.schema.plane import IntactRock

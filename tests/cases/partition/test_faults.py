@@ -5,9 +5,9 @@ import re
 import pytest
 
 from cases.errors import SceneError
-from cases.partition.faults import NonConvex, PartitionError, Sliver
 from cases.partition.periodic import periodic_contacts
 from cases.partition.scene import block_count, cut, partition_bytes, partition_of
+from cases.partition.subdivision import NonConvex, PartitionError, Sliver
 from cases.read import load_variant
 
 SCENE = """\

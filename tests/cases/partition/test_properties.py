@@ -6,12 +6,12 @@ import shapely
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from cases.partition.faults import PartitionError, Sliver
 from cases.partition.joints import _scattered, direction_of
 from cases.partition.locate import block_at, contact_at
 from cases.partition.outline import outline_of
 from cases.partition.polygons import following, least_angles, owner, widths
 from cases.partition.scene import cut, least_width
+from cases.partition.subdivision import PartitionError, Sliver
 from cases.schema.domain import Domain
 from cases.schema.joint_set import JointSet
 

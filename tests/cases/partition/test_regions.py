@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from cases.partition.faults import PartitionError
 from cases.partition.regions import ROCK, region_at
 from cases.partition.scene import cut
-from cases.partition.subdivision import NO_SET
+from cases.partition.subdivision import NO_SET, PartitionError
 from cases.schema.region import Region
 
 
