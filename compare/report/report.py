@@ -245,7 +245,8 @@ def _with_measured(
     measured = reported_studies(out, timed, part("studies"), pool)
     effects = ablation_runs.run(ablation_runs.reported(), kept, pool, part("effects"))
     with pool() as executor:
-        drawn = {one[1]: executor.submit(summarise_study, *one) for one in measured}
+        submitted = [executor.submit(summarise_study, *one) for one in measured]
+        drawn = dict(zip(timed, submitted, strict=True))
         of_effects = executor.submit(summarise_ablation, kept, effects)
         section = None if others is None else peers.write_section(out / "studies", others)
         return replace(

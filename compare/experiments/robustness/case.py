@@ -109,35 +109,39 @@ class CaseTrial:
                 keys[f"{part}.{key}"] = keys.pop(key)
         return cases.load_variant(find(self.case.scene), "", keys)
 
+    @cached_property
+    def own(self) -> AnyScene:
+        """The scene of the case."""
+        return self.read()
+
     def changed(self, **more: Any) -> Scene:
         """Return the pillar with more dotted keys (dots written __) changed."""
         return pillar_of(self.read(**more))
 
     def run(self, **more: Any) -> xr.Dataset:
         """Return the engine's result for the scene with more keys changed."""
-        return solve(self.engine.name, self.read(**more))
+        return solve(self.engine.name, self.read(**more) if more else self.own)
 
     @cached_property
     def scene(self) -> Scene:
         """The pillar of the case."""
-        return self.changed()
+        return pillar_of(self.own)
 
     @cached_property
     def rock_mass(self) -> RockMass:
         """The rock mass of the case."""
-        scene = self.read()
-        assert not isinstance(scene, Scene), self.case.name
-        return scene
+        assert not isinstance(self.own, Scene), self.case.name
+        return self.own
 
     @cached_property
     def period(self) -> float:
         """The shortest period of loads and waves, s; 0 without."""
-        return shortest_period(self.read().pulses) or 0.0
+        return shortest_period(self.own.pulses) or 0.0
 
     @cached_property
     def duration(self) -> float:
         """The simulated time, s."""
-        return self.read().time.duration
+        return self.own.time.duration
 
     @cached_property
     def properties(self) -> Properties:

@@ -84,11 +84,12 @@ def row_of(case: HardCase, stepper: EngineScheme) -> CaseRow:
 
 
 def _judged(case: HardCase, stepper: EngineScheme) -> tuple[str, Judgement]:
-    reason = case.why_spared(stepper) or _why_not(case, stepper)
+    trial = CaseTrial(case, stepper)
+    reason = case.why_spared(stepper) or _why_not(trial)
     if reason:
         return NONE, Judgement(nan, nan, reason)
     try:
-        finding = case.criterion.judge(CaseTrial(case, stepper))
+        finding = case.criterion.judge(trial)
     except FAILURES as error:
         return FAILED, Judgement(nan, nan, str(error))
     # Neither a bound that is not finite nor a nan counts as passed.
@@ -96,10 +97,10 @@ def _judged(case: HardCase, stepper: EngineScheme) -> tuple[str, Judgement]:
     return (HELD if holds else FAILED), finding
 
 
-def _why_not(case: HardCase, stepper: EngineScheme) -> str:
+def _why_not(trial: CaseTrial) -> str:
     """Return why the engine and its scheme cannot solve the scene; "" if they can."""
     try:
-        return stepper.engine.applies(CaseTrial(case, stepper).read()).reason
+        return trial.engine.applies(trial.own).reason
     except SceneError as error:
         return f"the scheme {error.allowed}" if error.key.endswith(".scheme") else ""
 
