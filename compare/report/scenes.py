@@ -8,6 +8,8 @@ from concurrent.futures import Executor, Future, as_completed
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import xarray as xr
+
 from cases.errors import SceneError
 from cases.kinds import AnyScene
 from cases.schema.scene import Scene
@@ -86,20 +88,16 @@ def solve(
     unique = {_key(scene): scene for variants in loaded.values() for scene in variants}
     tell = _teller(progress)
     with timings.timing(RATE, len(asked)), pool() as executor:
-        # The most damped first, which cost most: dashpots shorten the step.
-        order = sorted(unique, key=lambda key: -_damping(unique[key]))
-        found = {key: executor.submit(compare, unique[key], None, True) for key in order}
-        # The last first: joints that open and close take longest.
-        every = [scene for variants in loaded.values() for scene in variants]
-        wide = {_along(scene): scene for scene in reversed(every)}
-        along = {key: executor.submit(along_pillar, scene) for key, scene in wide.items()}
-        tell([*found.values(), *along.values(), *besides(executor)], SOLVED)
+        order = sorted(unique, key=lambda key: _rank(unique[key]))
+        wide = {_along(unique[key]): key for key in reversed(order)}
+        found = {key: executor.submit(_solved, unique[key], key in wide.values()) for key in order}
+        tell([*found.values(), *besides(executor)], SOLVED)
         comparisons = {
-            name: [replace(found[_key(scene)].result(), scene=scene) for scene in variants]
+            name: [replace(found[_key(scene)].result()[0], scene=scene) for scene in variants]
             for name, variants in loaded.items()
         }
         fields = {
-            name: [along[_along(scene)].result() for scene in variants]
+            name: [found[wide[_along(scene)]].result()[1] for scene in variants]
             for name, variants in loaded.items()
         }
         pictures = (
@@ -115,6 +113,11 @@ def solve(
         tell([files for some in begun.values() for _, files in some if files], DRAWN)
     sections = [make_section(folder, a, comparisons[a.name], finish(begun[a.name])) for a in asked]
     return Solved(comparisons, sections)
+
+
+def _solved(scene: AnyScene, along: bool) -> tuple[Comparison, dict[str, xr.Dataset]]:
+    """Return the solutions of a scene, and, if wanted, those all along its pillar."""
+    return compare(scene, None, True), along_pillar(scene) if along else {}
 
 
 def _teller(progress: Progress | None) -> Callable[[list[Future], tuple[float, float]], None]:
@@ -140,7 +143,9 @@ def _along(scene: AnyScene) -> str:
     return _key(recorded_along(scene))
 
 
-def _damping(scene: AnyScene) -> float:
-    """Return the largest damping ratio of a scene's joints."""
-    laws = [scene.joints] if isinstance(scene, Scene) else scene.joint_sets
-    return max((one.damping_ratio or 0.0 for one in laws), default=0.0)
+def _rank(scene: AnyScene) -> tuple[bool, float]:
+    """Return the place of a scene in the order of cost, the dearest first: rock masses, and joints
+    that open; then the most damped, since dashpots shorten the step."""
+    if not isinstance(scene, Scene):
+        return False, 0.0
+    return scene.joints.tension is not False, -(scene.joints.damping_ratio or 0.0)
