@@ -21,6 +21,7 @@ from cases.partition.regions import region_at, rocks_of
 from cases.schema.rock_mass import RockMass
 from cases.schema.sources import Wave
 
+AT_ONCE = 16  # points whose tractions are found together, in the cache
 BEYOND = 20  # samples on either side of the requested times
 WITHIN = 1e-6  # of a domain: from its corner to a place in the rock there
 GRAZING = 1e-9  #: cosine up to which a wave that leaves through a side still runs along it
@@ -158,13 +159,16 @@ def tractions(
     impedance : rho a and rho b of the dashpots there, Pa s/m, [m, 2]. times : equally spaced, s.
     """
     velocity, stress = field(points, times)
-    n = np.asarray(normals)[:, :, None]
-    xx, yy, xy = stress[:, 0], stress[:, 1], stress[:, 2]
-    pulled = np.stack([xx * n[:, 0] + xy * n[:, 1], xy * n[:, 0] + yy * n[:, 1]], axis=1)
-    along = (velocity * n).sum(axis=1, keepdims=True) * n
-    Z = np.asarray(impedance)[:, :, None, None]
-    total = pulled + Z[:, 0] * along + Z[:, 1] * (velocity - along)
-    return FaceTractions(np.asarray(times), np.moveaxis(total, 2, 0))
+    normals, Z = np.asarray(normals)[:, :, None], np.asarray(impedance)[:, :, None, None]
+    values = np.empty((len(times), len(normals), 2))
+    for k in range(0, len(normals), AT_ONCE):
+        some = slice(k, k + AT_ONCE)
+        n, v, (xx, yy, xy) = normals[some], velocity[some], np.moveaxis(stress[some], 1, 0)
+        pulled = np.stack([xx * n[:, 0] + xy * n[:, 1], xy * n[:, 0] + yy * n[:, 1]], axis=1)
+        along = (v * n).sum(axis=1, keepdims=True) * n
+        total = pulled + Z[some, 0] * along + Z[some, 1] * (v - along)
+        values[:, some] = np.moveaxis(total, 2, 0)
+    return FaceTractions(np.asarray(times), values)
 
 
 def enters(field: IncidentField, scene: RockMass, normals: np.ndarray) -> np.ndarray:
