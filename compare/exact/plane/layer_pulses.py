@@ -145,10 +145,11 @@ def _amplitudes(
     def inverted(some: list[tuple[LayerWave, float]]) -> np.ndarray:
         def transfer(omega: np.ndarray) -> np.ndarray:
             found = np.concatenate(stack.layers(omega), axis=-1) - sharp[:, None]
+            found = np.ascontiguousarray(np.moveaxis(found, -1, 1))  # as in `waves.solve_pair`
             decay = [np.exp(1j * omega * q * d) if d else 1.0 for _, d in some]
             return np.array(
                 [
-                    found[one.layer, :, one.wave] * less
+                    found[one.layer, one.wave] * less
                     for (one, _), less in zip(some, decay, strict=True)
                 ]
             )

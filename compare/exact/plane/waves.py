@@ -109,8 +109,9 @@ def stress(rock: ElasticRock, slowness: np.ndarray, polarisation: np.ndarray) ->
 
 def solve_pair(rows: tuple, sides: tuple) -> np.ndarray:
     """Return r [..., out, in] of rows[i] . r = sides[i], two rows and sides [..., 2] each."""
-    (one, two), (left, right) = rows, sides
-    det = one[..., :1] * two[..., 1:] - one[..., 1:] * two[..., :1]
-    p = left * two[..., 1:] - right * one[..., 1:]
-    s = one[..., :1] * right - two[..., :1] * left
+    # Columns of their own: of a strided one numpy takes the memory behind it for its own too, and
+    # multiplies by other instructions, with another last digit, where the product begins there.
+    (a, b), (c, d) = ([np.ascontiguousarray(row[..., k, None]) for k in (0, 1)] for row in rows)
+    (left, right), det = sides, a * d - b * c
+    p, s = left * d - right * b, a * right - c * left
     return np.stack([p / det, s / det], axis=-2)

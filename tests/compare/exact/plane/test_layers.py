@@ -151,3 +151,15 @@ def test_pulses_in_layers_agree_at_many_places_and_at_each(ricker, directed):
     for one, other, unit in zip(found, exact, (1.0, HARD.p_impedance), strict=False):
         assert np.abs(one - other).max() < 2e-9 * unit
         assert np.abs(other).max() > 0.1 * unit
+
+
+def test_amplitudes_in_layers_repeat_to_the_last_bit(directed):
+    """Wherever in memory numpy puts what it multiplies: other arrays come and go in between."""
+    rocks, joints, offsets = [SLAB, HARD, SOFT], [WELDED, Joint(8e9, 3e9)], [0.0, 6.0]
+    stack = parallel_joints.stack_of(rocks, joints, "P", directed(150), 0.3, offsets)
+    omega = np.linspace(1.0, 1e5, 5684) + 30j
+    expected, random, others = stack.layers(omega), np.random.default_rng(1), []
+    for _ in range(60):
+        others = [*others[-20:], np.empty(int(random.integers(1, 60_000)))]
+        for one, known in zip(stack.layers(omega), expected, strict=True):
+            assert (one == known).all()
