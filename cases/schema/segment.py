@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 from pydantic import Field, model_validator
@@ -25,13 +26,6 @@ from cases.schema.values import (
     contradiction,
     contradiction_here,
 )
-
-if TYPE_CHECKING:
-    from cases.schema.scene import Scene
-
-
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from cases.schema.scene import Scene
