@@ -153,8 +153,9 @@ def variables_of(
         if values is not None:
             receivers, *others = dimensions[name]
             variables[name] = ((receivers, "time", *others), values, label(name))
-            for one in components.keys() & dimensions[name]:
-                coords[one] = ((one,), np.array(list(components[one])), label(one))
+            for one in dimensions[name]:
+                if one in components:
+                    coords[one] = ((one,), np.array(list(components[one])), label(one))
     for name, bound in errors.items():
         found = np.asarray(bound, dtype=float)
         found = found[:, None] if found.ndim < len(dimensions[name]) else found  # one axis
