@@ -50,14 +50,6 @@ class Memory(NamedTuple):
         """Return the part of K that resists a displacement during a step (s)."""
         return self.relaxed + float(self.share @ self.gain) / dt
 
-    def advanced(self, elongation: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Return the elongations [l, n] after a step of velocity v [n], m/s."""
-        return self.decay[:, None] * elongation + self.gain[:, None] * v
-
-    def strained(self, u: np.ndarray, elongation: np.ndarray) -> np.ndarray:
-        """Return what K is multiplied by: u [n] but for what has relaxed of it."""
-        return self.relaxed * u + self.share @ elongation
-
     def energy(self, stiffness, u: np.ndarray, elongation: np.ndarray) -> float:
         """Return the energy of all springs, J; stiffness : K [n, n], N/m."""
         springs = self.share * self.stored

@@ -94,11 +94,3 @@ def sample_for(parts, directions):
         take(s, *unpacked(given))
 
     return sample
-
-
-def elastic_energy(model: Model, rock: Matrices, state: State) -> float:
-    """Return what the rock's springs store, J."""
-    memory = model.rock.memory
-    if memory is None:
-        return float(state.u @ (rock.stiffness @ state.u)) / 2
-    return memory.energy(rock.stiffness, state.u, state.elongation)

@@ -19,7 +19,6 @@ from cases.errors import SceneError
 from continuum.implicit.balance import Matrices, implicit_matrices, trial_forces
 from continuum.implicit.newton import Outcome, newton
 from continuum.implicit.pattern import System
-from continuum.implicit.record import elastic_energy
 from continuum.implicit.substeps import UNLOADED
 from continuum.model import Ends, Model
 from continuum.space.body import Body
@@ -62,8 +61,9 @@ def settle_static(
         else:
             _refuse(scene, done)
     fill(state, system.state)
-    if state.elongation is not None and state.ledger is not None:
-        state.ledger[0] += elastic_energy(system.model, system.rock, state)
+    memory = system.model.rock.memory
+    if memory is not None and state.ledger is not None:
+        state.ledger[0] += memory.energy(system.rock.stiffness, state.u, state.elongation)
     ratio = outcome.errors[-1] / (body.communicator.largest(system.size) or 1.0)
     return {"static_steps": steps, "static_out_of_balance": ratio}
 

@@ -51,10 +51,9 @@ class Moment(NamedTuple):
 
 
 class Length(NamedTuple):
-    """A length of steps: dt, s; the matrix without the joints [nnz], N/m, and what of it is
-    inertia; what sets the forces of the trial, and what its vectors are given (`Vectors`)."""
+    """A length of steps: the matrix without the joints [nnz], N/m, and what of it is inertia; what
+    sets the forces of the trial, and what its vectors are given (`Vectors`)."""
 
-    dt: float
     fixed: np.ndarray
     inertia: np.ndarray
     set_forces: Callable[[Applied], float]
@@ -158,7 +157,7 @@ class Stepper:
             np.add.at(forces, place, resistance)
         fixed = inertia + (1 - alpha_f) * forces
         set_forces = self.forces_of(self.trial.state, model, r)
-        return Length(model.dt, fixed, inertia, set_forces, self._vectors(model.dt))
+        return Length(fixed, inertia, set_forces, self._vectors(model.dt))
 
     def _vectors(self, dt: float) -> Packed:
         now, trial, mass = self.now, self.trial, self.mass
