@@ -66,7 +66,7 @@ def fit(
     """
     from compare.cli import terminal
     from compare.experiments.fit.fit import fit as fitted
-    from compare.experiments.fit.result import show_fit
+    from compare.experiments.fit.show import show_fit
     from compare.misfit.external import read_curves
     from compare.runs.checkpoint.lock import locked
 
