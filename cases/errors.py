@@ -1,7 +1,7 @@
 """User-facing errors: scenes that cannot be run, and runs that failed."""
 
 import reprlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from typing import Any
 
@@ -9,7 +9,8 @@ CLOSE = 0.6  # difflib's least similarity of a name and its suggestion
 
 
 class SceneError(ValueError):
-    """A scene that cannot be simulated, in one line: where, which key and value, what is allowed.
+    """A scene that cannot be simulated, a line a mistake: where, which key and value, what is
+    allowed.
 
     Parameters
     ----------
@@ -17,18 +18,33 @@ class SceneError(ValueError):
     key : dotted key, `pillar.length`; empty when the mistake is not in one key.
     value : the value found, or None for a missing key.
     allowed : what is allowed, as a phrase.
+    others : further mistakes, whose lines follow.
     """
 
-    def __init__(self, where: str, key: str, value: object, allowed: str) -> None:
+    def __init__(
+        self,
+        where: str,
+        key: str,
+        value: object,
+        allowed: str,
+        others: "Sequence[SceneError]" = (),
+    ) -> None:
         self.where, self.key, self.value, self.allowed = str(where), key, value, allowed
-        self._arguments = (where, key, value, allowed)
+        self._arguments = (where, key, value, allowed, others)
         found = "" if value is None else f" = {_short(value)}"
         subject = f"{key}{found}: " if key else ""
-        super().__init__(" ".join(printable(f"{where}: {subject}{allowed}").split()))
+        own = " ".join(printable(f"{where}: {subject}{allowed}").split())
+        super().__init__("\n".join([own, *map(str, others)]))
 
     def __reduce__(self) -> tuple:
         """Support pickling: errors are passed from worker processes."""
         return type(self), self._arguments
+
+    @property
+    def each(self) -> "list[SceneError]":
+        """The mistakes one by one, itself first."""
+        own = SceneError(*self._arguments[:4])
+        return [own, *(one for other in self._arguments[4] for one in other.each)]
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
@@ -63,6 +79,15 @@ class InterruptedRun(StoppedError):
     """A run stopped by the user or the system. code : exit code of the program."""
 
     code: int = 1
+
+
+def all_of(errors: Iterable[SceneError]) -> SceneError:
+    """Return mistakes as one error, each once, however many variants make it."""
+    said: dict[tuple[str, str, str], SceneError] = {}
+    for one in (one for error in errors for one in error.each):
+        said.setdefault((one.key, repr(one.value), one.allowed), one)
+    first, *others = said.values()
+    return SceneError(first.where, first.key, first.value, first.allowed, others)
 
 
 class _Found(reprlib.Repr):

@@ -1,4 +1,4 @@
-"""From a TOML file to validated scenes: overrides, variants, and errors in one line.
+"""From a TOML file to validated scenes: overrides, variants, and errors, a line a mistake.
 
 A file with [pillar] holds a `Scene`, one with [domain] a `RockMass`.
 """
@@ -8,7 +8,7 @@ from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
-from cases.errors import SceneError, nearest
+from cases.errors import SceneError, all_of, nearest
 from cases.files import parse_toml, read_toml
 from cases.kinds import AnyScene
 from cases.schema.values import CONTROL
@@ -27,15 +27,21 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[AnyS
     """Read a scene file: the scene itself, then its variants, each validated on its own.
 
     `overrides` maps dotted keys to values (`--set`) and holds for every variant.
-    Raises SceneError, in one line, for anything that cannot be simulated.
+    Raises SceneError, a line a mistake, for anything that cannot be simulated.
     """
     path = Path(path)
     table, variants = _parts(_read_toml(path), path, overrides or {})
     given = frozenset(overrides or {})
-    scenes: list[Any] = [validated(table, path, given)]
-    for i, variant in enumerate(variants):
-        merged = _variant(table, variant, path, i, overrides or {})
-        scenes.append(validated(merged, path, given))
+    scenes: list[Any] = []
+    wrong: list[SceneError] = []
+    for i, variant in enumerate([{}, *variants]):
+        try:
+            merged = _variant(table, variant, path, i - 1, overrides or {}) if i else table
+            scenes.append(validated(merged, path, given))
+        except SceneError as error:
+            wrong.append(error)
+    if wrong:
+        raise all_of(wrong)
     names = [scene.name for scene in scenes]
     for i, name in enumerate(names[1:]):
         if name in names[: i + 1]:

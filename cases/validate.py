@@ -1,12 +1,13 @@
-"""Validation of a scene's tables by its model; errors are one line."""
+"""Validation of a scene's tables by its model; a mistake is one line."""
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
-from cases.errors import SceneError, nearest
+from cases.errors import SceneError, all_of, nearest
 from cases.schema.scene import Scene
 
 PLACE = re.compile(r"\.\d+(?=\.)")  # in a list of tables, as in `waves.0.file`
@@ -39,7 +40,7 @@ ALLOWED = {
 def validated(table: dict[str, Any], path: Path, given: frozenset[str]) -> Any:
     """Return a table as a scene; given : the keys, of tables too, that the user gave himself.
 
-    Raises SceneError, in one line, where it is none.
+    Raises SceneError, a line a mistake, where it is none.
     """
     asked = {PLACE.sub("", key) for key in given}
     where = f"{path} [{table['name']}]" if table.get("name") else str(path)
@@ -47,7 +48,7 @@ def validated(table: dict[str, Any], path: Path, given: frozenset[str]) -> Any:
     try:
         scene = model.model_validate(table, context={"folder": path.parent, "asked": asked})
     except ValidationError as error:
-        raise _scene_error(where, error, model) from None
+        raise all_of(_scene_errors(where, error, model)) from None
     scene._where = where
     return scene
 
@@ -62,9 +63,14 @@ def _model_of(table: dict[str, Any], where: str) -> Any:
     return RockMass
 
 
-def _scene_error(where: str, error: ValidationError, model: Any) -> SceneError:
-    first, more = error.errors()[0], error.error_count() - 1
-    context = first.get("ctx", {})
+def _scene_errors(where: str, error: ValidationError, model: Any) -> Iterator[SceneError]:
+    for one in error.errors():
+        several = one.get("ctx", {}).get("several")  # contradictions found by one check of many
+        for context in several or [one.get("ctx", {})]:
+            yield _scene_error(where, one, context, model)
+
+
+def _scene_error(where: str, first: Any, context: dict[str, Any], model: Any) -> SceneError:
     kind, value = first["type"], first["input"]
     table = _dotted(first["loc"])
     key, allowed = table, ALLOWED.get(kind, first["msg"]).format(**context)
@@ -79,8 +85,7 @@ def _scene_error(where: str, error: ValidationError, model: Any) -> SceneError:
         allowed = f"must be written [[{key}]]"
     if isinstance(value, dict) or kind == "missing":
         value = None
-    more_text = f" (and {more} more)" if more else ""
-    return SceneError(where, key, value, allowed + more_text)
+    return SceneError(where, key, value, allowed)
 
 
 def _known_keys(location: tuple[int | str, ...], model: Any) -> list[str]:

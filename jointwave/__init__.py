@@ -77,7 +77,7 @@ def load(
     variant : its name; empty: the scene as it stands. changes : of keys by their dotted path,
     {"joints.damping_ratio": 0.02}.
 
-    Raises jointwave.SceneError, one line with file, key, value and what is allowed.
+    Raises jointwave.SceneError, a line a mistake with file, key, value and what is allowed.
     """
     from cases.read import load_tables
     from compare.scenes import known, load_variant

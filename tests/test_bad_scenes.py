@@ -716,7 +716,8 @@ def write(path: Path, content: str | bytes) -> Path:
 
 
 def line_of(path: Path) -> str:
-    """Return what `jointwave run` says of a scene: exit 2, one line that names the file, no output.
+    """Return the first line of what `jointwave run` says of a scene: exit 2, every line names the
+    file, no output.
 
     The command runs in this process, for speed; a few mistakes below go through a process.
     """
@@ -729,10 +730,12 @@ def line_of(path: Path) -> str:
         pytest.raises(SystemExit) as end,
     ):
         main()
-    message = said.getvalue().removeprefix("jointwave: ").removesuffix("\n")
+    lines = said.getvalue().splitlines()
+    message = lines[0].removeprefix("jointwave: ")
     assert end.value.code == 2 and silent.getvalue() == "" and not out.exists()
-    assert len(message.splitlines()) == 1
-    assert message.startswith(str(path))
+    assert all(line.startswith(f"jointwave: {path}") for line in lines) and len({*lines}) == len(
+        lines
+    )
     assert len(message) < len(str(path)) + 500
     return message
 
@@ -852,3 +855,35 @@ def test_mistake_on_the_command_line(tmp_path):
     assert done.returncode == 2 and done.stdout == "" and not out.exists()
     (line,) = done.stderr.splitlines()
     assert all(word in line for word in [str(scene), *MISTAKES["not TOML"][2]]), line
+
+
+def test_every_mistake_of_a_file_has_its_line(tmp_path, jointwave):
+    """Of several tables, of one check and of the next, and of a variant; what all variants share
+    stands there once."""
+    wrong = GOOD.replace("side = 0.5", 'side = "thin"').replace(
+        "density = 2400.0", "density = -1.0"
+    )
+    wrong += "time.duration = 0.0\n"
+    said = jointwave("compare", scene := write(tmp_path / "scene.toml", wrong), code=2).err
+    assert [line.partition(": must")[0] for line in said.splitlines()] == [
+        f"jointwave: {scene}: pillar.side = 'thin'",
+        f"jointwave: {scene}: rock.density = -1.0",
+        f"jointwave: {scene} [undamped]: time.duration = 0.0",
+    ]
+    apart = GOOD.replace("[20.0]", "[60.0]").replace("y = 20.0", "y = 20.1")
+    said = jointwave("explain", write(scene, apart), code=2).err
+    keys = [
+        line.removeprefix(f"jointwave: {scene}: ").split(" = ")[0] for line in said.splitlines()
+    ]
+    assert keys == ["soft_layers[0].y", "record.stress"]
+
+
+def test_every_mistake_of_a_rock_mass_has_its_line(tmp_path, jointwave, one_joint, in_toml):
+    """Of three checks of one scene whose tables are each right."""
+    tables = one_joint(gravity={}, record={"points": [[30.0, 5.0]], "interval": 1.0})
+    text = in_toml(tables)
+    said = jointwave("explain", scene := write(tmp_path / "scene.toml", text), code=2).err
+    keys = [
+        line.removeprefix(f"jointwave: {scene}: ").split(" = ")[0] for line in said.splitlines()
+    ]
+    assert keys == ["record.points[0]", "record.interval", "gravity.static"]

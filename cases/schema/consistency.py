@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 from cases.schema.discretisation import check_discretisation, check_scheme
@@ -17,31 +18,15 @@ from cases.schema.shared_checks import (
     check_time,
     rounded_up,
 )
-from cases.schema.values import contradiction, is_extreme
+from cases.schema.values import check_all, contradiction, is_extreme
 
 if TYPE_CHECKING:
     from cases.schema.scene import Scene
 
 
 def check(scene: Scene) -> None:
-    """Raise the first contradiction of a scene whose tables are each right."""
-    check_segments(scene)
-    _check_layers(scene)
-    _check_receivers(scene)
-    _check_rock(scene)
-    check_quality(scene)
-    check_time(scene)
-    check_fields(scene)
-    _check_lever(scene)
-    _check_extreme(scene)
-    _check_ends(scene)
-    _check_damping(scene)
-    check_strength("joints", scene.joints)
-    for i, layer in enumerate(scene.layers):
-        check_strength(f"soft_layers[{i}]", layer)
-    _check_fracture(scene)
-    check_discretisation(scene)
-    check_scheme(scene)
+    """Raise the contradictions of a scene whose tables are each right."""
+    check_all(*(partial(one, scene) for one in CHECKS))
 
 
 def _check_layers(scene: Scene) -> None:
@@ -164,6 +149,13 @@ def _check_damping(scene: Scene) -> None:
             )
 
 
+def _check_strength(scene: Scene) -> None:
+    """Layers take what they do not give from the joints, so that these come first."""
+    check_strength("joints", scene.joints)
+    for i, layer in enumerate(scene.layers):
+        check_strength(f"soft_layers[{i}]", layer)
+
+
 def _check_fracture(scene: Scene) -> None:
     """A joint whose stress falls faster than it can unload would snap back."""
     laws = [scene.joints, *scene.layers]
@@ -185,3 +177,22 @@ def _check_fracture(scene: Scene) -> None:
                 "must exceed tensile_strength^2 / (2 K'_n), or the joint snaps back: "
                 f"at least {rounded_up(least):.4g} J/m2",
             )
+
+
+CHECKS = (
+    check_segments,
+    _check_layers,
+    _check_receivers,
+    _check_rock,
+    check_quality,
+    check_time,
+    check_fields,
+    _check_lever,
+    _check_extreme,
+    _check_ends,
+    _check_damping,
+    _check_strength,
+    _check_fracture,
+    check_discretisation,
+    check_scheme,
+)

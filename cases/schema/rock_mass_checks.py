@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from cases.schema.joint_set import check_sets
 from cases.schema.region import check_regions
 from cases.schema.shared_checks import check_fields, check_quality, check_time
-from cases.schema.values import contradiction
+from cases.schema.values import check_all, contradiction
 
 if TYPE_CHECKING:
     from cases.partition.outline import Outline
@@ -23,19 +24,30 @@ BESIDE = 1e-6
 
 
 def check(scene: RockMass) -> None:
-    """Raise the first contradiction of a rock mass whose tables are each right."""
-    check_sets(scene)
+    """Raise the contradictions of a rock mass whose tables are each right."""
     outline = _outline(scene)
-    check_regions(scene, outline)
-    (_check_cuts if scene.domain.given is None else _check_mesh)(scene, outline)
-    _check_receivers(scene, outline)
-    check_time(scene)  # type: ignore[arg-type]
-    check_fields(scene)
-    check_quality(scene)
-    _check_boundaries(scene, outline)
-    _check_waves(scene, outline)
-    for i, load in enumerate(scene.loads):
-        _check_load(f"loads[{i}]", load, scene, outline)
+    _check_cut = _check_cuts if scene.domain.given is None else _check_mesh
+    check_all(
+        partial(check_sets, scene),
+        *(
+            partial(one, scene, outline)
+            for one in (
+                check_regions,
+                _check_cut,
+                _check_receivers,
+                _check_boundaries,
+                _check_waves,
+            )
+        ),
+        *(partial(one, scene) for one in (check_time, check_fields, check_quality, _check_gravity)),
+        *(
+            partial(_check_load, f"loads[{i}]", load, scene, outline)
+            for i, load in enumerate(scene.loads)
+        ),
+    )
+
+
+def _check_gravity(scene: RockMass) -> None:
     if scene.gravity is not None and scene.gravity.static and not scene.boundaries.sides("fixed"):
         raise contradiction("gravity.static", True, "needs a fixed side, or gravity.static = false")
 

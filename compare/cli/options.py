@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from cases.errors import SceneError, printable
+from cases.errors import SceneError, all_of, printable
 from cases.kinds import AnyScene
 from compare import scenes
 from compare.cli import completion
@@ -140,7 +140,7 @@ def load(
 def warn(scenes: Sequence["AnyScene"], strict: bool = False) -> None:
     """Print what scenes say but hardly mean, a line each; strict : it is an error.
 
-    Raises SceneError of the first line, with the number of the others.
+    Raises SceneError of all lines.
     """
     from cases.warnings import warnings
 
@@ -150,8 +150,8 @@ def warn(scenes: Sequence["AnyScene"], strict: bool = False) -> None:
             found.setdefault(line, []).append(scene)
     lines = [f"{line}{_whose(said, scenes)}" for line, said in found.items()]
     if strict and lines:
-        more = f" (and {len(lines) - 1} more)" if len(lines) > 1 else ""
-        raise SceneError(scenes[0].where, "", None, f"{lines[0]}{more} (an error by --strict)")
+        where, why = scenes[0].where, "(an error by --strict)"
+        raise all_of(SceneError(where, "", None, f"{line} {why}") for line in lines)
     for line in lines:
         print(f"jointwave: warning: {printable(line)}", file=sys.stderr)
 

@@ -45,7 +45,7 @@ def main() -> None:
         code = app(standalone_mode=False)
         sys.stdout.flush()
     except SceneError as error:
-        _fail(processes, str(error), 2)
+        processes.fail("\n".join(f"jointwave: {_line(str(one))}" for one in error.each), 2)
     except InterruptedRun as error:
         _fail(processes, str(error), error.code)
     except UnstableError as error:
@@ -86,7 +86,11 @@ def _usage(error: Any) -> str:
 
 
 def _fail(processes: Processes, message: str, code: int) -> None:
+    processes.fail(f"jointwave: {_line(message)}", code)
+
+
+def _line(message: str) -> str:
     line = " ".join(printable(message).split())
     if len(line) > LONGEST:
         line = f"{line[: LONGEST // 2]} ... {line[-LONGEST // 2 :]}"
-    processes.fail(f"jointwave: {line}", code)
+    return line
