@@ -31,7 +31,7 @@ from numerics import jit
 from results.arrays import copied, fill
 
 # The first example compiles a kernel, which no deadline foresees. Every run has the same examples;
-# `make fuzz` looks for others.
+# `make fuzz` looks for others of bad input.
 settings.register_profile("jointwave", deadline=None, max_examples=50, derandomize=True)
 settings.load_profile("jointwave")
 # Constants of the project's modules would be among them, of those that are imported by then.

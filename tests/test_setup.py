@@ -31,17 +31,6 @@ def test_what_takes_long_says_so_on_standard_error_and_keeps_its_exit_code():
     assert lines and all(line.startswith("setup: pip install, for ") for line in lines)
 
 
-def test_a_way_that_is_none_is_refused():
-    done = subprocess.run(
-        ["bash", SETUP],
-        capture_output=True,
-        text=True,
-        env={"DOLFINX": "yum", "PATH": "/usr/bin:/bin"},
-    )
-    assert done.returncode == 1 and done.stdout == ""
-    assert done.stderr == "setup: DOLFINX=yum: must be active, apt, pip, conda or any\n"
-
-
 @pytest.mark.parametrize(("python", "numpy"), [("3.11", "1"), ("3.13", "2")])
 def test_the_lock_has_each_dependency_once_at_a_version_that_is_admitted(python, numpy):
     """Of every extra, on the system whose wheels FEniCSx has; numpy 1 where Debian 12 needs it."""

@@ -1,25 +1,16 @@
 #!/usr/bin/env bash
 # Makes .venv, a Python that imports dolfinx and this project; does nothing when that is done already.
-#   usage: tools/setup.sh [browser | docs]    ("browser": also the headless Chromium that the tests of the report's page drive,
-#                                              and what the tests of `view` and of the examples need;
+#   usage: tools/setup.sh [browser | docs]    ("browser": also headless Chromium, and what the tests of `view` and of the examples need;
 #                                              "docs": also mkdocs, which builds the documentation)
-# In the environment, kept for this .venv until they are given anew:
-#   DOLFINX=active|apt|pip|conda  dolfinx in this way alone; any: in the first that there is
-#   LOCKED=1                      the versions of constraints.txt; 0: the newest that pyproject.toml admits
+# dolfinx is that of the active environment, else apt's on Debian 12, else pip's wheel, else any other apt's.
+#   LOCKED=1   the versions of constraints.txt, also in later calls until LOCKED=0: the newest that pyproject.toml admits
 set -euo pipefail
 cd "$(dirname "$0")/.."
-asked=$(cat .venv/.setup-asked 2>/dev/null || echo any 0)
-way=${DOLFINX:-${asked% *}} locked=${LOCKED:-${asked#* }}
+locked=${LOCKED:-$(cat .venv/.setup-locked 2>/dev/null || echo 0)}
+every=30  # s
 
 say() { printf 'setup: %s\n' "$*"; }
-fail() { printf 'setup: %s\n' "$*" >&2; exit 1; }
-
-case $way in
-    any | active | apt | pip | conda) ;;
-    *) fail "DOLFINX=$way: must be active, apt, pip, conda or any" ;;
-esac
-
-every=30  # s
+fail() { say "$*" >&2; exit 1; }
 
 # Runs a command; every half minute that it takes, a line on standard error says what it does.
 telling() {  # what, command ...
@@ -43,13 +34,13 @@ find='from importlib.util import find_spec as f'
 dolfinx="$find
 if f('dolfinx_solver'): import dolfinx_solver
 import dolfinx"
+has() { .venv/bin/python -c "import $1" 2>/dev/null; }
 imports_dolfinx() { "$1" -c "$dolfinx, ensurepip, sys; sys.exit(sys.version_info < (3, 11))" >/dev/null 2>&1; }
-
-in_log() { local log=$1; shift; "$@" >"$log" 2>&1; }
 
 # apt-get, as root or through sudo; fails where there is neither.
 apt_install() {
     local admin=() missing=() package
+    command -v apt-get >/dev/null || return 1
     for package in "$@"; do
         dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
     done
@@ -62,148 +53,73 @@ apt_install() {
     local get=("${admin[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=600)
     # A bare image has no package lists.
     apt-cache show "${missing[@]}" >/dev/null 2>&1 || telling 'apt-get update' "${get[@]}" update >&2 || return 1
-    local log
-    log=$(mktemp)
-    # Packages chat on standard error too: show its end only if it matters.
-    if telling 'apt-get install' in_log "$log" "${get[@]}" install -y --no-install-recommends "${missing[@]}"; then rm "$log"; return 0; fi
-    tail -n 5 "$log" >&2
-    say "apt-get failed, see $log"
-    return 1
+    telling 'apt-get install' "${get[@]}" install -y --no-install-recommends "${missing[@]}" >/dev/null || { say "apt-get failed"; return 1; }
 }
 
-# Prints a Python that pip has a wheel of dolfinx for: 3.12 or newer on x86-64 Linux.
-wheel_python() {
-    local python
-    for python in python3 python3.13 python3.12; do
-        "$python" -c 'import ensurepip, platform, sys; sys.exit(sys.version_info < (3, 12) or
-            (sys.platform, platform.machine()) != ("linux", "x86_64"))' >/dev/null 2>&1 || continue
-        "$python" -c 'import sys; print(sys.executable)'
-        return
-    done
-    return 1
-}
-
-make_venv() {  # over a Python that has dolfinx
+# The ways to a .venv with dolfinx; each fails where it is not to be had.
+over() {  # a Python that has dolfinx
+    imports_dolfinx "$1" || return 1
     say ".venv over $1, which has dolfinx $("$1" -c "$dolfinx; print(dolfinx.__version__)")"
     "$1" -m venv --system-site-packages .venv
     # A venv made from another venv sees neither that one's packages nor its dolfinx: name them.
     "$1" -c 'import site, sys; print(*(site.getsitepackages() if sys.prefix != sys.base_prefix else []), sep="\n")' \
         >"$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/active-environment.pth"
 }
-
-# The ways to a .venv with dolfinx; each fails where it is not to be had.
-by_active() {
-    local python
-    python=$(command -v python3) && imports_dolfinx "$python" || return 1
-    make_venv "$("$python" -c 'import sys; print(sys.executable)')"
-}
-
-by_apt() {
-    command -v apt-get >/dev/null && apt_install python3-dolfinx python3-gmsh python3-venv &&
-        imports_dolfinx /usr/bin/python3 && make_venv /usr/bin/python3
-}
-
+by_active() { over "$(command -v python3)"; }
+by_apt() { apt_install python3-dolfinx python3-gmsh python3-venv && over /usr/bin/python3; }
 by_pip() {
-    local python
     # A bare machine has no Python, and Debian's no venv.
-    python=$(wheel_python) || { command -v apt-get >/dev/null && apt_install python3-venv && python=$(wheel_python); } || return 1
-    say ".venv of $python, with dolfinx by pip"
-    "$python" -m venv .venv
+    python3 -c 'import ensurepip' 2>/dev/null || apt_install python3-venv || return 1
+    python3 -c 'import sys; sys.exit(sys.version_info < (3, 12))' && [ "$(uname -sm)" = 'Linux x86_64' ] || return 1
+    say ".venv of $(command -v python3), with dolfinx by pip"
+    python3 -m venv .venv
 }
-
-by_conda() {
-    local conda
-    conda=$(command -v micromamba || command -v mamba || command -v conda) || return 1
-    say "$(basename "$conda") creates .venv from environment.yml (some minutes)"
-    case $(basename "$conda") in
-        micromamba) telling 'micromamba create' micromamba create -y -q -p ./.venv -f environment.yml ;;
-        *) telling 'conda env create' "$conda" env create -q -p ./.venv -f environment.yml ;;
-    esac
-}
-
-# Debian 12's dolfinx comes before the wheel, which its Python is too old for; any other apt's after it.
-ways() {
-    if [ "$way" != any ]; then
-        echo "$way"
-    elif grep -qs '^VERSION_CODENAME=bookworm' /etc/os-release; then
-        echo active apt pip conda
-    else
-        echo active pip apt conda
-    fi
-}
-
 make_environment() {
-    local one
-    for one in $(ways); do
+    local way ways='active pip apt'
+    # Debian 12's Python is too old for the wheel.
+    if grep -qs '^VERSION_CODENAME=bookworm' /etc/os-release; then ways='active apt'; fi
+    for way in $ways; do
         rm -rf .venv
-        if "by_$one"; then return 0; fi
+        if "by_$way"; then return; fi
     done
-    rm -rf .venv
-    return 1
+    fail "no dolfinx: activate an environment that has it (conda's is one), or install Python 3.12 or newer (x86-64 Linux) or Debian's python3-dolfinx python3-gmsh python3-venv, then run make again"
 }
 
 install_project() {  # with these extras
-    # Strings, not arrays: macOS's bash 3.2 takes an empty array for an unset variable.
-    local numpy='' lock=''
+    local options=()
     # dolfinx and petsc4py are compiled against one numpy major version, and must keep it.
-    if .venv/bin/python -c 'import numpy, sys; sys.exit(numpy.__version__.split(".")[0] != "1")' 2>/dev/null; then
-        numpy='numpy<2'
-    fi
-    if [ "$locked" != 0 ]; then lock='-c constraints.txt'; fi
-    say "pip install -e .[$1] $numpy $lock (about a minute)"
-    # shellcheck disable=SC2086
-    telling 'pip install' .venv/bin/python -m pip --disable-pip-version-check install -q -e ".[$1]" $numpy $lock
+    if has 'numpy; assert numpy.__version__ < "2"'; then options=('numpy<2'); fi
+    if [ "$locked" != 0 ]; then options+=(-c constraints.txt); fi
+    say "pip install -e .[$1] ${options[*]:-} (about a minute)"
+    # macOS's bash 3.2 takes an empty array for an unset variable.
+    telling 'pip install' .venv/bin/python -m pip --disable-pip-version-check install -q -e ".[$1]" ${options[@]+"${options[@]}"}
 }
 
-# What gmsh's wheel and forms of dolfinx's need of the system; without it their tests fail.
-install_libraries() {
-    .venv/bin/python -c 'import dolfinx_solver' 2>/dev/null && command -v apt-get >/dev/null || return 0
-    apt_install gcc libc6-dev python3-dev libglu1-mesa libxcursor1 libxft2 libxinerama1 || say "tests of gmsh and of forms will fail"
-}
+# A venv does not survive being moved or copied.
+base_key() { echo "$PWD $(python3 -c 'import sys; print(sys.executable, sys.version)' 2>/dev/null || echo none)"; }
+key() { echo "$(base_key) $locked $(cat pyproject.toml constraints.txt tools/setup.sh | cksum)"; }
 
-install_browser() {
-    command -v chromium >/dev/null && return
-    if grep -qs '^ID=debian' /etc/os-release && apt_install chromium; then return; fi
-    say "no chromium here: the page tests will not run"
-}
-
-install_extras() {
-    .venv/bin/python -c 'import ipykernel, jupytext, nbclient, pyvista' 2>/dev/null || install_project view,examples
-}
-
-install_docs() {
-    .venv/bin/python -c 'import ipykernel, jupytext, latex2mathml, material, mkdocs, nbclient' 2>/dev/null ||
-        install_project docs,examples
-}
-
-# The folder is part of both keys because a venv does not survive being moved or copied. They are asked for anew each time:
-# a bare machine has no Python before Debian's is installed.
-base_key() { echo "$PWD $way $(python3 -c 'import sys; print(sys.executable, sys.version)' 2>/dev/null || echo none)"; }
-key() { echo "$(base_key) $locked $(cat pyproject.toml constraints.txt environment.yml tools/setup.sh | cksum)"; }
-
-ready() {
-    [ "$(cat .venv/.setup-done 2>/dev/null)" = "$(key)" ] &&
-        .venv/bin/python -c "$find; assert f('dolfinx') and f('compare')" 2>/dev/null
-}
-
-if ready; then
+if [ "$(cat .venv/.setup-done 2>/dev/null)" = "$(key)" ] && .venv/bin/python -c "$find; assert f('dolfinx') and f('compare')" 2>/dev/null; then
     say ".venv is up to date"
 else
-    rm -f .venv/.setup-done
     if [ "$(cat .venv/.setup-base 2>/dev/null)" != "$(base_key)" ] || ! imports_dolfinx .venv/bin/python; then
-        make_environment || fail "no dolfinx ($way): activate an environment that has it, or install Python 3.12 or newer (x86-64 Linux), conda or Debian/Ubuntu's python3-dolfinx python3-gmsh python3-venv, then run make again"
+        make_environment
         base_key >.venv/.setup-base
     fi
+    rm -f .venv/.setup-done
+    echo "$locked" >.venv/.setup-locked
     extras=test,check
     # Only pip's dolfinx is ours to install.
-    .venv/bin/python -c "$find; import sys; sys.exit(bool(f('dolfinx')) and not f('dolfinx_solver'))" && extras=$extras,continuum
-    echo "$way $locked" >.venv/.setup-asked
+    if ! has dolfinx || has dolfinx_solver; then extras=$extras,continuum; fi
     install_project "$extras"
-    .venv/bin/python -c "$dolfinx, numba, compare" || fail ".venv does not import dolfinx, numba and compare"
-    key >.venv/.setup-done
+    .venv/bin/python -c "$dolfinx, numba, compare" && key >.venv/.setup-done || fail ".venv does not import dolfinx, numba and compare"
     say "done: .venv/bin/jointwave, or activate it by: . .venv/bin/activate"
 fi
 case "${1:-}" in
-    browser) install_libraries; install_browser; install_extras ;;
-    docs) install_docs ;;
+    browser)
+        # What gmsh's wheel and forms of dolfinx's need of the system.
+        if has dolfinx_solver; then apt_install gcc libc6-dev python3-dev libglu1-mesa libxcursor1 libxft2 libxinerama1 || say "tests of gmsh and of forms will fail"; fi
+        command -v chromium >/dev/null || apt_install chromium || say "no chromium here: the page tests will not run"
+        has 'ipykernel, jupytext, nbclient, pyvista' || install_project view,examples ;;
+    docs) has 'ipykernel, jupytext, latex2mathml, material, mkdocs, nbclient' || install_project docs,examples ;;
 esac

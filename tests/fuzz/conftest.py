@@ -1,6 +1,8 @@
-"""What the tests of bad input share: the targets of tools/fuzz, under a bound on memory."""
+"""What the tests of bad input share: targets that read it, under a bound on memory.
 
-import importlib.util
+`make fuzz` sets FUZZ: so many times the inputs, others in each run.
+"""
+
 import os
 from pathlib import Path
 
@@ -8,32 +10,21 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 import cases
+import targets
+from meshes import meshes
 
-TOOLS = Path(__file__).parents[2] / "tools" / "fuzz"
-
-
-def module(name):
-    """Return a module of tools/fuzz."""
-    spec = importlib.util.spec_from_file_location(f"fuzz_{name}", TOOLS / f"{name}.py")
-    found = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(found)
-    return found
+#: How many times the inputs of a plain run.
+FUZZ = int(os.environ.get("FUZZ", "1"))
 
 
 @pytest.fixture(scope="session")
-def targets():
-    """Return the module of the targets."""
-    return module("targets")
-
-
-@pytest.fixture(scope="session")
-def meshes():
+def gmsh_files():
     """Return gmsh files of a pillar of three blocks, of every version and form."""
-    return module("seeds").meshes()
+    return meshes()
 
 
 @pytest.fixture(scope="module")
-def meet(targets, tmp_path_factory):
+def meet(tmp_path_factory):
     """Return a function of (target, bytes) that tells whether they were read or refused."""
     folder = tmp_path_factory.mktemp("fuzz")
     for load in Path(cases.__file__).parent.glob("*/*.csv"):
@@ -54,7 +45,11 @@ def meets(meet):
     def found(target, inputs, count):
         outcomes = set()
 
-        @settings(max_examples=count, suppress_health_check=list(HealthCheck))
+        @settings(
+            max_examples=FUZZ * count,
+            derandomize=FUZZ == 1,
+            suppress_health_check=list(HealthCheck),
+        )
         @given(inputs)
         def check(data):
             outcomes.add(meet(target, data))

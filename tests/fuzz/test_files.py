@@ -62,8 +62,8 @@ def test_a_table_of_numbers_is_read_or_refused(meets, target):
     meets(target, st.one_of(numbers(), cut(LOADS)), 200)
 
 
-def test_a_spoilt_mesh_is_read_or_refused(meets, meshes):
-    meets("mesh", cut(meshes), 60)
+def test_a_spoilt_mesh_is_read_or_refused(meets, gmsh_files):
+    meets("mesh", cut(gmsh_files), 60)
 
 
 SCENES = [
@@ -144,7 +144,7 @@ def test_a_command_line_is_obeyed_or_refused(meets):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("target", ["load", "curve", "mesh", "command"])
-def test_thousands_of_inputs_are_read_or_refused(meets, meshes, target):
+def test_thousands_of_inputs_are_read_or_refused(meets, gmsh_files, target):
     tables = st.one_of(numbers(), cut(LOADS))
-    inputs = {"mesh": cut(meshes), "command": lines()}.get(target, tables)
+    inputs = {"mesh": cut(gmsh_files), "command": lines()}.get(target, tables)
     meets(target, inputs, 1500)
