@@ -62,11 +62,12 @@ def highest_frequency(scene: AnyScene) -> float | None:
     Of a step, which never ends, of what acts until the end of the scene; of a shaken base of its
     velocity. None where nothing acts.
     """
-    found = (_of_pulse(one, scene.time.duration) for one in scene.pulses)
+    found = (frequency_of(one, scene.time.duration) for one in scene.pulses)
     return max((one for one in found if one is not None), default=None)
 
 
-def _of_pulse(pulse: Pulse, duration: float) -> float | None:
+def frequency_of(pulse: Pulse, duration: float) -> float | None:
+    """Return that of one load or wave in a scene of this duration (s)."""
     if not pulse.amplitude:
         return None
     if pulse.shape == "step":

@@ -39,21 +39,23 @@ class Stiffness(NamedTuple):
     own_shear_stiffness: np.ndarray | None
 
 
-def equivalent_constants(rock: Rock) -> tuple[float, float]:
-    """Return Young's modulus (Pa) and Poisson's ratio that [rock] gives the rock mass."""
+def equivalent_constants(rock: Rock) -> tuple[float, float] | None:
+    """Return Young's modulus (Pa) and Poisson's ratio that [rock] gives the rock mass; None where
+    its joints do."""
     if rock.p_speed and rock.s_speed:
         return modulus_from_speeds(rock.p_speed, rock.s_speed, rock.density)
-    assert rock.equivalent_modulus and rock.equivalent_poisson is not None
+    if rock.equivalent_modulus is None or rock.equivalent_poisson is None:
+        return None
     return rock.equivalent_modulus, rock.equivalent_poisson
 
 
 def rock_mass(scene: Scene, spacing: float) -> RockMass:
     """Return the rock mass with joints at this spacing (m).
 
-    A stiffness that [joints] gives decides the modulus that otherwise decides the stiffness.
+    A stiffness that the joints give decides the modulus that otherwise decides the stiffness.
     """
-    (modulus, poisson), joints = equivalent_constants(scene.rock), scene.joints
-    intact, intact_shear = _intact(scene.rock)
+    joints, (intact, intact_shear) = scene.joints, _intact(scene.rock)
+    modulus, poisson = equivalent_constants(scene.rock) or (intact, _poisson(scene.rock))
     if joints.normal_stiffness:
         modulus = equivalent_modulus(joints.normal_stiffness, intact, spacing)
     shear = shear_modulus(modulus, poisson)
@@ -82,6 +84,11 @@ def stiffness(scene: Scene, soft: np.ndarray, spacing: float, mass: RockMass) ->
     with np.errstate(divide="ignore"):
         own_shear = 1 / np.maximum(1 / shear - spacing / intact_shear, 0.0)
     return Stiffness(normal, shear, own, own_shear)
+
+
+def _poisson(rock: Rock) -> float:
+    given = rock.equivalent_poisson
+    return rock.intact_poisson if given is None else given
 
 
 def _intact(rock: Rock) -> tuple[float, float]:

@@ -50,7 +50,9 @@ def cut_by_sets(
         stops = {name: numbers[name] for name in _stops(one, sets)}
         found = split(sub, _lines_of(sub, sets, i, stops, inside, tolerance), tolerance)
         if i < needed and not _has_joints(found.subdivision, i):
-            raise PartitionError(None, "does not cut the domain", f"joint_sets[{i}]")
+            raise PartitionError(
+                None, "does not cut the domain, or only where sets before it do", f"joint_sets[{i}]"
+            )
         numbers = {name: array[found.parent] for name, array in numbers.items()}
         numbers[one.name] = found.number
         sub = found.subdivision

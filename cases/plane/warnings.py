@@ -1,6 +1,7 @@
 """Warnings of likely mistakes in a rock mass, one line each."""
 
 from collections.abc import Callable, Iterator
+from itertools import combinations
 from typing import cast
 
 import numpy as np
@@ -10,6 +11,7 @@ from cases.material.rock import elastic_rock
 from cases.partition.joints import direction_of
 from cases.partition.outline import outline_of
 from cases.partition.regions import rocks_of
+from cases.schema.joint_set import JointSet
 from cases.schema.plane import IntactRock
 from cases.schema.plausible import implausible
 from cases.schema.region import Region
@@ -18,6 +20,8 @@ from cases.schema.rock_mass_checks import distance
 from cases.schema.sources import PlaneLoad, Wave
 from cases.spectrum import highest_frequency
 from cases.warnings import LEAST_BLOCKS, of_local_damping, of_pulse, onset
+
+COINCIDENT = 1e-9  # of the domain's size: distance of two joints that are one
 
 Source = tuple[str, "Wave | PlaneLoad"]  # its table in the scene and itself
 
@@ -41,6 +45,36 @@ def _of_poisson(scene: RockMass) -> Iterator[str]:
     for table, one in zip(tables, rocks, strict=True):
         if (poisson := one.intact_poisson or 0.0) < 0:
             yield f"{table}.intact_poisson = {poisson:g} is negative, which no known rock is"
+
+
+def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
+    """Say where joints of two sets coincide: only the law of the first holds there."""
+    sets, corners = scene.joint_sets, np.array(scene.domain.corners)
+    plain = [
+        (i, one)
+        for i, one in enumerate(sets)
+        if not (one.scatter or one.ends_at or one.regions or scene.domain.mesh)
+    ]
+    for (i, one), (k, other) in combinations(plain, 2):
+        if (one.dip - other.dip) % 180 == 0:
+            places = _places(one, other.dip, corners), _places(other, other.dip, corners)
+            apart = np.abs(np.subtract.outer(*places))
+            if count := int((apart < COINCIDENT * np.ptp(corners)).any(axis=0).sum()):
+                yield (
+                    f"joint_sets[{k}] and joint_sets[{i}] have {count} joints in common: there "
+                    f"only the law of joint_sets[{i}] holds"
+                )
+
+
+def _places(one: JointSet, dip: float, corners: np.ndarray) -> np.ndarray:
+    """Return where the joints of a set without scatter lie along the normal to a dip, m."""
+    normal = direction_of(dip)[::-1] * [-1, 1]
+    origin, across = normal @ (one.through or [0.0, 0.0]), corners @ normal
+    if one.spacing is None:
+        return np.array([origin])
+    first = np.ceil((across.min() - origin) / one.spacing)
+    count = np.floor((across.max() - origin) / one.spacing) - first + 1
+    return origin + one.spacing * (first + np.arange(max(int(count), 0)))
 
 
 def _of_times(scene: RockMass) -> Iterator[str]:
@@ -121,6 +155,7 @@ def _nearest(scene: RockMass, load: PlaneLoad, place: np.ndarray) -> float:
 
 RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
     _of_poisson,
+    _of_joints_given_twice,
     _of_times,
     _of_wavelength,
     _of_arrivals,

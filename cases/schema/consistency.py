@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from cases.schema.discretisation import check_discretisation, check_scheme
 from cases.schema.joint import ACROSS, JointLaw
 from cases.schema.plausible import INTACT, meant
-from cases.schema.segment import Segment, check_segments
+from cases.schema.segment import Segment, alone, check_segments, regions
 from cases.schema.shared_checks import (
     SNAP,
     check_fields,
@@ -18,6 +18,7 @@ from cases.schema.shared_checks import (
     check_time,
     rounded_up,
 )
+from cases.schema.tables import PAIRS, check_given_once
 from cases.schema.values import check_all, contradiction, is_extreme
 
 if TYPE_CHECKING:
@@ -68,12 +69,18 @@ def _check_receivers(scene: Scene) -> None:
 def _check_rock(scene: Scene) -> None:
     from cases.material.stiffness import equivalent_constants
 
-    intact, (modulus, _) = scene.rock.intact_modulus, equivalent_constants(scene.rock)
-    if intact is not None and intact <= modulus:
+    check_given_once("rock", scene.rock, "joints", scene.joints)
+    intact, given = scene.rock.intact_modulus, equivalent_constants(scene.rock)
+    if given and intact is not None and intact <= given[0]:
         raise contradiction(
             "rock.intact_modulus",
             intact,
-            f"must exceed the rock mass's equivalent modulus {modulus:.4g}{meant(intact, INTACT)}",
+            f"must exceed the rock mass's equivalent modulus {given[0]:.4g}{meant(intact, INTACT)}",
+        )
+    parts = (alone(scene, one) for one in regions(scene))
+    if any(not one.joints.normal_stiffness and not equivalent_constants(one.rock) for one in parts):
+        raise contradiction(
+            "rock", None, f"give exactly one pair: {PAIRS}; or joints.normal_stiffness"
         )
 
 

@@ -5,13 +5,14 @@ end, x and z across. The reference scene is that of Guo & Li (2002), Chin. J. Ro
 21(8), 1124-1129.
 """
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from pydantic import PrivateAttr, model_validator
+from pydantic import PrivateAttr, ValidationInfo, model_validator
 
 from cases.schema.consistency import check
 from cases.schema.damping import Damping
 from cases.schema.joint import Joints, SoftLayer
+from cases.schema.joints_at_places import spelled_out
 from cases.schema.pulse import NO_LOAD, Load, shortest_period
 from cases.schema.segment import Segment, regions
 from cases.schema.tables import (
@@ -55,6 +56,11 @@ class Scene(Table):
     kind: ClassVar[str] = "pillar"
     excavated: ClassVar[bool] = False  #: as of a `RockMass`
     _where: str = PrivateAttr(default="")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _joints_at_places(cls, tables: Any, info: ValidationInfo) -> Any:
+        return spelled_out(tables, info.context) if isinstance(tables, dict) else tables
 
     @model_validator(mode="after")
     def _fits_together(self) -> "Scene":

@@ -14,6 +14,7 @@ from cases.schema.tables import (
     SPEEDS,
     Pillar,
     Rock,
+    check_given_once,
     given_pairs,
     wrong_speeds,
 )
@@ -65,6 +66,7 @@ class Segment(Table):
             raise contradiction_here(key, getattr(self, key), f"give one pair or none: {PAIRS}")
         if wrong := wrong_speeds(self):
             raise contradiction_here("p_speed", self.p_speed, wrong)
+        check_given_once("{table}", self, "", self)
         return self
 
     @property
@@ -176,9 +178,9 @@ def _check_intact(table: str, one: Segment, scene: Scene) -> None:
         if not one.joints:
             raise contradiction(f"{table}.intact_modulus", None, "is required with joints = false")
         return
-    modulus = equivalent_constants(rock)[0]
-    if one.joints and rock.intact_modulus <= modulus:
-        allowed = f"must exceed the equivalent modulus {modulus:.4g}, or give joints = false"
+    given = None if one.normal_stiffness else equivalent_constants(rock)
+    if one.joints and given and rock.intact_modulus <= given[0]:
+        allowed = f"must exceed the equivalent modulus {given[0]:.4g}, or give joints = false"
         raise contradiction(f"{table}.intact_modulus", rock.intact_modulus, allowed)
 
 

@@ -29,7 +29,12 @@ class Pillar(Table):
 
     length: Positive  #: m
     side: Positive  #: m, side of the square section
-    block: Positive  #: m, block thickness d = joint spacing S
+    #: m, block thickness d = joint spacing S; with `joints`: at most, or absent
+    block: Positive
+    #: m, places of joints of `joints.normal_stiffness` in intact rock, which replace those at every
+    #: `block`; read as `segments` without joints and `soft_layers`. Blocks between them are equal;
+    #: absent `block`: 40 of them a wavelength of the load's highest frequency
+    joints: list[Positive] | None = None
 
     @model_validator(mode="after")
     def _whole_blocks(self) -> "Pillar":
@@ -58,24 +63,44 @@ class Pillar(Table):
 
 
 class Rock(Attenuating):
-    """The rock mass by its two wave speeds or by its two elastic constants, and the intact rock."""
+    """The rock mass by its two wave speeds, by its two elastic constants, or by the intact rock and
+    `joints.normal_stiffness`."""
 
     density: Positive  #: kg/m3
     p_speed: Positive | None = None  #: m/s, unbounded rock mass
     s_speed: Positive | None = None  #: m/s
     equivalent_modulus: Positive | None = None  #: Pa, E_eq of the rock mass
-    equivalent_poisson: Poisson | None = None  #: of the rock mass
+    #: of the rock mass; beside `joints.normal_stiffness` absent: intact_poisson
+    equivalent_poisson: Poisson | None = None
     intact_modulus: Positive | None = None  #: Pa, E of the blocks; for the jointed continuum
     intact_poisson: Poisson = 0.25  #: of the blocks
 
     @model_validator(mode="after")
     def _one_pair(self) -> "Rock":
-        given = given_pairs(self)
-        if sorted(map(len, given)) != [0, 2]:
-            raise contradiction("rock", given[0] + given[1], f"give exactly one pair: {PAIRS}")
+        speeds, constants = given_pairs(self)
+        if (speeds and constants) or len(speeds) == 1 or constants == [CONSTANTS[0]]:
+            raise contradiction("rock", speeds + constants, f"give exactly one pair: {PAIRS}")
         if wrong := wrong_speeds(self):
             raise contradiction("rock.p_speed", self.p_speed, wrong)
         return self
+
+
+def check_given_once(table: str, rock: Any, stiffness: str, law: Any) -> None:
+    """Refuse joints' stiffness beside the constants of the rock mass that it decides.
+
+    table, stiffness : the tables that hold them, as messages name them.
+    """
+    for key, twice in (
+        ("normal_stiffness", [*SPEEDS, CONSTANTS[0]]),
+        ("shear_stiffness", [*SPEEDS]),
+    ):
+        given = [f"{table}.{one}" for one in twice if getattr(rock, one) is not None]
+        if given and (value := getattr(law, key, None)) is not None:
+            allowed = (
+                f"decides what {' and '.join(given)} would decide: leave out "
+                f"{'these' if len(given) > 1 else 'this'}, or the joints' {key}"
+            )
+            raise contradiction(f"{stiffness}.{key}", value, allowed)
 
 
 def given_pairs(table: Table) -> list[list[str]]:

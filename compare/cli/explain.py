@@ -141,8 +141,10 @@ def _show_properties(p: Properties) -> None:
     passed = [
         f"{2 * b.impedance / (a.impedance + b.impedance):.4g} at {y:g} m"
         for (a, b), y in zip(pairwise(p.each), ends[1:-1], strict=True)
+        if a.impedance != b.impedance
     ]
-    say(f"long-wave stress transmission 2 Z2 / (Z1 + Z2): {', '.join(passed)}")
+    if passed:
+        say(f"long-wave stress transmission 2 Z2 / (Z1 + Z2): {', '.join(passed)}")
 
 
 def _rock_words(p: Properties) -> str:

@@ -52,7 +52,6 @@ PILLAR = Template(
         "joints.tension": "false",
         "joints.friction_angle": "30.0",
         "joints.cohesion": "1.0e5",
-        "joints.normal_stiffness": "9.0e9",
         "soft_layers.damping_ratio": "0.02",
         "soft_layers.thickness": "0.05",
         "load.quantity": "",

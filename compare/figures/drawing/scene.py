@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from cases.effects import is_spatial
+from cases.material.calibrate import calibrate
 from cases.material.face import face_points
 from cases.schema.scene import Scene
 from compare.figures.drawing import side, symbols
@@ -85,7 +86,7 @@ def _caption(groups: list[tuple[str, Scene]]) -> str:
     if rock.p_speed is not None:
         speeds = f"waves of {rock.p_speed:g} and {rock.s_speed:g} m/s"
     else:
-        speeds = f"a modulus of {(rock.equivalent_modulus or 0) / 1e9:.3g} GPa"
+        speeds = f"a modulus of {calibrate(scene).modulus / 1e9:.3g} GPa"
     words = law_words(joints) or "elastic"
     count = len(scene.segments)
     segments = f"; other rock in {count} segment{'s' * (count > 1)}" if count else ""

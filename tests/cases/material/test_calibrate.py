@@ -20,6 +20,8 @@ from cases.material.elastic import (
 )
 
 DENSITY, INTACT, SPACING = 2400.0, 8.64e10, 0.5
+CONSTANTS = {"density": DENSITY, "equivalent_modulus": 4.375e9, "equivalent_poisson": 0.42}
+CONSTANTS |= {"intact_modulus": INTACT}
 
 speeds = st.floats(10.0, 1e4)
 moduli = st.floats(1e6, 1e12)
@@ -96,8 +98,9 @@ def test_shear_stiffness_is_that_of_equation_7():
 
 
 def test_given_joint_stiffness_decides_the_modulus(scene_with):
-    p = calibrate(scene_with(**{"joints.normal_stiffness": 9.216e9}))
-    assert p.modulus == pytest.approx(4.375e9, rel=1e-3)
+    rock = {"density": DENSITY, "intact_modulus": INTACT}
+    p = calibrate(scene_with(rock=rock, **{"joints.normal_stiffness": 9.216e9}))
+    assert p.modulus == pytest.approx(4.375e9, rel=1e-3) and p.poisson == 0.25
 
 
 def test_damping_ratio_gives_the_dashpot_of_each_contact(scene_with):
@@ -136,15 +139,17 @@ def test_shear_stiffness_of_rock_that_is_not_given_is_the_joint_alone(scene_with
 
 def test_shear_stiffness_of_all_joints_decides_the_shear_modulus(scene_with):
     """As the normal stiffness does the modulus, so that quiet ends fit the chain."""
-    p = calibrate(scene_with(**{"joints.shear_stiffness": 2e9}))
+    p = calibrate(scene_with(rock=CONSTANTS, **{"joints.shear_stiffness": 2e9}))
     assert p.shear_stiffness == pytest.approx(p.shear_modulus / SPACING, rel=1e-15)
     assert p.shear_speed == np.sqrt(p.shear_modulus / DENSITY)
-    assert p.modulus == calibrate(scene_with()).modulus
+    assert p.modulus == calibrate(scene_with(rock=CONSTANTS)).modulus
 
 
 def test_a_soft_layer_inherits_the_shear_stiffness_of_the_joints(scene_with):
     layer = {"y": 20.0, "spacing_stiffness": 4e8}
-    p = calibrate(scene_with(soft_layers=[layer], **{"joints.shear_stiffness": 2e9}))
+    p = calibrate(
+        scene_with(rock=CONSTANTS, soft_layers=[layer], **{"joints.shear_stiffness": 2e9})
+    )
     assert p.shear_stiffness[39] == p.shear_stiffness[0]
 
 

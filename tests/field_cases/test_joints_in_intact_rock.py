@@ -1,0 +1,160 @@
+"""Three joints in intact rock under a half-sine blast, and rock that is given twice.
+
+A user knows the stiffness of his joints, where they are, and the intact rock. Behind each joint the
+wave is that before it times |T| = 2 kappa / sqrt(4 kappa^2 + 1), kappa = K_n / (Z omega), as long
+as what the joints reflect has not come back (Schoenberg, JASA 68, 1980).
+"""
+
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+import jointwave as jw
+from cases.errors import SceneError
+from cases.material.calibrate import calibrate
+from cases.warnings import warnings
+
+MODULUS, DENSITY, STIFFNESS = 6e10, 2600.0, 6e10
+SPEED = sqrt(MODULUS / DENSITY)
+ROCK = {"density": DENSITY, "intact_modulus": MODULUS}
+PILLAR = {"length": 30.0, "side": 0.5, "joints": [8.0, 15.0, 22.0]}
+BLAST = {"shape": "half-sine", "amplitude": 1e6, "period": 1e-3}
+LAYER = {"y": 15.0, "spacing_stiffness": 1e9}
+
+
+def three_joints(**tables):
+    """Return the tables of three joints in intact rock, some replaced; None leaves one out."""
+    own = {
+        "title": "three joints in intact rock",
+        "pillar": PILLAR,
+        "rock": ROCK,
+        "joints": {"normal_stiffness": STIFFNESS},
+        "load": BLAST,
+        "ends": {"end": "matched"},
+        "time": {"duration": 0.008},
+        "record": {"stress": [4.0, 8.5, 15.5, 22.5]},
+    }
+    return {key: value for key, value in (own | tables).items() if value is not None}
+
+
+@pytest.mark.parametrize(
+    ("engine", "within"), [("dem", 2e-3), ("continuum-jointed", 1e-4), ("jointed-bar", 1e-4)]
+)
+def test_each_joint_transmits_what_one_joint_does(engine, within):
+    """Spectra of the first pulse at each receiver, over that at the one before: in 2.4 ms from its
+    arrival the tail of a joint falls to exp(-2 K_n t / Z) = 1e-8, and reflections return after
+    2 (7 m - 0.5 m) / c = 2.7 ms. Of rigid blocks, 73 at 1 kHz, a joint transmits
+    (k d)^2 / 8 = 0.1 % differently."""
+    found = jw.simulate(jw.load(three_joints()), engine).stress
+    time, waves = found.time.values, found.values.reshape(4, -1)
+    frequency = np.array([200.0, 500.0, 1000.0])
+    kappa = STIFFNESS / (DENSITY * SPEED * 2 * pi * frequency)
+    spectra = []
+    for y, wave in zip(found.stress_y.values, waves, strict=True):
+        begin = y / SPEED
+        own = (time > begin - 1e-4) & (time < begin + (1.6e-3 if y == 4.0 else 2.4e-3))
+        spectra.append(np.abs(np.exp(-2j * pi * np.outer(frequency, time[own])) @ wave[own]))
+    passed = np.array(spectra[1:]) / spectra[:-1]
+    assert passed == pytest.approx(np.tile(2 * kappa / np.sqrt(4 * kappa**2 + 1), (3, 1)), within)
+
+
+def test_blocks_are_as_fine_as_the_load_or_the_user_wants():
+    """40 a wavelength of the load's highest frequency; of half the period half as long. A size that
+    divides no part is the most that blocks have."""
+    blocks = [
+        np.diff(calibrate(jw.load(three_joints(load=BLAST | {"period": t}))).contact_y).max()
+        for t in (1e-3, 0.5e-3)
+    ]
+    assert blocks[0] == pytest.approx(2 * blocks[1], rel=0.02)
+    given = calibrate(jw.load(three_joints(pillar=PILLAR | {"block": 0.6})))
+    sizes = np.diff(given.contact_y)
+    assert sizes.max() <= 0.6 and sizes.max() == pytest.approx(7 / 12)
+    assert set(given.joint_y[given.resolved]) == {8.0, 15.0, 22.0}
+
+
+def test_one_of_the_joints_may_have_a_law_of_its_own():
+    p = calibrate(jw.load(three_joints(soft_layers=[{"y": 15.0, "normal_stiffness": 1e10}])))
+    assert p.own_stiffness[p.resolved] == pytest.approx([STIFFNESS, 1e10, STIFFNESS])
+
+
+MASS = {"length": 30.0, "side": 0.5, "block": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        (
+            {"pillar": MASS, "rock": ROCK | {"p_speed": 2000.0, "s_speed": 1100.0}},
+            "joints.normal_stiffness = 60000000000.0: decides what rock.p_speed and rock.s_speed "
+            "would decide: leave out these",
+        ),
+        (
+            {
+                "pillar": MASS,
+                "rock": ROCK | {"equivalent_modulus": 1e10, "equivalent_poisson": 0.2},
+            },
+            "joints.normal_stiffness = 60000000000.0: decides what rock.equivalent_modulus would",
+        ),
+        (
+            {
+                "pillar": MASS,
+                "rock": ROCK | {"p_speed": 2000.0, "s_speed": 1100.0},
+                "joints": {"shear_stiffness": 1e9},
+            },
+            "joints.shear_stiffness = 1000000000.0: decides what rock.p_speed and rock.s_speed",
+        ),
+        (
+            {
+                "pillar": MASS,
+                "segments": [
+                    {"y": [0.0, 5.0], "p_speed": 2e3, "s_speed": 1e3, "normal_stiffness": 1e9}
+                ],
+            },
+            "segments[0].normal_stiffness = 1000000000.0: decides what segments[0].p_speed and",
+        ),
+        (
+            {"pillar": MASS, "joints": {"normal_stiffness": 1e9}, "soft_layers": [LAYER | LAYER]}
+            | {"soft_layers": [LAYER | {"normal_stiffness": 1e9}]},
+            "soft_layers.spacing_stiffness = 1000000000.0: give this or normal_stiffness",
+        ),
+        ({"pillar": MASS, "joints": None}, "rock: give exactly one pair"),
+        ({"rock": ROCK | {"p_speed": 5e3}}, "rock.p_speed = 5000.0: leave it out"),
+        ({"rock": {"density": 2600.0}}, "rock.intact_modulus: is required with pillar.joints"),
+        ({"joints": {}}, "joints.normal_stiffness: is required with pillar.joints"),
+        ({"pillar": PILLAR | {"joints": [8.0, 31.0]}}, "pillar.joints = [8.0, 31.0]: must be diff"),
+        ({"pillar": PILLAR | {"joints": []}}, "pillar.joints = []: must be different places"),
+        ({"pillar": PILLAR | {"joints": ["8"]}}, "pillar.joints[0] = '8': must be a number"),
+        ({"segments": [{"y": [0.0, 5.0]}]}, "segments: cannot be combined with pillar.joints"),
+        (
+            {"joints": {"normal_stiffness": 1e9, "damping_ratio": 0.1}},
+            "joints.damping_ratio = 0.1: needs a block between joints",
+        ),
+    ],
+)
+def test_rock_given_twice_or_not_at_all_is_refused(tables, words):
+    with pytest.raises(SceneError) as error:
+        jw.load(three_joints(**tables))
+    assert words in str(error.value)
+
+
+def test_stiffness_of_joints_and_intact_rock_are_the_rock_mass():
+    """1 / E_eq = 1 / E + 1 / (S K_n), (4): 3e10 Pa of rock and joints of 6e10 Pa each, 1 m apart;
+    Poisson's ratio is the intact rock's where no other is given."""
+    p = calibrate(jw.load(three_joints(pillar=MASS)))
+    assert p.modulus == pytest.approx(3e10) and p.poisson == 0.25
+    rock = ROCK | {"equivalent_poisson": 0.4}
+    assert calibrate(jw.load(three_joints(pillar=MASS, rock=rock))).poisson == 0.4
+
+
+def test_joints_of_two_sets_on_one_line_are_warned_of(one_joint):
+    """Every third joint of one set is every second of the other: 6, 12, ..., 30 m, and 0."""
+    law = {"dip": 0.0, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    sets = [law | {"name": "a", "spacing": 2.0}, law | {"name": "b", "spacing": 3.0, "dip": 180.0}]
+    found = warnings(jw.load(one_joint(joint_sets=sets)))
+    assert any("joint_sets[1] and joint_sets[0] have 6 joints in common" in line for line in found)
+    sets[1]["through"] = [0.0, 1.0]  # 1, 4, 7: those of even numbers
+    found = warnings(jw.load(one_joint(joint_sets=sets)))
+    assert any("have 5 joints in common" in line for line in found)
+    sets[1]["through"] = [0.0, 0.5]
+    assert not any("in common" in line for line in warnings(jw.load(one_joint(joint_sets=sets))))
