@@ -21,9 +21,10 @@ from cases.material.elastic import shear_modulus
 from cases.material.rigid_fit import nearest_stiffness
 from cases.material.rock import elastic_rock
 from cases.material.rock_mass import Stiffness, constrained_modulus
+from cases.partition.blocks import Partition
 from cases.partition.joints import direction_of
 from cases.partition.lattice import by_direction
-from cases.partition.regions import within
+from cases.partition.regions import rocks_of, within
 from cases.schema.joint_set import JointSet
 from cases.schema.plane import IntactRock
 from cases.schema.rock_mass import RockMass
@@ -117,6 +118,33 @@ def _share(scene: RockMass, sets: list[JointSet], real: int) -> RockShare:
         apart[k] = next(iter(distances.values()))
     compliance = np.array([[one.normal_compliance, one.shear_compliance] for one in fit.sets])
     return RockShare(normals, compliance, apart, direction, fit.left_over)
+
+
+def welds(
+    scene: RockMass,
+    partition: Partition,
+    further: list[JointSet],
+    blocks: np.ndarray,
+    start: np.ndarray,
+    normal: np.ndarray,
+    shift: np.ndarray,
+) -> Stiffness:
+    """Return the stiffness of contacts [c] between blocks [c, 2] that no joint set and no set of
+    cuts made.
+
+    start : a place on each contact [c, 2], m. normal : [c, 2]. shift : by which blocks j stand
+    elsewhere, across periodic sides [c, 2], m.
+    """
+    if not len(blocks):
+        return Stiffness(np.zeros(0), np.zeros(0))
+    reach, thickness = np.zeros((2, len(blocks), 2))
+    for side, block in enumerate(blocks.T):
+        off = start - side * shift - partition.centroid[block]
+        reach[:, side] = np.abs((off * normal).sum(axis=1))
+        pairs = zip(map(partition.corners_of, block), normal, strict=True)
+        thickness[:, side] = [np.ptp(corners @ n) for corners, n in pairs]
+    regions, shares = partition.region[blocks], rock_shares(scene, further)
+    return welded(shares, rocks_of(scene), regions, normal, reach, thickness)
 
 
 def welded(

@@ -92,10 +92,11 @@ def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
 def squared(scene: RockMass) -> bool:
     """Return whether cuts across joints of one direction are at right angles to them.
 
-    Triangles can have any Poisson's ratio (`material.rigid_fit`), rectangles none; but periodic
-    sides need lines along them.
+    Triangles can have any Poisson's ratio (`material.rigid_fit`), rectangles none; but the lines of
+    rectangles can run along periodic sides, which cut no block in two then.
     """
-    return scene.rock.intact_poisson == 0 or bool(scene.boundaries.sides("periodic"))
+    fit = all(one.dip % 90.0 == 0 for one in scene.joint_sets)
+    return scene.rock.intact_poisson == 0 or (fit and bool(scene.boundaries.sides("periodic")))
 
 
 def by_direction(sets: list[JointSet]) -> list[list[JointSet]]:

@@ -31,7 +31,8 @@ def pieces(cells: np.ndarray) -> np.ndarray:
     first = np.repeat(cells[:, 0], cells.shape[1])
     size = int(cells.max()) + 1
     graph = coo_matrix((np.ones(first.size, dtype=bool), (first, cells.ravel())), (size, size))
-    return connected_components(graph, directed=False)[1][cells[:, 0]]
+    found = connected_components(graph, directed=False)[1][cells[:, 0]]
+    return np.unique(found, return_inverse=True)[1].reshape(-1)
 
 
 def _corners_held_together(kind: str, cells: np.ndarray, cut: np.ndarray) -> coo_matrix:

@@ -15,12 +15,15 @@ class Part(NamedTuple):
     material : int array [cells], 0 the rock, k the k-th of `Mesh.layers` counted from 1; of
         a pillar of segments the segment, of a rock mass the k-th region, from 1.
     shifts : float array [copies, dim], m, added to x.
+    tied : int array [pairs, vertices]; of a vertex on one of a pair of periodic sides the vertex on
+        the other that moves alike, else -1. None without.
     """
 
     x: np.ndarray
     cells: np.ndarray
     material: np.ndarray
     shifts: np.ndarray
+    tied: np.ndarray | None = None
 
     @property
     def copies(self) -> int:

@@ -15,7 +15,7 @@ from cases.partition.periodic import Across, of_all
 from cases.partition.subdivision import NO_SET
 from continuum.mesh.blocks import BlockEdges, cells_along, has_four_corners, meshed_blocks
 from continuum.mesh.cells import FACETS
-from continuum.mesh.copies import parts_of_pieces
+from continuum.mesh.copies import moved_alike, parts_of_pieces
 from continuum.mesh.cut import pieces, split
 from continuum.mesh.description import Joints, Mesh, Side
 from continuum.mesh.segments import Segments, segments_of
@@ -25,8 +25,9 @@ class PlaneMesh(NamedTuple):
     """A mesh with the origin of its cells and joints.
 
     mesh : its joints are numbered by contact, first the partition's, then those across periodic
-    sides. block : int array [cells], of the partition. piece : int array [cells], of rock not cut
-    by joints. vertex : int array [cells, corners], distinct on the two sides of a joint.
+    sides, where rock that no joint cuts moves alike. block : int array [cells], of the partition.
+    piece : int array [cells], of rock not cut by joints. vertex : int array [cells, corners],
+    distinct on the two sides of a joint.
     """
 
     mesh: Mesh
@@ -63,7 +64,9 @@ def plane_mesh(
     cut[edges.cell[cuts], edges.facet[cuts]] = True
     whole, doubled = split(kind, x, cells, cut)
     piece = pieces(doubled)
-    parts, number = parts_of_pieces(whole, doubled, piece, partition.region[block] + 1)
+    tied = _tied(partition, across, segments, edges, whole, doubled, kind, cuts)
+    held = piece if tied is None else pieces(moved_alike(doubled, tied))
+    parts, number = parts_of_pieces(whole, doubled, held, partition.region[block] + 1, tied)
     edges = edges._replace(cell=number[edges.cell])
     sides = {
         name: Side(edges.cell[there], x[edges.vertex[there]])
@@ -86,15 +89,53 @@ def _joints(
 ) -> Joints:
     """Return the facet pairs of joints, by contact and along it: those of its block i on the left,
     of its block j on the right."""
-    own = np.flatnonzero(cuts)
+    left, right = _facing(partition, across, segments, edges, np.flatnonzero(cuts))
+    none = np.zeros((len(partition.contacts), 2))
+    shift = np.concatenate([none, *(np.tile(by, (len(c), 1)) for c, by, _ in across)])
+    joint = segments.contact[edges.segment[left]]
+    return Joints(joint, edges.cell[left], edges.cell[right], x[edges.vertex[left]], shift[joint])
+
+
+def _tied(
+    partition: Partition,
+    across: list[Across],
+    segments: Segments,
+    edges: BlockEdges,
+    x: np.ndarray,
+    cells: np.ndarray,
+    kind: str,
+    cuts: np.ndarray,
+) -> np.ndarray | None:
+    """Return the vertices that move alike across periodic sides, as `Part.tied` has them; None
+    without. x, cells : of the mesh with its joints cut."""
+    found = np.full((len(across), len(x)), -1)
+    last = len(partition.contacts)
+    for row, one in zip(found, across, strict=True):
+        first, last = last, last + len(one.contacts)
+        contact = segments.contact[edges.segment]
+        own = np.flatnonzero(~cuts & (first <= contact) & (contact < last))
+        sides = []
+        for some in _facing(partition, across, segments, edges, own):
+            vertex = np.take_along_axis(cells[edges.cell[some]], FACETS[kind][edges.facet[some]], 1)
+            along = np.argsort(x[vertex].sum(axis=2), axis=1)  # one coordinate varies
+            sides.append(np.take_along_axis(vertex, along, 1))
+        row[sides[0]] = sides[1]
+    return found if (found >= 0).any() else None
+
+
+def _facing(
+    partition: Partition,
+    across: list[Across],
+    segments: Segments,
+    edges: BlockEdges,
+    own: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return those of some edges that are of their contact's block i, and of its block j, each by
+    contact and along it."""
     contact = segments.contact[edges.segment[own]]
     blocks = of_all(partition, across, "blocks")
     is_left = (edges.block[own] == blocks[contact, 0]) & (
         segments.like[edges.segment[own]] == edges.segment[own]
     )
     order = np.lexsort((edges.number[own], contact))
-    left, right = (own[order][choice[order]] for choice in (is_left, ~is_left))
-    none = np.zeros((len(partition.contacts), 2))
-    shift = np.concatenate([none, *(np.tile(by, (len(c), 1)) for c, by, _ in across)])
-    joint = segments.contact[edges.segment[left]]
-    return Joints(joint, edges.cell[left], edges.cell[right], x[edges.vertex[left]], shift[joint])
+    return own[order][is_left[order]], own[order][~is_left[order]]

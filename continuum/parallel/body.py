@@ -47,7 +47,8 @@ def share_of(
     held, across = held_share(mesh, share, *asked)
     own = np.where(rank_of[:, None] == comm.rank, held.cells, -1)
     meeting = border(mesh, rank_of, order)
-    tied = border(mesh, rank_of, order, plane_wave) if plane_wave else meeting
+    alike = plane_wave or any(part.tied is not None for part in mesh.parts)
+    tied = border(mesh, rank_of, order, plane_wave, tied=True) if alike else meeting
     names = _names(held, own, across, tied)
     communicator = Communicator(comm, *names, held.mass.size, meeting)
     return held._replace(cells=own, communicator=communicator), across

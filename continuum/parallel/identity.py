@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from continuum.mesh.copies import moved_alike, tied_together
 from continuum.mesh.description import Mesh
 from continuum.parallel.partition import Copies, copies_of
 from continuum.parallel.serial import Pieces
@@ -21,10 +22,13 @@ class Border(NamedTuple):
     node: np.ndarray
 
 
-def border(mesh: Mesh, rank_of: np.ndarray, order: int, plane_wave: bool = False) -> Border:
+def border(
+    mesh: Mesh, rank_of: np.ndarray, order: int, plane_wave: bool = False, tied: bool = False
+) -> Border:
     """Return the border between the processes of a whole mesh, equal on all of them.
 
     rank_of : int array [cells]. plane_wave : whether all nodes of a copy at one height are tied.
+    tied : whether nodes across periodic sides are.
     """
     copies, joints = copies_of(mesh), mesh.joints
     is_there = np.zeros(rank_of.size, dtype=bool)
@@ -34,10 +38,11 @@ def border(mesh: Mesh, rank_of: np.ndarray, order: int, plane_wave: bool = False
     if plane_wave:
         cell = np.flatnonzero(is_there | cut)
         return Border(cell, _levels(mesh, copies, cell, order))
-    vertices = _vertices(mesh, copies, np.flatnonzero(cut))
+    ties = _ties(mesh, copies) if tied else None
+    vertices = moved_alike(_vertices(mesh, copies, np.flatnonzero(cut)), ties)
     is_there[np.flatnonzero(cut)[_meet_others(vertices, rank_of[cut])]] = True
     cell = np.flatnonzero(is_there)
-    return Border(cell, node_numbers(mesh.cell, order, _vertices(mesh, copies, cell)))
+    return Border(cell, node_numbers(mesh.cell, order, _vertices(mesh, copies, cell), ties))
 
 
 def _meet_others(vertices: np.ndarray, rank: np.ndarray) -> np.ndarray:
@@ -58,6 +63,13 @@ def _vertices(mesh: Mesh, copies: Copies, cell: np.ndarray) -> np.ndarray:
         here = copies.part[copy] == number
         found[here] = part.cells[(cell - copies.first[copy])[here]] + base[copy[here], None]
     return found
+
+
+def _ties(mesh: Mesh, copies: Copies) -> np.ndarray | None:
+    """Return what the vertices of all copies are tied to, numbered as `_vertices` does; None
+    without ties."""
+    sizes = np.array([len(part.x) for part in mesh.parts])[copies.part]
+    return tied_together([mesh.parts[k].tied for k in copies.part], np.cumsum(sizes) - sizes)
 
 
 def _levels(mesh: Mesh, copies: Copies, cell: np.ndarray, order: int) -> np.ndarray:

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cases.errors import SceneError
+from continuum.mesh.copies import tied_together
 from continuum.mesh.description import Joints, Mesh, Part
 
 #: Of the cells of one process: smaller copies are not divided. Many equal blocks share one
@@ -152,15 +153,19 @@ def _one_part(parts: list[Part]) -> Part:
         np.concatenate([part.cells + n for part, n in zip(parts, first, strict=True)]),
         np.concatenate([part.material for part in parts]),
         np.zeros_like(parts[0].shifts),
+        tied_together([part.tied for part in parts], first),
     )
 
 
 def _some_cells(part: Part, copy: int, some: np.ndarray, ghosts: np.ndarray, ghost: int) -> Part:
     """Return some cells of a copy as a part of their own."""
     used, cells = np.unique(part.cells[some], return_inverse=True)
+    if part.tied is not None:  # to vertices of cells that may be another process's
+        used, cells = np.arange(len(part.x)), part.cells[some]
     return Part(
         part.x[used],
         cells.reshape(-1, part.cells.shape[1]),
         np.where(ghosts, ghost, part.material[some]),
         part.shifts[copy : copy + 1],
+        part.tied,
     )

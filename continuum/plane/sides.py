@@ -109,7 +109,7 @@ def dashpots_on(
     own, share = body.freedom(points.node[:, None], np.arange(2)), np.zeros((2, body.mass.size))
     np.add.at(share[0], own, of_point[:, [0, 1], [0, 1]])
     np.add.at(share[1], own[:, 0], of_point[:, 0, 1])
-    whole, freedom = body.communicator.total(share), freedoms_of(body)
+    whole, freedom = body.communicator.total(share), np.unique(freedoms_of(body), axis=0)
     chosen = (whole[0, freedom] > 0).all(axis=1)
     if fixed is not None:
         chosen &= ~np.isin(freedom, fixed.freedom).any(axis=1)

@@ -33,7 +33,6 @@ def _beyond_medium(scene: RockMass) -> list[tuple[bool, str]]:
     found = [
         (not sets, "no joint set has a spacing: there is nothing to homogenise"),
         (scene.rock.quality_factor is not None, "the effective medium has no quality_factor"),
-        (bool(scene.boundaries.sides("periodic")), "its sides are not periodic"),
     ]
     for one in sets:
         for key in NONLINEAR:

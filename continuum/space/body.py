@@ -2,7 +2,7 @@
 
 Nodes are numbered copy by copy; freedoms as `continuum.space.operator.layout` puts them. Where a
 plane wave is asked for in two or three dimensions, all nodes of a piece at the same y share their
-freedoms, and the rock moves as if it were of infinite extent.
+freedoms, and the rock moves as if it were of infinite extent. So do nodes across periodic sides.
 """
 
 from collections.abc import Iterable, Sequence
@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, kron
 
-from continuum.mesh.description import Mesh
+from continuum.mesh.description import Mesh, Part
 from continuum.parallel.serial import SERIAL, Serial
 from continuum.space.elasticity import Piece, Rock, Section, discretise
-from continuum.space.nodes import levels
+from continuum.space.nodes import levels, node_numbers
 from continuum.space.operator import Layout, Operator, layout, operator, spread
 
 
@@ -105,7 +105,10 @@ def build_body(
     that stands once is kept as pairs of rows (`continuum.space.operator`).
     """
     pieces = [discretise(p, mesh.cell, order, materials, section, consistent) for p in mesh.parts]
-    numbers = [_heights(p) if plane_wave else np.arange(len(p.x)) for p in pieces]
+    numbers = [
+        _heights(piece) if plane_wave else _moving(part, piece, mesh.cell, order)
+        for part, piece in zip(mesh.parts, pieces, strict=True)
+    ]
     ties = [_tie(number, section.components) for number in numbers]
     places = layout([part.copies for part in mesh.parts], [tie.shape[1] for tie in ties])
 
@@ -174,6 +177,16 @@ def _heights(piece: Piece) -> np.ndarray:
     """Return for each node the number of its height within the piece."""
     y = piece.x[:, axis(piece.x.shape[1])]
     return levels(y, max(np.ptp(y), np.abs(piece.x).max()))
+
+
+def _moving(part: Part, piece: Piece, cell: str, order: int) -> np.ndarray:
+    """Return numbers of the nodes of a piece, equal where they move alike [nodes]."""
+    if part.tied is None:
+        return np.arange(len(piece.x))
+    label = np.empty(len(piece.x), dtype=np.int64)
+    label[piece.cells] = node_numbers(cell, order, part.cells, part.tied)
+    _, first, number = np.unique(label, return_index=True, return_inverse=True)
+    return np.argsort(np.argsort(first))[number.reshape(-1)]
 
 
 def _tie(number: np.ndarray, components: int) -> csr_matrix:

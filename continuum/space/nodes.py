@@ -20,11 +20,17 @@ def corner_shares(cell: str, order: int) -> np.ndarray:
     return compat.tabulate(cell, 1, compat.reference_element(cell, order).points)[0]
 
 
-def node_numbers(cell: str, order: int, cells: np.ndarray) -> np.ndarray:
+def node_numbers(
+    cell: str, order: int, cells: np.ndarray, tied: np.ndarray | None = None
+) -> np.ndarray:
     """Return numbers of the nodes of cells [cells, corners], equal for the same nodes, int array
-    [cells, nodes per cell]."""
+    [cells, nodes per cell]; tied : as in `Part`, for numbers that are equal where they move alike.
+    """
     share = np.rint(STEPS * corner_shares(cell, order)).astype(np.int64)
     around = np.where(share == 0, -1, cells[:, None])
+    for row in () if tied is None else tied:  # a side is straight: what it has between is on it
+        on_side = ((around < 0) | (row[around] >= 0)).all(axis=2, keepdims=True)
+        around = np.where(on_side & (around >= 0), row[around], around)
     turn = np.argsort(around, axis=2)
     keys = [np.take_along_axis(a, turn, axis=2) for a in (around, share + 0 * around)]
     return numbered(np.concatenate(keys, axis=2))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from cases.material.elastic import shear_modulus
-from cases.material.rigid_blocks import rock_shares, welded
+from cases.material.rigid_blocks import welds
 from cases.material.rock_mass import Stiffness, constrained_modulus
 from cases.partition.blocks import Partition
 from cases.partition.periodic import across_periodic, of_all
@@ -66,7 +66,8 @@ def links_of(scene: RockMass, partition: Partition, further: list[JointSet]) -> 
     cuts = np.flatnonzero(joint_set == NO_SET)
     column = np.concatenate([column, np.full(len(block), NO_SET)])
     column[column == NO_SET] = len(kinds) + np.arange(len(cuts) + len(block))
-    others = [_welds(scene, partition, further, cuts), _of_walls(scene, partition, block, reach)]
+    sides = pairs[cuts], start[cuts], normal[cuts], shift[cuts]
+    others = [welds(scene, partition, further, *sides), _of_walls(scene, partition, block, reach)]
     return Links(
         blocks=np.concatenate([pairs, np.stack([block, wall], axis=1)]),
         start=np.concatenate([start, edges.start[held]]),
@@ -100,25 +101,6 @@ def _columns(
     kinds, own = np.unique(rows[found], axis=0, return_inverse=True)
     column[found] = own.reshape(-1)  # numpy 2.0 gave it another shape
     return kinds, column
-
-
-def _welds(
-    scene: RockMass, partition: Partition, further: list[JointSet], cuts: np.ndarray
-) -> Stiffness:
-    """Return the stiffness of contacts of the partition outside all joint sets."""
-    if not len(cuts):
-        return Stiffness(np.zeros(0), np.zeros(0))
-    contacts = partition.contacts
-    normal, (reach, thickness) = contacts.normal[cuts], np.zeros((2, len(cuts), 2))
-    for side in (0, 1):
-        block = contacts.blocks[cuts, side]
-        off = contacts.start[cuts] - partition.centroid[block]
-        reach[:, side] = np.abs((off * normal).sum(axis=1))
-        pairs = zip(map(partition.corners_of, block), normal, strict=True)
-        thickness[:, side] = [np.ptp(corners @ n) for corners, n in pairs]
-    regions = partition.region[contacts.blocks[cuts]]
-    shares = rock_shares(scene, further)
-    return welded(shares, rocks_of(scene), regions, normal, reach, thickness)
 
 
 def _of_walls(

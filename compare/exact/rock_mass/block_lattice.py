@@ -14,12 +14,13 @@ import xarray as xr
 from cases.incident import enters, tractions
 from cases.material.contact_points import contact_points
 from cases.material.quiet_sides import impedances
-from cases.material.rigid_blocks import rigid_joints
+from cases.material.rigid_blocks import rigid_joints, welds
 from cases.material.rock_mass import Stiffness, inertia
 from cases.partition.blocks import Partition
 from cases.partition.locate import block_at
 from cases.partition.periodic import across_periodic
 from cases.partition.scene import block_count, partition_of
+from cases.partition.subdivision import NO_SET
 from cases.sampling import sample_times
 from cases.schema.pulse import shortest_period
 from cases.schema.rock_mass import RockMass
@@ -119,8 +120,11 @@ def _stiffness(scene: RockMass, partition: Partition):
     parts += [(one.contacts, one.shift) for one in across_periodic(scene, partition)]
     for contacts, shift in parts:
         points = contact_points(partition, contacts, scene.joint_sets, shift)
-        own = contacts.joint_set
+        own, rock = contacts.joint_set, contacts.joint_set == NO_SET
         stiffness = Stiffness(joints.normal[own], joints.shear[own])
+        pairs, start, normal = contacts.blocks[rock], contacts.start[rock], contacts.normal[rock]
+        weld = welds(scene, partition, [], pairs, start, normal, np.tile(shift, (len(pairs), 1)))
+        stiffness.normal[rock], stiffness.shear[rock] = weld
         total = total + stiffness_of(partition.count, contacts, points, stiffness)
     return total
 

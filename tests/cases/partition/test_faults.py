@@ -7,7 +7,7 @@ import pytest
 from cases.errors import SceneError
 from cases.partition.periodic import periodic_contacts
 from cases.partition.scene import block_count, cut, partition_bytes, partition_of
-from cases.partition.subdivision import NonConvex, PartitionError, Sliver
+from cases.partition.subdivision import NO_SET, NonConvex, PartitionError, Sliver
 from cases.read import load_variant
 
 SCENE = """\
@@ -197,12 +197,24 @@ def test_periodic_sides_of_other_rows_split_each_other(rectangle, joints):
     assert len(across) == 8 and across.length.max() == pytest.approx(0.5)
 
 
-def test_a_periodic_scene_needs_joints_along_its_sides(scene):
-    """Rows lie along the bottom and the top; no joint lies along the left and the right."""
-    both = {"boundaries": {"bottom": "periodic", "top": "periodic"}}
-    assert partition_of(scene(**both)).count == 6
-    said = line(scene(boundaries={"left": "periodic", "right": "periodic"}))
-    assert said.startswith("boundaries.left: is periodic, but no joint of one set runs along both")
+def test_a_periodic_scene_needs_faces_that_match(scene, rectangle, joints):
+    """Rows lie along the bottom and the top, and end at the left and the right, where each meets
+    its own end. Joints at 45 degrees climb 10 m: those 1 m apart meet, those 4 m apart end 2 m
+    from one another. An opening at the left leaves rock at the right that meets none."""
+    for sides in (("bottom", "top"), ("left", "right")):
+        assert partition_of(scene(boundaries=dict.fromkeys(sides, "periodic"))).count == 6
+    across = periodic_contacts(partition_of(scene()), "left")
+    assert len(across) == 6 and set(across.joint_set) == {NO_SET}
+    met = cut(rectangle(10.0, 12.0), [joints("steep", 45.0, spacing=0.5**0.5, through=[0.0, 0.5])])
+    assert len(periodic_contacts(met, "left")) == 13
+    missed = joints("steep", 45.0, spacing=8**0.5, through=[0.0, 1.0])
+    with pytest.raises(PartitionError, match=r"a joint of 'steep' ends there .* near \[0, 1\]"):
+        periodic_contacts(cut(rectangle(10.0, 12.0), [missed]), "left")
+    hole = [[0.0, 2.0], [2.0, 2.0], [2.0, 4.0], [0.0, 4.0]]
+    flat = joints("rows", 0.0, spacing=2.0)
+    open_at_left = cut(rectangle(10.0, 6.0, openings=[hole], non_convex="cut"), [flat])
+    with pytest.raises(PartitionError, match=r"faces none on the left, near \[10, 3\]"):
+        periodic_contacts(open_at_left, "left")
 
 
 def test_a_size_beyond_the_memory(scene, monkeypatch):

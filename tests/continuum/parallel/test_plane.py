@@ -22,8 +22,8 @@ WAVES = {"velocity", "displacement", "stress", "traction", "gap", "slip"}
 
 #: One joint that an S wave meets beyond the critical angle, of which the whole field is known; sets
 #: that slip, break and damp around a loaded opening, under in-situ stress; blocks at rest under
-#: their weight between periodic sides, of two rocks, whose base is shaken; the one joint under
-#: pressure, whose friction follows the rate of its slip.
+#: their weight between periodic sides, of two rocks, whose base is shaken, with joints along the
+#: sides in one of them; the one joint under pressure, whose friction follows the rate of its slip.
 SCENES = """
 title = "Rock that several processes share"
 
@@ -132,6 +132,7 @@ shear_stiffness = 8.0e9
 name = "cross"
 dip = 90.0
 spacing = 3.0
+regions = ["cover"]
 normal_stiffness = 2.0e10
 shear_stiffness = 8.0e9
 
