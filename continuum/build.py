@@ -53,7 +53,7 @@ def discretise(scene: Scene, model: str, dim: int | None = None, comm=None) -> D
     mesh = mesh_of(scene, p, model, motion)
     rock = materials(scene, p, model, mesh.layers)
     consistent = numerics.mass == "consistent"
-    asked = mesh, numerics.order, rock, motion.section, motion.plane_wave, consistent
+    asked = mesh, numerics.order, rock, motion.section, motion.plane_sections, consistent
     body, across = body_and_jumps(comm, *asked)
     if across is None:
         return Discrete(p, motion, rock, body, None, None)

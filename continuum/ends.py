@@ -111,7 +111,7 @@ def absorbers(
             _half_joint(own, z, c == along(body.section), dt)
             if sprung
             else HalfSpring(0.0, z, 0.0, 0.0, 0.0)
-            for c, z in enumerate(impedances(scene, own, model, body.dim, components))
+            for c, z in enumerate(impedances(own, components))
         ]
         yield face_area(body, getattr(body.mesh, place)), springs
 

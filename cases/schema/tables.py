@@ -134,8 +134,8 @@ class Scatter(Table):
 class Motion(Table):
     """Rotation of the blocks in scenes with motion across the axis."""
 
-    #: none: translation only, as in a plane wave through rock of large extent; small: rotation
-    #: vectors; finite: quaternions
+    #: none: translation only, plane sections with free sides (E along the pillar, G across it);
+    #: small: rotation vectors; finite: quaternions
     rotation: Literal["none", "small", "finite"] = "small"
 
 

@@ -27,7 +27,7 @@ def share_of(
     order: int,
     materials: Sequence[Rock],
     section: Section,
-    plane_wave: bool = False,
+    plane_sections: bool = False,
     consistent: bool = False,
     paired: bool = False,
 ) -> tuple[Body, Jumps | None]:
@@ -43,12 +43,12 @@ def share_of(
     arrive(comm)
     rank_of = comm.bcast(found)
     share = restrict(mesh, rank_of, comm.rank, together=paired)
-    asked = order, materials, section, plane_wave, consistent, paired
+    asked = order, materials, section, plane_sections, consistent, paired
     held, across = held_share(mesh, share, *asked)
     own = np.where(rank_of[:, None] == comm.rank, held.cells, -1)
     meeting = border(mesh, rank_of, order)
-    alike = plane_wave or any(part.tied is not None for part in mesh.parts)
-    tied = border(mesh, rank_of, order, plane_wave, tied=True) if alike else meeting
+    alike = plane_sections or any(part.tied is not None for part in mesh.parts)
+    tied = border(mesh, rank_of, order, plane_sections, tied=True) if alike else meeting
     names = _names(held, own, across, tied)
     communicator = Communicator(comm, *names, held.mass.size, meeting)
     return held._replace(cells=own, communicator=communicator), across

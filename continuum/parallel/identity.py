@@ -23,11 +23,11 @@ class Border(NamedTuple):
 
 
 def border(
-    mesh: Mesh, rank_of: np.ndarray, order: int, plane_wave: bool = False, tied: bool = False
+    mesh: Mesh, rank_of: np.ndarray, order: int, plane_sections: bool = False, tied: bool = False
 ) -> Border:
     """Return the border between the processes of a whole mesh, equal on all of them.
 
-    rank_of : int array [cells]. plane_wave : whether all nodes of a copy at one height are tied.
+    rank_of : int array [cells]. plane_sections : whether nodes of a copy at one height are tied.
     tied : whether nodes across periodic sides are.
     """
     copies, joints = copies_of(mesh), mesh.joints
@@ -35,7 +35,7 @@ def border(
     is_there[joints.right[rank_of[joints.left] != rank_of[joints.right]]] = True
     first, last = (f.reduceat(rank_of, copies.first) for f in (np.minimum, np.maximum))
     cut = (first != last)[copies.of(np.arange(rank_of.size))]
-    if plane_wave:
+    if plane_sections:
         cell = np.flatnonzero(is_there | cut)
         return Border(cell, _levels(mesh, copies, cell, order))
     ties = _ties(mesh, copies) if tied else None

@@ -1,8 +1,8 @@
 """A whole body of discretised rock: its pieces with all their copies, in one numbering.
 
-Nodes are numbered copy by copy; freedoms as `continuum.space.operator.layout` puts them. Where a
-plane wave is asked for in two or three dimensions, all nodes of a piece at the same y share their
-freedoms, and the rock moves as if it were of infinite extent. So do nodes across periodic sides.
+Nodes are numbered copy by copy; freedoms as `continuum.space.operator.layout` puts them. Where
+plane sections are asked for in two or three dimensions, all nodes of a piece at the same y share
+their freedoms. So do nodes across periodic sides.
 """
 
 from collections.abc import Iterable, Sequence
@@ -95,18 +95,18 @@ def build_body(
     order: int,
     materials: Sequence[Rock],
     section: Section,
-    plane_wave: bool = False,
+    plane_sections: bool = False,
     consistent: bool = False,
     paired: bool = False,
 ) -> Body:
     """Return the discretised rock of a mesh; `materials` are the rock and the meshed layers.
 
-    plane_wave : whether all nodes of a piece at one height move alike. paired : whether a last part
-    that stands once is kept as pairs of rows (`continuum.space.operator`).
+    plane_sections : whether all nodes of a piece at one height move alike. paired : whether a last
+    part that stands once is kept as pairs of rows (`continuum.space.operator`).
     """
     pieces = [discretise(p, mesh.cell, order, materials, section, consistent) for p in mesh.parts]
     numbers = [
-        _heights(piece) if plane_wave else _moving(part, piece, mesh.cell, order)
+        _heights(piece) if plane_sections else _moving(part, piece, mesh.cell, order)
         for part, piece in zip(mesh.parts, pieces, strict=True)
     ]
     ties = [_tie(number, section.components) for number in numbers]

@@ -30,12 +30,14 @@ TENSOR = ("interval", "quadrilateral", "hexahedron")
 
 class Material(NamedTuple):
     """Linear elastic rock: Young's modulus, Pa; Poisson's ratio; density, kg/m3; Kelvin-Voigt
-    time constant, s."""
+    time constant, s; whether it moves in plane sections that widen freely: axial stresses are E
+    times axial strains, as in a bar."""
 
     modulus: float
     poisson: float
     density: float
     time_constant: float = 0.0
+    plane_sections: bool = False
 
     @property
     def shear_modulus(self) -> float:
@@ -115,7 +117,8 @@ def discretise(
 def elastic_moduli(material: Rock, dim: int, components: int) -> np.ndarray:
     """Return C [components, dim, components, dim], Pa: stress C : grad u in a mesh of `dim`.
 
-    In dim 2 plane stress, but for `PlaneRock`; in dim 1 Young's modulus along the bar, G across it.
+    In dim 2 plane stress, but for `PlaneRock`; in dim 1 and in plane sections Young's modulus along
+    every axis, and G in shear.
     """
     if isinstance(material, PlaneRock):
         return tensor(material.stiffness)
@@ -124,8 +127,11 @@ def elastic_moduli(material: Rock, dim: int, components: int) -> np.ndarray:
         moduli = [material.modulus] if components == 1 else [shear, material.modulus, shear]
         return np.diag(moduli)[:, None, :, None]
     lame, one = lame_constants(material, dim)[0], np.eye(dim)
-    turned = np.einsum("ab,ij->aibj", one, one) + np.einsum("aj,ib->aibj", one, one)
-    return lame * np.einsum("ai,bj->aibj", one, one) + shear * turned
+    turned = shear * (np.einsum("ab,ij->aibj", one, one) + np.einsum("aj,ib->aibj", one, one))
+    if material.plane_sections:
+        turned[(np.arange(dim),) * 4] = material.modulus
+        return turned
+    return lame * np.einsum("ai,bj->aibj", one, one) + turned
 
 
 def lame_constants(material: Material, dim: int) -> tuple[float, float]:

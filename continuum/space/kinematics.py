@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 from cases.effects import is_spatial
 from cases.errors import SceneError
 from cases.material.calibrate import Properties, mechanisms_of
-from cases.material.elastic import equivalent_modulus
 from cases.schema.scene import Scene
 from cases.schema.segment import alone, regions
 from continuum.space.elasticity import Material, Section
@@ -21,11 +19,11 @@ MODELS = ("jointed", "equivalent")
 
 class Kinematics(NamedTuple):
     """dim : of the mesh. section : components of motion, and what turns an integral over the mesh
-    into one over the rock. plane_wave : whether all of a section moves alike."""
+    into one over the rock. plane_sections : whether all of a section moves alike."""
 
     dim: int
     section: Section
-    plane_wave: bool
+    plane_sections: bool
 
     @property
     def shears(self) -> bool:
@@ -37,10 +35,10 @@ def kinematics(scene: Scene, dim: int | None = None) -> Kinematics:
     """Return how a scene moves; `dim` overrules numerics.continuum.dim."""
     dim = dim or scene.numerics.continuum.dim or least_dimension(scene)
     area, side = scene.pillar.area, scene.pillar.side
-    plane_wave = scene.motion.rotation == "none" and dim > 1
+    plane_sections = scene.motion.rotation == "none" and dim > 1
     if dim == 1:
         return Kinematics(1, Section(3 if is_spatial(scene) else 1, area), False)
-    return Kinematics(dim, Section(dim, side if dim == 2 else 1.0), plane_wave)
+    return Kinematics(dim, Section(dim, side if dim == 2 else 1.0), plane_sections)
 
 
 def least_dimension(scene: Scene) -> int:
@@ -84,6 +82,7 @@ def materials(scene: Scene, p: Properties, model: str, layers: tuple[int, ...]) 
     Rock with a quality factor has its unrelaxed modulus and no dashpots: those are of joints alone.
     """
     found, relaxes = [], mechanisms_of(scene, model)
+    sections = scene.motion.rotation == "none"
     for one, region in zip(p.each, regions(scene), strict=True):
         modulus, poisson = one.modulus, one.poisson
         if model == "jointed":
@@ -92,7 +91,7 @@ def materials(scene: Scene, p: Properties, model: str, layers: tuple[int, ...]) 
         eta = one.time_constant or 0.0
         if relaxes is not None:
             modulus, eta = modulus * relaxes.unrelaxed, 0.0
-        found.append(Material(modulus, poisson, one.density, eta))
+        found.append(Material(modulus, poisson, one.density, eta, sections))
     thickness = layer_thickness(scene, p)
     etas = p.joint_time_constant
     for joint in layers:
@@ -127,28 +126,10 @@ def refuse(scene: Scene | RockMass, model: str, dim: int | None) -> None:
         raise SceneError(where, "dim", dim, "must be 1, 2 or 3")
 
 
-def impedances(scene: Scene, p: Properties, model: str, dim: int, components: int) -> list[float]:
+def impedances(p: Properties, components: int) -> list[float]:
     """Return rho c (Pa s/m) of the rock mass for every component of the motion: what absorbs.
 
-    Along the pillar that of the bar, or of the P wave where a plane wave keeps the rock from
-    widening; across it that of the S wave.
+    Along the pillar that of the bar, whose sides are free; across it that of the S wave.
     """
-    along = p.impedance
-    if dim > 1 and scene.motion.rotation == "none":
-        along = sqrt(p.density * _confined_modulus(scene, p, model, dim))
-    return (
-        [along] if components == 1 else [p.shear_impedance, along, p.shear_impedance][:components]
-    )
-
-
-def _confined_modulus(scene: Scene, p: Properties, model: str, dim: int) -> float:
-    """Return the modulus (Pa) of laterally confined rock mass: in plane stress along x only."""
-
-    def confined(modulus: float, nu: float) -> float:
-        return modulus / (1 - nu**2 if dim == 2 else (1 + nu) * (1 - 2 * nu) / (1 - nu))
-
-    if model == "equivalent":
-        return confined(p.modulus, p.poisson)
-    assert p.intact_modulus is not None
-    intact = confined(p.intact_modulus, scene.rock.intact_poisson)
-    return equivalent_modulus(p.regular_own_stiffness, intact, p.spacing)
+    across, along = p.shear_impedance, p.impedance
+    return [along] if components == 1 else [across, along, across][:components]

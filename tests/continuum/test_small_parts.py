@@ -8,11 +8,9 @@ import pytest
 from scipy.sparse import csr_matrix
 
 from cases.material.calibrate import calibrate
-from cases.material.elastic import equivalent_modulus
 from continuum.explicit.critical import critical_step
 from continuum.joints import RIGID, resolved_joints
 from continuum.space import compat
-from continuum.space.kinematics import impedances
 from continuum.space.nodes import levels
 
 
@@ -75,23 +73,6 @@ def test_layer_in_homogenised_rock_has_what_it_yields_more_than_a_joint(pillar):
     # Along the axis alone the second one is like the others, and the third cannot slide.
     assert resolved_joints(p, "equivalent", False).number.tolist() == [19]
     assert resolved_joints(p, "equivalent", True, meshed=(19,)).number.tolist() == [39, 59]
-
-
-@pytest.mark.parametrize("model", ["jointed", "equivalent"])
-def test_quiet_ends_of_a_plane_wave_have_the_impedance_of_rock_that_cannot_widen(pillar, model):
-    """M = E / (1 - nu^2) in plane stress, E (1 - nu) / ((1 + nu) (1 - 2 nu)) in space; of jointed
-    rock that of intact rock and joints in series; across, that of the S wave."""
-    scene = pillar(motion__rotation="none")
-    p, rock = calibrate(scene), scene.rock
-    equivalent = model == "equivalent"
-    e, nu = (p.modulus, p.poisson) if equivalent else (p.intact_modulus, rock.intact_poisson)
-    for dim, confined in ((2, e / (1 - nu**2)), (3, e * (1 - nu) / ((1 + nu) * (1 - 2 * nu)))):
-        if not equivalent:
-            confined = equivalent_modulus(p.regular_own_stiffness, confined, p.spacing)
-        found = impedances(scene, p, model, dim, dim)
-        assert found[1] == pytest.approx(sqrt(p.density * confined), rel=1e-14)
-        assert found[0] == found[-1 if dim == 3 else 0] == p.shear_impedance
-    assert impedances(scene, p, model, 1, 3) == [p.shear_impedance, p.impedance, p.shear_impedance]
 
 
 def test_the_form_compiler_leaves_logging_as_it_was():

@@ -21,10 +21,10 @@ KINDS += [(3, "hexahedron", 4), (3, "simplex", 2), (3, "simplex", 1)]
 def whole(pillar):
     """Return a function that gives the body of a pillar with some of its joints, in one process."""
 
-    def build(dim, cell, order, interfaces, plane_wave=False):
+    def build(dim, cell, order, interfaces, plane_sections=False):
         p = calibrate(pillar(pillar__length=2.0, record={"stress": [0.5]}, soft_layers=[]))
         mesh = pillar_mesh(p, dim, cell, 2, 2, np.array(interfaces, dtype=np.int64))
-        return build_body(mesh, order, [ROCK], Section(dim, 0.25), plane_wave)
+        return build_body(mesh, order, [ROCK], Section(dim, 0.25), plane_sections)
 
     return build
 
@@ -59,11 +59,11 @@ def test_nodes_are_the_same_where_the_whole_body_says_so(dim, cell, order, seed,
 
 @pytest.mark.parametrize(("dim", "cell", "order"), [k for k in KINDS if k[0] > 1])
 @pytest.mark.parametrize("interfaces", [[], [0, 1, 2]], ids=["one piece", "blocks"])
-def test_a_plane_wave_ties_all_nodes_at_one_height_of_a_piece(dim, cell, order, interfaces, whole):
+def test_plane_sections_tie_all_nodes_at_one_height_of_a_piece(dim, cell, order, interfaces, whole):
     """Names are those of the freedoms that the body ties them to, whoever has the cells."""
-    body = whole(dim, cell, order, interfaces, plane_wave=True)
+    body = whole(dim, cell, order, interfaces, plane_sections=True)
     rank_of = ranks(body, 5, 2)
-    found = border(body.mesh, rank_of, order, plane_wave=True)
+    found = border(body.mesh, rank_of, order, plane_sections=True)
     freedom = body.first[body.cells[found.cell]].ravel()
     pairs = np.unique(np.stack([freedom, found.node.ravel()], axis=1), axis=0)
     assert np.unique(pairs[:, 0]).size == np.unique(pairs[:, 1]).size == len(pairs)
