@@ -27,6 +27,7 @@ from cases.schema import joint_set as schema
 from cases.schema.rock_mass import RockMass
 
 DIRECTIONS = 36  # in which speeds are looked at
+RIGID = 1e-9  # of the largest compliance: what bodies without any have
 PAIRS = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))}
 
 
@@ -116,6 +117,18 @@ def stiffness(rock: ElasticRock, sets: list[JointSet], dimension: int = 2) -> np
     """Return C of the effective medium in Voigt's form, Pa: [3, 3] or [6, 6]."""
     scale = _scale(dimension)
     return np.linalg.inv(compliance(rock, sets, dimension)) / np.outer(scale, scale)
+
+
+def joints_alone(sets: list[JointSet], dimension: int = 2) -> np.ndarray:
+    """Return C of rigid bodies between joints in Voigt's form, Pa; enormous for strains that none
+    of the sets takes on."""
+    scale = _scale(dimension)
+    S = sum(
+        one.normal_compliance * opening(one.normal) + one.shear_compliance * sliding(one.normal)
+        for one in sets
+    )
+    S = S + RIGID * np.abs(S).max() * np.eye(len(scale))
+    return np.linalg.inv(S) / np.outer(scale, scale)
 
 
 def christoffel(C: np.ndarray, directions: np.ndarray) -> np.ndarray:

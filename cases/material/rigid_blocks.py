@@ -16,7 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from cases.errors import SceneError
-from cases.material.effective_medium import intact
+from cases.material import effective_medium
+from cases.material.effective_medium import compliant, intact, joints_alone
 from cases.material.elastic import shear_modulus
 from cases.material.rigid_fit import nearest_stiffness
 from cases.material.rock import elastic_rock
@@ -93,6 +94,15 @@ def rigid_joints(
     with np.errstate(divide="ignore"):
         normal, shear = (1 / (1 / own[kinds[:, 0]] + excess)).T
     return RigidJoints(normal, shear, excess.T, kinds, max(one.left_over for one in shares))
+
+
+def long_wave_stiffness(scene: RockMass, further: list[JointSet]) -> np.ndarray:
+    """Return C (Pa) of long waves through rigid blocks of the rock of no region, in Voigt's form;
+    enormous for strains that no joint gives way to."""
+    share = rock_shares(scene, further)[-1]
+    own = compliant(within(scene, scene.joint_sets)[-1].joint_sets)
+    excess = zip(share.normals, share.compliance, strict=True)
+    return joints_alone([*own, *(effective_medium.JointSet(n, *map(float, z)) for n, z in excess)])
 
 
 def rock_shares(scene: RockMass, further: list[JointSet]) -> list[RockShare]:

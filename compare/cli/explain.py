@@ -14,6 +14,7 @@ from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
 from cases.size import spoken
+from compare.cli.speeds import Speeds, speed_facts, speed_words, speeds_of
 from compare.cli.terminal import print_json, say, show_table
 from compare.engines import ENGINES, solver
 from compare.experiments.cost import timings
@@ -33,7 +34,8 @@ class Explanation(NamedTuple):
 
     properties : of a pillar. blocks : of a rock mass, see `partition_facts`. runs : of each engine
     that applies, with its step; failures : why one that applies could not run. references : what
-    each engine is held against; None where nothing checks it independently. block_step,
+    each engine is held against; None where nothing checks it independently. speeds : of its waves
+    in each engine, m/s. block_step,
     with_everything : what a step of one rigid block of a pillar costs here, of this scene and with
     every effect, ns; None where it was never measured.
     """
@@ -46,6 +48,7 @@ class Explanation(NamedTuple):
     failures: dict[str, str]
     answers: dict[str, Answer]
     references: dict[str, Reference | None]
+    speeds: dict[str, Speeds]
     block_step: float | None
     with_everything: float | None
 
@@ -65,7 +68,7 @@ def explanation(scene: AnyScene, measured: bool = False) -> Explanation:
     else:
         properties, blocks, cost = None, partition_facts(scene), (None, None)
     runs, failures = _prepared(scene, engines)
-    about = effects(scene), runs, failures, answers, references
+    about = effects(scene), runs, failures, answers, references, speeds_of(scene, list(runs))
     return Explanation(scene, properties, blocks, *about, *cost)
 
 
@@ -103,6 +106,8 @@ def show_explanation(found: Explanation, as_json: bool) -> None:
         _show_properties(found.properties)
     if found.blocks is not None:
         show_partition(found.blocks)
+    for line in speed_words(found.scene, found.speeds):
+        say(line)
     effects = [[e.name, "yes" if e.active else "no", e.reason] for e in found.effects]
     show_table(["effect", "computed", "because"], effects)
     steps = [
@@ -187,6 +192,7 @@ def _explanation_facts(found: Explanation) -> dict[str, Any]:
             for name, r in found.runs.items()
         ],
         "cannot_run": found.failures,
+        "speeds": speed_facts(found.speeds),
         "nanoseconds_per_block_step": found.block_step,
         "nanoseconds_with_everything": found.with_everything,
         "references": {k: r._asdict() if r else None for k, r in found.references.items()},

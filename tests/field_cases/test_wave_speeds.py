@@ -6,6 +6,8 @@ A bar with free sides has sqrt(E / rho) = 162.65 m/s, a plate in plane stress be
 get (Guo & Li 2002, eq. 4 to 6), so that all engines are the bar, in every dimension.
 """
 
+import json
+
 import numpy as np
 import pytest
 
@@ -90,3 +92,61 @@ def test_particle_velocity_is_the_stress_over_the_impedance(column, solver, dire
         scene = jw.load(column, changes=changes | own)
         found = middle_speed(scene, solver, direction, speed)
         assert found == pytest.approx(STRESS / (RHO * speed), rel=0.01)
+
+
+def speeds(jointwave, path):
+    """Return the speeds that `explain` prints of each engine."""
+    return json.loads(jointwave("explain", path, "--json").out)["speeds"]
+
+
+def test_explain_prints_the_speeds_of_a_pillar(jointwave, column):
+    """The bar of E_eq and its shear in all engines; between joints the bar of intact rock, whose E
+    is twice that and whose G is 2 E / 2 (1 + 0.2)."""
+    found = speeds(jointwave, column)
+    assert found.keys() == {"dem", "continuum-jointed", "continuum-equivalent"}
+    for own in found.values():
+        assert own["long waves"] == pytest.approx([BAR, SHEAR], rel=1e-12)
+    intact = [np.sqrt(2 * E / RHO), np.sqrt(2 * E / 2.4 / RHO)]
+    assert found["continuum-jointed"]["between joints"] == pytest.approx(intact, rel=1e-12)
+
+
+ROCK_MASS = """
+title = "Two sets"
+[domain]
+size = [4.0, 4.0]
+[rock]
+density = 1000.0
+intact_modulus = 2.5e9
+intact_poisson = 0.25
+[[joint_sets]]
+name = "flat"
+dip = 0.0
+spacing = 1.0
+normal_stiffness = 2.0e9
+shear_stiffness = 1.0e9
+[[joint_sets]]
+name = "steep"
+dip = 90.0
+spacing = 1.0
+normal_stiffness = 2.0e9
+shear_stiffness = 1.0e9
+[time]
+duration = 0.1
+[record]
+points = [[2.0, 2.0]]
+"""
+
+
+def test_explain_prints_the_speeds_of_a_rock_mass(jointwave, tmp_path):
+    """lambda = mu = 1 GPa, rho = 1000: sqrt(3) and 1 km/s between the joints. Two orthogonal sets
+    of K_n = 2, K_s = 1 GPa/m, 1 m apart: 1.08012 and 0.57735 km/s along x and y (Schoenberg and
+    Sayers 1995). Rigid blocks have no Poisson effect: 1 / C_11 = 1/3 + 1/2 gives sqrt(1.2) =
+    1.09545 km/s, and both sets slip, 1 / C_66 = 1 + 1 + 1."""
+    (tmp_path / "mass.toml").write_text(ROCK_MASS)
+    found = speeds(jointwave, tmp_path / "mass.toml")
+    rock = found["continuum-jointed"]
+    assert rock["intact rock"] == pytest.approx([1e3 * 3**0.5, 1e3], rel=1e-9)
+    for axis in ("x", "y"):
+        name = f"long waves along {axis}"
+        assert rock[name] == pytest.approx([1080.12, 577.35], abs=0.01)
+        assert found["dem"][name] == pytest.approx([1095.45, 577.35], abs=0.01)
