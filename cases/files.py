@@ -3,13 +3,11 @@
 The memory that a file needs is estimated from its size before it is read.
 """
 
-import io
 import json
 import re
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from itertools import count
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -21,9 +19,7 @@ LONG_KEY = re.compile(r"""(?<![\w"'-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*
 #: Bytes of memory at most for each byte of a file: as text of four bytes a character, with its
 #: copies, and as what TOML and JSON make of it: a table for each `a=1`, a list for each `[],`.
 TEXT, TOML, JSON = 12, 120, 40
-NUMBER = 64  # bytes of memory for each number of a table, with its copies
 SMALL = 10_000_000  # bytes: smaller files are always read
-LONGEST_LINE = 200_000  # characters, of a table
 
 
 def read_bytes(path: Path, largest: int, times: int) -> bytes:
@@ -48,23 +44,6 @@ def read_text(path: Path, largest: int, times: int = TEXT) -> str:
         raise ValueError("is not UTF-8 text") from None
 
 
-def read_lines(path: Path, largest: int) -> Iterator[tuple[int, str]]:
-    """Yield number and text of each line of a table of at most `largest` bytes; raises ValueError.
-
-    The numbers of the table are counted, and refused beyond the memory, before the first.
-    """
-    with _opened(path, largest, 0) as file:
-        _refuse_beyond_memory(NUMBER * _numbers_at_most(file, largest))
-        text = io.TextIOWrapper(file, "utf-8-sig")
-        for number in count(1):
-            line = text.readline(LONGEST_LINE)
-            if not line:
-                return
-            if len(line) == LONGEST_LINE:
-                raise ValueError(f"line {number} is longer than {LONGEST_LINE:,} characters")
-            yield number, line.rstrip("\n")
-
-
 @contextmanager
 def _opened(path: Path, largest: int, times: int) -> Iterator[BinaryIO]:
     """Open a regular file whose size is allowed; what is wrong is a ValueError."""
@@ -81,8 +60,6 @@ def _opened(path: Path, largest: int, times: int) -> Iterator[BinaryIO]:
             yield file
     except OSError as error:
         raise ValueError(f"cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise ValueError("is not UTF-8 text") from None
 
 
 def _too_large(largest: int) -> str:
@@ -92,18 +69,6 @@ def _too_large(largest: int) -> str:
 def _refuse_beyond_memory(size: float) -> None:
     if size > max(memory(), SMALL):
         raise ValueError(f"would need about {spoken(size)} of memory; {spoken(memory())} available")
-
-
-def _numbers_at_most(file: BinaryIO, largest: int) -> int:
-    """Return a bound on the numbers in a table, from its separators; rewind it."""
-    found = seen = 0
-    while part := file.read(1 << 20):
-        seen += len(part)
-        if seen > largest:
-            raise ValueError(_too_large(largest))
-        found += sum(map(part.count, (b"\n", b"\r", b",", b";", b"\t")))
-    file.seek(0)
-    return found + 1
 
 
 def read_toml(path: Path, largest: int) -> dict[str, Any]:

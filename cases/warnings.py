@@ -107,7 +107,8 @@ def _of_table(table: str, pulse: Pulse, end: float, crossings: float) -> Iterato
     last, file = float(history.time[-1]), pulse.file
     peak = float(history.time[np.abs(history.stress).argmax()])
     late = peak > end
-    if (late and last > LATE * end and last / 1e3 <= end) or STATIC < crossings < 1e3 * STATIC:
+    slow = STATIC < crossings < 1e3 * STATIC
+    if not pulse.timed and (slow or look_like_milliseconds(history.time, history.stress, end)):
         why = (
             f"the scene ends at {end:g} s"
             if late
@@ -122,6 +123,13 @@ def _of_table(table: str, pulse: Pulse, end: float, crossings: float) -> Iterato
             f"{table}.file = {file!r} peaks at {peak:g} s, after the end of the scene at "
             f"time.duration = {end:g} s"
         )
+
+
+def look_like_milliseconds(time: np.ndarray, values: np.ndarray, end: float) -> bool:
+    """Return whether a history peaks far after the end of a scene (s), and with its times as
+    milliseconds would lie within it."""
+    last = time[-1]
+    return bool(time[np.abs(values).argmax()] > end and LATE * end < last <= 1e3 * end)
 
 
 def _of_wavelength(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:

@@ -673,14 +673,17 @@ MISTAKES |= {name: (STIFFNESS, f"{STIFFNESS}\n{lines}", w) for name, (lines, w) 
 HISTORIES = {
     "empty history": ("", ["at least two rows"]),
     "header only": ("time,stress\n", ["at least two rows"]),
-    "history of one row": ("0,0\n", ["at least two rows"]),
-    "unsorted history": ("0,0\n2,1\n1,0\n", ["increasing times", "line 3"]),
-    "a time twice": ("s,Pa\n0,0\n0,1\n", ["increasing times", "line 3"]),
-    "three columns": ("0,0,0\n1,1,1\n", ["two numbers per line", "line 1"]),
-    "semicolons": ("0;0\n1;1\n", ["at least two rows"]),
-    "text in a history": ("0,0\n1,high\n", ["two numbers per line", "line 2"]),
-    "NaN in a history": ("# blast\n0,0\n1,nan\n", ["finite numbers", "line 3"]),
-    "binary history": (b"\x93NUMPY\xff\x00", ["not UTF-8"]),
+    "history of one row": ("0,0\n", ["at least 2 samples, not 1"]),
+    "unsorted history": ("0,0\n2,1\n1,0\n", ["line 3: time = 1", "later than", "2"]),
+    "a time twice": ("s,Pa\n0,0\n0,1\n", ["line 3: time = 0", "is repeated"]),
+    "three columns": ("0,0,0\n1,1,1\n", ["two columns", "not 3"]),
+    "a column short": ("0;0\n1\n2;1\n", ["line 2", "2 numbers", "not 1"]),
+    "an empty cell": ("0;0\n1;\n2;1\n", ["line 2: value = nan or empty", "finite number"]),
+    "a unit of another quantity": ("t,v (mm/s)\n0,0\n1,1\n", ["unit of v = 'mm/s'", "MPa"]),
+    "text in a history": ("0,0\n1,high\n", ["line 2: value = 'high'", "must be a number"]),
+    "NaN in a history": ("# blast\n0,0\n1,nan\n", ["line 3: value = 'nan'", "a number"]),
+    "binary history": (b"\x93NUMPY\xff\x00", ["neither text (line 1", "nor a seismogram in SAC"]),
+    "history in Latin-1": ("Zeit (\xb5s),p\n0,0\n1,1\n".encode("latin-1"), ["not UTF-8 text"]),
 }
 
 OVERRIDES = {

@@ -21,11 +21,11 @@ import cases
 from cases.errors import SceneError, printable
 from cases.files import is_number
 from cases.read import load, load_variant
+from cases.records import read_columns
 from cases.schema.values import CONTROL
 from compare.cli import program, start, terminal
 from compare.experiments.study.study import load as load_study
 from compare.figures.export import save
-from compare.misfit.external_files import read_columns
 from compare.runs.checkpoint.lock import locked
 from compare.runs.jobs import plan
 from compare.runs.output import refuse_foreign, write, write_csv, write_folder
@@ -72,6 +72,7 @@ DOORS = {
         "compare/report/section.py",
     ),  # what has just been written or read
     *("compare/report/peers.py", "compare/experiments/sweep/diagram.py"),  # of a text in memory
+    "cases/records.py",  # the same
     "compare/cli/pytest_plugin.py",  # once its size is known
 }
 HISTORY = "0,0\n1,1\n"

@@ -17,12 +17,12 @@ import xarray as xr
 import cases
 from cases.errors import SceneError
 from cases.gmsh_file import read_tagged
-from cases.schema.history import History
+from cases.records import read_columns, read_history
 from cases.size import LIMIT, memory, refuse_beyond_memory, waveform_bytes
 from compare.engines import solve
 from compare.exact.bar import images
 from compare.experiments.study.measure import PointRow
-from compare.misfit.external_files import read_columns
+from compare.misfit.external_netcdf import read_netcdf
 from compare.misfit.places import COMPONENT_DIMENSIONS, QUANTITIES
 from compare.report import peers
 from compare.runs.checkpoint.files import Checkpoints
@@ -191,10 +191,10 @@ def test_a_large_file_of_curves_is_refused(tmp_path, limit):
     path = tmp_path / "run.nc"
     time = np.arange(20_000.0)
     xr.Dataset({"stress": ("time", time)}, {"time": time}).to_netcdf(path, engine="scipy")
-    assert read_columns(path).time.values.size == 20_000
+    assert read_netcdf(path, 3).time.values.size == 20_000
     limit(1e-4)
-    with pytest.raises(SceneError, match=r"cannot be read as NetCDF: .*would need"):
-        read_columns(path)
+    with pytest.raises(ValueError, match=r"cannot be read as NetCDF: .*would need"):
+        read_netcdf(path, 3)
 
 
 def test_the_bound_is_the_users_or_the_machines(monkeypatch, limit):
@@ -285,15 +285,17 @@ def lines(path, text):
 #: Files that are small on the disk or to look at, and what a command does with them.
 NETCDF_NAMES = ["time", *QUANTITIES, *RECEIVERS, *COMPONENT_DIMENSIONS]
 BOMBS = {
-    "curves as NetCDF": lambda p: read_columns(classic(p / "a.nc", 2**28, ["time"], 2**31 + 4096)),
-    "curves in one place": lambda p: read_columns(
-        classic(p / "a.nc", 2**20, NETCDF_NAMES, 9_000_000)
+    "curves as NetCDF": lambda p: read_netcdf(
+        classic(p / "a.nc", 2**28, ["time"], 2**31 + 4096), 3
+    ),
+    "curves in one place": lambda p: read_netcdf(
+        classic(p / "a.nc", 2**20, NETCDF_NAMES, 9_000_000), 3
     ),
     "a result": lambda p: result_of(classic(p / "a.nc", 2**28, ["stress"], 2**31 + 4096), {}),
     "curves as CSV": lambda p: read_columns(lines(p / "a.csv", "0,0\n" * 5_000_000)),
     "curves in one line": lambda p: read_columns(lines(p / "a.csv", "0," * 1_500_000)),
     "a hollow CSV": lambda p: read_columns(hollow(p / "a.csv", b"0,0\n", 20_000_000)),
-    "a load": lambda p: History.read(p, lines(p / "a.csv", "0,0\n" * 5_000_000).name),
+    "a load": lambda p: read_history(p, lines(p / "a.csv", "0,0\n" * 5_000_000).name, "stress"),
     "a checkpoint that is compressed": lambda p: resumed(
         p / "a.nc", (50_000_000,), 40_000_000, zipfile.ZIP_DEFLATED
     ),

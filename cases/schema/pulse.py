@@ -20,7 +20,7 @@ from cases.schema.values import (
 )
 
 if TYPE_CHECKING:
-    from cases.schema.history import History
+    from cases.histories import Recorded
 
 
 #: Required and optional keys of each shape.
@@ -51,11 +51,13 @@ class Pulse(Table):
     cycles: Annotated[int, Field(ge=1, le=1_000_000)] | None = None
     rise: NonNegative | None = None  #: s, rise time of a triangle
     decay: Positive | None = None  #: s, decay time of a triangle
-    #: for "table": two-column CSV, s and Pa (or m/s, m/s2); or one trace, .sac or .mseed
+    #: for "table": a table of two columns, s and Pa (or m/s, m/s2) where no header gives units; or
+    #: a seismogram of one trace
     file: str | None = None
 
     file_key: ClassVar[str] = "load.file"
-    _history: "History | None" = PrivateAttr(default=None)
+    _history: "Recorded | None" = PrivateAttr(default=None)
+    _timed: bool = PrivateAttr(default=True)
 
     @model_validator(mode="after")
     def _keys_of_shape(self) -> "Pulse":
@@ -72,19 +74,26 @@ class Pulse(Table):
     @model_validator(mode="after")
     def _read_history(self, info: ValidationInfo) -> "Pulse":
         if self.file is not None:
-            from cases.schema.history import History  # with numpy
+            from cases.records import read_history  # with numpy
 
             folder, anywhere = folder_of(info, self.file_key)
             try:
-                self._history = History.read(folder, self.file, anywhere)
+                self._history, self._timed = read_history(
+                    folder, self.file, self.quantity, anywhere
+                )
             except ValueError as error:
                 raise contradiction_here("file", self.file, str(error)) from None
         return self
 
     @property
-    def history(self) -> "History | None":
+    def history(self) -> "Recorded | None":
         """The recorded history of shape "table", else None."""
         return self._history
+
+    @property
+    def timed(self) -> bool:
+        """Whether the file of a recorded history gives the unit of its times."""
+        return self._timed
 
     @property
     def time_scale(self) -> float | None:

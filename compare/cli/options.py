@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -137,16 +137,21 @@ def load(
     return found
 
 
-def warn(scenes: Sequence["AnyScene"], strict: bool = False) -> None:
+def warn(
+    scenes: Sequence["AnyScene"],
+    strict: bool = False,
+    of: Callable[["AnyScene"], Iterable[str]] | None = None,
+) -> None:
     """Print what scenes say but hardly mean, a line each; strict : it is an error.
 
-    Raises SceneError of all lines.
+    of : returns the lines of a scene; None: what the scene itself says. Raises SceneError of all
+    lines.
     """
     from cases.warnings import warnings
 
     found: dict[str, list[AnyScene]] = {}
     for scene in scenes:
-        for line in warnings(scene):
+        for line in (of or warnings)(scene):
             found.setdefault(line, []).append(scene)
     lines = [f"{line}{_whose(said, scenes)}" for line, said in found.items()]
     if strict and lines:

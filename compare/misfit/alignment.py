@@ -20,8 +20,7 @@ import xarray as xr
 from cases.errors import SceneError
 from cases.kinds import AnyScene
 from cases.sampling import sample_times
-from compare.misfit.external import Curves
-from compare.misfit.external_files import LEAST_SAMPLES
+from compare.misfit.external import LEAST_SAMPLES, Curves
 from compare.misfit.metrics import Distance, delay, distance, relative_l2, static_state
 from compare.misfit.places import Place
 

@@ -11,9 +11,8 @@ by COLUMN=LABEL, and one of a table of `jointwave compare --out` by its solution
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import pi
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,38 +20,15 @@ import numpy as np
 
 from cases.errors import SceneError
 from cases.kinds import AnyScene
+from cases.records import Column, Columns, read_columns
+from cases.units import TIME, UNITS, split_unit
+from cases.warnings import look_like_milliseconds
 from compare.engines import names
 from compare.misfit.external_columns import Asked, asked, base_of, exported, listed
-from compare.misfit.external_files import (
-    LEAST_SAMPLES,
-    Column,
-    Columns,
-    read_columns,
-    split_unit,
-)
-from compare.misfit.places import Place, parsed, recorded, same
+from compare.misfit.external_netcdf import is_netcdf, read_netcdf
+from compare.misfit.places import QUANTITIES, Place, parsed, recorded, same
 
-MICRO = ("u", "µ", "μ")  # as typed, the micro sign, and the Greek letter
-
-TIME = {"s": 1.0, "ms": 1e-3, "ns": 1e-9} | {f"{u}s": 1e-6 for u in MICRO}
-# xarray's names for the units of its durations.
-TIME |= {"seconds": 1.0, "milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9}
-STRESS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
-LENGTH = {"m": 1.0, "cm": 1e-2, "mm": 1e-3} | {f"{u}m": 1e-6 for u in MICRO}
-SPEED = {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3}
-ANGLE = {"rad": 1.0, "mrad": 1e-3, "deg": pi / 180} | {f"{u}rad": 1e-6 for u in MICRO}
-
-#: By quantity: its units, each with its factor to SI.
-UNITS = {
-    "stress": STRESS,
-    "shear": STRESS,
-    "traction": STRESS,
-    "velocity": SPEED,
-    "displacement": LENGTH,
-    "gap": LENGTH,
-    "slip": LENGTH,
-    "rotation": ANGLE,
-}
+LEAST_SAMPLES = 3  # needed for a parabola through the peak of a correlation
 EXAMPLES = "stress@20, -stress@20 [MPa] or velocity_x@20.25 [mm/s]"
 EXAMPLES_IN_PLANE = "velocity_x@[20,30], -stress_xx@[20,30] [MPa] or traction_n@[20,20]"
 
@@ -63,7 +39,8 @@ class Curves:
 
     name : its name in tables. file : the path, as given. time : [n] s, strictly increasing.
     waveforms : [n] by place, SI, compression positive. variant : the scene's variant that it
-    belongs to, "" for the base scene; None: to every variant.
+    belongs to, "" for the base scene; None: to every variant. timed : whether the file or the
+    command gives the unit of its times.
     """
 
     name: str
@@ -71,23 +48,19 @@ class Curves:
     time: np.ndarray
     waveforms: dict[Place, np.ndarray]
     variant: str | None = None
+    timed: bool = True
 
     def holds_for(self, scene: AnyScene) -> bool:
         """Return whether the curves belong to this variant of a scene."""
         return self.variant is None or self.variant == scene.name
 
 
-class _Label(NamedTuple):
-    place: Place
-    negative: bool
-    unit: str
-
-
 class _Found(NamedTuple):
-    """A column, its quantity, and its solution in a table of jointwave."""
+    """The waveform of a column [n] in SI, nan where it is empty, and its solution and variant in a
+    table of jointwave."""
 
-    column: Column
-    label: _Label
+    place: Place
+    values: np.ndarray
     solution: str = ""
     variant: str = ""
 
@@ -95,15 +68,15 @@ class _Found(NamedTuple):
 def read_curves(texts: list[str], scenes: Sequence[AnyScene]) -> list[Curves]:
     """Read the arguments of `--with`, each FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
 
-    FILE is NetCDF (.nc), written by `jointwave run` or with `time` and, for example, `stress`; or
-    CSV: comma, semicolon or tab, # comments, a header `time [ms], stress@20 [MPa]` or two bare
+    FILE is NetCDF, written by `jointwave run` or with `time` and, for example, `stress`; or a table
+    or seismogram as `cases.records` reads them, a header `time [ms], stress@20 [MPa]` or two bare
     columns, time in s first; or a table of `jointwave compare --out`. LABEL selects one of several
     curves, or labels the only one; COLUMN is a header, or a solution or variant of such a table.
     Empty cells are skipped. One entry per file; one each for the solutions, variants, or columns
     with different times of a file. Raises SceneError for a file that cannot be read, is not in this
     format, or has no curve at a receiver of one of the scenes.
     """
-    every = [asked(text, lambda label: _parse(*split_unit(label)) is not None) for text in texts]
+    every = [asked(text, lambda label: _label(label) is not None) for text in texts]
     files = dict.fromkeys(str(one.path) for one in every)
     short = Counter(Path(file).name for file in files) + Counter(names())
     found: list[Curves] = []
@@ -114,6 +87,19 @@ def read_curves(texts: list[str], scenes: Sequence[AnyScene]) -> list[Curves]:
     for one in found:
         _require_recorded(one, [s for s in scenes if one.holds_for(s)])
     return [one for one in found if any(map(one.holds_for, scenes))]
+
+
+def slips(curves: Sequence[Curves], scene: AnyScene) -> Iterator[str]:
+    """Yield which curves of a scene have times without a unit that look like milliseconds."""
+    end = scene.time.duration
+    for one in curves:
+        loudest = max(one.waveforms.values(), key=lambda values: np.ptp(values))
+        slip = look_like_milliseconds(one.time, loudest - loudest[0], end)
+        if slip and not one.timed and one.holds_for(scene):
+            yield (
+                f"{one.file}: its times, up to {one.time[-1]:g} s, look like milliseconds (the "
+                f"scene ends at {end:g} s): a header time [ms] says so"
+            )
 
 
 def is_recorded(place: Place, scene: AnyScene) -> bool:
@@ -139,80 +125,78 @@ def _require_recorded(curves: Curves, scenes: list[AnyScene]) -> None:
 
 
 def _of_file(name: str, every: list[Asked]) -> list[Curves]:
-    path = every[0].path
-    times = [one for one in every if one.is_time]
-    table = read_columns(path, times[0].column if times else "time")
-    unit = split_unit(times[0].label)[1] if times else ""
-    seconds = _factor(path, "time", unit or table.time.unit, TIME) * table.time.values
+    path, times = every[0].path, [one for one in every if one.is_time]
     wanted = [one for one in every if not one.is_time] or [Asked(str(path), path)]
-    found = [one for choice in wanted for one in _fitting(table, choice)]
-    groups: dict[tuple, dict[Place, _Found]] = {}
-    for one in found:
-        there = b"" if one.column.empty is None else one.column.empty.tobytes()
-        group = groups.setdefault((one.solution, one.variant, there), {})
-        if one.label.place in group:
-            raise SceneError(str(path), "", None, f"{one.label.place} must be given only once")
-        group[one.label.place] = one
-    several = len({solution for solution, *_ in groups}) > 1
-    named: Counter[tuple] = Counter()
-    curves = []
+    try:
+        if is_netcdf(path):
+            table = read_netcdf(path, LEAST_SAMPLES)
+        else:
+            table = read_columns(path, times[0].column if times else "time", LEAST_SAMPLES)
+        unit = (split_unit(times[0].label)[1] if times else "") or table.time.unit
+        seconds = table.time._replace(unit=unit).si(TIME)
+        found = [one for choice in wanted for one in _fitting(table, choice)]
+    except SceneError:
+        raise
+    except ValueError as error:
+        raise SceneError(str(path), "", None, str(error)) from None
+    groups: dict[tuple, dict[Place, np.ndarray]] = {}
+    for place, values, *whose in found:
+        group = groups.setdefault((*whose, np.isnan(values).tobytes()), {})
+        if place in group:
+            raise SceneError(str(path), "", None, f"{place} must be given only once")
+        group[place] = values
+    several, variants = (len({key[i] for key in groups}) > 1 for i in (0, 1))
+    curves, named = [], Counter[tuple]()
     for (solution, variant, _), group in groups.items():
-        called = f"{name}:{solution}" if several else name
+        called, place = f"{name}:{solution}" if several else name, next(iter(group))
         named[called, variant] += 1
         if named[called, variant] > 1:  # same name, different times
-            called = f"{called}:{next(iter(group))}"
-        whose = variant if len({v for _, v, _ in groups}) > 1 else None
-        curves.append(_curves(called, path, seconds, list(group.values()), whose))
+            called = f"{called}:{place}"
+        there = ~np.isnan(group[place])
+        if there.sum() < LEAST_SAMPLES:
+            allowed = f"must hold at least {LEAST_SAMPLES} samples, not {there.sum()}"
+            raise SceneError(str(path), str(place), None, allowed)
+        waveforms = {place: values[there] for place, values in group.items()}
+        of_variant = variant if variants else None
+        curves.append(Curves(called, str(path), seconds[there], waveforms, of_variant, bool(unit)))
     return curves
 
 
-def _curves(
-    name: str, path: Path, seconds: np.ndarray, found: list[_Found], variant: str | None
-) -> Curves:
-    empty = found[0].column.empty
-    there = np.ones(len(seconds), bool) if empty is None else ~empty
-    if there.sum() < LEAST_SAMPLES:
-        allowed = f"must hold at least {LEAST_SAMPLES} samples, not {there.sum()}"
-        raise SceneError(str(path), found[0].column.name, None, allowed)
-    waveforms = {}
-    for column, label, *_ in found:
-        factor = _factor(path, column.name, label.unit, UNITS[label.place.quantity])
-        waveforms[label.place] = (-factor if label.negative else factor) * column.values[there]
-    return Curves(name, str(path), seconds[there], waveforms, variant)
-
-
 def _fitting(table: Columns, choice: Asked) -> list[_Found]:
-    """Return the columns of a file selected by one argument, with their quantities."""
-    wanted = _parse(*split_unit(choice.label)) if choice.label else None
+    """Return the waveforms of a file selected by one argument."""
+    wanted = _label(choice.label) if choice.label else None
     named = [c for c in table.rest if not choice.column or choice.fits(c)]
     alone = len(table.rest) == 1 or bool(choice.column and len(named) == 1)
     found, base = [], base_of(table.rest)
     for column in named:
         ours = exported(column.name)
-        own = _parse(ours.label if ours else column.name, column.unit)
-        label = own if wanted is None else _as_wanted(column, own, wanted, alone)
-        if label is not None and ours:
-            variant = "" if ours.variant == base else ours.variant
-            found.append(_Found(column, label, ours.solution, variant))
-        elif label is not None:
-            found.append(_Found(column, label))
-        elif wanted is None:
+        place, sign = own = _place(ours.label if ours else column.name)
+        if wanted is not None:
+            place, sign = _as_wanted(column, own, wanted, alone)
+            column = column._replace(unit=split_unit(choice.label)[1] or column.unit)
+        elif place is None:
             raise _without_place(column, choice, table)
+        if place is not None:
+            values = sign * column.si(UNITS[place.quantity])
+            variant = "" if ours is None or ours.variant == base else ours.variant
+            found.append(_Found(place, values, ours.solution if ours else "", variant))
     if not found:
         raise _not_there(choice, table)
     return found
 
 
-def _as_wanted(column: Column, own: _Label | None, wanted: _Label, alone: bool) -> _Label | None:
+_Label = tuple[Place | None, float]  # and the sign of a column's values
+
+
+def _as_wanted(column: Column, own: _Label, wanted: _Label, alone: bool) -> _Label:
     """Return the label of a column, which may have its own; None if another one is requested."""
-    unit = wanted.unit or column.unit
-    if own is not None:
-        (*what, at), (*wanted_what, wanted_at) = own.place, wanted.place
-        fits = what == wanted_what and same(at, wanted_at)
-        return _Label(own.place, own.negative or wanted.negative, unit) if fits else None
+    if own[0] is not None and wanted[0] is not None:
+        fits = own[0][:2] == wanted[0][:2] and same(own[0].at, wanted[0].at)
+        return (own[0], min(own[1], wanted[1])) if fits else (None, 1.0)
     bare = column.name.lower()
-    fits = bare == wanted.place.quantity or (alone and bare not in UNITS)
-    return wanted._replace(unit=unit) if fits else None
+    said = bare if bare in QUANTITIES else ""
+    fits = wanted[0] is not None and (said == wanted[0].quantity or (alone and not said))
+    return wanted if fits else (None, 1.0)
 
 
 def _without_place(column: Column, choice: Asked, table: Columns) -> SceneError:
@@ -230,19 +214,17 @@ def _not_there(choice: Asked, table: Columns) -> SceneError:
     if choice.column:
         allowed = f"must be a label, such as {EXAMPLES}, a column or COLUMN=LABEL; {held}"
         return SceneError("--with", choice.text, None, f"{choice.column!r} {allowed}")
-    label = _parse(*split_unit(choice.label))
-    wanted = label.place if label else "a label"
+    label = _label(choice.label)
+    wanted = label[0] if label else "a label"
     return SceneError("--with", choice.text, None, f"{held}; {wanted} must be one of them")
 
 
-def _parse(name: str, unit: str) -> _Label | None:
-    """Return [-]QUANTITY[_COMPONENT]@PLACE as a label; None if the name is not a label."""
+def _label(text: str) -> _Label | None:
+    """Return [-]QUANTITY[_COMPONENT]@PLACE [UNIT] as place and sign; None for what is none."""
+    found = _place(split_unit(text)[0])
+    return None if found[0] is None else found
+
+
+def _place(name: str) -> _Label:
     text = name.strip()
-    place = parsed(text.removeprefix("-").lstrip())
-    return None if place is None else _Label(place, text.startswith("-"), unit)
-
-
-def _factor(path: Path, name: str, unit: str, allowed: dict[str, float]) -> float:
-    if unit and unit not in allowed:
-        raise SceneError(str(path), f"unit of {name}", unit, f"must be {', '.join(allowed)}")
-    return allowed.get(unit, 1.0)
+    return parsed(text.removeprefix("-").lstrip()), -1.0 if text.startswith("-") else 1.0

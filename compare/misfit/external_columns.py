@@ -8,7 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-from compare.misfit.external_files import Column, split_unit
+from cases.records import Column
+from cases.units import split_unit
 from compare.misfit.places import WORDS, parsed
 
 PART = " | "  # separator of the parts of jointwave's headers

@@ -16,9 +16,9 @@ from cases.loads import base_steps, load_history, step_means
 from cases.material.calibrate import calibrate
 from cases.material.elastic import modulus_from_speeds, speeds_from_modulus
 from cases.material.face import face_points
+from cases.records import read_history
 from cases.sampling import clock, interpolation, sample_times
 from cases.schema.damping import Rayleigh
-from cases.schema.history import History
 from cases.schema.pulse import Load
 from cases.schema.scene import Scene
 from results.subcells import linear_cells
@@ -357,7 +357,7 @@ class TestLoads:
         assert load_history(scene(load=sine | {"cycles": 3})) == Sine(2.0, 0.1, 3)
         assert load_history(scene(load=sine | {"shape": "ricker"})) == Ricker(2.0, 0.1)
         (tmp_path / "a.csv").write_text("# a blast\ntime,load\n0.5,4\n1,6\n")
-        history = History.read(tmp_path, "a.csv")
+        history, _ = read_history(tmp_path, "a.csv", "stress")
         assert history.time.tolist() == [0.5, 1.0] and history.stress.tolist() == [4.0, 6.0]
 
     def test_extreme_loads_are_scaled_by_a_power_of_two(self):

@@ -11,7 +11,7 @@ from scipy.integrate import quad
 import cases
 from cases.histories import Gabor, Integrated, Recorded, Ricker, Sine, Step, periodic, triangle
 from cases.loads import base_steps, load_history, step_means, until_it_ends
-from cases.schema.history import History
+from cases.records import read_history
 
 amplitudes = st.floats(-1e7, 1e7).filter(lambda a: abs(a) > 1.0)
 periods = st.floats(1e-4, 1.0)
@@ -173,7 +173,7 @@ def test_recorded_history_scaled_by_amplitude(tmp_path, paper_folder):
 def test_first_row_of_a_history_is_not_taken_for_a_header(tmp_path, mark):
     path = tmp_path / "blast.csv"
     path.write_text(f"{mark}0,7\n1,8\n", encoding="utf-8")
-    history = History.read(tmp_path, "blast.csv")
+    history, _ = read_history(tmp_path, "blast.csv", "stress")
     assert history.stress.tolist() == [7, 8]
 
 

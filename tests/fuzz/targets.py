@@ -22,11 +22,10 @@ import numpy as np
 import cases
 from cases.effects import active_effects, is_spatial
 from cases.errors import SceneError, UnstableError
-from cases.histories import Recorded
 from cases.loads import load_history, step_means
 from cases.material.calibrate import calibrate
 from cases.partition.scene import partition_bytes, partition_of
-from cases.schema.history import History
+from cases.records import read_history
 from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from cases.warnings import warnings
@@ -34,7 +33,7 @@ from compare.cli import program
 from compare.engines import applies, names
 from compare.experiments.study.study import load as load_study
 from compare.experiments.study.summary import key
-from compare.misfit.external_files import read_columns
+from compare.misfit.external import read_curves
 from results.dataset import scene_hash
 
 SECONDS = 5  # of the processor, for one input
@@ -133,23 +132,22 @@ def _refuse_large_rock(one: Scene, models: list[str]) -> None:
 
 
 def load(data: bytes, folder: Path) -> str:
-    """A load's CSV file."""
+    """A load's file."""
     _written(folder, "load.csv", data)
     try:
-        history = History.read(folder, "load.csv")
+        history, _ = read_history(folder, "load.csv", "stress")
     except ValueError as error:
         _check(str(error))
         return "refused"
     with np.errstate(over="raise", invalid="raise"):
-        Recorded(history.time, history.stress).value(np.linspace(0.0, 1.0, 10))
+        history.value(np.linspace(0.0, 1.0, 10))
     return "read"
 
 
 def curve(data: bytes, folder: Path) -> str:
-    """A file that `compare --with` names: NetCDF where it begins like that, else CSV."""
-    is_netcdf = data[:3] == b"CDF" or data[1:4] == b"HDF"
-    path = _written(folder, "curve.nc" if is_netcdf else "curve.csv", data)
-    return _asked(lambda: read_columns(path))
+    """A file that `compare --with` names, with the place of its curve."""
+    path = _written(folder, "curve", data)
+    return _asked(lambda: read_curves([f"{path}:stress@20"], []))
 
 
 def study(data: bytes, folder: Path) -> str:

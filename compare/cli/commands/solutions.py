@@ -23,6 +23,7 @@ from compare.cli.options import (
     WorkersOption,
     app,
     load,
+    warn,
 )
 
 
@@ -85,12 +86,12 @@ def compare(
         from compare.experiments.sweep.summary import sweep
 
         asked = sweep_of(scene, changes, variant, swept, out, members)
-        curves = _read_curves(given, asked.scenes, align)
+        curves = _read_curves(given, asked.scenes, align, strict)
         work = Comparing(spectral, curves, align, out is not None, bool(members))
         sweep(asked, work, workers, dry, as_json, strict)
         return
     scenes = load(scene, changes, variant, strict)
-    curves = _read_curves(given, scenes, align)
+    curves = _read_curves(given, scenes, align, strict)
     if dry:
         from compare.experiments.cost import dry_run
 
@@ -156,20 +157,22 @@ def figure(
         return
     scenes = load(scene, changes, variant, strict)
     runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []
-    curves = _read_curves(given, scenes, False)
+    curves = _read_curves(given, scenes, False, strict)
     with terminal.progress(scenes[0].title) as advance:
         path = make(scenes, runs, curves, request, advance)
     terminal.say(f"wrote {path}")
 
 
-def _read_curves(given: list[str], scenes: list["AnyScene"], align: bool) -> list[Any]:
+def _read_curves(
+    given: list[str], scenes: list["AnyScene"], align: bool, strict: bool
+) -> list[Any]:
     """Read what `--with` names; what is wrong with it is said before anything is solved."""
     if not given:
         if align:
             raise SceneError("--align", "", None, "needs --with: there is no curve to align")
         return []
     from compare.misfit.alignment import common_times
-    from compare.misfit.external import read_curves
+    from compare.misfit.external import read_curves, slips
 
     curves = read_curves(given, scenes)
     if not align:
@@ -177,4 +180,5 @@ def _read_curves(given: list[str], scenes: list["AnyScene"], align: bool) -> lis
             for one in curves:
                 if one.holds_for(scene):
                     common_times(one, scene)
+    warn(scenes, strict, lambda scene: slips(curves, scene))
     return curves

@@ -19,6 +19,7 @@ from compare.cli.options import (
     WithOption,
     app,
     load,
+    warn,
 )
 
 
@@ -67,11 +68,12 @@ def fit(
     from compare.cli import terminal
     from compare.experiments.fit.fit import fit as fitted
     from compare.experiments.fit.show import show_fit
-    from compare.misfit.external import read_curves
+    from compare.misfit.external import read_curves, slips
     from compare.runs.checkpoint.lock import locked
 
     (one,) = load(scene, changes, variant or "", strict)
     curves = read_curves(given, [one])
+    warn([one], strict, lambda scene: slips(curves, scene))
     solver = _solver(one, engine, model)
     with ExitStack() as held:
         if out is not None:

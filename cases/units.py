@@ -1,0 +1,51 @@
+"""Units of measured quantities, and how headers of columns spell them."""
+
+import re
+from math import pi
+
+_SCALES = {"": 1.0, "k": 1e3, "M": 1e6, "G": 1e9, "c": 1e-2, "m": 1e-3, "n": 1e-9}
+_SCALES |= dict.fromkeys("uµμ", 1e-6)  # as typed, the micro sign, and the Greek letter
+
+
+def _units(scales: str, *names: str) -> dict[str, float]:
+    return {scale + name: _SCALES[scale] for name in names for scale in ["", *scales]}
+
+
+TIME = _units("muµμn", "s") | {"sec": 1.0, "msec": 1e-3}
+TIME |= {"seconds": 1.0, "milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9}
+ACCELERATION = _units("cmuµμn", "m/s2", "m/s^2", "m/s²") | {"g": 9.80665, "Gal": 1e-2, "gal": 1e-2}
+
+#: By quantity: its units, each with its factor to SI.
+UNITS = {
+    **dict.fromkeys(("stress", "shear", "traction"), _units("kMG", "Pa")),
+    **dict.fromkeys(("displacement", "gap", "slip"), _units("cmuµμn", "m")),
+    "force": _units("kM", "N/m"),  # of a load in the plane
+    "velocity": _units("cmuµμn", "m/s"),
+    "acceleration": ACCELERATION,
+    "rotation": _units("muµμ", "rad") | {"deg": pi / 180},
+}
+KNOWN = {unit: factor for units in (TIME, *UNITS.values()) for unit, factor in units.items()}
+
+
+def _any_of(units: list[str]) -> str:
+    return "|".join(map(re.escape, sorted(units, key=len, reverse=True)))
+
+
+#: A unit without brackets; one of SI may end a name after a blank or _, and `8 ms` is a time.
+_SEPARATED = re.compile(
+    rf"(.*?\S)(?:\s*[,/]\s*|\sin\s)({_any_of(list(KNOWN))})"
+    rf"|(.*?\S)(?:_|(?<!\d)\s)({_any_of([one for one, factor in KNOWN.items() if factor != 1])})"
+)
+
+
+def split_unit(text: str) -> tuple[str, str]:
+    """Return name and unit of `name [unit]`, `name (unit)`, `name, unit`, `name / unit` or
+    `name_unit`; without brackets only known units are. The unit is empty without one."""
+    text = text.strip()
+    for opening, closing in ("[]", "()"):
+        if text.endswith(closing) and opening in text:
+            name, _, unit = text[:-1].rpartition(opening)
+            if not name.rstrip().endswith("@"):  # else a receiver's place, `gap@[20,30]`
+                return name.strip(), unit.strip()
+    found = _SEPARATED.fullmatch(text)
+    return (found[1] or found[3], found[2] or found[4]) if found else (text, "")
