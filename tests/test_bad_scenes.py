@@ -481,8 +481,13 @@ MISTAKES = {
     ),
     "static gravity on a pillar that nothing holds": (
         "[ends]",
-        "[gravity]\ndirection = [0, 1, 0]\n[ends]",
-        ["gravity.static = true", "a fixed end, or gravity.static = false"],
+        "[gravity]\ndirection = [0, -1, 0]\n[ends]",
+        ["gravity.static = true", "needs a fixed end", "or gravity.static = false"],
+    ),
+    "sudden gravity that pulls a pillar off its quiet end": (
+        "[ends]",
+        "[gravity]\ndirection = [0, -1, 0]\nstatic = false\n[ends]",
+        ["ends.end = 'quiet'", "pulls the pillar off it", "needs a fixed"],
     ),
     # segments
     **{

@@ -41,7 +41,9 @@ class Boundaries(Table):
 
 
 class GravityInPlane(Table):
-    """A body force."""
+    """A body force. Fixed sides bear the weight, and quiet ones, which exert beside their dashpots
+    what held sides would at rest: below the rock (within 45 degrees) held in all directions, beside
+    it along their normal. A quiet side above the rock bears the in-situ stress alone."""
 
     direction: DirectionInPlane = Field(default=[0.0, -1.0])  #: x, y
     acceleration: NonNegative = 9.81  #: m/s2

@@ -68,7 +68,7 @@ def simulate_fields(
     began = perf_counter()
     scheme = scheme_of(scene)
     model, state, time, critical = scheme.build(scene)
-    rest = start(scene, model, state)
+    model, rest = start(scene, model, state)
     samples = buffers(model, state, time.samples)
     monitor = guard(highest_speed(model, state, time))
     marcher = scheme.marcher(scene, time)

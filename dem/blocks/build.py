@@ -80,9 +80,10 @@ def form_of(blocks: RigidBlocks, held: bool, shaken: bool) -> PlaneForm:
 
 
 def relaxed(scene: RockMass) -> bool:
-    """Return whether a scene starts from a static state, by dynamic relaxation."""
-    weighed = scene.gravity is not None and scene.gravity.static
-    return weighed or scene.prestress is not None
+    """Return whether a scene asks for a static state, by dynamic relaxation."""
+    weighed = scene.gravity is not None
+    quiet = bool(scene.boundaries.sides("quiet"))
+    return scene.prestress is not None or (weighed and (quiet or scene.gravity.static))
 
 
 def constants(scene: RockMass, blocks: RigidBlocks, dt: float) -> Blocks:

@@ -317,7 +317,16 @@ MISTAKES = {
         'bottom = "quiet"\nleft = "periodic"',
         ["boundaries.left = 'periodic'", "needs boundaries.right = 'periodic'"],
     ),
-    "gravity on nothing": ("static = false", "", ["gravity.static = true", "needs a fixed side"]),
+    "gravity on nothing": (
+        "[gravity]\nstatic = false",
+        "[gravity]\ndirection = [0.0, 1.0]",
+        ["gravity.static = true", "needs a fixed side"],
+    ),
+    "gravity on nothing but dashpots": (
+        "[gravity]\nstatic = false",
+        "[gravity]\ndirection = [0.0, 1.0]\nstatic = false",
+        ["boundaries.left = 'quiet'", "does not bear the weight", "needs a fixed side"],
+    ),
     "prestress without yy": ("yy = 1.0e7", "", ["prestress.yy", "is required"]),
 }
 
