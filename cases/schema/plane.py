@@ -99,5 +99,8 @@ class ContinuumInPlane(Table):
 class NumericsInPlane(Table):
     """Numerical parameters; the defaults are chosen for accuracy."""
 
+    #: joints may move by more than 2 % of a block, and blocks meet others than their neighbours,
+    #: though contacts stay those of the start; else such a run stops
+    allow_large_motion: bool = False
     dem: DemInPlane = DemInPlane()
     continuum: ContinuumInPlane = ContinuumInPlane()

@@ -227,5 +227,8 @@ class ContinuumNumerics(Table):
 class Numerics(Table):
     """Numerical parameters; the defaults are chosen for accuracy."""
 
+    #: joints may move by more than 2 % of a block, and blocks meet others than their neighbours,
+    #: though contacts stay those of the start; else such a run stops
+    allow_large_motion: bool = False
     dem: DemNumerics = DemNumerics()
     continuum: ContinuumNumerics = ContinuumNumerics()

@@ -111,9 +111,9 @@ def simulate_fields(
         )
         return _with_breaks(found if film is None else film.developed(found), scene, state, time)
 
-    def check(samples: int) -> None:
+    def check(first: int, last: int) -> None:
         speed = np.abs(state.v)
-        look(monitor, speed.max(), samples * time.stride)
+        look(monitor, speed.max(), last * time.stride)
         centres = calibrate(scene).centre_y
         time_loop.refuse_beyond_bounds(scene, time, critical, monitor, speed, centres)
 

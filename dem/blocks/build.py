@@ -81,9 +81,9 @@ def form_of(blocks: RigidBlocks, held: bool, shaken: bool) -> PlaneForm:
 
 def relaxed(scene: RockMass) -> bool:
     """Return whether a scene asks for a static state, by dynamic relaxation."""
-    weighed = scene.gravity is not None
-    quiet = bool(scene.boundaries.sides("quiet"))
-    return scene.prestress is not None or (weighed and (quiet or scene.gravity.static))
+    gravity, quiet = scene.gravity, bool(scene.boundaries.sides("quiet"))
+    weighed = gravity is not None and (gravity.static or quiet)
+    return weighed or scene.prestress is not None
 
 
 def constants(scene: RockMass, blocks: RigidBlocks, dt: float) -> Blocks:

@@ -112,4 +112,5 @@ def held_blocks(
     waves = incoming(scene, field, quiet, impedance, rows, time)
     sources = Sources(rows, patterns, waves, time)
     row, bears = np.searchsorted(rows, quiet.block), borne(scene, quiet.normal)
-    return sources, *(dashpots(quiet, one, row, len(rows)) for one in (impedance, bears))
+    resistance, bearing = (dashpots(quiet, one, row, len(rows)) for one in (impedance, bears))
+    return sources, resistance, bearing
