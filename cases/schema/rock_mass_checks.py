@@ -38,10 +38,10 @@ def check(scene: RockMass) -> None:
                 _check_receivers,
                 _check_boundaries,
                 _check_waves,
-                _check_support,
             )
         ),
         *(partial(one, scene) for one in (check_time, check_fields, check_quality)),
+        partial(_check_support, scene, outline),
         *(
             partial(_check_load, f"loads[{i}]", load, scene, outline)
             for i, load in enumerate(scene.loads)

@@ -247,10 +247,10 @@ MISTAKES = {
     ),
     "interval too long": ("[record]", "[record]\ninterval = 1.0", ["record.interval = 1.0"]),
     "fields too rare": ("[record]", "[record]\nfields = 1.0", ["record.fields = 1.0"]),
-    "wave through a free side": (
+    "wave through a fixed side": (
         'bottom = "quiet"',
-        "",
-        ["boundaries.bottom = 'free'", "waves[0]"],
+        'bottom = "fixed"',
+        ["boundaries.bottom = 'fixed'", "waves[0]"],
     ),
     "wave without direction": (
         'direction = [0.0, 1.0]\nshape = "ricker"',
