@@ -7,7 +7,14 @@ import numpy as np
 from continuum.run import Run
 from numerics.divergence import ENERGY, EVERY, audit, guard, look, speed_that
 from numerics.instability import Sighting, stopped
-from numerics.small_motion import LARGEST, Moved, farthest, overlapping, refuse_large_motion
+from numerics.small_motion import (
+    LARGEST,
+    Moved,
+    farthest,
+    matters,
+    overlapping,
+    refuse_large_motion,
+)
 
 
 class Monitor:
@@ -76,7 +83,7 @@ class Monitor:
         """Raise StoppedError where blocks have moved further than small motion allows at step n,
         and samples up to `first` were taken at the look before."""
         run = self.run
-        if run.scene.numerics.allow_large_motion:
+        if not matters(run.scene):
             return
         found = farthest_joint(run)
         share = -1.0 if found is None else found.by / found.size

@@ -33,6 +33,17 @@ class Moved(NamedTuple):
     overlaps: bool = False
 
 
+def matters(scene: Scene | RockMass) -> bool:
+    """Return whether blocks that move too far stop a run of a scene.
+
+    Faces that only translate stand for faces of large extent, and finite rotations follow faces
+    that leave one another.
+    """
+    if scene.numerics.allow_large_motion:
+        return False
+    return scene.kind == "rock mass" or scene.motion.rotation == "small"
+
+
 def farthest(by: np.ndarray, size: np.ndarray) -> int:
     """Return the joint that has moved furthest, of distances [c] and sizes [c] (m)."""
     return int(np.nan_to_num(by / size, nan=0.0).argmax())

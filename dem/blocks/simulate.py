@@ -16,7 +16,7 @@ from dem.blocks.stability import highest_energy, motion_of_contacts
 from dem.blocks.start import start
 from dem.blocks.system import PlaneSystem, prepared
 from numerics.divergence import SPEED, Guard, audit, guard
-from numerics.small_motion import Moved, farthest, overlapping, refuse_large_motion
+from numerics.small_motion import Moved, farthest, matters, overlapping, refuse_large_motion
 from numerics.time_loop import Keeper
 from results.arrays import size_of
 from results.dataset import Fields
@@ -80,7 +80,7 @@ def simulate_fields(
     def check(first: int, last: int) -> None:
         speeds, places = _energies(system, state), system.blocks.partition.centroid
         time_loop.refuse_beyond_bounds(scene, time, system.critical, monitor, speeds, places)
-        if not scene.numerics.allow_large_motion:
+        if matters(scene):
             t = last * time.stride * time.dt
             refuse_large_motion(scene, "the rigid blocks", moved_apart(system, state), t, first)
 

@@ -21,7 +21,7 @@ from dem.spatial.build import (
     state_at_rest,
 )
 from dem.spatial.ends import contact_points, face_of
-from dem.spatial.layout import LANES, STRIDE, X, Z, unpacked
+from dem.spatial.layout import LANES, STRIDE, unpacked
 from dem.spatial.march import marcher
 from dem.spatial.model import RowModel, RowState
 from dem.spatial.record import ledger_of, shooter, waveforms, with_breaks
@@ -30,7 +30,7 @@ from dem.spatial.start import start
 from dem.static import stiffest
 from dem.time_loop import Run, followed, refuse_beyond_bounds, thread_count, versions
 from numerics.divergence import guard, look
-from numerics.small_motion import Moved, refuse_large_motion
+from numerics.small_motion import Moved, matters, refuse_large_motion
 from numerics.time_loop import Keeper
 from results.arrays import changed, size_of
 from results.dataset import Fields, fields
@@ -114,7 +114,7 @@ def simulate_fields(
         look(held, speed.max(axis=1), last * time.stride)
         refuse_beyond_bounds(scene, time, critical, held, speed[:3].max(axis=0), p.centre_y)
         refuse_large_turns(scene, model, state, t)
-        if not (scene.numerics.allow_large_motion or model.form.finite):
+        if matters(scene):
             refuse_large_motion(scene, "the rigid blocks", farthest_slip(p, model, state), t, first)
 
     def march_samples(first: int, last: int) -> None:
@@ -142,14 +142,12 @@ def speeds(model: RowModel, state: RowState, blocks: int) -> np.ndarray:
 
 
 def farthest_slip(p: Properties, model: RowModel, state: RowState) -> Moved:
-    """Return the joint whose faces have slipped furthest, as contacts that do not turn see it:
-    finite rotations follow faces that leave one another, and opening leaves a face as large."""
-    q, arm = unpacked(state.motion, STRIDE, p.block_count)[: model.form.freedoms], model.block.arm
-    slip = np.diff(q[[X // STRIDE, Z // STRIDE]], axis=1)
-    if model.form.turns:
-        about_x, _, about_z = q[3:]
-        slip += arm * np.stack([about_z[1:] + about_z[:-1], -about_x[1:] - about_x[:-1]])
-    by = np.hypot(*slip)
+    """Return the joint whose faces have slipped furthest at its centre, by small rotations; opening
+    leaves faces as large."""
+    x, _, z, about_x, _, about_z = unpacked(state.motion, STRIDE, p.block_count)[:6]
+    arm = model.block.arm
+    slip_x = np.diff(x) + arm * (about_z[1:] + about_z[:-1])
+    by = np.hypot(slip_x, np.diff(z) - arm * (about_x[1:] + about_x[:-1]))
     k = int(by.argmax())
     return Moved(k, k + 1, float(by[k]), p.side, (float(p.centre_y[k]),))
 
