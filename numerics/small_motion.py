@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from cases.errors import StoppedError
+from cases.schema.scene import Scene
 
 if TYPE_CHECKING:
     from cases.partition.blocks import Partition
     from cases.schema.rock_mass import RockMass
-    from cases.schema.scene import Scene
 
 LARGEST = 0.02  # of the smaller block
 OVERLAP = 0.01  # of its area: corners that touch at the start overlap by its square
@@ -41,7 +41,7 @@ def matters(scene: Scene | RockMass) -> bool:
     """
     if scene.numerics.allow_large_motion:
         return False
-    return scene.kind == "rock mass" or scene.motion.rotation == "small"
+    return not isinstance(scene, Scene) or scene.motion.rotation == "small"
 
 
 def farthest(by: np.ndarray, size: np.ndarray) -> int:
