@@ -24,7 +24,6 @@ from cases.schema.sources import Wave
 AT_ONCE = 16  # points whose tractions are found together, in the cache
 BEYOND = 20  # samples on either side of the requested times
 WITHIN = 1e-6  # of a domain: from its corner to a place in the rock there
-GRAZING = 1e-9  #: cosine up to which a wave that leaves through a side still runs along it
 
 
 class WaveMotion(NamedTuple):
@@ -36,12 +35,7 @@ class WaveMotion(NamedTuple):
 
 
 class IncidentField(Protocol):
-    """A motion of the rock mass as if it had no artificial sides."""
-
-    @property
-    def whole(self) -> bool:
-        """Whether it holds what joints scatter, too, and so is right at every quiet side; else it
-        is the motion of the waves alone, which enters where they do."""
+    """A motion of the rock mass as if it had no artificial sides; it acts on all quiet sides."""
 
     def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
         """Return the motion at points [m, 2] (m) and equally spaced times [n] (s)."""
@@ -83,7 +77,6 @@ class FreeField:
     """The waves of a scene in its intact rock, without any joint."""
 
     waves: tuple[PlaneWave, ...]
-    whole: bool = False
 
     def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
         zero = np.zeros((len(points), 1, 1))
@@ -94,14 +87,14 @@ class FreeField:
 
 
 def free_field(scene: RockMass) -> FreeField:
-    """Return the field of all waves of a scene in rock without joints; whole where it has none.
+    """Return the field of all waves of a scene in rock without joints.
 
     Raises SceneError where waves meet several regions of rock, in which they do not stay plane.
     """
     if scene.waves and scene.regions:
         allowed = "cross several rocks: give their field (compare.exact.rock_mass.field.field_of)"
         raise SceneError(scene.where, "waves", len(scene.waves), allowed)
-    return FreeField(tuple(plane_wave(scene, one) for one in scene.waves), not scene.joint_sets)
+    return FreeField(tuple(plane_wave(scene, one) for one in scene.waves))
 
 
 def plane_wave(scene: RockMass, wave: Wave) -> PlaneWave:
@@ -169,13 +162,3 @@ def tractions(
         total = pulled + Z[some, 0] * along + Z[some, 1] * (v - along)
         values[:, some] = np.moveaxis(total, 2, 0)
     return FaceTractions(np.asarray(times), values)
-
-
-def enters(field: IncidentField, scene: RockMass, normals: np.ndarray) -> np.ndarray:
-    """Return whether a field acts on sides of outward normals [m, 2]: bool [m]. All where it is
-    whole, else those that some wave enters through or runs along."""
-    normals = np.asarray(normals)
-    if field.whole or not scene.waves:
-        return np.full(len(normals), bool(scene.waves))
-    directions = np.array([one.direction for one in scene.waves])
-    return (normals @ directions.T).min(axis=1) <= GRAZING

@@ -6,7 +6,7 @@ from typing import cast
 
 import numpy as np
 
-from cases.incident import GRAZING, plane_wave
+from cases.incident import plane_wave
 from cases.material.rock import elastic_rock
 from cases.partition.joints import direction_of
 from cases.partition.outline import outline_of
@@ -16,7 +16,7 @@ from cases.schema.plane import IntactRock
 from cases.schema.plausible import implausible
 from cases.schema.region import Region
 from cases.schema.rock_mass import RockMass
-from cases.schema.rock_mass_checks import distance
+from cases.schema.rock_mass_checks import GRAZING, distance
 from cases.schema.sources import PlaneLoad, Wave
 from cases.spectrum import highest_frequency
 from cases.warnings import LEAST_BLOCKS, of_local_damping, of_pulse, onset

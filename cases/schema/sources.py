@@ -19,7 +19,7 @@ QUANTITIES = {"pressure": {"stress"}, "force": {"force"}, "base": {"velocity", "
 
 
 class Wave(Pulse):
-    """A plane incident wave, which enters through the quiet sides that it reaches."""
+    """A plane incident wave, which enters through the quiet sides."""
 
     file_key: ClassVar[str] = "waves.file"
 

@@ -7,19 +7,17 @@ from typing import Any
 
 from compare.cli.terminal import print_json, say, show_numbers, show_table
 from compare.engines import ENGINES
-from compare.misfit.differences import STRESS, VELOCITY, PeakDifference
 from compare.misfit.metrics import Worst
 from compare.misfit.pairs import GIVEN, Comparison, Row
 from compare.report.overview import in_seconds
-from compare.report.tables import mean_and_worst, percent
+from compare.report.tables import percent
 from compare.report.verdict import Standing, held_to, standings
-from compare.solvers.record import Kind
+from compare.solvers.incident import side_error
 from results.dataset import energy_residual
 
 MOST_LINES = 10  # of the answer
 HINT = "all misfits, and solutions that do not apply: --all; as JSON: --json"
-ANSWER = ["engine", "worst misfit", "at", "PPV", "peak stress", "compared with", "own error"]
-ANSWER += ["stepping", "verdict"]
+ANSWER = ["engine", "worst misfit", "at", "compared with", "own error", "stepping", "verdict"]
 
 
 def show_comparisons(
@@ -86,16 +84,11 @@ def _engine_cells(engine: str, one: Standing, found: list[Comparison], several: 
         engine,
         in_percent(total.total),
         where if total.total.place else "-",
-        *(_peak(total.peaks.get(name)) for name in (VELOCITY, STRESS)),
         total.against or "-",
         in_percent(own),
         in_seconds(max(about["seconds_stepping"] for about in ran)),
         f"{one.verdict.sign} {one.verdict.word}",
     ]
-
-
-def _peak(peak: PeakDifference | None) -> str:
-    return f"{mean_and_worst(peak)} %" if peak else "-"
 
 
 def _rank(worst: Worst) -> float:
@@ -114,13 +107,8 @@ def _remarks(stand: dict[str, Standing], several: bool) -> Iterator[str]:
     """Yield the references, engines not checked independently, and bounds that are exceeded."""
     held = [one for standing in stand.values() for one in standing.variants]
     reasons = dict.fromkeys(f"{one.against}: {one.reason}" for one in held if one.against)
-    others = [e for e, one in stand.items() if Kind.MODELLING.words in one.meanings]
-    said = [f"a modelling difference of {', '.join(others)}"] if others else []
-    said += [
-        f"static state of {e} {one.static_words}" for e, one in stand.items() if one.static_words
-    ]
     if reasons:
-        yield f"reference: {'; '.join([*reasons, *said])}"
+        yield f"reference: {'; '.join(reasons)}"
     alone = {engine: one.unchecked for engine, one in stand.items() if one.unchecked}
     if alone and several:
         named = (f"{engine} ({', '.join(variants)})" for engine, variants in alone.items())
@@ -162,12 +150,12 @@ def _file_part(row: Row) -> str:
 
 def _show_distances(comparison: Comparison) -> None:
     """Print every distance of one variant, its ledgers, and what does not apply."""
-    scene = comparison.scene
+    scene, near = comparison.scene, _near_sides(comparison)
     say(f"\n{scene.title} {scene.name}".rstrip(), "bold")
     groups: dict[str, list[list[str]]] = {}
     for row in comparison.rows:
         heading = f"{GIVEN}, data over model" if row.pair.kind == GIVEN else row.pair.kind
-        groups.setdefault(heading, []).append(_distance_cells(row))
+        groups.setdefault(heading, []).append(_distance_cells(row, near))
     if groups:
         show_numbers(DISTANCE_COLUMNS, groups)
     else:
@@ -178,6 +166,12 @@ def _show_distances(comparison: Comparison) -> None:
         say(f"  {name}: energy residual {residual:.1e} of the work done by the load")
     for name, reason in comparison.reasons.items():
         say(f"  {name} does not apply: {reason}", "dim")
+
+
+def _near_sides(comparison: Comparison) -> set[tuple[str, tuple[float, ...]]]:
+    """Return the key of [record] and the place of receivers that feel an error of quiet sides."""
+    found = side_error(comparison.scene)
+    return {(key, at) for key, places in (found.near if found else {}).items() for at in places}
 
 
 def _curve_sentence(beside: Any) -> str:
@@ -219,11 +213,12 @@ def _curve_facts(beside: Any) -> dict[str, Any]:
 DISTANCE_COLUMNS = ["pair", "at", "misfit", "peak", "delay, ms", "period", "envelope", "phase"]
 
 
-def _distance_cells(row: Row) -> list[str]:
+def _distance_cells(row: Row, near: set[tuple[str, tuple[float, ...]]]) -> list[str]:
     d = row.distance
+    beside = " (near a quiet side)" if (row.place.key, row.place.at) in near else ""
     return [
         f"{row.pair.one} ~ {row.pair.other}",
-        f"{row.place.named} {row.place.receiver}",
+        f"{row.place.named} {row.place.receiver}{beside}",
         _number(d.misfit, ".3%"),
         _number(d.peak_ratio, ".4f"),
         _number(1e3 * d.delay, "+.3f"),
@@ -239,14 +234,15 @@ def _number(x: float | None, form: str) -> str:
 
 def _comparison_facts(comparison: Comparison) -> dict[str, Any]:
     engines = [name for name in ENGINES if name in comparison.results]
-    results = list(comparison.results.values())
+    results, near = list(comparison.results.values()), _near_sides(comparison)
     return {
         "title": comparison.scene.title,
         "variant": comparison.scene.name,
         "warnings": json.loads(results[0].attrs["warnings"]) if results else [],
         "engines": {name: _engine_facts(name, comparison) for name in engines},
         "rows": [
-            r.facts | {"floor": r.floor, "faint": r.faint, "of_all": r.of_all}
+            r.facts
+            | {"floor": r.floor, "faint": r.faint, "near_side": (r.place.key, r.place.at) in near}
             for r in comparison.rows
         ],
         "curves": [_curve_facts(beside) for beside in comparison.besides],
@@ -258,8 +254,15 @@ def _comparison_facts(comparison: Comparison) -> dict[str, Any]:
 def _engine_facts(engine: str, comparison: Comparison) -> dict[str, Any]:
     """Return an engine's line for one variant; floor : of its reference's own error."""
     held, about = held_to(engine, comparison), comparison.results[engine].attrs
-    return held.facts | {
+    return {
+        "misfit": held.total.misfit,
+        "floor": held.total.floor,
+        "at": held.total.where if held.total.place else None,
+        "against": held.against or None,
+        "reason": held.reason,
+        "own_error": held.own.misfit,
         "seconds_stepping": about["seconds_stepping"],
+        "verdict": held.verdict.word,
         "out_of_bounds": list(held.broken),
     }
 

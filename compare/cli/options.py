@@ -148,10 +148,11 @@ def warn(
     lines.
     """
     from cases.warnings import warnings
+    from compare.solvers.incident import side_warnings
 
     found: dict[str, list[AnyScene]] = {}
     for scene in scenes:
-        for line in (of or warnings)(scene):
+        for line in of(scene) if of else [*warnings(scene), *side_warnings(scene)]:
             found.setdefault(line, []).append(scene)
     lines = [f"{line}{_whose(said, scenes)}" for line, said in found.items()]
     if strict and lines:

@@ -152,8 +152,9 @@ class PairItem(pytest.Item):
     def _warn(self) -> None:
         """Warn of what the scene hardly means; an error where pytest takes warnings for errors."""
         from cases.warnings import warnings
+        from compare.solvers.incident import side_warnings
 
-        for line in warnings(self.scene):
+        for line in [*warnings(self.scene), *side_warnings(self.scene)]:
             warn(SceneWarning(f"{self.scene.where}: {line}"), stacklevel=1)
 
     def _solved(self, name: str):

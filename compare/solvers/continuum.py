@@ -78,6 +78,7 @@ def prepare(scene: Scene, model: str) -> Prepared:
 
     with estimates() as parts:
         discrete, choice, critical = discrete_and_steps(scene, model)
+    incident(scene)  # which is not known of all waves in layers
     settings = {
         "scheme": choice.scheme,
         "dim": discrete.kinematics.dim,

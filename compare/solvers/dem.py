@@ -80,6 +80,7 @@ def _in_plane(scene: RockMass):
     from dem.time_loop import thread_count
 
     blocks = rigid_blocks(scene)
+    incident(scene)  # which is not known of all waves in layers
     count = blocks.partition.count
     return *clock_of(blocks), 3 * count, thread_count(scene.numerics.dem.threads, count)
 

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from cases.incident import IncidentField
     from cases.schema.rock_mass import RockMass
     from cases.schema.scene import Scene
+    from compare.exact.rock_mass.side_error import SideError
 
 
 def incident(scene: Scene | RockMass) -> IncidentField | None:
@@ -23,3 +24,20 @@ def incident(scene: Scene | RockMass) -> IncidentField | None:
     from compare.exact.rock_mass.field import field_of
 
     return field_of(scene)
+
+
+def side_error(scene: Scene | RockMass) -> SideError | None:
+    """Return the error of the quiet sides of a rock mass that its receivers feel, None without."""
+    from cases.schema.scene import Scene
+
+    if isinstance(scene, Scene) or not scene.waves:
+        return None
+    from compare.exact.rock_mass import side_error
+
+    return side_error.side_error(scene)
+
+
+def side_warnings(scene: Scene | RockMass) -> list[str]:
+    """Return that error in a line; none without."""
+    found = side_error(scene)
+    return [] if found is None else [found.words]

@@ -13,7 +13,7 @@ from scipy.sparse import csr_matrix
 
 from cases.errors import SceneError
 from cases.histories import LoadHistory
-from cases.incident import FaceTractions, FreeField, enters, tractions
+from cases.incident import FaceTractions, FreeField, tractions
 from cases.loads import step_means
 from cases.material.quiet_sides import medium_impedances
 from cases.schema.pulse import shortest_period
@@ -105,8 +105,7 @@ class Entry:
     def __init__(
         self, scene: RockMass, body: Body, points: SidePoints, field: IncidentField
     ) -> None:
-        chosen = np.flatnonzero(enters(field, scene, points.normal))
-        self.points = SidePoints(*(part[chosen] for part in points))
+        self.points = points
         self.freedom = body.freedom(self.points.node[:, None], np.arange(2)).T.ravel()
         self.field, self.duration = field, scene.time.duration
         self.impedance = medium_impedances(scene, self.points.normal, self.points.region)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cases.histories import LoadHistory, Step
-from cases.incident import FaceTractions, FreeField, IncidentField, enters, tractions
+from cases.incident import FaceTractions, FreeField, IncidentField, tractions
 from cases.schema.pulse import shortest_period
 from dem.blocks.edges import EdgePoints, gathered, on_rows, resultant
 
@@ -88,15 +88,13 @@ def incoming(
     rows: np.ndarray,
     time: Clock,
 ) -> list[Delayed | Sampled]:
-    """Return a field at those points of quiet edges that it enters through.
+    """Return what a field does at the points of quiet edges; nothing of a scene without waves.
 
     impedance : of the dashpots there [m, 2], Pa s/m. rows : held blocks [h]. Plane waves are known
     at every step; another field is asked once, at the samples of a run or more.
     """
-    enter = enters(field, scene, points.normal)
-    if not enter.any():
+    if not scene.waves or not len(points.block):
         return []
-    points, impedance = EdgePoints(*(values[enter] for values in points)), impedance[enter]
     row = np.searchsorted(rows, points.block)
 
     def sums(field: IncidentField, times: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.incident import enters, free_field, plane_wave, tractions
+from cases.incident import free_field, plane_wave, tractions
 from cases.read import load
 
 
@@ -55,15 +55,6 @@ def test_a_face_that_a_wave_enters_feels_twice_its_stress(tmp_path):
     assert found.values[1:, 0] == pytest.approx(np.tile([0.0, 2e6], (49, 1)), rel=1e-12)
     assert np.abs(found.values[:, 1]).max() <= 1e-9  # of 1e6 Pa: it leaves, nothing is needed
     assert found.at(times[10:20]) == pytest.approx(found.values[10:20], rel=1e-9)
-
-
-def test_waves_enter_where_they_come_from_and_along_their_travel(tmp_path):
-    scene = scene_with(tmp_path, P_UP)
-    normals = np.array([[0, -1], [0, 1], [1, 0], [-1, 0]], dtype=float)
-    field = free_field(scene)
-    assert field.whole and enters(field, scene, normals).all()
-    object.__setattr__(field, "whole", False)
-    assert enters(field, scene, normals).tolist() == [True, False, True, True]
 
 
 def test_tractions_between_samples_are_of_fourth_order(tmp_path):

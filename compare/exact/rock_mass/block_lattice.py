@@ -11,7 +11,7 @@ that are quiet, free or periodic, and up to MOST_BLOCKS blocks.
 import numpy as np
 import xarray as xr
 
-from cases.incident import enters, tractions
+from cases.incident import tractions
 from cases.material.contact_points import contact_points
 from cases.material.quiet_sides import impedances
 from cases.material.rigid_blocks import rigid_joints, welds
@@ -82,9 +82,8 @@ def solve(scene: RockMass) -> xr.Dataset:
     stride = 2 * int(np.ceil(scene.interval * IN_A_PERIOD / period / 2))
     fine = scene.interval / stride * np.arange(stride * (len(times) - 1) + 1)
     field = field_of(scene)
-    enter = enters(field, scene, quiet.normal)[:, None]
     face = tractions(field, quiet.place, quiet.normal, impedance, fine)
-    forces = forces_of(quiet, np.where(enter, face.values, 0.0), partition.count)
+    forces = forces_of(quiet, face.values, partition.count)
     found, twin = (
         [at_points(scene, partition, x) for x in motion(system, some, step, samples)]
         for some, step, samples in (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,17 @@ if TYPE_CHECKING:
     from cases.schema.joint_set import JointSet
     from cases.schema.rock_mass import RockMass
 
-PARALLEL = 1e-9  #: sine of the largest angle between directions that count as parallel
+PARALLEL = 1e-6  #: sine of the largest angle between directions that count as parallel
+#: Sine of the angle to joints, layers or a free face, 1 degree, up to which a wave runs along them:
+#: plane waves have no motion there, since what is reflected cancels them.
+ALONG = 0.0175
+
+
+class Face(NamedTuple):
+    """A free face: its outward unit normal [2], and its distance from the origin along that, m."""
+
+    normal: np.ndarray
+    offset: float
 
 
 def beyond_linear_rock(scene: RockMass) -> str | None:
@@ -46,16 +56,34 @@ def beyond_linear_law(one: JointSet) -> str | None:
     return None
 
 
-def reflecting_side(scene: RockMass) -> str | None:
-    """Return why waves do not leave through all sides, None if they do: each side must be quiet, or
-    periodic with waves and joints uniform along the direction to its partner."""
-    for side in outline_of(scene.domain).normals():
+def reflecting_side(scene: RockMass, face: Face | None = None) -> str | None:
+    """Return why waves do not leave through all sides but a free face, None if they do: each other
+    side must be quiet, or periodic with waves and joints uniform along the direction to its
+    partner."""
+    for side, normals in outline_of(scene.domain).normals().items():
         held = getattr(scene.boundaries, side)
         if held == "periodic" and not _is_invariant(scene, side):
             return f"the {side} is periodic, and waves or joints vary along it"
-        if held in ("free", "fixed"):
+        is_face = held == "free" and face is not None and (normals @ face.normal).min() > ALONG
+        if held in ("free", "fixed") and not is_face:
             return f"the {side} is {held} and reflects waves"
     return None
+
+
+def free_face(scene: RockMass) -> Face | None:
+    """Return the free face that waves of a scene reach; None where they reach none, or several that
+    are not one plane."""
+    outline, found = outline_of(scene.domain), []
+    for side, normals in outline.normals().items():
+        if getattr(scene.boundaries, side) == "free":
+            for n, edge in zip(normals, outline.edges(side), strict=True):
+                if any(n @ np.array(wave.direction) > ALONG for wave in scene.waves):
+                    found.append(Face(n, float(edge.mean(axis=0) @ n)))
+    near = PARALLEL * outline.size
+    one_plane = all(
+        along(a.normal, b.normal) and abs(a.offset - b.offset) <= near for a, b in pairwise(found)
+    )
+    return found[0] if found and one_plane else None
 
 
 def prestress_of(scene: RockMass) -> np.ndarray:
@@ -76,13 +104,13 @@ def directions_of(scene: RockMass) -> list[np.ndarray]:
     return [direction_of(dip) for dip in dips]
 
 
-def along(one: np.ndarray, other: np.ndarray) -> bool:
+def along(one: np.ndarray, other: np.ndarray, sine: float = PARALLEL) -> bool:
     """Return whether two unit vectors have the same or opposite directions."""
-    return bool(abs(one[0] * other[1] - one[1] * other[0]) < PARALLEL)
+    return bool(abs(one[0] * other[1] - one[1] * other[0]) < sine)
 
 
 def _is_invariant(scene: RockMass, side: str) -> bool:
     axis = np.array([1.0, 0.0] if side in ("left", "right") else [0.0, 1.0])
     across = np.array([-axis[1], axis[0]])
-    joints = all(along(direction_of(one.dip), axis) for one in scene.joint_sets)
+    joints = all(along(one, axis) for one in directions_of(scene))
     return joints and all(along(np.array(one.direction), across) for one in scene.waves)

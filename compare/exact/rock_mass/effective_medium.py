@@ -7,8 +7,11 @@ all engines through their quiet sides, since the rock beyond is jointed too and 
 intact rock: the solution is exact for the homogenised rock, and approximate for the jointed one if
 wavelengths are large compared with the spacings.
 
-Valid for any crossing sets of linear joints without dashpots, in undamped rock with sides through
-which waves leave, from rest: at t = 0 no pulse may have begun within the domain.
+A free face sends back the two waves of the medium with the same slowness along it that leave no
+traction there.
+
+Valid for any crossing sets of linear joints without dashpots, in undamped rock with other sides
+through which waves leave, from rest: at t = 0 no pulse may have begun within the domain.
 """
 
 from dataclasses import dataclass
@@ -25,8 +28,10 @@ from cases.sampling import sample_times
 from cases.schema.rock_mass import RockMass
 from cases.schema.sources import Wave
 from compare.exact.rock_mass.conditions import (
+    Face,
     all_parallel,
     beyond_linear_rock,
+    free_face,
     prestress_of,
     reflecting_side,
 )
@@ -36,8 +41,9 @@ from results.plane import plane_fields
 
 @dataclass(frozen=True)
 class MediumWave:
-    """A plane wave of a medium: unit direction and polarisation; speed, m/s; `through`, a point of
-    its front at t = 0, m; stress at 1 m/s (xx, yy, xy), Pa, tension positive; its pulse."""
+    """A plane wave of a medium: unit direction; polarisation, a unit vector times a share; speed,
+    m/s; `through`, a point of its front at t = 0, m; stress at 1 m/s (xx, yy, xy), Pa, tension
+    positive; its pulse."""
 
     direction: np.ndarray
     polarisation: np.ndarray
@@ -56,7 +62,6 @@ class MediumField:
     """The waves of a scene in the effective medium of its joints."""
 
     waves: tuple[MediumWave, ...]
-    whole: bool
 
     def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
         total = [np.zeros((len(points), count, len(times))) for count in (2, 3)]
@@ -68,10 +73,12 @@ class MediumField:
 
 
 def medium_field(scene: RockMass) -> MediumField:
-    """Return the waves of a scene in its effective medium; all its sets must have a spacing."""
-    C = medium_stiffness(scene)
-    waves = tuple(medium_wave(scene, one, C) for one in scene.waves)
-    return MediumField(waves, reflecting_side(scene) is None)
+    """Return the waves of a scene in its effective medium, and those that its free face sends back;
+    all its sets must have a spacing."""
+    C, face = medium_stiffness(scene), free_face(scene)
+    waves = [medium_wave(scene, one, C) for one in scene.waves]
+    back = [] if face is None else [x for one in waves for x in _sent_back(one, C, scene, face)]
+    return MediumField((*waves, *back))
 
 
 def medium_stiffness(scene: RockMass) -> np.ndarray:
@@ -94,6 +101,40 @@ def medium_wave(scene: RockMass, wave: Wave, C: np.ndarray) -> MediumWave:
     return MediumWave(n, g, c, through, -full[[0, 1, 0], [0, 1, 1]], pulse)
 
 
+def _sent_back(wave: MediumWave, C: np.ndarray, scene: RockMass, face: Face) -> list[MediumWave]:
+    """Return the waves in a medium of stiffness C that a free face makes of another: those of the
+    slownesses p t + q m, with its own p along the face, that travel away from it, so that no
+    traction is left on the face; without those that decay from it."""
+    m, density, c = face.normal, scene.rock.density, tensor(C)
+    t, slowness = np.array([-m[1], m[0]]), wave.direction / wave.speed
+    p = slowness @ t
+    M, N, L = (np.einsum("ijkl,j,l->ik", c, *x) for x in ((m, m), (m, t), (t, t)))
+    damped, still = p * (N + N.T), p * p * L - density * np.eye(2)
+    companion = np.block(
+        [[np.zeros((2, 2)), np.eye(2)], [-np.linalg.solve(M, still), -np.linalg.solve(M, damped)]]
+    )
+    roots = np.linalg.eigvals(companion)
+    found = []
+    for q in roots[np.abs(roots.imag) < 1e-9 * np.abs(roots).max()].real:
+        s = p * t + q * m
+        values, shapes = np.linalg.eigh(np.einsum("ijkl,j,l->ik", c, s, s) - density * np.eye(2))
+        g = shapes[:, np.abs(values).argmin()]
+        stress = -np.einsum("ijkl,k,l->ij", c, g, s)
+        if (stress @ m) @ g > 0:  # energy flows inwards
+            found.append((s, g, stress))
+    xx, yy, xy = wave.stress
+    pulled = np.array([[xx, xy], [xy, yy]]) @ m
+    share = np.linalg.lstsq(np.array([s @ m for *_, s in found]).T, -pulled, rcond=None)[0]
+    at = wave.through + (face.offset - wave.through @ m) * m  # and the pulse begins there
+    late, back = wave.lateness(at[None])[0], []
+    for (s, g, stress), r in zip(found, share, strict=True):
+        speed = float(1 / np.hypot(*s))
+        own = r * stress[[0, 1, 0], [0, 1, 1]]
+        through = at - late * speed * speed * s
+        back.append(MediumWave(speed * s, r * g, speed, through, own, wave.pulse))
+    return back
+
+
 def applies(scene: RockMass) -> Answer:
     """Return whether the scene has waves in an effective medium only."""
     gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
@@ -109,10 +150,13 @@ def applies(scene: RockMass) -> Answer:
         (any(one.damping_ratio for one in scene.joint_sets), "the joints are damped"),
     ]
     reason = next((why for there, why in reasons if there), None)
-    reason = reason or beyond_linear_rock(scene) or reflecting_side(scene)
+    face = free_face(scene)
+    reason = reason or beyond_linear_rock(scene) or reflecting_side(scene, face)
     if reason is None:
-        corners = np.array(scene.domain.corners)
-        first = min(one.lateness(corners).min() for one in medium_field(scene).waves)
+        corners, waves = np.array(scene.domain.corners), medium_field(scene).waves
+        if face is not None and len(waves) < 3 * len(scene.waves):
+            return no("a wave decays from the free face")
+        first = min(one.lateness(corners).min() for one in waves)
         if first < -1e-9 * scene.time.duration:
             reason = "a pulse is inside the domain before t = 0"
     return no(reason) if reason else YES

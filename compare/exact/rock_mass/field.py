@@ -1,34 +1,40 @@
 """The incident field of a scene.
 
-If the joints are a stack it is the stack's, also for one joint that stiffens at normal incidence;
-if they cross and all have a spacing it is that of the waves in their effective medium, since the
-rock beyond transmits no wave of intact rock; else that of the waves in the intact rock, with
-reflection and transmission at the boundaries of its regions.
+It is that of the parallel planes of the scene: joints with the stiffness that they have at first,
+boundaries of layers and a free face. If joints cross and all have a spacing it is that of the waves
+in their effective medium, since the rock beyond transmits no wave of intact rock; else that of the
+waves in intact rock. One joint that stiffens at normal incidence has its own exact field.
 
-The exact field of the stack on all quiet sides makes the sides exact: errors inside are the
-engine's own. 1000 points and 2000 times of one joint take about 0.5 s of CPU time, 1 s where P
-waves are evanescent; it differs from `pulse.pulse_fields` by less than the bound given there,
-about 1e-9 of a smooth pulse.
+It acts on all quiet sides, and is exact there where the planes are all that there is and joints
+stay linear: errors inside are then the engine's own. 1000 points and 2000 times of one joint take
+about 0.5 s of CPU time, 1 s where P waves are evanescent; it differs from `pulse.pulse_fields` by
+less than the bound given there, about 1e-9 of a smooth pulse.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cases.errors import SceneError
 from cases.incident import FreeField, WaveMotion, free_field, plane_wave
+from cases.partition.joints import direction_of
 from cases.partition.regions import strata
+from cases.schema.domain import Domain
+from cases.schema.plane import Boundaries
+from cases.schema.region import REST
 from compare.exact.plane import layer_pulses
 from compare.exact.rock_mass import normal_incidence
-from compare.exact.rock_mass.conditions import all_parallel
+from compare.exact.rock_mass.conditions import ALONG, PARALLEL, along, directions_of, free_face
 from compare.exact.rock_mass.effective_medium import medium_field
-from compare.exact.rock_mass.stack import JointStack, begun, scatters_otherwise, stack_of
+from compare.exact.rock_mass.stack import JointStack, scatters_otherwise, stack_of
 
 if TYPE_CHECKING:
     from cases.incident import IncidentField, PlaneWave
+    from cases.schema.joint_set import JointSet
     from cases.schema.rock_mass import RockMass
 
 
@@ -38,7 +44,6 @@ class StackField:
 
     stack: JointStack
     waves: tuple[PlaneWave, ...]
-    whole: bool = True
 
     def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
         stack, places = self.stack, np.asarray(points, dtype=float)
@@ -52,36 +57,66 @@ class StackField:
 
 
 def field_of(scene: RockMass) -> IncidentField:
-    """Return the field that enters a scene of waves through its quiet sides."""
+    """Return the field of the waves of a scene that acts on all its quiet sides."""
     if not scene.waves:
         return free_field(scene)
     if normal_incidence.applies(scene):
         return normal_incidence.ClosingField(scene)
-    if scatters_otherwise(scene) is None:
-        stack = stack_of(scene)
-        if begun(scene, stack) is None:
-            return StackField(stack, tuple(plane_wave(scene, one) for one in scene.waves))
-    if scene.regions:
-        return _layered_field(scene)
-    if not all_parallel(scene) and all(one.spacing for one in scene.joint_sets):
-        return medium_field(scene)
-    return free_field(scene)
-
-
-def _layered_field(scene: RockMass) -> StackField | FreeField:
-    """Return the field of the waves in the regions' intact rock, except regions with an outline,
-    which do not reach a side.
-
-    Raises SceneError where that is not known.
-    """
-    intact = scene.model_copy(update={"joint_sets": [], "regions": strata(scene.regions)})
+    planes = planes_of(scene)
     waves = tuple(plane_wave(scene, one) for one in scene.waves)
-    if not intact.regions:
-        return FreeField(waves)
-    reason = scatters_otherwise(intact, leaves=False)
-    stack = stack_of(intact) if reason is None else None
-    reason = reason if stack is None else begun(scene, stack)
-    if stack is None or reason is not None:
-        allowed = f"enter regions in which their field is not known: {reason}"
-        raise SceneError(scene.where, "waves", len(scene.waves), allowed)
-    return StackField(stack, waves, whole=False)
+    if planes.joint_sets or planes.regions:
+        return StackField(stack_of(planes), waves)
+    if scene.joint_sets and all(one.spacing for one in scene.joint_sets):
+        return medium_field(scene)
+    if free_face(planes) is not None:
+        return StackField(stack_of(planes), waves)
+    return FreeField(waves)
+
+
+def planes_of(scene: RockMass) -> RockMass:
+    """Return a scene with those of its joints, boundaries of regions and free face alone that are a
+    stack of parallel planes: of joints that cross layers, or are not parallel, none; of a free face
+    that is not parallel to layers none, else no joint that is not parallel to it.
+
+    Raises SceneError where the waves in its layers are not known.
+    """
+    layers, sets = strata(scene.regions), _in_layers(scene)
+    planes = scene.model_copy(update={"regions": layers, "joint_sets": []})
+    if layers:
+        if (reason := scatters_otherwise(planes, leaves=False)) is not None:
+            allowed = f"enter regions in which their field is not known: {reason}"
+            raise SceneError(scene.where, "waves", len(scene.waves), allowed)
+        sets = [one for one in sets if along(direction_of(one.dip), directions_of(planes)[0])]
+    dips = [*(one.dip for one in layers), *(one.dip for one in sets)]
+    face, directions = free_face(scene), [direction_of(dip) for dip in dips]
+    runs_along = any(
+        along(np.array(wave.direction), one, ALONG) for wave in scene.waves for one in directions
+    )
+    sides = {side: "quiet" for side in scene.boundaries.sides("periodic")}
+    if face is not None and any(abs(face.normal @ one) > PARALLEL for one in directions):
+        if layers:
+            sides = dict.fromkeys(Boundaries.model_fields, "quiet")
+        else:
+            sets = []
+    if not layers and (runs_along or not all(along(*pair) for pair in pairwise(directions))):
+        sets = []
+    if sets == scene.joint_sets and layers == scene.regions and not sides:
+        return scene
+    changes = {"joint_sets": sets, "boundaries": scene.boundaries.model_copy(update=sides)}
+    if len(sets) < len(scene.joint_sets):  # nor what only these let be cut into convex blocks
+        changes["domain"] = Domain(outline=scene.domain.corners, non_convex="cut")
+    return planes.model_copy(update=changes)
+
+
+def _in_layers(scene: RockMass) -> list[JointSet]:
+    """Return the joint sets of a scene that are not in regions with an outline alone, nor given by
+    a mesh."""
+    names = {REST, *(one.name for one in strata(scene.regions))}
+    if scene.domain.given is not None:
+        return []
+    found = []
+    for one in scene.joint_sets:
+        inside = [name for name in one.regions if name in names] if one.regions else one.regions
+        if inside or not one.regions:
+            found.append(one.model_copy(update={"regions": inside}))
+    return found

@@ -47,8 +47,6 @@ BESIDE = 2e-9  # m
 class ClosingField:
     """The wave of a scene with reflection and transmission: `cases.incident.IncidentField`."""
 
-    whole = True
-
     def __init__(self, scene: RockMass, tolerance: float = TOLERANCES[0]) -> None:
         wave, one = scene.waves[0], scene.joint_sets[0]
         stack, rock = stack_of(scene), elastic_rock(scene.rock)

@@ -1,8 +1,8 @@
 """The parallel joints of a scene as a stack of unbounded joints, and the conditions for that.
 
-Valid for undamped rock with linear joints and boundaries of regions, all parallel and continuous,
-in a convex domain with sides through which waves leave, from rest: at t = 0 no pulse may have met a
-joint there.
+Valid for undamped rock with linear joints, boundaries of regions and a free face, all parallel and
+continuous, in a convex domain with other sides through which waves leave, from rest: at t = 0 no
+pulse may have met a joint there.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import numpy as np
 from cases.incident import plane_wave
 from cases.material.dashpots import set_time_constants
 from cases.material.rock import elastic_rock
+from cases.partition.joints import direction_of
 from cases.partition.outline import TOLERANCE, outline_of
 from cases.partition.regions import rocks_of, strata
 from cases.partition.scene import partition_of
@@ -24,10 +25,14 @@ from compare.exact.plane.oblique_joint import Joint
 from compare.exact.plane.pulse import PulseStack
 from compare.exact.plane.waves import Kind, slownesses_across
 from compare.exact.rock_mass.conditions import (
+    ALONG,
+    PARALLEL,
     all_parallel,
     along,
     beyond_linear_rock,
     directions_of,
+    free_face,
+    prestress_of,
     reflecting_side,
 )
 
@@ -38,16 +43,17 @@ if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
     from cases.schema.sources import Wave
 
-BEGUN = 1e-9  #: of the duration: tolerated time for which a pulse has met a joint at t = 0
+BEGUN = 1e-6  #: of the duration: tolerated time for which a pulse has met a joint at t = 0
 
 
 @dataclass(frozen=True)
 class JointStack:
-    """Parallel joints in rock; welded boundaries of its regions are joints of infinite stiffness.
+    """Parallel joints in rock; welded boundaries of its regions are joints of infinite stiffness, a
+    free face is one without stiffness.
 
     rocks : of the layers, along the normal [N + 1]. direction : unit vector along the joints [2];
     their normal is its left. offsets : of the joints along the normal from the origin, ascending,
-    m, [N]. joints : [N]. partition : of the domain.
+    m, [N]. joints : [N]. partition : of the domain. has_face : whether one of them is a free face.
     """
 
     rocks: list[ElasticRock]
@@ -55,6 +61,7 @@ class JointStack:
     offsets: np.ndarray
     joints: list[Joint]
     partition: Partition
+    has_face: bool = False
 
     @property
     def normal(self) -> np.ndarray:
@@ -75,8 +82,13 @@ class JointStack:
 
 
 def stack_of(scene: RockMass) -> JointStack:
-    """Return the stack of a scene whose joints are parallel."""
-    partition, direction = partition_of(scene), directions_of(scene)[0]
+    """Return the stack of a scene whose joints, and free face, are parallel: of joints that are not
+    linear, as they are at first."""
+    partition, face = partition_of(scene), free_face(scene)
+    direction = next(iter(directions_of(scene)), None)
+    if direction is None:
+        assert face is not None
+        direction = np.array([face.normal[1], -face.normal[0]])
     contacts, etas = partition.contacts, set_time_constants(scene)
     etas = np.zeros(len(scene.joint_sets)) if etas is None else etas
     laws = [
@@ -96,14 +108,30 @@ def stack_of(scene: RockMass) -> JointStack:
     swap = contacts.normal[order] @ normal < 0
     below, above = np.where(swap, above, below), np.where(swap, below, above)
     known = [elastic_rock(one) for one in rocks_of(scene)]
-    rocks = [known[k] for k in (*below[:1], *above)]
-    return JointStack(rocks, direction, depths[order], joints, partition)
+    rocks = [known[k] for k in (*below[:1], *above)] or [elastic_rock(scene.rock)]
+    offsets, at = depths[order], 0
+    if face is not None:
+        along_normal = float(face.normal @ normal)
+        at = len(joints) if along_normal > 0 else 0
+        offsets = np.insert(offsets, at, face.offset * along_normal)
+        joints.insert(at, Joint(0.0, 0.0))
+        rocks.insert(at, rocks[at])
+    return JointStack(rocks, direction, offsets, joints, partition, face is not None)
 
 
 def stiffnesses(scene: RockMass) -> np.ndarray:
-    """Return the normal and the shear stiffness of each joint set [2, sets], Pa/m."""
-    keys = ("normal_stiffness", "shear_stiffness")
-    return np.array([[getattr(one, key) for one in scene.joint_sets] for key in keys])
+    """Return the normal and the shear stiffness of each joint set [2, sets], Pa/m, in the initial
+    stress: k (1 + sigma / k d_m)^2 of joints that stiffen as they close."""
+    xx, yy, xy = prestress_of(scene)
+    found = []
+    for one in scene.joint_sets:
+        x, y = direction_of(one.dip)
+        pressed = max(xx * y * y - 2 * xy * x * y + yy * x * x, 0.0)
+        K = one.normal_stiffness
+        if K and one.maximum_closure is not None:
+            K *= (1 + pressed / (K * one.maximum_closure)) ** 2
+        found.append((K, one.shear_stiffness))
+    return np.array(found).reshape(-1, 2).T
 
 
 def against(scene: RockMass) -> str | None:
@@ -121,21 +149,23 @@ def against(scene: RockMass) -> str | None:
 def scatters_otherwise(scene: RockMass, leaves: bool = True) -> str | None:
     """Return why the incident waves and the joints do not form the field of a stack, None if they
     do; other loads and openings add to it. leaves : whether waves must leave through the sides."""
-    directions = directions_of(scene)
+    directions, face = directions_of(scene), free_face(scene)
+    if directions and face is not None and abs(face.normal @ directions[0]) > PARALLEL:
+        face = None
     outlined = len(strata(scene.regions)) < len(scene.regions)
     reasons = [
         (outlined, "a region has an outline"),
-        (not directions, "there is no joint"),
+        (not directions and face is None, "there is no joint"),
         (not all_parallel(scene), "joints are not parallel"),
     ]
     for i, wave in enumerate(scene.waves):
-        runs_along = any(along(np.array(wave.direction), one) for one in directions)
+        runs_along = any(along(np.array(wave.direction), one, ALONG) for one in directions)
         reasons.append((runs_along, f"waves[{i}] travels along the joints"))
         decays = bool(scene.regions and directions) and _decays(scene, wave)
         reasons.append((decays, f"waves[{i}] has an evanescent wave in a region"))
     found = beyond_linear_rock(scene) if leaves else None
     found = found or next((why for there, why in reasons if there), None)
-    found = found or (reflecting_side(scene) if leaves else None)
+    found = found or (reflecting_side(scene, face) if leaves else None)
     if found is None and leaves and len(outline_of(scene.domain).taken) > len(scene.domain.holes):
         found = "the domain is not convex"
     return found

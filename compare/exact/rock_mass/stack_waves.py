@@ -51,10 +51,12 @@ def holds(scene: RockMass, one: bool) -> Answer:
     if reason := against(scene):
         return no(reason)
     stack = stack_of(scene)
-    count = len(stack.joints)
+    count = len(stack.joints) - stack.has_face
     if one and scene.regions:
         return no("regions differ in rock: see parallel-joints")
-    if (count == 1 and not scene.regions) != one:
+    if one and stack.has_face:
+        return no("a side is free: see parallel-joints")
+    if (count == 1 and not scene.regions and not stack.has_face) != one:
         return no(f"there are {count} joints: see parallel-joints" if one else "there is one joint")
     reason = begun(scene, stack)
     return no(reason) if reason else YES

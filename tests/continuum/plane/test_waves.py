@@ -72,9 +72,9 @@ def test_a_quiet_side_sends_back_what_its_closed_form_says(kind, angle, struck):
     closed = closed * (1 if kind == "P" else -1)
     back = sent_back(scene, closed)
     x, top = np.array(scene.record.points), np.array([[4.0, 20.0], [16.0, 20.0]])
-    found = simulate(scene, incident=FreeField((one, *back), True))
+    found = simulate(scene, incident=FreeField((one, *back)))
     t = found.time.values
-    whole, Z = FreeField((one, *back), True)(top, t), (one.rock.s_impedance, one.rock.p_impedance)
+    whole, Z = FreeField((one, *back))(top, t), (one.rock.s_impedance, one.rock.p_impedance)
     pulls = whole.stress[:, [2, 1]] + np.array(Z)[:, None] * whole.velocity
     assert np.abs(pulls).max() < 1e-9 * np.abs(whole.stress).max()
     own = found.velocity.values.swapaxes(1, 2) - one.motion(x, t).velocity

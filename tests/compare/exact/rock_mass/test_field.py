@@ -42,27 +42,25 @@ def test_what_else_acts_and_openings_add_to_it(rock_mass, changes):
     opening = {"openings": [[[18, 13], [22, 13], [22, 17], [18, 17]]], "non_convex": "cut"}
     scene = rock_mass(**changes, domain=opening, record={"joints": []})
     found = field_of(scene)
-    assert isinstance(found, StackField) and found.whole and len(found.stack.joints) == 1
+    assert isinstance(found, StackField) and len(found.stack.joints) == 1
+
+
+def test_without_planes_it_is_that_of_the_waves_alone(rock_mass, joint):
+    crossed = [joint(), joint(name="other", dip=80.0)]
+    for changes in ({"joint_sets": []}, {"waves": []}, {"joint_sets": crossed}):
+        assert isinstance(field_of(rock_mass(**changes, record={"joints": []})), FreeField)
 
 
 @pytest.mark.parametrize(
     "changes",
-    [
-        {"joint_sets": []},
-        {"waves": []},
-        {"boundaries": {"left": "free"}},
-        {"damping": {"mass_proportional": 1.0}},
-    ],
+    [{"boundaries": {"left": "free"}}, {"damping": {"mass_proportional": 1.0}}, {"law": 30.0}],
 )
-def test_else_it_is_that_of_the_waves_alone(rock_mass, changes):
-    found = field_of(rock_mass(**changes, record={"joints": []}))
-    assert isinstance(found, FreeField) and found.whole == ("joint_sets" in changes)
-
-
-def test_crossing_joints_and_those_that_slip_scatter_otherwise(rock_mass, joint):
-    crossed = rock_mass(joint_sets=[joint(), joint(name="other", dip=80.0)])
-    slips = rock_mass(joint_sets=[joint(friction_angle=30.0)])
-    assert not field_of(crossed).whole and not field_of(slips).whole
+def test_sides_damping_and_strength_leave_it_as_it_is(rock_mass, joint, changes):
+    """Sides that waves run along, damped rock and a joint that may slip: to the last bit."""
+    changes = changes | {"joint_sets": [joint(friction_angle=changes.pop("law", None))]}
+    found, known = (field_of(x)(SIDES, TIMES) for x in (rock_mass(**changes), rock_mass()))
+    assert np.array_equal(found.velocity, known.velocity) and known.velocity.any()
+    assert np.array_equal(found.stress, known.stress)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,233 @@
+"""What the incident field of a scene leaves out at its quiet sides, and how far from them.
+
+The field (`field.field_of`) is that of joints that stay linear. What they do otherwise beside a
+side changes the true motion there, by about as much as the traction beyond their strength moves
+rock; the side holds the rock to the field instead, and this error enters the domain as a wave.
+Sides that all waves meet at normal incidence are exact whatever happens between them, since their
+dashpots absorb all that comes back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from cases.incident import plane_wave
+from cases.material.rock import elastic_rock
+from cases.partition.joints import direction_of
+from cases.partition.outline import outline_of
+from cases.partition.regions import rocks_of
+from cases.schema.rock_mass_checks import distance
+from compare.exact.plane.waves import face
+from compare.exact.rock_mass import normal_incidence
+from compare.exact.rock_mass.conditions import (
+    ALONG,
+    along,
+    directions_of,
+    free_face,
+    prestress_of,
+    reflecting_side,
+)
+from compare.exact.rock_mass.field import StackField, field_of, planes_of
+
+if TYPE_CHECKING:
+    from cases.incident import PlaneWave
+    from cases.schema.joint_set import JointSet
+    from cases.schema.rock_mass import RockMass
+
+LEAST = 0.01  # of the wave: less is not said
+SAMPLES = 2000  # times at which tractions are looked at, at most
+IN_A_PERIOD = 40  # of them, at least
+
+
+class SideError(NamedTuple):
+    """An error of quiet sides: its cause; the part of the incident wave that it is there, at most;
+    a wavelength of P, m, at which less than half of it is left; the receivers that are nearer, by
+    key of [record]."""
+
+    cause: str
+    part: float
+    wavelength: float
+    near: dict[str, list[tuple[float, ...]]]
+
+    @property
+    def words(self) -> str:
+        """The error in a line."""
+        near = [f"[{x:g}, {y:g}]" for places in self.near.values() for x, y in places]
+        more = [f"{len(near) - 3} more"] if len(near) > 3 else []
+        nearer = f"; nearer: {', '.join([*near[:3], *more])}" if near else ""
+        return (
+            f"boundaries: {self.cause}, which waves at quiet sides leave out: an error of up to "
+            f"{100 * self.part:.2g} % of the wave enters there, of which less than half is left "
+            f"{self.wavelength:.3g} m (a wavelength of P) inside{nearer}"
+        )
+
+
+def side_error(scene: RockMass) -> SideError | None:
+    """Return the largest error of the quiet sides of a scene that receivers feel; None where it is
+    below LEAST or reaches no receiver in time."""
+    edges = _oblique(scene) if scene.waves else np.zeros((0, 2, 2))
+    if not len(edges) or normal_incidence.applies(scene):
+        return None
+    part, cause = max(_causes(scene), default=(0.0, ""))
+    if part < LEAST:
+        return None
+    speed = max(float(elastic_rock(one).p_speed) for one in rocks_of(scene))
+    begins = min(plane_wave(scene, one).lateness(edges.reshape(-1, 2)).min() for one in scene.waves)
+    reach = speed * (scene.time.duration - max(float(begins), 0.0))
+    wavelength = speed * max(one.time_scale or scene.time.duration for one in scene.waves)
+    away = {
+        key: [(tuple(place), distance(np.array(place), edges)) for place in places]
+        for key in ("points", "joints")
+        if (places := getattr(scene.record, key))
+    }
+    if min((d for places in away.values() for _, d in places), default=0.0) > reach:
+        return None
+    near = {key: [at for at, d in places if d < wavelength] for key, places in away.items()}
+    return SideError(cause, min(part, 1.0), wavelength, near)
+
+
+def _oblique(scene: RockMass) -> np.ndarray:
+    """Return the edges of quiet sides [n, 2, 2] but of those that all waves meet at normal
+    incidence."""
+    outline, found = outline_of(scene.domain), []
+    planes = directions_of(planes_of(scene))
+    for side, normals in outline.normals().items():
+        if getattr(scene.boundaries, side) == "quiet":
+            for n, edge in zip(normals, outline.edges(side), strict=True):
+                straight = all(along(np.array(w.direction), n, ALONG) for w in scene.waves)
+                if not straight or any(abs(n @ one) > ALONG for one in planes):
+                    found.append(edge)
+    return np.array(found)
+
+
+def _causes(scene: RockMass) -> Iterator[tuple[float, str]]:
+    """Yield what the field leaves out, and the part of the wave that it may be."""
+    planes = planes_of(scene)
+    quiet = {side: "quiet" for side in scene.boundaries.sides("periodic")}
+    closed = scene.model_copy(update={"boundaries": scene.boundaries.model_copy(update=quiet)})
+    if reason := reflecting_side(closed, free_face(planes)):
+        yield 1.0, reason
+    yield _damped(scene), "the rock is damped"
+    kept = [one.name for one in planes.joint_sets]
+    left = [one for one in scene.joint_sets if one.name not in kept]
+    smeared = all(one.spacing for one in left) and not planes.regions and not kept
+    for one in left:
+        back = _sent_back(scene, one)
+        if smeared:
+            yield 1 - float(np.sqrt(1 - back**2)), f"joint set {one.name!r} is not smeared"
+        else:
+            count = outline_of(scene.domain).size / one.spacing if one.spacing else 1.0
+            crosses = f"joint set {one.name!r} is not parallel to layers, a free side or other sets"
+            yield 1 - (1 - back) ** count, crosses
+    yield from _beyond_strength(scene)
+
+
+def _sent_back(scene: RockMass, one: JointSet) -> float:
+    """Return the largest part of a wave that a joint of a set sends back at its dominant frequency,
+    at normal incidence: x / sqrt(1 + x^2), x = omega Z / 2 K."""
+    most = 0.0
+    for wave in scene.waves:
+        incident, K = plane_wave(scene, wave), one.normal_stiffness
+        K = K if wave.kind == "P" else one.shear_stiffness
+        if wave.time_scale and K:
+            x = np.pi / wave.time_scale * float(incident.rock.density) * incident.speed / K
+            most = max(most, float(x / np.hypot(1.0, x)))
+    return most
+
+
+def _damped(scene: RockMass) -> float:
+    """Return the part of a wave that damping in the rock takes as it crosses the domain."""
+    alpha, beta = scene.damping.alpha or 0.0, 0.0
+    if scene.damping.rayleigh is not None:
+        beta = scene.damping.rayleigh.coefficients[1]
+    size, most = outline_of(scene.domain).size, 0.0
+    for wave in scene.waves:
+        omega = 2 * np.pi / wave.time_scale if wave.time_scale else 0.0
+        rate = (alpha + beta * omega**2) / 2
+        most = max(most, 1 - float(np.exp(-rate * size / plane_wave(scene, wave).speed)))
+    return most
+
+
+def _beyond_strength(scene: RockMass) -> Iterator[tuple[float, str]]:
+    """Yield for each joint set the motion that the tractions of the field beyond its strength would
+    be, over the velocity of the wave, and what it sends back less as it closes."""
+    sets = [one for one in scene.joint_sets if not _is_linear(one)]
+    if not sets:
+        return
+    field, places = field_of(scene), np.mean(scene.domain.corners, axis=0)[None]
+    if isinstance(field, StackField):
+        n = field.stack.normal
+        places = np.vstack([places, places + (field.stack.offsets[:, None] - places @ n) * n])
+    period = min((one.time_scale or np.inf for one in scene.waves), default=np.inf)
+    count = np.clip(IN_A_PERIOD * scene.time.duration / period, 200, SAMPLES)
+    times = np.linspace(0.0, scene.time.duration, int(count))
+    waves = [plane_wave(scene, one) for one in scene.waves]
+    peak = max(float(np.abs(one.pulse.value(times)).max()) for one in waves)
+    stress = _still(scene, places)[:, :, None] - field(places, times).stress
+    for one in sets:
+        x, y = direction_of(one.dip)
+        moves = max(_moved(wave, np.array([x, y])) for wave in waves)
+        xx, yy, xy = np.moveaxis(stress, 1, 0)
+        pressed = xx * y * y - 2 * xy * x * y + yy * x * x
+        shear = np.abs((yy - xx) * x * y + xy * (x * x - y * y))
+        for excess, does in zip(_excess(one, pressed, shear), ("opens", "slips"), strict=True):
+            yield (excess * moves / peak if peak else 0.0), f"joint set {one.name!r} {does}"
+        if one.maximum_closure is not None and one.normal_stiffness:
+            closes = np.ptp(pressed) / (one.normal_stiffness * one.maximum_closure)
+            part = _sent_back(scene, one) * float(closes / (1 + closes))
+            yield part, f"joint set {one.name!r} stiffens"
+
+
+def _moved(wave: PlaneWave, along_joint: np.ndarray) -> float:
+    """Return the velocity that a traction on a joint gives the rock beside it at most, m/s/Pa: the
+    largest singular value of V A^-1, V and A the velocities and tractions of unit P and SV waves
+    whose fronts follow a wave along the joint."""
+    w = face(wave.rock, abs(float(wave.direction @ along_joint)) / wave.speed)
+    V, A = np.array([w.shear_velocity, w.normal_velocity]), np.array([w.shear, w.normal])
+    return float(np.linalg.norm(V @ np.linalg.inv(A), 2))
+
+
+def _is_linear(one: JointSet) -> bool:
+    limits = one.friction_angle, one.cohesion, one.tensile_strength, one.maximum_closure
+    return one.tension is not False and all(value is None for value in limits)
+
+
+def _excess(one: JointSet, pressed: np.ndarray, shear: np.ndarray) -> tuple[float, float]:
+    """Return by how much normal and shear traction exceed the strength of a joint, Pa: what it
+    keeps after it has failed."""
+    opens = slides = 0.0
+    if one.tension is False or one.tensile_strength is not None:
+        strength, pulled = one.tensile_strength or 0.0, float(-pressed.min())
+        opens = pulled if pulled > strength else 0.0
+    if one.friction_angle is not None or one.cohesion is not None:
+        closed, cohesion = np.maximum(pressed, 0.0), one.cohesion or 0.0
+
+        def strength_of(angle: float | None, cohesion: float) -> np.ndarray:
+            return cohesion + np.tan(np.radians(angle or 0.0)) * closed
+
+        if (shear > strength_of(one.friction_angle, cohesion)).any():
+            angle = one.friction_angle
+            if one.dynamic_friction_angle is not None:
+                angle = one.dynamic_friction_angle
+            if one.residual_cohesion is not None:
+                cohesion = one.residual_cohesion
+            slides = float((shear - strength_of(angle, cohesion)).max())
+    return opens, slides
+
+
+def _still(scene: RockMass, places: np.ndarray) -> np.ndarray:
+    """Return the initial stress (xx, yy, xy) at places [m, 2], Pa, compression positive [m, 3]: the
+    prestress and, at rest, the weight of the rock above, confined."""
+    found = np.tile(prestress_of(scene), (len(places), 1))
+    if scene.gravity is not None and scene.gravity.static:
+        g, rock = np.array(scene.gravity.direction), scene.rock
+        depth = places @ g - (np.array(scene.domain.corners) @ g).min()
+        weight = rock.density * scene.gravity.acceleration * depth
+        side = rock.intact_poisson / (1 - rock.intact_poisson)
+        x, y = g
+        share = [side + (1 - side) * x * x, side + (1 - side) * y * y, (1 - side) * x * y]
+        found = found + weight[:, None] * np.array(share)
+    return found
