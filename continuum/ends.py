@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from math import isfinite
 
 import numpy as np
+from scipy.sparse import csr_matrix, diags
 
 from cases.loads import base_steps, load_history, step_means
 from cases.material.calibrate import Properties
@@ -149,6 +150,16 @@ def fixed_ends(scene: Scene, body: Body, time: Clock | None = None) -> Fixed | N
     if scene.shakes_base and time is not None:
         step = base_steps(scene.load, time.dt, time.steps + 1)
     return Fixed(np.concatenate(freedoms), np.concatenate(directions).astype(float), step)
+
+
+def borne_ends(scene: Scene, body: Body) -> csr_matrix | None:
+    """Return the areas [freedoms, freedoms] (m2) of ends that bear the weight beside their
+    dashpots; None without."""
+    places = [place for place, bears in zip(("start", "end"), scene.bears, strict=True) if bears]
+    if not places:
+        return None
+    areas = [face_area(body, getattr(body.mesh, place)).sum(axis=0) for place in places]
+    return csr_matrix(diags(np.sum(areas, axis=0)))
 
 
 def face_area(body: Body, side: Side) -> np.ndarray:

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from continuum.build import weight_of
 from continuum.model import Model
 from continuum.monitor import Monitor
 from continuum.run import Run
@@ -37,11 +36,9 @@ class Engine(NamedTuple):
 
 def explicit_engine(run: Run, monitor: Monitor) -> Engine:
     """Return leapfrog."""
-    gravity, time, communicator = run.scene.gravity, run.choice.time, run.communicator
-    if gravity is not None and not gravity.static:
-        weight = weight_of(run.scene, run.discrete.body)
-        assert weight is not None
-        let_go(run.model, run.state, run.discrete.body, weight)
+    time, communicator = run.choice.time, run.communicator
+    if run.sudden is not None:
+        let_go(run.model, run.state, run.discrete.body, run.sudden)
     of_run = run.model, run.state, run.samples
     march = communicator.leapfrog(*of_run, time.stride, monitor.guard)
 

@@ -7,6 +7,14 @@ import numpy as np
 from continuum.run import Run
 from numerics.divergence import ENERGY, EVERY, audit, guard, look, speed_that
 from numerics.instability import Sighting, stopped
+from numerics.small_motion import (
+    LARGEST,
+    Moved,
+    farthest,
+    matters,
+    overlapping,
+    refuse_large_motion,
+)
 
 
 class Monitor:
@@ -56,6 +64,7 @@ class Monitor:
         if self.explicit:
             self.audit(first, last)
         if not self.look(n):
+            self.check_small_motion(first, n)
             return
         step, what, sound = self.guard.found.tolist() if self.guard.found[0] >= 0 else (n, 0, n)
         key = "step_fraction" if self.explicit else "steps_per_period"
@@ -70,6 +79,22 @@ class Monitor:
         critical = self.run.critical if self.explicit else np.inf
         raise stopped(self.run.scene, self.time, critical, seen)
 
+    def check_small_motion(self, first: int, n: int) -> None:
+        """Raise StoppedError where blocks have moved further than small motion allows at step n,
+        and samples up to `first` were taken at the look before."""
+        run = self.run
+        if not matters(run.scene):
+            return
+        found = farthest_joint(run)
+        share = -1.0 if found is None else found.by / found.size
+        found = self.communicator.of_largest(share, found)
+        if run.scene.kind == "rock mass" and not share > LARGEST:
+            from continuum.plane.rock import motion_of_blocks
+
+            moved = motion_of_blocks(run.discrete, run.state.u)
+            found = overlapping(run.discrete.partition, moved) or found
+        refuse_large_motion(run.scene, "the continuum", found, n * self.time.dt, first)
+
     def fastest(self) -> float:
         """Return where along the pillar (m) the fastest node is."""
         body = self.run.discrete.body
@@ -77,6 +102,30 @@ class Monitor:
         speed = np.nan_to_num(np.abs(self.run.state.v[freedoms]).max(axis=1), nan=np.inf)
         node = int(speed.argmax())
         return self.communicator.of_largest(float(speed[node]), float(body.y[node]))
+
+
+def farthest_joint(run: Run) -> Moved | None:
+    """Return where a joint of this process has moved furthest over the size of its smaller block;
+    along the axis of a pillar faces may part by any distance. None without such a joint."""
+    across, jump = run.discrete.jumps, run.state.jump
+    if across is None or not across.joint.size:
+        return None
+    if run.scene.kind == "rock mass":
+        from continuum.plane.rock import blocks_of
+
+        pairs = blocks_of(run.discrete)[across.joint]
+        by = np.linalg.norm(jump, axis=0)
+        size = np.sqrt(run.discrete.partition.area[pairs].min(axis=1))
+    elif run.discrete.body.section.components == 1:
+        return None
+    else:
+        pairs = across.joint[:, None] + np.arange(2)
+        by = np.linalg.norm(jump[1:], axis=0)
+        size = np.full(by.size, run.discrete.properties.side)
+    k = farthest(by, size)
+    i, j = pairs[k].tolist()
+    x = across.x[k] if run.scene.kind == "rock mass" else across.x[k, 1:2]
+    return Moved(i, j, float(by[k]), float(size[k]), tuple(x.tolist()))
 
 
 def highest_speed(run: Run) -> float:

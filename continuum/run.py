@@ -22,7 +22,8 @@ class Run(NamedTuple):
 
     scene, rock : of it, "jointed" or "equivalent". discrete : the scene in space, `continuum.build`
     or `continuum.plane.rock`. model, state, samples : what the run consists of. choice : how it is
-    stepped. critical : the critical step of explicit steps, s.
+    stepped. critical : the critical step of explicit steps, s. sudden : what begins to act at
+    t = 0, the weight and what bears it, N [freedoms]; None without.
     """
 
     scene: Any
@@ -33,6 +34,7 @@ class Run(NamedTuple):
     samples: Samples
     choice: Choice
     critical: float
+    sudden: Any = None
 
     @property
     def communicator(self) -> Serial:

@@ -15,6 +15,7 @@ from scipy.sparse import csr_matrix
 from cases.errors import SceneError, StoppedError
 from cases.schema.scene import Scene
 from continuum.build import weight_of
+from continuum.ends import borne_ends
 from continuum.engines import Engine, explicit_engine, implicit_engine
 from continuum.model import Model
 from continuum.monitor import Monitor
@@ -147,7 +148,8 @@ def start(
     if reason:
         raise SceneError(scene.name or scene.title, "model", model, reason)
     run = run_of(scene, model, dim, comm, incident)
-    rest, monitor = _at_rest(run), Monitor(run)
+    run, rest = _at_rest(run)
+    monitor = Monitor(run)
     begin = explicit_engine if run.choice.scheme == "explicit" else implicit_engine
     return Start(run, monitor, begin(run, monitor), rest)
 
@@ -195,18 +197,38 @@ def _bytes(model: Model, state: State) -> int:
     return size_of(model, state, [(m.data, m.indices, m.indptr) for m in sparse])
 
 
-def _at_rest(run: Run) -> dict[str, Any]:
-    """Bring a scene's rock to rest under gravity and around what is excavated, and return what a
-    result says of that."""
+def _at_rest(run: Run) -> tuple[Run, dict[str, Any]]:
+    """Bring a scene's rock to rest under gravity and around what is excavated, and return it on
+    sides that bear its weight, and what a result says of that."""
     gravity, model, body = run.scene.gravity, run.model, run.discrete.body
-    static = gravity is not None and gravity.static
-    if not (static or run.scene.excavated):
-        return {}
-    from continuum.implicit.static import settle_static
+    static, weight = gravity is not None and gravity.static, weight_of(run.scene, body)
+    if weight is None and not run.scene.excavated:
+        return run, {}
+    from continuum.implicit.static import elastic_rest, holding, settle_static
 
-    if gravity is not None and not static:  # it acts later
-        model = model._replace(weight=model.weight - weight_of(run.scene, body))
-    return settle_static(run.scene, model, run.state, body)
+    rest: dict[str, Any] = {}
+    hold = holding(body, _borne(run))
+    if weight is not None and not static:  # it acts later
+        model = model._replace(weight=model.weight - weight)
+    if static or run.scene.excavated:
+        rest = settle_static(run.scene, model, run.state, body, hold if static else None)
+    if weight is None:
+        return run, rest
+    if hold is not None:
+        u = run.state.u if static else elastic_rest(model, run.state, body, weight, hold)
+        borne = -(hold @ u)
+        weight += borne
+        run = run._replace(model=run.model._replace(weight=run.model.weight + borne))
+    return run._replace(sudden=None if static else weight), rest
+
+
+def _borne(run: Run) -> csr_matrix | None:
+    """Return the areas of sides that bear the weight beside their dashpots; None without."""
+    if isinstance(run.scene, Scene):
+        return borne_ends(run.scene, run.discrete.body)
+    from continuum.plane.sides import borne_sides
+
+    return borne_sides(run.scene, run.discrete.body)
 
 
 def _film(run: Run, ahead: float) -> RockFilm | None:

@@ -28,6 +28,7 @@ from joints.normal import gap_under
 STEPS_BETWEEN_LOOKS = 10
 STEP_FRACTION = 0.9  # of the critical step: only the final state matters
 NEVER = 1 << 60  # steps between samples where none are taken
+UNBORNE = "what quiet boundaries bear of the weight is not found: fix the one below"
 PATIENCE = 20  # a stall is a twentieth of the most steps without progress
 
 
@@ -75,15 +76,26 @@ def prestressed(scene: Scene, p: Properties) -> np.ndarray:
     """Return the displacement of every block under the prestress alone [N], m: where results count
     displacement from.
 
-    A fixed end does not move (the far one if both are fixed); between two free ends the
-    displacement has zero mean.
+    A held end does not move (the far one if both are); between two free ends the displacement has
+    zero mean.
     """
+    start, end = held_ends(scene)
     normal = scene.prestress.normal if scene.prestress else 0.0
     u = np.append(0.0, np.cumsum(gaps_under(p, normal)))
-    if scene.ends.end == "fixed":
+    if end == "fixed":
         return u - u[-1] + normal / (2 * p.at_end.regular_stiffness)
     half = normal / (2 * p.at_start.regular_stiffness)
-    return u - half if scene.ends.start == "fixed" else u - u.mean()
+    return u - half if start == "fixed" else u - u.mean()
+
+
+def held_ends(scene: Scene) -> tuple[str, str]:
+    """Return how the ends are held while a static state is sought: fixed where they bear it."""
+    kinds, weighed = (scene.ends.start, scene.ends.end), scene.gravity and scene.gravity.static
+    start, end = (
+        "fixed" if kind == "fixed" or (weighed and bears) else "free"
+        for kind, bears in zip(kinds, scene.bears, strict=True)
+    )
+    return start, end
 
 
 def gaps_under(p: Properties, stress: float | np.ndarray) -> np.ndarray:
@@ -128,10 +140,11 @@ def since_prestress(
     return displacement - at_rest[:, None]
 
 
-def settle(scene: AnyScene, system: System) -> Rest:
+def settle(scene: AnyScene, system: System, unborne: str = "") -> Rest:
     """Bring a scene's blocks to rest under gravity and prestress.
 
-    Raises SceneError where there is no static state within numerics.dem.static_tolerance.
+    unborne : what to do where sudden gravity does not come to rest on sides that bear it. Raises
+    SceneError where there is no static state within numerics.dem.static_tolerance.
     """
     tolerance = scene.numerics.dem.static_tolerance
     rest = relax(system, tolerance, system.most_steps)
@@ -141,6 +154,8 @@ def settle(scene: AnyScene, system: System) -> Rest:
         if scene.gravity is not None and scene.gravity.static:
             key = "gravity"
             remedy = "a joint slides or a block is unsupported: static = false starts without it"
+        if unborne:
+            key, remedy = "gravity", unborne
         raise SceneError(
             scene.where,
             key,

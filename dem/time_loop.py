@@ -23,20 +23,21 @@ if TYPE_CHECKING:
 
 BLOCK_STEPS_AT_ONCE = 20_000_000  # some 10 ms to 1 s: often enough for a progress bar
 ENOUGH_BLOCKS = 20_000  # from which a second thread gains more than synchronisation costs
+LOOKS = 20  # at a run, at least: blocks may move further than they can
 LEAST_STEPS = 64  # at least: pipelined threads need several
 
 
 class Run(NamedTuple):
     """A run: its clock, how many blocks it has, and what takes its samples.
 
-    march : of (first, last), takes samples first .. last - 1. check : of the number of samples
-    taken, raises an error if the run exceeds its bounds. parts : its state.
+    march : of (first, last), takes samples first .. last - 1. check : of the same, raises an error
+    if the run exceeds its bounds then. parts : its state.
     """
 
     time: Clock
     blocks: int
     march: Callable[[int, int], None]
-    check: Callable[[int], None]
+    check: Callable[[int, int], None]
     parts: Any
 
 
@@ -54,9 +55,10 @@ def followed(
         if film is not None:
             film.look(first)
         run.march(first, last)
-        run.check(last)
+        run.check(first, last)
 
-    chunk = max(LEAST_STEPS, BLOCK_STEPS_AT_ONCE // run.blocks) // run.time.stride
+    steps = min(BLOCK_STEPS_AT_ONCE // run.blocks, run.time.steps // LOOKS)
+    chunk = max(LEAST_STEPS, steps) // run.time.stride
     try:
         run_in_stretches(run.time.samples, chunk, march, run.parts, progress, film, keeper)
     except StoppedError as error:

@@ -16,7 +16,7 @@ from joints.closure import closure_stiffness
 from joints.dilation import lift, riding_stiffness
 from joints.formula import flags, formula
 from joints.normal import normal_traction
-from joints.shear import cohesion_left, shear_return, shear_strength
+from joints.shear import UNLIMITED, cohesion_left, shear_return, shear_strength
 from joints.slide import after_slide
 
 if TYPE_CHECKING:
@@ -94,6 +94,15 @@ class Parts(NamedTuple):
     dilation: bool
     rate_state: bool
     path: bool
+
+
+def sticking(table: np.ndarray) -> np.ndarray:
+    """Return the table of a law [fields, ...] whose joints never open, slip, break or stiffen."""
+    found, row = table.copy(), Law._fields.index
+    found[IN_MOTION], found[row("friction")], found[row("carries_tension")] = 0.0, 0.0, 1.0
+    for name in ("cohesion", "tensile_strength", "critical_opening", "maximum_closure"):
+        found[row(name)] = UNLIMITED
+    return found
 
 
 class History(NamedTuple):

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
         transfer_function,
         wave_speed,
     )
+    from compare.report.verdict import Held
 
 __all__ = [
     "arias_intensity",
@@ -62,6 +63,7 @@ __all__ = [
     "simulate",
     "solvers",
     "transfer_function",
+    "verdicts",
     "wave_speed",
 ]
 
@@ -176,10 +178,20 @@ def deconvolve(scene: AnyScene, surface: DataArray, water_level: float = 1e-3) -
 
 def misfit(one: Dataset, other: Dataset) -> float:
     """Return the relative L2 misfit of two results of a scene: that of the waveform, one component
-    of one quantity at one receiver less its static state, which is furthest off."""
+    of one quantity at one receiver less its static state, which is furthest off, of those that
+    carry at least 5 % of their quantity's motion at the receiver."""
     from compare.misfit import metrics
 
     return metrics.misfit(one, other)
+
+
+def verdicts(comparison: Comparison) -> dict[str, Held]:
+    """Return the verdict on each engine of a comparison by name: `total`, its worst misfit from the
+    reference `against`, `peaks`, the differences in PPV and peak stress, mean and worst over the
+    receivers, and `own`, its numerical error; `facts` has all as plain numbers and words."""
+    from compare.report.verdict import ENGINES, held_to
+
+    return {name: held_to(name, comparison) for name in ENGINES if name in comparison.results}
 
 
 def read_curves(files: Sequence[str], scenes: Sequence[AnyScene]) -> list[Curves]:

@@ -481,8 +481,13 @@ MISTAKES = {
     ),
     "static gravity on a pillar that nothing holds": (
         "[ends]",
-        "[gravity]\ndirection = [0, 1, 0]\n[ends]",
-        ["gravity.static = true", "a fixed end, or gravity.static = false"],
+        "[gravity]\ndirection = [0, -1, 0]\n[ends]",
+        ["gravity.static = true", "needs a fixed end", "or gravity.static = false"],
+    ),
+    "sudden gravity that pulls a pillar off its quiet end": (
+        "[ends]",
+        "[gravity]\ndirection = [0, -1, 0]\nstatic = false\n[ends]",
+        ["ends.end = 'quiet'", "pulls the pillar off it", "needs a fixed"],
     ),
     # segments
     **{
@@ -883,7 +888,9 @@ def test_every_mistake_of_a_file_has_its_line(tmp_path, jointwave):
 
 def test_every_mistake_of_a_rock_mass_has_its_line(tmp_path, jointwave, one_joint, in_toml):
     """Of three checks of one scene whose tables are each right."""
-    tables = one_joint(gravity={}, record={"points": [[30.0, 5.0]], "interval": 1.0})
+    up, quiet = {"direction": [0.0, 1.0]}, dict.fromkeys(("left", "right", "bottom"), "quiet")
+    record = {"points": [[30.0, 5.0]], "interval": 1.0}
+    tables = one_joint(gravity=up, boundaries=quiet, record=record)
     text = in_toml(tables)
     said = jointwave("explain", scene := write(tmp_path / "scene.toml", text), code=2).err
     keys = [

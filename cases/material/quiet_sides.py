@@ -10,6 +10,7 @@ from cases.material.effective_medium import compliant, speeds, stiffness
 from cases.material.rock import elastic_rock
 from cases.partition.regions import within
 from cases.schema.rock_mass import RockMass
+from cases.schema.tables import LEAN
 
 
 def impedances(scene: RockMass, normals: np.ndarray, region: np.ndarray) -> np.ndarray:
@@ -17,6 +18,19 @@ def impedances(scene: RockMass, normals: np.ndarray, region: np.ndarray) -> np.n
     regions [m]: [m, 2], Pa s/m; as rigid blocks have them."""
     smeared = scene.numerics.dem.block is None
     return medium_impedances(scene, normals, region, smeared)
+
+
+def borne(scene: RockMass, normals: np.ndarray) -> np.ndarray:
+    """Return whether quiet sides of outward normals [m, 2] bear what gravity puts on them along
+    their normal and along themselves, 1 or 0 [m, 2].
+
+    Both below the rock, the first beside it: there is rock beyond, too. None above it.
+    """
+    gravity = scene.gravity
+    if gravity is None or not gravity.acceleration:
+        return np.zeros((len(normals), 2))
+    lean = normals @ np.array(gravity.direction)
+    return np.stack([lean > -LEAN, lean > LEAN], axis=1).astype(float)
 
 
 def medium_impedances(

@@ -137,8 +137,15 @@ def _check_ends(scene: Scene) -> None:
         raise contradiction(
             "ends.start", ends.start, "needs load.quantity 'velocity' or 'acceleration', or no load"
         )
-    if gravity is not None and gravity.static and "fixed" not in (ends.start, ends.end):
-        raise contradiction("gravity.static", True, "needs a fixed end, or gravity.static = false")
+    if gravity is None or "fixed" in (ends.start, ends.end) or any(scene.bears):
+        return
+    if gravity.static:
+        allowed = "needs a fixed end, a quiet or matched one below it, or gravity.static = false"
+        raise contradiction("gravity.static", True, allowed)
+    for key, kind in ends.model_dump().items():
+        if kind != "free" and gravity.acceleration:
+            allowed = "gravity pulls the pillar off it: needs a fixed, quiet or matched end below"
+            raise contradiction(f"ends.{key}", kind, allowed)
 
 
 def _check_damping(scene: Scene) -> None:

@@ -41,7 +41,9 @@ class Boundaries(Table):
 
 
 class GravityInPlane(Table):
-    """A body force."""
+    """A body force. Fixed sides bear the weight, and quiet ones, which exert beside their dashpots
+    what held sides would at rest: below the rock (within 45 degrees) held in all directions, beside
+    it along their normal. A quiet side above the rock bears the in-situ stress alone."""
 
     direction: DirectionInPlane = Field(default=[0.0, -1.0])  #: x, y
     acceleration: NonNegative = 9.81  #: m/s2
@@ -97,5 +99,8 @@ class ContinuumInPlane(Table):
 class NumericsInPlane(Table):
     """Numerical parameters; the defaults are chosen for accuracy."""
 
+    #: joints may move by more than 2 % of a block, and blocks meet others than their neighbours,
+    #: though contacts stay those of the start; else such a run stops
+    allow_large_motion: bool = False
     dem: DemInPlane = DemInPlane()
     continuum: ContinuumInPlane = ContinuumInPlane()

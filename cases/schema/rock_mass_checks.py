@@ -10,6 +10,7 @@ import numpy as np
 from cases.schema.joint_set import check_sets
 from cases.schema.region import check_regions
 from cases.schema.shared_checks import check_fields, check_quality, check_time
+from cases.schema.tables import LEAN
 from cases.schema.values import check_all, contradiction
 
 if TYPE_CHECKING:
@@ -39,7 +40,8 @@ def check(scene: RockMass) -> None:
                 _check_waves,
             )
         ),
-        *(partial(one, scene) for one in (check_time, check_fields, check_quality, _check_gravity)),
+        *(partial(one, scene) for one in (check_time, check_fields, check_quality)),
+        partial(_check_support, scene, outline),
         *(
             partial(_check_load, f"loads[{i}]", load, scene, outline)
             for i, load in enumerate(scene.loads)
@@ -47,9 +49,19 @@ def check(scene: RockMass) -> None:
     )
 
 
-def _check_gravity(scene: RockMass) -> None:
-    if scene.gravity is not None and scene.gravity.static and not scene.boundaries.sides("fixed"):
-        raise contradiction("gravity.static", True, "needs a fixed side, or gravity.static = false")
+def _check_support(scene: RockMass, outline: Outline) -> None:
+    """Refuse rock under gravity that no side bears, though some side holds it back."""
+    gravity, normals = scene.gravity, outline.normals()
+    quiet = [side for side in scene.boundaries.sides("quiet") if side in normals]
+    if gravity is None or scene.boundaries.sides("fixed"):
+        return
+    below = any((normals[side] @ np.array(gravity.direction)).max() > LEAN for side in quiet)
+    if gravity.static and not below:
+        allowed = "needs a fixed side, a quiet one below the rock, or gravity.static = false"
+        raise contradiction("gravity.static", True, allowed)
+    if quiet and gravity.acceleration and not below:
+        allowed = "does not bear the weight of the rock: needs a fixed side, or a quiet one below"
+        raise contradiction(f"boundaries.{quiet[0]}", "quiet", allowed)
 
 
 def _check_mesh(scene: RockMass, outline: Outline) -> None:

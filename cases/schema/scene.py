@@ -16,6 +16,7 @@ from cases.schema.joints_at_places import spelled_out
 from cases.schema.pulse import NO_LOAD, Load, shortest_period
 from cases.schema.segment import Segment, regions
 from cases.schema.tables import (
+    LEAN,
     Ends,
     Gravity,
     Motion,
@@ -81,6 +82,15 @@ class Scene(Table):
     def shakes_base(self) -> bool:
         """Whether the load is the motion of a rigid base, on which the start is fixed."""
         return self.load.is_motion and self.ends.start == "fixed"
+
+    @property
+    def bears(self) -> tuple[bool, bool]:
+        """Whether the start and the end, which waves pass, bear what gravity puts on them."""
+        if self.gravity is None or not self.gravity.acceleration:
+            return False, False
+        kinds, along = (self.ends.start, self.ends.end), self.gravity.direction[1]
+        start, end = (kind in ("quiet", "matched") for kind in kinds)
+        return start and along < LEAN, end and along > -LEAN
 
     @property
     def block_count(self) -> int:

@@ -21,6 +21,8 @@ SPEEDS = ("p_speed", "s_speed")
 CONSTANTS = ("equivalent_modulus", "equivalent_poisson")
 PAIRS = " and ".join(SPEEDS) + ", or " + " and ".join(CONSTANTS)
 
+LEAN = 0.5**0.5 - 1e-9  # cosine of 45 degrees: gravity presses onto a side within this angle
+
 MOST_BLOCKS = 10_000_000  # about 0.4 kB per block: the memory of one machine
 
 
@@ -149,7 +151,8 @@ class Ends(Table):
 
 
 class Gravity(Table):
-    """A body force."""
+    """A body force. Fixed ends bear the weight, and quiet and matched ones unless gravity pulls the
+    pillar off them: beside their dashpots they exert what fixed ones would at rest."""
 
     direction: Direction  #: x, y, z
     acceleration: NonNegative = 9.81  #: m/s2
@@ -224,5 +227,8 @@ class ContinuumNumerics(Table):
 class Numerics(Table):
     """Numerical parameters; the defaults are chosen for accuracy."""
 
+    #: joints may move by more than 2 % of a block, and blocks meet others than their neighbours,
+    #: though contacts stay those of the start; else such a run stops
+    allow_large_motion: bool = False
     dem: DemNumerics = DemNumerics()
     continuum: ContinuumNumerics = ContinuumNumerics()

@@ -7,17 +7,20 @@ from typing import Any
 
 from compare.cli.terminal import print_json, say, show_numbers, show_table
 from compare.engines import ENGINES
+from compare.misfit.differences import STRESS, VELOCITY, PeakDifference
 from compare.misfit.metrics import Worst
 from compare.misfit.pairs import GIVEN, Comparison, Row
 from compare.report.overview import in_seconds
-from compare.report.tables import percent
+from compare.report.tables import mean_and_worst, percent
 from compare.report.verdict import Standing, held_to, standings
 from compare.solvers.incident import side_error
+from compare.solvers.record import Kind
 from results.dataset import energy_residual
 
 MOST_LINES = 10  # of the answer
 HINT = "all misfits, and solutions that do not apply: --all; as JSON: --json"
-ANSWER = ["engine", "worst misfit", "at", "compared with", "own error", "stepping", "verdict"]
+ANSWER = ["engine", "worst misfit", "at", "PPV", "peak stress", "compared with", "own error"]
+ANSWER += ["stepping", "verdict"]
 
 
 def show_comparisons(
@@ -84,11 +87,16 @@ def _engine_cells(engine: str, one: Standing, found: list[Comparison], several: 
         engine,
         in_percent(total.total),
         where if total.total.place else "-",
+        *(_peak(total.peaks.get(name)) for name in (VELOCITY, STRESS)),
         total.against or "-",
         in_percent(own),
         in_seconds(max(about["seconds_stepping"] for about in ran)),
         f"{one.verdict.sign} {one.verdict.word}",
     ]
+
+
+def _peak(peak: PeakDifference | None) -> str:
+    return f"{mean_and_worst(peak)} %" if peak else "-"
 
 
 def _rank(worst: Worst) -> float:
@@ -107,8 +115,13 @@ def _remarks(stand: dict[str, Standing], several: bool) -> Iterator[str]:
     """Yield the references, engines not checked independently, and bounds that are exceeded."""
     held = [one for standing in stand.values() for one in standing.variants]
     reasons = dict.fromkeys(f"{one.against}: {one.reason}" for one in held if one.against)
+    others = [e for e, one in stand.items() if Kind.MODELLING.words in one.meanings]
+    said = [f"a modelling difference of {', '.join(others)}"] if others else []
+    said += [
+        f"static state of {e} {one.static_words}" for e, one in stand.items() if one.static_words
+    ]
     if reasons:
-        yield f"reference: {'; '.join(reasons)}"
+        yield f"reference: {'; '.join([*reasons, *said])}"
     alone = {engine: one.unchecked for engine, one in stand.items() if one.unchecked}
     if alone and several:
         named = (f"{engine} ({', '.join(variants)})" for engine, variants in alone.items())
@@ -242,7 +255,8 @@ def _comparison_facts(comparison: Comparison) -> dict[str, Any]:
         "engines": {name: _engine_facts(name, comparison) for name in engines},
         "rows": [
             r.facts
-            | {"floor": r.floor, "faint": r.faint, "near_side": (r.place.key, r.place.at) in near}
+            | {"floor": r.floor, "faint": r.faint, "of_all": r.of_all}
+            | {"near_side": (r.place.key, r.place.at) in near}
             for r in comparison.rows
         ],
         "curves": [_curve_facts(beside) for beside in comparison.besides],
@@ -254,15 +268,8 @@ def _comparison_facts(comparison: Comparison) -> dict[str, Any]:
 def _engine_facts(engine: str, comparison: Comparison) -> dict[str, Any]:
     """Return an engine's line for one variant; floor : of its reference's own error."""
     held, about = held_to(engine, comparison), comparison.results[engine].attrs
-    return {
-        "misfit": held.total.misfit,
-        "floor": held.total.floor,
-        "at": held.total.where if held.total.place else None,
-        "against": held.against or None,
-        "reason": held.reason,
-        "own_error": held.own.misfit,
+    return held.facts | {
         "seconds_stepping": about["seconds_stepping"],
-        "verdict": held.verdict.word,
         "out_of_bounds": list(held.broken),
     }
 

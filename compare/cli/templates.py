@@ -159,8 +159,8 @@ The scene reference lists all keys.
 """,
     tail="""\
 [expect]  # bounds on the relative L2 misfit of pairs, checked by `pytest {file}`
-"continuum-jointed ~ oblique-joint" = 5e-3  # jointed rock, exact solution
-"dem ~ oblique-joint" = 1.2e-1              # rigid blocks, the same solution
+"continuum-jointed ~ oblique-joint" = 1e-3  # jointed rock, exact solution
+"dem ~ oblique-joint" = 6e-2                # rigid blocks, the same solution
 
 [[variants]]  # the same scene with changed keys; repeatable
 name = "steeper"

@@ -12,10 +12,11 @@ import xarray as xr
 from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from compare.figures.style import in_order
-from compare.misfit.metrics import FAINT, QUANTITIES, motion
+from compare.misfit.metrics import motion
 from compare.misfit.pairs import Comparison
 from compare.misfit.places import Place, places_of, recorded
 from compare.misfit.ranking import finest
+from compare.misfit.weight import FAINT, QUANTITIES
 from results.labels import label
 
 #: SI units of the quantities of waveforms.

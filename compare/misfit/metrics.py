@@ -2,31 +2,22 @@
 
 A waveform is one component of one quantity at one receiver, minus its static state: the state of a
 scene before its load is not part of the motion. Nothing is pooled: the misfit of two results is
-that of the worst waveform. Every function takes a waveform or result first and its reference
-second, equally sampled.
+that of the worst component that carries its quantity's motion at a receiver (`weight`). Every
+function takes a waveform or result first and its reference second, equally sampled.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import lru_cache
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from compare.misfit.places import Place, places_of
+from compare.misfit.weight import QUANTITIES, Weight, weigh
 
-#: Quantities of one unit, whose amplitudes are compared with each other.
-UNITS = (
-    ("stress", "shear", "traction"),
-    ("velocity",),
-    ("displacement", "gap", "slip"),
-    ("rotation",),
-)
-QUANTITIES = tuple(quantity for unit in UNITS for quantity in unit)
-#: A waveform whose root mean square stays below this part of the loudest one of its unit, in both
-#: results, is listed and does not decide a misfit.
-FAINT = 0.01
-ROUND_OFF = 1e-9  # of the largest displacement (m): rotations (rad) below count as zero
+Reading = Callable[[xr.Dataset, str], np.ndarray]
 JUDGED = 10.0  # times its own error: the smallest misfit that a reference can resolve
 
 
@@ -67,33 +58,56 @@ def relative_l2(one: np.ndarray, other: np.ndarray) -> float:
 class Pairing(NamedTuple):
     """One waveform [n] of a result and that of its reference, both minus their static state.
 
-    error : bound on the reference's own root-mean-square error, 0 for a closed form.
-    faint : whether both are too weak to decide a misfit.
+    error : bound on the reference's own root-mean-square error, 0 for a closed form. norm, least :
+    what a misfit that decides is relative to, and from where on it decides, see `Weight`.
     """
 
     place: Place
     one: np.ndarray
     other: np.ndarray
     error: float
-    faint: bool
+    norm: float = 0.0
+    least: float = 0.0
+
+    @property
+    def worst(self) -> "Worst":
+        """The misfit as it decides, with its place."""
+        if self.least == 0:
+            floor = 0.0 if self.error == 0 else _ratio(self.error, rms(self.other))
+            return Worst(relative_l2(self.one, self.other), self.place, floor)
+        off = rms(self.one - self.other)
+        whole = self.norm or inf
+        return Worst(off / whole, self.place, self.error / whole, True)
+
+    @property
+    def faint(self) -> bool:
+        """Whether it is too weak to decide a misfit."""
+        return self.worst.judged < self.least
 
     @property
     def misfit(self) -> float:
-        """Relative L2 distance."""
-        return relative_l2(self.one, self.other)
+        """Relative L2 distance; of a small component that decides, relative to all motion there."""
+        return relative_l2(self.one, self.other) if self.faint else self.worst.misfit
 
     @property
     def floor(self) -> float:
         """Relative error of the reference itself."""
-        return 0.0 if self.error == 0 else _ratio(self.error, rms(self.other))
+        if self.faint and self.error:
+            return _ratio(self.error, rms(self.other))
+        return self.worst.floor
 
 
 class Worst(NamedTuple):
-    """The worst waveform of two results; `place` is None without motion."""
+    """The worst waveform of two results; `place` is None without motion.
+
+    of_all : whether the misfit is relative to all motion of the quantity at the receiver, since the
+    component itself carries less than 5 % of it in the reference.
+    """
 
     misfit: float
     place: Place | None = None
     floor: float = 0.0
+    of_all: bool = False
 
     @property
     def judged(self) -> float:
@@ -103,7 +117,9 @@ class Worst(NamedTuple):
     @property
     def where(self) -> str:
         """Quantity and receiver in words."""
-        return self.place.words if self.place else "nowhere"
+        if self.place is None:
+            return "nowhere"
+        return self.place.words + ", of all motion there" * self.of_all
 
 
 def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
@@ -112,74 +128,80 @@ def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
 
 
 def worst(one: xr.Dataset, other: xr.Dataset) -> Worst:
-    """Return the worst waveform of two results, faint ones left out."""
-    found = [Worst(p.misfit, p.place, p.floor) for p in pairings(one, other) if not p.faint]
+    """Return the worst waveform of two results among those that carry the motion."""
+    found = [p.worst for p in pairings(one, other) if not p.faint]
     return max(found, key=lambda w: w.judged, default=Worst(0.0))
 
 
 def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
     """Return every waveform that both results have, while the reference is known.
 
-    Those that are zero in both are left out.
+    Left out is what the scene does not excite: what is zero in both, and what the reference keeps
+    below a millionth of the largest motion, unless the result moves there enough to decide.
     """
-    found = _shared(one, other)
-    loudest = _loudest(found)
+    found, weight = _weighed(one, other)
     return [
-        p._replace(faint=max(rms(p.one), rms(p.other)) < loudest[p.place.quantity])
-        for p in found
-        if p.one.any() or p.other.any()
+        p
+        for p, excited in zip(found, weight.excited, strict=True)
+        if (excited or not p.faint) and (p.one.any() or p.other.any())
     ]
 
 
-def _shared(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
+def _weighed(one: xr.Dataset, other: xr.Dataset) -> tuple[list[Pairing], Weight]:
     until = other.attrs.get("known_until")
     times = other["time"].values
     n = len(times) if until is None else int(np.searchsorted(times, until, side="right"))
-    return [
-        Pairing(place, a[:n], b[:n], error_of(other, place), False)
+    found = [
+        Pairing(place, a[:n], b[:n], error_of(other, place))
         for (place, a), (_, b) in zip(waveforms(one, other), waveforms(other, one), strict=True)
     ]
+    weight = weigh([p.place for p in found], np.array([rms(p.other) for p in found]))
+    numbers = zip(found, weight.norm.tolist(), weight.least.tolist(), strict=True)
+    return [p._replace(norm=norm, least=least) for p, norm, least in numbers], weight
 
 
 class Stack(NamedTuple):
     """All waveforms of a result [waveform, n] and of its reference, minus their static states.
 
-    least : root mean square [waveform]: one that is smaller in both is ignored.
+    norm, least : what each misfit is relative to, and from where on it decides, [waveform].
     """
 
     one: np.ndarray
     other: np.ndarray
+    norm: np.ndarray
     least: np.ndarray
 
     @property
     def misfits(self) -> np.ndarray:
-        """Relative L2 distance of each waveform, 0 if it is faint in both."""
+        """Relative L2 distance of each waveform, 0 if it does not decide."""
         return self.distances(self.one, self.other)
 
     def distances(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """Return ||one - other|| / ||reference|| of each waveform, 0 if it is faint."""
-        goal = np.linalg.norm(self.other, axis=1)
-        loudest = np.maximum(np.linalg.norm(self.one, axis=1), goal)
-        loud = loudest / np.sqrt(max(self.one.shape[1], 1)) >= self.least
-        difference = np.where(loud, np.linalg.norm(one - other, axis=1), 0.0)
+        """Return the root mean square of one - other over `norm`, 0 where it does not decide."""
+        difference = np.linalg.norm(one - other, axis=1) / np.sqrt(max(one.shape[1], 1))
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(difference > 0, difference / goal, 0.0)
+            found = np.where(difference > 0, difference / self.norm, 0.0)
+        return np.where(found >= self.least, found, 0.0)
 
 
 def stacked(one: xr.Dataset, reference: xr.Dataset) -> Stack:
     """Return the waveforms of a result and of its reference as arrays."""
-    found = _shared(one, reference)
-    loudest = _loudest(found)
-    least = np.array([loudest[p.place.quantity] for p in found])
-    return Stack(np.array([p.one for p in found]), np.array([p.other for p in found]), least)
+    found, weight = _weighed(one, reference)
+    waves = np.array([p.one for p in found]), np.array([p.other for p in found])
+    return Stack(*waves, weight.norm, weight.least)
 
 
-def waveforms(result: xr.Dataset, like: xr.Dataset) -> Iterator[tuple[Place, np.ndarray]]:
-    """Yield the motion of a result [n] at every place that it shares with another result."""
+def waveforms(
+    result: xr.Dataset, like: xr.Dataset, read: Reading | None = None
+) -> Iterator[tuple[Place, np.ndarray]]:
+    """Yield the motion of a result [n] at every place that it shares with another result.
+
+    read : of (result, quantity), to what is read instead of `motion`.
+    """
     for quantity in QUANTITIES:
         if quantity not in result or quantity not in like:
             continue
-        values = motion(result, quantity)
+        values = (read or motion)(result, quantity)
         places, components = places_of(result, quantity)
         others, other_components = places_of(like, quantity)
         for i in (i for i, at in enumerate(places) if at in others):
@@ -217,22 +239,6 @@ def error_of(result: xr.Dataset, place: Place) -> float:
     places, components = places_of(result, place.quantity)
     error = np.atleast_1d(result[name].values[places.index(place.at)])
     return float(error[components.index(place.component) if place.component else 0])
-
-
-def _loudest(found: list[Pairing]) -> dict[str, float]:
-    """Return by quantity the root mean square below which a waveform is faint.
-
-    In a unit in which the reference is at rest while something else moves, all are faint.
-    """
-    loud = {
-        quantity: max((rms(p.other) for p in found if p.place.quantity in unit), default=0.0)
-        for unit in UNITS
-        for quantity in unit
-    }
-    still = np.inf if any(loud.values()) else 0.0
-    least = {quantity: FAINT * value or still for quantity, value in loud.items()}
-    least["rotation"] = max(least["rotation"], ROUND_OFF * loud["displacement"])
-    return least
 
 
 def rms(waveform: np.ndarray) -> float:

@@ -1,5 +1,7 @@
 """All solutions that apply to a scene, and the distances between them, pair by pair."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
@@ -16,8 +18,8 @@ from compare.misfit.alignment import Beside, distances, lay_beside
 from compare.misfit.external import Curves
 from compare.misfit.metrics import Distance, distance, pairings
 from compare.misfit.places import Place, places_of
-from compare.misfit.ranking import applicable
-from compare.solvers.record import Answer
+from compare.misfit.ranking import applicable, kind_of
+from compare.solvers.record import Answer, Kind
 
 
 class Pair(NamedTuple):
@@ -50,8 +52,11 @@ def meaning(pair: Pair) -> str:
     """Return the causes of a pair's distance; "" if one is an external curve."""
     if pair.kind == GIVEN:
         return ""
-    of_kinds = (solver(pair.other).distances or {}).values()
-    return next((ones[pair.one] for ones in of_kinds if pair.one in ones), "")
+    of_kinds = (solver(pair.other).distances or {}).items()
+    kind, cause = next(
+        ((k, ones[pair.one]) for k, ones in of_kinds if pair.one in ones), (None, "")
+    )
+    return cause if kind is None or kind.words == pair.kind else f"another model; {cause}"
 
 
 class Row(NamedTuple):
@@ -59,6 +64,7 @@ class Row(NamedTuple):
 
     place : with the component, if there are several. floor : relative error of the second solution
     itself; a misfit below ten times this is not resolved. faint : too weak to decide a misfit.
+    of_all : whether the misfit is relative to all motion of the quantity there, see `Worst`.
     """
 
     pair: Pair
@@ -66,6 +72,7 @@ class Row(NamedTuple):
     distance: Distance
     floor: float = 0.0
     faint: bool = False
+    of_all: bool = False
 
     @property
     def quantity(self) -> str:
@@ -107,7 +114,7 @@ def compare(
     external `curves` are compared with every solution, their clocks shifted onto it by `align`.
     """
     comparison = solved(scene, applicable(scene), progress)
-    comparison.rows = measure(comparison.results, spectral)
+    comparison.rows = measure(comparison.results, spectral, scene)
     for one in (curve for curve in curves if curve.holds_for(scene)):
         beside = lay_beside(one, scene, comparison.results, align)
         comparison.besides.append(beside)
@@ -138,21 +145,27 @@ def solved(
     return comparison
 
 
-def measure(results: dict[str, xr.Dataset], spectral: bool = False) -> list[Row]:
+def measure(
+    results: dict[str, xr.Dataset], spectral: bool = False, scene: AnyScene | None = None
+) -> list[Row]:
     """Return the distances of every available pair, for every waveform that both have.
 
     Envelope and phase misfits are computed for stress, shear, velocity and rotation, if not faint.
+    scene : in which two solvers may resolve different models; None: as their records have it.
     """
     rows = []
     for pair in pairs():
         if pair.one not in results or pair.other not in results:
             continue
+        if scene is not None and pair.kind == Kind.NUMERICAL.words:
+            pair = pair._replace(kind=kind_of(pair.one, pair.other, scene).words)
         one, other = results[pair.one], results[pair.other]
         dt = float(other.time[1] - other.time[0])
         for p in pairings(one, other):
             spectra = spectral and not p.faint and p.place.quantity != "displacement"
-            found = distance(p.one, p.other, dt, spectra)
-            rows.append(Row(pair, p.place, found, p.floor, p.faint))
+            found = distance(p.one, p.other, dt, spectra)._replace(misfit=p.misfit)
+            of_all = p.worst.of_all and not p.faint
+            rows.append(Row(pair, p.place, found, p.floor, p.faint, of_all))
     return rows
 
 

@@ -1,8 +1,11 @@
 """Ranking of solutions by the detail that they resolve, and the reference of a scene.
 
 The reference of a scene is its most complete solution: the finest rock first, then an exact one
-before a computed one. A solution that lacks an effect of the scene is never a reference. A solution
-that no other, at least as fine, checks independently is "not checked".
+before a computed one. Where the intact rock is unknown, rigid blocks and homogenised rock are two
+readings of the same wave speeds: an exact solution then comes before a computed one. A solution
+that lacks an effect of the scene is never a reference. A solution that no other, at least as fine,
+checks independently is "not checked". Only two solutions of the same model differ by a numerical
+error.
 """
 
 from collections.abc import Iterable
@@ -13,7 +16,7 @@ from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, applies, names, solver
 from compare.exact.conditions import has_thick_layer
-from compare.solvers.record import Answer, Rock
+from compare.solvers.record import Answer, Kind, Rock
 
 
 class Reference(NamedTuple):
@@ -37,8 +40,9 @@ def lacks(name: str, scene: AnyScene) -> str:
         return ""
     if has_thick_layer(scene) and of.rock is Rock.RIGID_BLOCKS:
         return "the thickness of a soft layer"
-    dim, free_sides = scene.numerics.continuum.dim or 1, scene.motion.rotation != "none"
-    if dim > 1 and of.dimension == 1 and free_sides and of.rock in (Rock.JOINTED, Rock.HOMOGENISED):
+    mesh = scene.numerics.continuum
+    widens = scene.motion.rotation != "none" and ((mesh.dim or 1) > 1 or mesh.mesh is not None)
+    if widens and of.dimension == 1 and of.rock in (Rock.JOINTED, Rock.HOMOGENISED):
         poisson = scene.rock.intact_poisson if of.rock is Rock.JOINTED else calibrate(scene).poisson
         return "lateral inertia" if poisson else ""
     return ""
@@ -49,9 +53,9 @@ def finest(names: Iterable[str], scene: AnyScene) -> Reference | None:
     complete = [name for name in names if not lacks(name, scene)]
     if not complete:
         return None
-    name = max(complete, key=_fineness)
+    name = max(complete, key=lambda one: _fineness(one, scene))
     of = solver(name)
-    how = "exact" if of.exact else "computed; no exact solution of this scene exists"
+    how = "exact" if of.exact else "computed, its own error unknown"
     return Reference(name, f"{of.rock.words}, {how}")
 
 
@@ -63,19 +67,30 @@ def reference_of(name: str, names: Iterable[str], scene: AnyScene) -> Reference 
     found = finest([other for other in names if other != name], scene)
     if found is None:
         return None
-    return found if _fineness(found.name) > _fineness(name) else None
+    return found if _fineness(found.name, scene) > _fineness(name, scene) else None
 
 
 def own_exact(name: str, names: Iterable[str], scene: AnyScene) -> str | None:
     """Return the exact solution of an engine's own model among `names`, the reference of its
     numerical error; None if there is none."""
-    rock, own = solver(name).rock, []
-    for other in names:
-        of = solver(other)
-        if other != name and of.rock is rock and of.exact and of.discretised:
-            own.append(other)
+    own = [n for n in names if n != name and solver(n).exact and same_model(name, n, scene)]
     found = finest(own, scene)
     return found.name if found else None
+
+
+def same_model(one: str, other: str, scene: AnyScene) -> bool:
+    """Return whether two solutions resolve the same in a scene, so that what is between them is
+    numerical error: the same rock with the same effects, and more than one mechanism alone."""
+    a, b = solver(one), solver(other)
+    whole = a.discretised and b.discretised
+    return a.rock is b.rock and whole and lacks(one, scene) == lacks(other, scene)
+
+
+def kind_of(one: str, other: str, scene: AnyScene) -> Kind:
+    """Return what the distance of two solutions is in a scene."""
+    if not (solver(one).exact or solver(other).exact):
+        return Kind.BETWEEN
+    return Kind.NUMERICAL if same_model(one, other, scene) else Kind.MODELLING
 
 
 def deciding(scene: AnyScene) -> dict[str, Answer]:
@@ -94,9 +109,11 @@ def deciding(scene: AnyScene) -> dict[str, Answer]:
     return {name: answer for name, answer in answers.items() if name in wanted}
 
 
-def _fineness(name: str) -> tuple[int, int]:
+def _fineness(name: str, scene: AnyScene) -> tuple[bool, int, int]:
     of = solver(name)
-    return int(of.rock), int(of.form)
+    known = not isinstance(scene, Scene) or scene.rock.intact_modulus is not None
+    first = not known and of.exact and of.rock is not Rock.ONE_BODY
+    return first, int(of.rock), int(of.form)
 
 
 def applicable(scene: AnyScene) -> dict[str, Answer]:

@@ -17,7 +17,7 @@ from compare.figures.style import style
 from compare.report.findings import Finding
 from compare.report.overview import Overview, in_seconds, times
 from compare.report.section import Section
-from compare.report.tables import Table, percent
+from compare.report.tables import Table, mean_and_worst, percent
 
 
 class RockMasses(NamedTuple):
@@ -86,6 +86,7 @@ def render(page: Page, out: Path) -> str:
     environment.filters |= {
         "units": unbroken,
         "percent": percent,
+        "peak": mean_and_worst,
         "seconds": in_seconds,
         "times": times,
     }

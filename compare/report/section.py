@@ -84,6 +84,11 @@ class Section(NamedTuple):
         return self.request.name
 
     @property
+    def verdicts(self) -> tables.Table:
+        """Where the engines stand in each variant."""
+        return tables.verdict_table(self.standings)
+
+    @property
     def heading(self) -> str:
         """What stands above it."""
         number = self.request.number

@@ -1,6 +1,7 @@
 """The tables of the report, as plain text in rows."""
 
 from collections.abc import Callable, Iterable
+from itertools import chain
 from math import isfinite
 from typing import NamedTuple
 
@@ -8,9 +9,10 @@ import pandas as pd
 import xarray as xr
 
 from compare.figures.subplots import variant_names
-from compare.misfit.metrics import misfit
-from compare.misfit.pairs import GIVEN, Comparison, Pair, Row, meaning, pairs
+from compare.misfit.differences import STRESS, VELOCITY, PeakDifference, peak_ratios
+from compare.misfit.pairs import Comparison, Pair, Row, meaning, pairs
 from compare.misfit.places import Place
+from compare.report.verdict import Standing
 from results.dataset import energy_residual
 
 
@@ -33,6 +35,33 @@ def percent(x: float) -> str:
     if 0 < x < 1e-5:
         return "< 0.001"
     return f"{100 * x:#.3g}".rstrip(".")
+
+
+def mean_and_worst(peak: PeakDifference | None) -> str:
+    """Return a difference of peaks in percent, of all receivers and of the worst."""
+    return f"{100 * peak.mean:.2g}, ≤ {100 * peak.worst:.2g}" if peak else ""
+
+
+def verdict_table(standings: dict[str, Standing]) -> Table:
+    """Return the verdict on each engine, a row a variant, with what engineers read."""
+    header = ["variant", "worst misfit (%)", "at", "PPV (%)", "peak stress (%)"]
+    header += ["compared with", "which is a", "verdict"]
+    groups = {
+        engine: [
+            [
+                held.variant,
+                percent(held.total.judged),
+                held.total.where if held.against else "",
+                *(mean_and_worst(held.peaks.get(name)) for name in (VELOCITY, STRESS)),
+                held.against,
+                held.meaning,
+                f"{held.verdict.sign} {held.verdict.word}",
+            ]
+            for held in one.variants
+        ]
+        for engine, one in standings.items()
+    }
+    return Table(header, groups)
 
 
 def misfit_table(comparisons: list[Comparison]) -> Table:
@@ -61,7 +90,7 @@ def misfit_table(comparisons: list[Comparison]) -> Table:
         found = [cells[pair].get(column, "") for column in columns]
         return [[title(pair), meaning(pair), *found]]
 
-    return Table(header, _by_kind(lines, given(comparisons)))
+    return Table(header, _by_kind(lines, comparisons))
 
 
 def _column(place: Place, places: list[Place]) -> str:
@@ -76,16 +105,14 @@ def _rows(comparisons: list[Comparison]) -> list[tuple[str, Row]]:
     return [(name, row) for name, comparison in named for row in comparison.rows]
 
 
-def given(comparisons: list[Comparison]) -> list[Pair]:
-    """Return the pairs of others' curves, a file after the other."""
-    return list(dict.fromkeys(r.pair for _, r in _rows(comparisons) if r.pair.kind == GIVEN))
-
-
 def _by_kind(
-    lines: Callable[[Pair], list[list[str]]], more: Iterable[Pair] = ()
+    lines: Callable[[Pair], list[list[str]]], comparisons: Iterable[Comparison]
 ) -> dict[str, list[list[str]]]:
+    """Return the lines of all pairs by the meaning of their distance: first as the solvers' records
+    have it, then where a scene makes two models of them, and others' curves."""
+    measured = (row.pair for comparison in comparisons for row in comparison.rows)
     groups: dict[str, list[list[str]]] = {}
-    for pair in (*pairs(), *more):
+    for pair in dict.fromkeys((*pairs(), *measured)):
         if found := lines(pair):
             groups.setdefault(pair.kind, []).extend(found)
     return groups
@@ -104,7 +131,7 @@ def distance_table(comparisons: list[Comparison]) -> Table:
 
     header = ["pair", "variant", "receiver", "relative L2 (%)", "peak ratio", "delay (ms)"]
     header += ["period ratio", "envelope misfit (%)", "phase misfit (%)"]
-    return Table(header, _by_kind(lines, given(comparisons)))
+    return Table(header, _by_kind(lines, comparisons))
 
 
 def _distances(row: Row) -> list[str]:
@@ -118,7 +145,14 @@ def _distances(row: Row) -> list[str]:
 
 
 def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return the same as numbers, SI, for a machine to read."""
+    """Return the same as numbers, SI, for a machine to read; beside it the ratio of what engineers
+    read off all components at the receiver."""
+    peaks = {
+        (name, pair): peak_ratios(one.results[pair.one], one.results[pair.other])
+        for name, one in zip(variant_names(comparisons), comparisons, strict=True)
+        for pair in dict.fromkeys(row.pair for row in one.rows)
+        if {pair.one, pair.other} <= one.results.keys()
+    }
     return pd.DataFrame(
         {
             "kind": row.pair.kind,
@@ -129,7 +163,11 @@ def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
             "relative L2": row.distance.misfit,
             "own error of the reference": row.floor,
             "faint": row.faint,
+            "of all motion": row.of_all,
             "peak ratio": row.distance.peak_ratio,
+            "PPV or peak stress ratio": peaks.get((name, row.pair), {}).get(
+                (row.place.quantity, row.place.at)
+            ),
             "delay (s)": row.distance.delay,
             "period ratio": row.distance.period_ratio,
             "envelope misfit": row.distance.envelope,
@@ -203,12 +241,12 @@ def summary_table(figures: dict[str, list[Comparison]]) -> Table:
     """
 
     def worst(pair: Pair, comparisons: list[Comparison]) -> str:
-        pairs = [(c.results.get(pair.one), c.results.get(pair.other)) for c in comparisons]
-        found = [misfit(a, b) for a, b in pairs if a is not None and b is not None]
-        return percent(max(found)) if found else ""
+        rows = [row for one in comparisons for row in one.rows if row.pair == pair]
+        found = (row.distance.misfit for row in rows if not row.faint)
+        return percent(max(found, default=0.0)) if rows else ""
 
     def lines(pair: Pair) -> list[list[str]]:
         cells = [worst(pair, comparisons) for comparisons in figures.values()]
         return [[title(pair), *cells]] if any(cells) else []
 
-    return Table(["pair", *figures], _by_kind(lines))
+    return Table(["pair", *figures], _by_kind(lines, chain(*figures.values())))

@@ -1,13 +1,22 @@
 """Verdict on an engine for a scene: its misfits, their cost, and one word."""
 
+from collections.abc import Mapping
 from math import isfinite, isnan, nan
-from typing import NamedTuple
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 from compare.engines import ENGINES
 from compare.figures.subplots import variant_names
+from compare.misfit.differences import (
+    STRESS,
+    VELOCITY,
+    PeakDifference,
+    peak_differences,
+    static_difference,
+)
 from compare.misfit.metrics import Worst, worst
 from compare.misfit.pairs import Comparison
-from compare.misfit.ranking import own_exact, reference_of
+from compare.misfit.ranking import kind_of, own_exact, reference_of
 
 
 class Verdict(NamedTuple):
@@ -31,13 +40,16 @@ BROKEN = Verdict("✗", "out of bounds", "x")
 ORDER = (*(verdict for _, verdict in VERDICTS[:2]), NOT_CHECKED, *(v for _, v in VERDICTS[2:]))
 
 NOTHING = Worst(nan)
+STATIC = 0.01  # of the largest static stress: a difference of static states that is said
 
 
 class Held(NamedTuple):
     """One engine on one variant.
 
     own : from the exact solution of the engine's own model. total : from the reference, `against`,
-    empty where nothing has checked it independently; `reason` says what the reference is.
+    empty where nothing has checked it independently; `reason` says what the reference is, `meaning`
+    what their distance is. peaks : "PPV" and "peak stress" beside the reference's. static : of the
+    two static states.
     """
 
     variant: str
@@ -46,6 +58,9 @@ class Held(NamedTuple):
     against: str
     reason: str
     broken: tuple[str, ...]
+    meaning: str = ""
+    peaks: Mapping[str, PeakDifference] = MappingProxyType({})
+    static: Worst = Worst(0.0)
 
     @property
     def verdict(self) -> Verdict:
@@ -55,6 +70,36 @@ class Held(NamedTuple):
         if isnan(self.total.judged):
             return NOT_CHECKED
         return next(verdict for most, verdict in VERDICTS if self.total.judged <= most)
+
+    @property
+    def static_words(self) -> str:
+        """By how much the static state differs from the reference's; "" if by less than 1 %."""
+        if not self.static.misfit > STATIC:
+            return ""
+        off = f"{100 * self.static.misfit:.2g} % of the largest static stress"
+        return f"differs from that of {self.against} by {off} ({self.static.where})"
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """All of it, machine-readable; None where there is none."""
+        named = {VELOCITY: "ppv", STRESS: "peak_stress"}
+        peaks = {
+            f"{short}_{part}": getattr(self.peaks[name], part) if name in self.peaks else None
+            for name, short in named.items()
+            for part in ("mean", "worst", "at")
+        }
+        return {
+            "misfit": self.total.misfit,
+            "floor": self.total.floor,
+            "at": self.total.where if self.total.place else None,
+            **peaks,
+            "against": self.against or None,
+            "reason": self.reason,
+            "meaning": self.meaning or None,
+            "own_error": self.own.misfit,
+            "static_difference": self.static.misfit,
+            "verdict": self.verdict.word,
+        }
 
 
 class Standing(NamedTuple):
@@ -73,6 +118,15 @@ class Standing(NamedTuple):
         return _largest(held.total for held in self.variants).judged
 
     @property
+    def peaks(self) -> dict[str, PeakDifference]:
+        """The largest differences of peaks by name."""
+        found: dict[str, PeakDifference] = {}
+        for name in (VELOCITY, STRESS):
+            if there := [held.peaks[name] for held in self.variants if name in held.peaks]:
+                found[name] = max(there, key=lambda peak: peak.worst)
+        return found
+
+    @property
     def where(self) -> str:
         """The receiver and quantity of the largest misfit."""
         return _largest(held.total for held in self.variants).where
@@ -81,6 +135,16 @@ class Standing(NamedTuple):
     def finest(self) -> tuple[str, ...]:
         """The references of the variants."""
         return tuple(dict.fromkeys(held.against for held in self.variants if held.against))
+
+    @property
+    def meanings(self) -> tuple[str, ...]:
+        """What the distances from the references are."""
+        return tuple(dict.fromkeys(held.meaning for held in self.variants if held.meaning))
+
+    @property
+    def static_words(self) -> str:
+        """By how much the static states differ in the worst variant; "" if by less than 1 %."""
+        return max(self.variants, key=lambda held: held.static.misfit).static_words
 
     @property
     def unchecked(self) -> tuple[str, ...]:
@@ -96,6 +160,7 @@ class Standing(NamedTuple):
     def explanation(self) -> str:
         """What the engine is held against, where nothing checks it, and which bounds are broken."""
         parts = [f"compared with {' and '.join(self.finest)}: {self.where}"] if self.finest else []
+        parts += [f"static state {self.static_words}"] if self.static_words else []
         if self.unchecked:
             named = [name for name in self.unchecked if name] if len(self.variants) > 1 else []
             parts.append(": ".join([NOT_CHECKED.word, *([", ".join(named)] if named else [])]))
@@ -130,13 +195,21 @@ def held_to(engine: str, comparison: Comparison, variant: str = "") -> Held:
     reference = reference_of(engine, names, scene)
     against, reason = reference or ("", "")
     own = own_exact(engine, names, scene)
-    return Held(
+    found = Held(
         variant,
         _apart(comparison, engine, own),
         _apart(comparison, engine, against),
         against,
         reason,
         tuple(_broken(engine, comparison)),
+    )
+    if not against:
+        return found
+    pair = names[engine], names[against]
+    return found._replace(
+        meaning=kind_of(engine, against, scene).words,
+        peaks=peak_differences(*pair),
+        static=static_difference(*pair),
     )
 
 

@@ -3,6 +3,9 @@
 The static forces are applied in increments, halved if they do not converge, because the state of
 joints that slide, open or break depends on the path.
 
+Quiet sides that bear the weight are held by springs far stiffer than the rock; what these carry at
+rest goes on to act beside the dashpots, so that how stiff they are does not matter.
+
 Rock that no side holds is at rest wherever it is put. What is excavated from it leaves forces that
 cancel, with their moments; a mass matrix that is next to nothing beside the stiffness then makes
 Newton's matrix regular and leaves the motion without a mean of the mass, as dynamic relaxation
@@ -38,18 +41,46 @@ LEAST_PART = 2.0**-10  # of the steady forces
 #: Of the largest stiffness over mass: what holds loose rock. Far below its slowest mode, by 1e-3
 #: and less, and far above the round-off of the largest.
 LOOSE = 1e-10
+#: Of the largest stiffness: what holds sides that bear the weight. Far more would be round-off.
+STIFF = 1e3
+
+
+def holding(body: Body, borne: csr_matrix | None) -> csr_matrix | None:
+    """Return the springs (N/m) that hold the areas [freedoms, freedoms] of sides that bear the
+    weight; None without."""
+    if borne is None:
+        return None
+    largest = body.communicator.largest
+    rock = largest(float(implicit_matrices(body).stiffness.diagonal().max()))
+    return STIFF * rock / largest(float(borne.diagonal().max(initial=0.0))) * borne
+
+
+def elastic_rest(
+    model: Model, state: State, body: Body, weight: np.ndarray, hold: csr_matrix
+) -> np.ndarray:
+    """Return the displacements [n] (m) at rest under a weight (N) where no joint opens or slips."""
+    system = _Static(model, state, body, hold)
+    system.stick_joints()
+    equations, u = system.system, np.zeros_like(weight)
+    equations.factorise(equations.with_joints(equations.pattern.fixed[0]))
+    u[equations.free] = equations.solve(body.communicator.total(weight)[equations.free])
+    return u
 
 
 def settle_static(
-    scene: Scene | RockMass, model: Model, state: State, body: Body
+    scene: Scene | RockMass,
+    model: Model,
+    state: State,
+    body: Body,
+    hold: csr_matrix | None = None,
 ) -> dict[str, float]:
-    """Bring a state to rest under the steady forces of its model; raises SceneError where there is
-    no static state.
+    """Bring a state to rest under the steady forces of its model, on springs `holding`; raises
+    SceneError where there is no static state.
 
     Returns what a result says of it: how many corrections were made, and the largest unbalanced
     force over the largest force at work.
     """
-    system = _Static(model, state, body)
+    system = _Static(model, state, body, hold)
     done, part, steps = 0.0, 1.0, 0
     while done < 1:
         outcome = system.balance(min(done + part, 1.0))
@@ -93,8 +124,10 @@ class _Static:
     state : the last one in balance. size : the largest force that is summed up, N.
     """
 
-    def __init__(self, model: Model, state: State, body: Body) -> None:
-        self.rock = implicit_matrices(body)
+    def __init__(
+        self, model: Model, state: State, body: Body, hold: csr_matrix | None = None
+    ) -> None:
+        self.rock, self.hold = implicit_matrices(body), hold
         self.model = model._replace(ends=Ends(None, None, model.ends.fixed))
         if model.interfaces is not None and model.interfaces.parts.rate_state:
             table = model.interfaces.table.copy()
@@ -106,7 +139,9 @@ class _Static:
             stiffness = memory.relaxed * stiffness
         self.state, self.trial, self.size = copied(state), copied(state), 0.0
         fixed = np.zeros(0, dtype=int) if model.ends.fixed is None else model.ends.fixed.freedom
-        if model.ends.fixed is None:
+        if hold is not None:
+            stiffness = stiffness + hold
+        elif model.ends.fixed is None:
             stiffness = stiffness + _hold(stiffness, self.rock)
         self.system = System(model, self.rock, fixed, [stiffness])
 
@@ -118,12 +153,14 @@ class _Static:
 
         def residual(u: np.ndarray) -> tuple[np.ndarray, float]:
             self.trial.u[system.free] = u
-            self.size = set_forces(UNLOADED)
-            return communicator.total(self.trial.force)[system.free], TOLERANCE * self.size
+            self.size, force = set_forces(UNLOADED), self.trial.force
+            if self.hold is not None:
+                force = force - self.hold @ self.trial.u
+            return communicator.total(force)[system.free], TOLERANCE * self.size
 
         def correction(rest: np.ndarray) -> np.ndarray:
             if not self.trial.u.any():
-                self._stick_joints()
+                self.stick_joints()
             system.factorise(system.with_joints(system.pattern.fixed[0]))
             return system.solve(rest)
 
@@ -133,7 +170,7 @@ class _Static:
             fill(self.state, self.trial)
         return outcome
 
-    def _stick_joints(self) -> None:
+    def stick_joints(self) -> None:
         """Give all joints their elastic stiffness: one that nothing presses has no friction, and
         rock at rest on such joints could be anywhere."""
         joints, tangents = self.model.interfaces, self.system.tangents

@@ -6,7 +6,7 @@ effective medium of the sets with a spacing, and joints that stand alone as they
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -148,6 +148,28 @@ def _carried(scene: RockMass, found: PlaneDiscrete, contact: np.ndarray) -> np.n
     xx, yy, xy = stress_of(scene)
     t = np.array([xx * n[0] + xy * n[1], xy * n[0] + yy * n[1]])
     return np.array([(t * n).sum(axis=0), t[0] * n[1] - t[1] * n[0]])
+
+
+def blocks_of(found: PlaneDiscrete) -> np.ndarray:
+    """Return the two blocks of every contact, those across periodic sides last [c, 2]."""
+    return of_all(found.partition, found.across, "blocks")
+
+
+def motion_of_blocks(found: PlaneDiscrete, u: np.ndarray) -> np.ndarray:
+    """Return the mean displacement (m) and rotation of each block [n, 3], of its nodes' motion."""
+    body, partition = found.body, found.partition
+    own = np.flatnonzero(body.cells[:, 0] >= 0)
+    node, block = body.cells[own], np.repeat(found.block[own], body.cells.shape[1])
+    moved = u[body.freedom(node[:, :, None], np.arange(2))].reshape(-1, 2)
+    arm = body.x[node].reshape(-1, 2) - partition.centroid[block]
+    (a, b), (x, y) = arm.T, moved.T
+    values = np.ones_like(a), x, y, a, b, a * y - b * x, a * a + b * b
+    sums = np.array([np.bincount(block, one, minlength=partition.count) for one in values])
+    whole: Any = body.communicator.sum(sums)  # type: ignore[arg-type]
+    count, x, y, a, b, turned, spread = whole
+    x, y, a, b = x / count, y / count, a / count, b / count
+    turn = (turned - count * (a * y - b * x)) / (spread - count * (a * a + b * b))
+    return np.stack([x + turn * b, y - turn * a, turn], axis=1)
 
 
 def stress_of(scene: RockMass) -> np.ndarray:

@@ -10,9 +10,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from cases.loads import base_steps
-from cases.material.quiet_sides import medium_impedances
+from cases.material.quiet_sides import borne, medium_impedances
 from continuum.mesh.description import Side
 from continuum.model import Dashpots, Fixed
 from continuum.space.evaluation import places_in
@@ -122,6 +123,21 @@ def dashpots_on(
     )
     braked = 1 + (scene.damping.alpha or 0.0) * dt / 2  # as in the step over the mass
     return Dashpots(freedom, viscosity, every * dt / (2 * braked * mass[x, None]))
+
+
+def borne_sides(scene: RockMass, body: Body) -> csr_matrix | None:
+    """Return the lengths [freedoms, freedoms] (m) of quiet sides that bear the weight beside their
+    dashpots, along their normal and along themselves; None without."""
+    points = points_on(body, sides_that_are(scene, body, "quiet"))
+    bears = points.weight[:, None] * borne(scene, points.normal)
+    if not body.communicator.any(bool(bears.any())):
+        return None
+    along = np.einsum("qi,qj->qij", points.normal, points.normal)
+    of_point = bears[:, 0, None, None] * along + bears[:, 1, None, None] * (np.eye(2) - along)
+    own = body.freedom(points.node[:, None], np.arange(2))
+    row, column = np.repeat(own, 2, axis=1), np.tile(own, 2)
+    shape = body.mass.size, body.mass.size
+    return csr_matrix((of_point.ravel(), (row.ravel(), column.ravel())), shape)
 
 
 def freedoms_of(body: Body) -> np.ndarray:

@@ -141,8 +141,8 @@ def unloaded(scene: Scene, p: Properties, dt: float, ends: tuple[str, str]) -> M
         impulse_to_speed=dt / mass,
         local=p.local_damping or 0.0,
         weight=mass * gravity.acceleration * gravity.direction[1] if gravity else 0.0,
-        start_force=0.0 if scene.ends.start == "fixed" else force,
-        end_force=0.0 if scene.ends.end == "fixed" else force,
+        start_force=0.0 if start == "fixed" else force,
+        end_force=0.0 if end == "fixed" else force,
         start=build_end(start, p.at_start, dt),
         end=build_end(end, p.at_end, dt),
     )

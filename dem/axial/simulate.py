@@ -68,7 +68,7 @@ def simulate_fields(
     began = perf_counter()
     scheme = scheme_of(scene)
     model, state, time, critical = scheme.build(scene)
-    rest = start(scene, model, state)
+    model, rest = start(scene, model, state)
     samples = buffers(model, state, time.samples)
     monitor = guard(highest_speed(model, state, time))
     marcher = scheme.marcher(scene, time)
@@ -111,9 +111,9 @@ def simulate_fields(
         )
         return _with_breaks(found if film is None else film.developed(found), scene, state, time)
 
-    def check(samples: int) -> None:
+    def check(first: int, last: int) -> None:
         speed = np.abs(state.v)
-        look(monitor, speed.max(), samples * time.stride)
+        look(monitor, speed.max(), last * time.stride)
         centres = calibrate(scene).centre_y
         time_loop.refuse_beyond_bounds(scene, time, critical, monitor, speed, centres)
 

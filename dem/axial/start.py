@@ -8,35 +8,57 @@ import numpy as np
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
 from dem.axial.leapfrog import march
-from dem.axial.model import Model, unloaded, with_mass_damping
+from dem.axial.model import Chain, Model, unloaded, with_mass_damping
 from dem.axial.springs import spring_forces
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State
-from dem.static import STEP_FRACTION, Rest, gaps_under, settle, stiffest, undamped
+from dem.static import STEP_FRACTION, Rest, gaps_under, held_ends, settle, stiffest, undamped
 from joints.law import Parts
 from numerics.jit import jitted
 
 
-def start(scene: Scene, model: Model, state: State) -> Rest | None:
-    """Set the initial state of the scene; return how a static state was reached, if it is one.
+def start(scene: Scene, model: Model, state: State) -> tuple[Model, Rest | None]:
+    """Set the initial state of the scene; return its model, whose ends bear what rests on them, and
+    how a static state was reached, if it is one.
 
     The exact elastic state under gravity and prestress is tried first. If a joint cannot carry
     it, the pillar is relaxed from its prestress. Raises SceneError if that does not converge.
     """
     gravity = scene.gravity
     static = gravity is not None and gravity.static
-    rest = None
+    rest, chain, p = None, model.chain, calibrate(scene)
     if static or scene.prestress is not None:
-        system = ChainRelaxation(scene, calibrate(scene), state, static)
+        system = ChainRelaxation(scene, p, state, static)
         system.place(system.chain.weight)
         if not system.is_at_rest(scene.numerics.dem.static_tolerance):
             system.place(0.0)
         rest = settle(scene, system)
         forget_steps(state)
+        if static:
+            chain = bearing(scene, chain, system.end_forces())
+            for side, bears in zip((state.start, state.end), scene.bears, strict=True):
+                side[0] = 0.0 if bears else side[0]  # what gives way counts from here
     if not static and model.effects.gravity:
         # Gravity from t = 0 on: the velocity at t = 0 is the mean of those half a step around it.
-        state.v[:] = -0.5 * model.chain.dt * model.chain.weight / model.chain.mass
-    return rest
+        if gravity is not None and any(scene.bears):
+            standing = gravity.model_copy(update={"static": True})
+            held = scene.model_copy(update={"gravity": standing})
+            system = ChainRelaxation(held, p, state, True)
+            chain = bearing(scene, chain, system.elastic_forces(chain.weight)[[0, -1]])
+        net = np.full(state.v.size, chain.weight)
+        net[0] += chain.start_force - model.chain.start_force
+        net[-1] -= chain.end_force - model.chain.end_force
+        state.v[:] = -0.5 * chain.dt * net / chain.mass
+    return model._replace(chain=chain), rest
+
+
+def bearing(scene: Scene, chain: Chain, forces: np.ndarray) -> Chain:
+    """Return the chain with the forces [2] (N) of start and end where those bear its weight."""
+    start, end = scene.bears
+    return chain._replace(
+        start_force=float(forces[0]) if start else chain.start_force,
+        end_force=float(forces[1]) if end else chain.end_force,
+    )
 
 
 def forget_steps(state: State) -> None:
@@ -48,14 +70,13 @@ def forget_steps(state: State) -> None:
 class ChainRelaxation:
     """The pillar under its static forces: `dem.static.System` on the arrays of a state.
 
-    Dashpots, also of quiet and matched ends, do not affect a static state and are omitted.
+    Dashpots do not affect a static state and are omitted; quiet and matched ends are held where
+    they bear the weight.
     """
 
     def __init__(self, scene: Scene, p: Properties, state: State, weighed: bool) -> None:
         p = undamped(p)
-        start, end = (
-            kind if kind == "fixed" else "free" for kind in (scene.ends.start, scene.ends.end)
-        )
+        start, end = held_ends(scene)
         dt = STEP_FRACTION * critical_chain_step(stiffest(scene, p), start, end)
         model = unloaded(scene, p, dt, (start, end))
         if not weighed:
@@ -77,12 +98,17 @@ class ChainRelaxation:
     def unbalanced(self) -> np.ndarray:
         """Return the net force on every block [N], N."""
         s, c, force = self.state, self.chain, np.empty(len(self.mass) + 1)
-        force[0] = c.start_force + c.start.stiffness * s.start[0]
-        force[-1] = c.end_force + c.end.stiffness * s.end[0]
+        force[0], force[-1] = self.end_forces()
         opening = s.u if s.opening is None else s.opening
         joint_forces = joint_forces_for(self.model.effects.joints)
         joint_forces(c.area, self.model.laws, s.u, opening, force)
         return force[:-1] - force[1:] + c.weight
+
+    def end_forces(self) -> np.ndarray:
+        """Return the forces of the start and the end [2], N."""
+        c, s = self.chain, self.state
+        springs = c.start.stiffness * s.start[0], c.end.stiffness * s.end[0]
+        return np.array([c.start_force + springs[0], c.end_force + springs[1]])
 
     def displacement(self) -> np.ndarray:
         """Return the displacement of every block [N], m."""

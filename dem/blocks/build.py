@@ -80,8 +80,9 @@ def form_of(blocks: RigidBlocks, held: bool, shaken: bool) -> PlaneForm:
 
 
 def relaxed(scene: RockMass) -> bool:
-    """Return whether a scene starts from a static state, by dynamic relaxation."""
-    weighed = scene.gravity is not None and scene.gravity.static
+    """Return whether a scene asks for a static state, by dynamic relaxation."""
+    gravity, quiet = scene.gravity, bool(scene.boundaries.sides("quiet"))
+    weighed = gravity is not None and (gravity.static or quiet)
     return weighed or scene.prestress is not None
 
 

@@ -77,6 +77,11 @@ def resultant(sums: np.ndarray) -> np.ndarray:
     return np.stack([sums[..., F_X], sums[..., F_Y], moment], axis=-1)
 
 
+def on_freedoms(resistance: np.ndarray) -> np.ndarray:
+    """Return force and moment per velocity [h, 3, 3] of the resultants of dashpots [h, 6, 3]."""
+    return np.moveaxis(resultant(np.moveaxis(resistance, 1, -1)), -1, 1)
+
+
 def dashpots(points: EdgePoints, impedance: np.ndarray, row: np.ndarray, count: int) -> np.ndarray:
     """Return the resultants of each row's quiet edges per velocity of its block, with the sign of a
     resistance [count, 6, 3].

@@ -12,10 +12,11 @@ from dem import time_loop
 from dem.blocks.leapfrog import PlaneSamples, march, samples_for
 from dem.blocks.model import PlaneState, state_at_rest
 from dem.blocks.record import quantities
-from dem.blocks.stability import highest_energy
+from dem.blocks.stability import highest_energy, motion_of_contacts
 from dem.blocks.start import start
 from dem.blocks.system import PlaneSystem, prepared
 from numerics.divergence import SPEED, Guard, audit, guard
+from numerics.small_motion import Moved, farthest, matters, overlapping, refuse_large_motion
 from numerics.time_loop import Keeper
 from results.arrays import size_of
 from results.dataset import Fields
@@ -76,13 +77,35 @@ def simulate_fields(
         step(system, state, samples, first * time.stride, last * time.stride)
         look(system, state, samples, monitor, first, last)
 
-    def check(count: int) -> None:
+    def check(first: int, last: int) -> None:
         speeds, places = _energies(system, state), system.blocks.partition.centroid
         time_loop.refuse_beyond_bounds(scene, time, system.critical, monitor, speeds, places)
+        if matters(scene):
+            t = last * time.stride * time.dt
+            refuse_large_motion(scene, "the rigid blocks", moved_apart(system, state), t, first)
 
     parts = (state, samples, monitor)
     run = time_loop.Run(time, system.blocks.partition.count, march_samples, check, parts)
     return time_loop.followed(run, result, progress, film, keeper)
+
+
+def moved_apart(system: PlaneSystem, state: PlaneState) -> Moved | None:
+    """Return the contact that has moved furthest over the size of its smaller block, or blocks that
+    overlap without one; None in a single block."""
+    links, partition = system.blocks.links, system.blocks.partition
+    count = partition.count
+    overlap = overlapping(partition, state.u[:count])
+    if overlap is not None or not len(links.blocks):
+        return overlap
+    gap, slip, turn = motion_of_contacts(system, state)
+    ends = np.hypot(*(links.end - links.start).T) / 2 * np.abs(turn)
+    by = np.hypot(np.abs(gap) + ends, slip)
+    area = np.append(partition.area, np.full(len(links.walls), np.inf))
+    size = np.sqrt(area[links.blocks].min(axis=1))
+    k = farthest(by, size)
+    i, j = links.blocks[k].tolist()
+    place = tuple(((links.start[k] + links.end[k]) / 2).tolist())
+    return Moved(i, j if j < count else -1, float(by[k]), float(size[k]), place)
 
 
 def _film(system: PlaneSystem, state: PlaneState) -> PlaneFilm | None:

@@ -58,6 +58,11 @@ class Sources:
             ]
         ).reshape(len(patterns), len(rows), 6)
 
+    def add_steady(self, sums: np.ndarray) -> None:
+        """Add forces that act all the time, as `edges.gathered` has them [h, 6]."""
+        self.histories.append(None)
+        self.shapes = np.concatenate([self.shapes, sums[None]])
+
     @property
     def steady(self) -> np.ndarray:
         """Constant forces and moments [h, 3], N and N m."""

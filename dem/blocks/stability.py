@@ -94,11 +94,17 @@ def highest_energy(system: PlaneSystem, state: PlaneState) -> float:
         )
 
 
+def motion_of_contacts(system: PlaneSystem, state: PlaneState) -> tuple[np.ndarray, ...]:
+    """Return opening and slip (m) at the centres of all contacts, and their rotation [c]."""
+    k, links = system.model.contacts.rows(), system.blocks.links
+    (x_i, y_i, turn_i), (x_j, y_j, turn_j) = state.u.T[:, links.blocks].transpose(2, 0, 1)
+    return relative(x_j - x_i, y_j - y_i, turn_i, turn_j, *k[:LENGTH])
+
+
 def stored(system: PlaneSystem, state: PlaneState) -> float:
     """Return the root of twice the energy in all contacts, sqrt(J per metre)."""
     k, links, own = system.model.contacts.rows(), system.blocks.links, system.blocks.columns
-    (x_i, y_i, turn_i), (x_j, y_j, turn_j) = state.u.T[:, links.blocks].transpose(2, 0, 1)
-    gap, slip, turn = relative(x_j - x_i, y_j - y_i, turn_i, turn_j, *k[:LENGTH])
+    gap, slip, turn = motion_of_contacts(system, state)
     if system.model.form.stressed:
         gap, slip = gap + k[START], slip + k[START + 1]
     length, column = k[LENGTH], links.column

@@ -9,30 +9,41 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cases.material.prestress import refuse_beyond_strength
+from dem.blocks.edges import on_freedoms, resultant
 from dem.blocks.leapfrog import marcher, samples_for
 from dem.blocks.model import PlaneState, held_by, state_at_rest
 from dem.blocks.sources import Sources, reactions
 from dem.blocks.stability import critical_plane_step
-from dem.blocks.tiles import LANES
-from dem.static import NEVER, STEP_FRACTION, STEPS_BETWEEN_LOOKS, Damped, Rest, settle
-from joints.law import IN_MOTION
+from dem.blocks.tiles import LANES, START, Contacts
+from dem.static import (
+    NEVER,
+    STEP_FRACTION,
+    STEPS_BETWEEN_LOOKS,
+    UNBORNE,
+    Damped,
+    Rest,
+    settle,
+)
+from joints.law import IN_MOTION, sticking
 from results.arrays import copied, fill
 
 if TYPE_CHECKING:
     from dem.blocks.system import PlaneSystem
 
 PARTS = 40  # in which walls of openings are released where joints may slip or open
+RESISTED = 1e-9  # of the largest resistance: below it there is none
 LOOKS = 0.3  # stretches of ten steps after each part, over the root of the number of blocks
 
 
 def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
-    """Set the initial state of the scene; return how a static state was reached, if it is one.
+    """Set the initial state of the scene, and what quiet sides bear of the weight; return how a
+    static state was reached, if it is one.
 
     Raises SceneError where there is none.
     """
     scene, blocks = system.blocks.scene, system.model.blocks
     static = scene.gravity is not None and scene.gravity.static
-    rest = None
+    rest, bears = None, bool(system.bearing.any())
     if not static:
         refuse_beyond_strength(scene)
     if static or scene.prestress is not None:
@@ -44,22 +55,53 @@ def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
         if state.history is not None:
             points = LANES * system.model.form.rate_rows
             state.history[:, points:] = relaxation.state.history[:, points:]
+        if static and bears:
+            system.sources.add_steady(relaxation.borne())
     if scene.gravity is not None and not static:
         # Gravity from t = 0 on: the velocity at t = 0 is the mean of those half a step around it.
         count = len(blocks.inertia)
         state.v[:count, :2] = -0.5 * blocks.dt * np.array([blocks.gravity_x, blocks.gravity_y])
+        if bears:
+            relaxation = PlaneRelaxation(system, True, sticks=True)
+            settle(scene, relaxation, UNBORNE)
+            sums, rows = relaxation.borne(), system.sources.rows
+            system.sources.add_steady(sums)
+            state.v[rows] -= 0.5 * blocks.dt * resultant(sums) / blocks.inertia[rows]
     return rest
+
+
+def unstressed(contacts: Contacts, stressed: bool) -> Contacts:
+    """Return contacts without the tractions of a prestress, if they have them."""
+    if not stressed:
+        return contacts
+    table = contacts.table.copy()
+    table[:, START * LANES : (START + 2) * LANES] = 0.0
+    return contacts._replace(table=table)
+
+
+def still(resistance: np.ndarray, inertia: np.ndarray) -> np.ndarray:
+    """Return what turns velocities of blocks into those [h, 3, 3] that meet no resistance.
+
+    resistance : force and moment per velocity [h, 3, 3], of any size. inertia : [h, 3].
+    """
+    roots = np.sqrt(inertia)
+    scaled = resistance / roots[:, :, None] / roots[:, None, :]
+    size, axes = np.linalg.eigh(scaled)
+    axes *= (size <= RESISTED * size.max(initial=0.0))[:, None, :]
+    return axes @ axes.swapaxes(1, 2) / roots[:, :, None] * roots[:, None, :]
 
 
 class PlaneRelaxation:
     """The blocks under their static forces: `dem.static.System`.
 
     Damping and rates do not affect a static state: dashpots, also of quiet sides, and local
-    damping are zero, and friction is independent of rate. The kernel is that of the motion, so
-    that a first run compiles one.
+    damping are zero, and friction is independent of rate. Quiet sides that bear the weight are
+    held: their blocks do not move as these do not let them. The kernel is that of the motion, so
+    that a first run compiles one. sticks : whether the weight alone acts, and no joint opens, slips
+    or breaks.
     """
 
-    def __init__(self, system: PlaneSystem, weighed: bool) -> None:
+    def __init__(self, system: PlaneSystem, weighed: bool, sticks: bool = False) -> None:
         blocks, model, sources = system.blocks, system.model, system.sources
         columns = blocks.columns._replace(time_constants=None)
         dt = STEP_FRACTION * critical_plane_step(blocks.links, columns, blocks.inertia, 0.0)
@@ -69,6 +111,9 @@ class PlaneRelaxation:
         laws[IN_MOTION] = 0.0
         rows, self.steady, self.walls = sources.rows, sources.steady, None
         stress, partition = blocks.scene.prestress, blocks.partition
+        if sticks:
+            laws, self.steady, stress = sticking(laws), np.zeros_like(self.steady), None
+            model = model._replace(contacts=unstressed(model.contacts, model.form.stressed))
         if stress is not None and blocks.scene.excavated and model.form.points:
             openings = [name for name in partition.sides if name.startswith("opening")]
             walls = reactions(partition, openings, stress)
@@ -76,8 +121,13 @@ class PlaneRelaxation:
             self.walls = Sources(rows, [walls], [], system.time).steady
             self.steady = np.zeros_like(self.walls)
             self.steady[np.searchsorted(rows, sources.rows)] = sources.steady
+        self.bearing, self.rows = system.bearing, sources.rows
         nothing = np.zeros((len(rows), 3, 3))
         held = held_by(nothing, rows, own.inertia, dt) if model.form.held else None
+        if weighed and held is not None:
+            resistance = nothing.copy()
+            resistance[np.searchsorted(rows, sources.rows)] = on_freedoms(self.bearing)
+            held.moves[:] = still(resistance, own.inertia[rows])
         self.model = model._replace(blocks=own, laws=laws, held=held)
         self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 0)
         self.count, most = len(own.inertia), STEPS_BETWEEN_LOOKS
@@ -124,6 +174,18 @@ class PlaneRelaxation:
         gain = self.state.v[: self.count].ravel().copy()
         fill(self.state, kept)
         return self.mass * gain / self.model.blocks.dt
+
+    def borne(self) -> np.ndarray:
+        """Return the forces that sides which bear the weight are held by, as `edges.gathered` has
+        them [h, 6]: of tractions linear along each block's edges."""
+        moves = self.model.held.moves
+        held = moves.copy()
+        moves[:] = np.eye(3)
+        missing = -self.unbalanced().reshape(-1, 3)[self.rows]
+        moves[:] = held
+        own = on_freedoms(self.bearing)
+        stretched = np.linalg.pinv(own, rcond=1e-9, hermitian=True) @ missing[:, :, None]
+        return (self.bearing @ stretched)[:, :, 0]
 
     def displacement(self) -> np.ndarray:
         """Return displacements (m) and rotations (rad)."""

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from cases.incident import IncidentField, free_field
-from cases.material.quiet_sides import impedances
+from cases.material.quiet_sides import borne, impedances
 from cases.sampling import Clock, clock
 from cases.size import refuse_beyond_memory, snapshot_bytes, waveform_bytes
 from dem.blocks.build import RigidBlocks, constants, contacts, form_of, rigid_blocks
-from dem.blocks.edges import dashpots, points_on, resultant
+from dem.blocks.edges import dashpots, on_freedoms, points_on
 from dem.blocks.model import PlaneModel, held_by
 from dem.blocks.receivers import BlockReceivers, receivers_of
 from dem.blocks.shaking import Shaking, shaking
@@ -33,7 +33,8 @@ class PlaneSystem(NamedTuple):
 
     receivers : what is recorded. sources : what acts on held blocks. resistance : what the velocity
     of each of them gives of forces and sums at quiet edges, with the sign of a resistance
-    [h, 6, 3]. shaking : the motion of walls; None where none moves. threads : that share each step.
+    [h, 6, 3]. bearing : the same of unit dashpots where those edges bear the weight. shaking : the
+    motion of walls; None where none moves. threads : that share each step.
     """
 
     blocks: RigidBlocks
@@ -43,6 +44,7 @@ class PlaneSystem(NamedTuple):
     receivers: BlockReceivers
     sources: Sources
     resistance: np.ndarray
+    bearing: np.ndarray
     shaking: Shaking | None
     threads: int
 
@@ -57,15 +59,10 @@ def prepared(scene: RockMass, incident: IncidentField | None = None) -> PlaneSys
     time, critical = clock_of(blocks)
     field: IncidentField = free_field(scene) if incident is None else incident
     receivers = receivers_of(scene, blocks.partition, blocks.links)
-    sources, resistance = held_blocks(blocks, time, field)
+    sources, resistance, bearing = held_blocks(blocks, time, field)
     moving = shaking(scene, blocks.links.walls, time.dt)
     form = form_of(blocks, len(sources.rows) > 0 or scene.excavated, moving is not None)
-    held = held_by(
-        np.moveaxis(resultant(np.moveaxis(resistance, 1, -1)), -1, 1),
-        sources.rows,
-        blocks.masses,
-        time.dt,
-    )
+    held = held_by(on_freedoms(resistance), sources.rows, blocks.masses, time.dt)
     model = PlaneModel(
         form=form,
         blocks=constants(scene, blocks, time.dt),
@@ -78,9 +75,8 @@ def prepared(scene: RockMass, incident: IncidentField | None = None) -> PlaneSys
         walls=len(blocks.links.walls),
     )
     threads = thread_count(scene.numerics.dem.threads, blocks.partition.count)
-    return PlaneSystem(
-        blocks, time, critical, model, receivers, sources, resistance, moving, threads
-    )
+    quiet = resistance, bearing
+    return PlaneSystem(blocks, time, critical, model, receivers, sources, *quiet, moving, threads)
 
 
 def clock_of(blocks: RigidBlocks) -> tuple[Clock, float]:
@@ -100,8 +96,9 @@ def clock_of(blocks: RigidBlocks) -> tuple[Clock, float]:
 
 def held_blocks(
     blocks: RigidBlocks, time: Clock, field: IncidentField
-) -> tuple[Sources, np.ndarray]:
-    """Return the external forces on blocks, and the resistance of quiet edges [h, 6, 3]."""
+) -> tuple[Sources, np.ndarray, np.ndarray]:
+    """Return the external forces on blocks, and the resistance of quiet edges [h, 6, 3], then that
+    of unit dashpots where they bear the weight."""
     scene, partition = blocks.scene, blocks.partition
     on_quiet = on_sides(partition, scene.boundaries.sides("quiet"))
     quiet = points_on(partition, partition.boundary, on_quiet)
@@ -114,4 +111,6 @@ def held_blocks(
     rows = np.unique(np.concatenate([quiet.block, *(one.block for one in patterns)]))
     waves = incoming(scene, field, quiet, impedance, rows, time)
     sources = Sources(rows, patterns, waves, time)
-    return sources, dashpots(quiet, impedance, np.searchsorted(rows, quiet.block), len(rows))
+    row, bears = np.searchsorted(rows, quiet.block), borne(scene, quiet.normal)
+    resistance, bearing = (dashpots(quiet, one, row, len(rows)) for one in (impedance, bears))
+    return sources, resistance, bearing

@@ -61,8 +61,9 @@ def build_model(scene: Scene, p: Properties, time: Clock) -> RowModel:
 
 
 def is_relaxed(scene: Scene) -> bool:
-    """Return whether a scene starts from a static state, by dynamic relaxation."""
-    return scene.prestress is not None or (scene.gravity is not None and scene.gravity.static)
+    """Return whether a scene asks for a static state, by dynamic relaxation."""
+    static = scene.gravity is not None and scene.gravity.static
+    return static or scene.prestress is not None or any(scene.bears)
 
 
 def _columns(joints: Law, blocks: int) -> np.ndarray:

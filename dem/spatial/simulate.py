@@ -30,6 +30,7 @@ from dem.spatial.start import start
 from dem.static import stiffest
 from dem.time_loop import Run, followed, refuse_beyond_bounds, thread_count, versions
 from numerics.divergence import guard, look
+from numerics.small_motion import Moved, matters, refuse_large_motion
 from numerics.time_loop import Keeper
 from results.arrays import changed, size_of
 from results.dataset import Fields, fields
@@ -108,11 +109,13 @@ def simulate_fields(
         found = found if film is None else film.developed(found)
         return with_breaks(found, p, model, state) if count == time.samples else found
 
-    def check(samples: int) -> None:
-        speed = speeds(model, state, p.block_count)
-        look(held, speed.max(axis=1), samples * time.stride)
+    def check(first: int, last: int) -> None:
+        speed, t = speeds(model, state, p.block_count), last * time.stride * time.dt
+        look(held, speed.max(axis=1), last * time.stride)
         refuse_beyond_bounds(scene, time, critical, held, speed[:3].max(axis=0), p.centre_y)
-        refuse_large_turns(scene, model, state, samples * time.stride * time.dt)
+        refuse_large_turns(scene, model, state, t)
+        if matters(scene):
+            refuse_large_motion(scene, "the rigid blocks", farthest_slip(p, model, state), t, first)
 
     def march_samples(first: int, last: int) -> None:
         march(first * time.stride, last * time.stride)
@@ -136,6 +139,17 @@ def speeds(model: RowModel, state: RowState, blocks: int) -> np.ndarray:
     """Return the magnitude of every component of every block's velocity [freedoms, N]."""
     half = model.form.freedoms
     return np.abs(unpacked(state.motion, STRIDE, blocks)[half : 2 * half])
+
+
+def farthest_slip(p: Properties, model: RowModel, state: RowState) -> Moved:
+    """Return the joint whose faces have slipped furthest at its centre, by small rotations; opening
+    leaves faces as large."""
+    x, _, z, about_x, _, about_z = unpacked(state.motion, STRIDE, p.block_count)[:6]
+    arm = model.block.arm
+    slip_x = np.diff(x) + arm * (about_z[1:] + about_z[:-1])
+    by = np.hypot(slip_x, np.diff(z) - arm * (about_x[1:] + about_x[:-1]))
+    k = int(by.argmax())
+    return Moved(k, k + 1, float(by[k]), p.side, (float(p.centre_y[k]),))
 
 
 def refuse_large_turns(scene: Scene, model: RowModel, state: RowState, t: float) -> None:

@@ -13,13 +13,23 @@ from dem.spatial.build import (
     samples_for,
     state_at_rest,
 )
-from dem.spatial.ends import CLOSURE, contact_points, face_of
+from dem.spatial.ends import CLOSURE, STEADY, STIFFNESS, contact_points, face_of, lever_matrix
 from dem.spatial.layout import LANES, STRIDE, packed, unpacked
 from dem.spatial.march import marcher
 from dem.spatial.model import Load, RowModel, RowState
 from dem.spatial.stability import critical_spatial_step
-from dem.static import NEVER, STEP_FRACTION, Rest, prestressed, settle, stiffest, undamped
-from joints.law import IN_MOTION
+from dem.static import (
+    NEVER,
+    STEP_FRACTION,
+    UNBORNE,
+    Rest,
+    held_ends,
+    prestressed,
+    settle,
+    stiffest,
+    undamped,
+)
+from joints.law import IN_MOTION, sticking
 from numerics.divergence import guard
 from results.arrays import copied, fill
 
@@ -27,43 +37,70 @@ NOWHERE = Interpolation(np.arange(0), np.arange(0), np.zeros(0))
 
 
 def start(scene: Scene, p: Properties, model: RowModel, state: RowState) -> Rest | None:
-    """Set the initial state of the scene; return how a static state was reached, if it is one.
+    """Set the initial state of the scene, and what its ends bear of the weight; return how a static
+    state was reached, if it is one.
 
     Raises SceneError where there is none.
     """
     gravity, rest = scene.gravity, None
     static = gravity is not None and gravity.static
-    if model.form.relaxed:
+    if static or scene.prestress is not None:
         relaxation = RowRelaxation(scene, p, model, static)
         rest = settle(scene, relaxation)
         relaxation.leave(model, state)
+        if static:
+            relaxation.rest_on(model, scene.bears)
     if not static and gravity is not None:
         # Gravity from t = 0 on: the velocity at t = 0 is the mean of those half a step around it.
+        rows = state.motion.reshape(len(state.motion), -1, STRIDE)
         for k, gain in enumerate(model.block.fall[:3]):
-            rows = state.motion.reshape(len(state.motion), -1, STRIDE)
             rows[:, model.form.freedoms + k, :LANES] = -0.5 * gain
+        if any(scene.bears):
+            standing = gravity.model_copy(update={"static": True})
+            held = scene.model_copy(update={"gravity": standing})
+            relaxation = RowRelaxation(held, p, model, True, sticks=True)
+            settle(held, relaxation, UNBORNE)
+            _push_back(model, rows, relaxation.rest_on(model, scene.bears))
     return rest
+
+
+def _push_back(model: RowModel, rows: np.ndarray, sudden: np.ndarray) -> None:
+    """Take from the velocities half a step before the start [tiles, rows, STRIDE] what half a step
+    of the ends' sudden forces [2, freedoms] (N, N m) adds."""
+    block, size = model.block, model.form.freedoms
+    push = block.push[:size].copy()
+    if model.form.finite:
+        push[3:] = block.push[0] * block.mass  # of angular momentum
+    for side, i, force in ((1.0, 0, sudden[0]), (-1.0, model.block_count - 1, sudden[1])):
+        lever = lever_matrix(side * block.arm if size == 6 else None, size)
+        rows[i // LANES, size : 2 * size, i % LANES] -= 0.5 * push * (lever.T @ force)
 
 
 class RowRelaxation:
     """The blocks under their static forces: `dem.static.System`.
 
-    Damping and rates do not affect a static state: dashpots, also of quiet and matched ends, and
-    local damping are zero, and friction is independent of rate. The kernel is that of the motion,
-    so that a first run compiles one.
+    Damping and rates do not affect a static state: dashpots and local damping are zero, and
+    friction is independent of rate. Quiet and matched ends are held where they bear the weight.
+    The kernel is that of the motion, so that a first run compiles one. sticks : whether no joint
+    opens, slips or breaks.
     """
 
-    def __init__(self, scene: Scene, p: Properties, model: RowModel, weighed: bool) -> None:
+    def __init__(
+        self, scene: Scene, p: Properties, model: RowModel, weighed: bool, sticks: bool = False
+    ) -> None:
         p = undamped(p)
-        scene, form = _at_rest(scene, weighed), model.form
+        run, scene, form = scene, _at_rest(scene, weighed), model.form
         turns, face = scene.motion.rotation != "none", face_of(contact_points(scene))
         dt = STEP_FRACTION * critical_spatial_step(
             stiffest(scene, p), face, (scene.ends.start, scene.ends.end), turns
         )
         self.blocks = p.block_count
+        self.rigid = run.ends.start == "fixed", run.ends.end == "fixed"
         block = build_block(scene, p, dt, model.points)
         table = model.table.reshape(len(model.table), -1, LANES).copy()
         table[:, IN_MOTION] = 0.0
+        if sticks:
+            table = sticking(table.swapaxes(0, 1)).swapaxes(0, 1)
         base = np.zeros(0) if form.base else None
         self.model = model._replace(
             block=block,
@@ -120,7 +157,16 @@ class RowRelaxation:
             own = model.form.rate_rows * LANES
             state.history[:, own:] = self.state.history[:, own:]
         if state.ends is not None:
-            state.ends[:, CLOSURE] = self.state.ends[:, CLOSURE]
+            springs = self.state.ends[:, CLOSURE]
+            state.ends[:, CLOSURE] = np.where(np.array(self.rigid)[:, None], springs, 0.0)
+
+    def rest_on(self, model: RowModel, bears: tuple[bool, bool]) -> np.ndarray:
+        """Give the ends of a run that bear the weight the forces that they are held by here, and
+        return what that adds to them [2, freedoms], N and N m."""
+        before = model.ends[:, STEADY].copy()
+        springs = self.model.ends[:, STIFFNESS] * self.state.ends[:, CLOSURE]
+        model.ends[:, STEADY] = np.where(np.array(bears)[:, None], -springs, before)
+        return model.ends[:, STEADY] - before
 
     def _damped(self, alpha: float) -> RowModel:
         block = self.model.block
@@ -147,8 +193,9 @@ class RowRelaxation:
 
 
 def _at_rest(scene: Scene, weighed: bool) -> Scene:
-    """Return the scene with ends that give way free, and without gravity unless it is weighed."""
-    held = {k: v if v == "fixed" else "free" for k, v in scene.ends.model_dump().items()}
+    """Return the scene with ends that are fixed or free, and without gravity unless it is
+    weighed."""
+    held = dict(zip(("start", "end"), held_ends(scene), strict=True))
     return scene.model_copy(
         update={
             "ends": scene.ends.model_copy(update=held),

@@ -8,13 +8,14 @@ and in a joint without tension F_j = max(F_j, 0), 0 while P < k_j g_j (Guo & Li 
 10). F_0 and F_N are P and the reactions of the ends: none (free), dashpot Z A on the block (quiet,
 equation 9), dashpot Z A on a massless face behind the half-block spring 2k (matched), or that
 spring to a wall (fixed), moved by a load that is a motion. Each block is also subject to its weight
-and the damping -alpha m v_j. Displacements are measured from the prestressed state.
+and the damping -alpha m v_j. Quiet and matched ends that bear the weight exert, beside, what they
+would if they were fixed. Displacements are measured from the prestressed state.
 
 A state is an array whose last axis holds w u of the N blocks (m/s), their N velocities (m/s) and
 w times the displacement of the two faces; w = 2 sqrt(k/m) makes its parts of equal magnitude.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import sqrt
 from typing import NamedTuple
@@ -50,7 +51,8 @@ class Chain:
     tension : bool array [N - 1], whether a joint carries tension.
     start, end : supports of the ends.
     prestress : N, compression positive.
-    gravity : its component along y, m/s2.
+    gravity : its component along y, m/s2. borne : what start and end bear of it beside their
+        dashpots, N.
     mass_damping : alpha, 1/s.
     shaken : whether the drive is the velocity of the fixed start's wall (m/s), else a force (N).
     gain : ratio of the drive to the scene's `drive` signal: the area (m2) or 1, along y.
@@ -67,6 +69,7 @@ class Chain:
     end: EndOfChain
     prestress: float
     gravity: float
+    borne: tuple[float, float]
     mass_damping: float
     shaken: bool
     gain: float
@@ -93,7 +96,7 @@ def chain(scene: Scene) -> Chain:
     p, gravity = calibrate(scene), scene.gravity
     masses, contacts = p.masses, p.contact_y
     etas = p.joint_time_constant
-    return Chain(
+    found = Chain(
         mass=p.block_mass if masses is None else masses,
         area=p.area,
         contact_y=contacts,
@@ -105,10 +108,39 @@ def chain(scene: Scene) -> Chain:
         end=_end(scene.ends.end, p.at_end),
         prestress=static_stress(scene) * p.area,
         gravity=gravity.acceleration * gravity.direction[1] if gravity else 0.0,
+        borne=(0.0, 0.0),
         mass_damping=p.mass_damping or 0.0,
         shaken=scene.shakes_base,
         gain=scene.load.direction[1] * (1.0 if scene.shakes_base else p.area),
     )
+    if not any(scene.bears):
+        return found
+    forces, _ = contact_forces(*standing(scene, found))
+    start, end = (
+        float(f) - found.prestress if bears else 0.0
+        for f, bears in zip(forces[[0, -1]], scene.bears, strict=True)
+    )
+    return replace(found, borne=(start, end))
+
+
+def standing(scene: Scene, chain: Chain) -> tuple[Chain, np.ndarray]:
+    """Return the chain whose ends are held where they bear the weight, and its state [size] at
+    rest; faces without an equation of motion stay at zero.
+
+    Every joint is taken to carry tension.
+    """
+    start, end = (
+        own._replace(kind="fixed" if bears or own.kind == "fixed" else "free")
+        for own, bears in zip((chain.start, chain.end), scene.bears, strict=True)
+    )
+    carrying = np.ones_like(chain.tension)
+    held = replace(chain, start=start, end=end, borne=(0.0, 0.0), tension=carrying)
+    state = np.zeros(chain.size)
+    still = rates(held, state)
+    matrix = (rates(held, np.eye(chain.size)) - still).T
+    moves = matrix.any(axis=1)
+    state[moves] = np.linalg.solve(matrix[np.ix_(moves, moves)], -still[moves])
+    return held, state
 
 
 def _end(kind: str, p: Properties) -> EndOfChain:
@@ -155,7 +187,8 @@ def contact_forces(
     forces[..., 1:-1] = force
     start, first = reaction(chain.start, u[..., 0], v[..., 0], faces[..., 0], wall)
     end, last = reaction(chain.end, u[..., -1], v[..., -1], faces[..., 1])
-    forces[..., 0], forces[..., -1] = chain.prestress + push - start, chain.prestress + end
+    forces[..., 0] = chain.prestress + chain.borne[0] + push - start
+    forces[..., -1] = chain.prestress + chain.borne[1] + end
     return forces, (first, last)
 
 

@@ -95,7 +95,7 @@ class _Walk:
     def __init__(self, chain, load, times, rest, period, noise, seed) -> None:
         rest = np.zeros(chain.size) if rest is None else rest
         standing = bool(rest.any())
-        self.chain = replace(chain, gravity=0.0) if standing else chain
+        self.chain = replace(chain, gravity=0.0, borne=(0.0, 0.0)) if standing else chain
         self.load, self.times, self.noise = load, times, noise
         self.random = np.random.default_rng(seed)
         self.states = np.zeros((len(times), chain.size), dtype=times.dtype)
@@ -163,6 +163,8 @@ class _Walk:
             slope = force[:-1] - force[1:]
             if k == 0:
                 slope += chain.gravity
+                slope[0] += chain.borne[0] / chain.mass
+                slope[-1] -= chain.borne[1] / chain.mass
                 self._without_open(slope)
             if chain.mass_damping:
                 slope -= chain.mass_damping * v

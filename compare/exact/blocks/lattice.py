@@ -14,15 +14,13 @@ Valid for any load or shaken base, soft layers, segments, dashpots, mass-proport
 gravity along the axis and prestress; every joint carries tension.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import xarray as xr
 
 from cases.histories import Step
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
-from compare.exact.blocks.chain import Chain, chain, rates, receivers
+from compare.exact.blocks.chain import Chain, chain, rates, receivers, standing
 from compare.exact.conditions import DAMPED, LAYERS, drive, holds
 from compare.exact.linear import errors, twins
 from compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, thin
@@ -52,13 +50,13 @@ def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement of the scene's rigid-block chain."""
     model, signal, times = chain(scene), drive(scene), sample_times(scene)
     matrix, vector = state_space(model)
-    standing, rest = np.zeros(model.size), at_rest(scene, model)
-    alone = np.concatenate(receivers(scene, model, standing))
+    still, rest = np.zeros(model.size), at_rest(scene, model)
+    alone = np.concatenate(receivers(scene, model, still))
     output = np.concatenate(receivers(scene, model, np.eye(model.size)), axis=1).T - alone[:, None]
     out = twins(matrix, vector, output, signal, times) + output @ rest + alone
     if model.gravity and not rest.any():
-        out += twins(matrix, rates(model, standing), output, Step(1.0), times)
-    direct = receivers(scene, model, standing, model.gain)[0] - alone[: len(scene.record.stress)]
+        out += twins(matrix, rates(model, still), output, Step(1.0), times)
+    direct = receivers(scene, model, still, model.gain)[0] - alone[: len(scene.record.stress)]
     out[..., : len(direct)] += np.outer(signal.value(times), direct)
     cuts = np.cumsum([len(scene.record.stress), len(scene.record.velocity)])
     found, twin = (np.split(x.T, cuts) for x in out)
@@ -67,25 +65,24 @@ def solve(scene: Scene) -> xr.Dataset:
 
 def state_space(model: Chain) -> tuple[np.ndarray, np.ndarray]:
     """Return A [size, size] (1/s) and b [size] of x' = A x + b f, f the scene's `drive` signal."""
-    standing = np.zeros(model.size)
-    still = rates(model, standing)
+    state = np.zeros(model.size)
+    still = rates(model, state)
     matrix = (rates(model, np.eye(model.size)) - still).T
-    return matrix, rates(model, standing, model.gain) - still
+    return matrix, rates(model, state, model.gain) - still
 
 
 def at_rest(scene: Scene, model: Chain) -> np.ndarray:
     """Return the chain's initial state [size]: at rest, under static gravity if any.
 
-    Every joint is taken to carry tension; faces without an equation of motion stay at zero.
+    The springs of matched ends are relaxed: what they bear acts beside them.
     """
-    state = np.zeros(model.size)
     if scene.gravity is None or not scene.gravity.static:
-        return state
-    linear = replace(model, tension=np.ones_like(model.tension))
-    matrix, _ = state_space(linear)
-    moves = matrix.any(axis=1)
-    weight = rates(linear, state)[moves]
-    state[moves] = np.linalg.solve(matrix[np.ix_(moves, moves)], -weight)
+        return np.zeros(model.size)
+    _, state = standing(scene, model)
+    if model.start.kind == "matched":
+        state[-2] = state[0]
+    if model.end.kind == "matched":
+        state[-1] = state[model.block_count - 1]
     return state
 
 

@@ -93,9 +93,13 @@ class Plane:
         return np.concatenate([np.zeros(0, dtype=np.int64), *chosen])
 
 
-def row(scene: Scene) -> Row:
-    """Return the scene's row of blocks, without slip, opening and softening."""
+def row(scene: Scene, held: bool = False) -> Row:
+    """Return the scene's row of blocks, without slip, opening and softening; held : as it stands
+    under gravity, with ends that are fixed where they bear it, else free."""
     p, kinds = calibrate(scene), (scene.ends.start, scene.ends.end)
+    if held:
+        at_start, at_end = (a == "fixed" or b for a, b in zip(kinds, scene.bears, strict=True))
+        kinds = "fixed" if at_start else "free", "fixed" if at_end else "free"
     points = face_points(scene.pillar.side, scene.joints.contact_points, scene.joints.point_rule)
     half = face_matrix(points, 2 * p.regular_stiffness, 2 * p.regular_shear_stiffness)
     dashpot = face_matrix(points, p.impedance, p.shear_impedance)

@@ -16,7 +16,8 @@ mass-proportional damping
     Z w' + [B^T (D r + C r')]_w = 0            on a matched end's massless face
 
 while a held face is at rest, or moves with the base. The contact j exerts -(D r + C r') on its
-right side. States are mass-weighted, and displacements are scaled by w, so that the entries of A
+right side; quiet and matched ends that bear the weight exert, beside, what they would if they were
+fixed. States are mass-weighted, and displacements are scaled by w, so that the entries of A
 are of similar magnitude.
 """
 
@@ -60,7 +61,11 @@ class SpatialSystem(NamedTuple):
 
 
 def system(
-    plane: Plane, push: np.ndarray, gravity: np.ndarray, base: np.ndarray | None = None
+    plane: Plane,
+    push: np.ndarray,
+    gravity: np.ndarray,
+    base: np.ndarray | None = None,
+    borne: np.ndarray | float = 0.0,
 ) -> SpatialSystem:
     """Return the first-order form of a plane.
 
@@ -69,6 +74,7 @@ def system(
     push : float array [c], forces and moments at the centre of the start's face per unit drive.
     gravity : float array [c], acceleration of every block, m/s2.
     base : float array [c], velocity of the start's held face per unit drive; None: at rest.
+    borne : float array [(N + 1) c], steady forces of the contacts on their right side, N and N m.
     """
     n, c, q, f = len(plane.mass), len(push), plane.blocks, plane.faces
     B, D, C = plane.relative, plane.stiffness, plane.viscosity
@@ -82,6 +88,7 @@ def system(
     load = np.concatenate([0 * driven[q], B[:c, q].T @ push - (B.T @ C @ B @ driven)[q]])
     load[n:] /= plane.mass
     weight = np.concatenate([np.zeros(n), np.tile(gravity, n // c)])
+    weight[n:] += B[:, q].T @ (borne * np.ones(len(B))) / plane.mass
     direct = -C @ B @ driven
     direct[:c] += push
     forces, size = -(D @ B @ X + C @ B @ V), X.shape[1]
@@ -163,8 +170,10 @@ def solve(scene: Scene) -> xr.Dataset:
         if not (push[own].any() or fall[own].any() or (base is not None and base[own].any())):
             continue
         shaken = None if base is None else base[own]
-        parts = system(plane(blocks, freedoms), push[own], fall[own], shaken)
-        found = _receivers(scene, parts, len(own), times)
+        stands = standing(scene, freedoms, fall[own])
+        borne = stands.borne if stands else 0.0
+        parts = system(plane(blocks, freedoms), push[own], fall[own], shaken, borne)
+        found = _receivers(scene, parts, stands, len(own), times)
         for field, part in zip((forces, motion, rate), found, strict=True):
             field[:, :, own] = part
     tractions = forces / scene.pillar.area
@@ -203,21 +212,48 @@ def falling(scene: Scene) -> np.ndarray:
     return vector
 
 
-def _receivers(scene: Scene, parts: SpatialSystem, c: int, times: np.ndarray) -> list[np.ndarray]:
+class Standing(NamedTuple):
+    """A plane whose ends are held where they bear the weight: its system, its state [m] at rest,
+    and the forces [(N + 1) c] (N, N m) of quiet and matched ends there, zero at other contacts."""
+
+    held: SpatialSystem
+    state: np.ndarray
+    borne: np.ndarray
+
+
+def standing(scene: Scene, freedoms: tuple[int, ...], fall: np.ndarray) -> Standing | None:
+    """Return how a plane stands under gravity, fall [c] in m/s2; None where nothing stands."""
+    static = scene.gravity is not None and scene.gravity.static
+    if not fall.any() or not (static or any(scene.bears)):
+        return None
+    held = system(plane(row(scene, held=True), freedoms), 0 * fall, fall)
+    state = at_rest(held)
+    borne = (held.forces @ state).reshape(-1, len(fall))
+    start, end = scene.bears
+    borne[1:-1] = 0.0
+    borne[[0, -1]] *= [[start], [end]]
+    return Standing(held, state, borne.ravel())
+
+
+def _receivers(
+    scene: Scene, parts: SpatialSystem, stands: Standing | None, c: int, times: np.ndarray
+) -> list[np.ndarray]:
     """Return the forces, displacements and velocities [2, receivers, c, n] of one plane and of its
     twin."""
     signal, gravity = drive(scene), scene.gravity
     rows, counts = _rows(scene, parts, c)
     out = np.zeros((2, len(times), len(rows)))
+    sections = _read(_contacts(scene), scene.record.stress, c)
     if parts.load.any():
         out += twins(parts.matrix, parts.load, rows, signal, times)
-        sections = _read(_contacts(scene), scene.record.stress, c)
         out[..., : counts[0]] += np.outer(signal.value(times), sections @ parts.direct)
     if parts.gravity.any() and gravity is not None:
-        if gravity.static:
-            out += rows @ at_rest(parts)
+        if stands and gravity.static:
+            out += _rows(scene, stands.held, c)[0] @ stands.state
         else:
             out += twins(parts.matrix, parts.gravity, rows, Step(1.0), times)
+            if stands:
+                out[..., : counts[0]] += sections @ stands.borne
     fields = np.split(out, np.cumsum(counts), axis=2)
     return [part.reshape(2, len(times), -1, c).transpose(0, 2, 3, 1) for part in fields]
 

@@ -247,10 +247,10 @@ MISTAKES = {
     ),
     "interval too long": ("[record]", "[record]\ninterval = 1.0", ["record.interval = 1.0"]),
     "fields too rare": ("[record]", "[record]\nfields = 1.0", ["record.fields = 1.0"]),
-    "wave through a free side": (
+    "wave through a fixed side": (
         'bottom = "quiet"',
-        "",
-        ["boundaries.bottom = 'free'", "waves[0]"],
+        'bottom = "fixed"',
+        ["boundaries.bottom = 'fixed'", "waves[0]"],
     ),
     "wave without direction": (
         'direction = [0.0, 1.0]\nshape = "ricker"',
@@ -317,7 +317,16 @@ MISTAKES = {
         'bottom = "quiet"\nleft = "periodic"',
         ["boundaries.left = 'periodic'", "needs boundaries.right = 'periodic'"],
     ),
-    "gravity on nothing": ("static = false", "", ["gravity.static = true", "needs a fixed side"]),
+    "gravity on nothing": (
+        "[gravity]\nstatic = false",
+        "[gravity]\ndirection = [0.0, 1.0]",
+        ["gravity.static = true", "needs a fixed side"],
+    ),
+    "gravity on nothing but dashpots": (
+        "[gravity]\nstatic = false",
+        "[gravity]\ndirection = [0.0, 1.0]\nstatic = false",
+        ["boundaries.left = 'quiet'", "does not bear the weight", "needs a fixed side"],
+    ),
     "prestress without yy": ("yy = 1.0e7", "", ["prestress.yy", "is required"]),
 }
 

@@ -46,7 +46,7 @@ def test_the_answer_names_the_worst_of_each_engine_and_the_verdict_of_the_page(c
     for engine, line in zip(stand, lines[2:], strict=False):
         assert line.startswith(engine) and line.rstrip().endswith(stand[engine].verdict.word)
     dem = " ".join(lines[2].split())
-    assert dem == "dem 8.00 % stress at 20 m, soft jointed-bar 0.0972 % 20 ms △ differs"
+    assert dem == "dem 8.00 % stress at 20 m, soft - 8, ≤ 8 % jointed-bar 0.0972 % 20 ms △ differs"
     assert "jointed-bar: deformable rock with every joint, exact" in lines[5]
     assert lines[-1].endswith("--all; as JSON: --json") and "its reason" not in " ".join(lines)
 

@@ -317,7 +317,8 @@ def trials(order, steps=(1, 2, 4), floor=0.0, first=0.1):
     goal, error, model = np.sin(20 * time), np.cos(20 * time), np.sin(40 * time)
     size, share, goals = np.array([[1.0], [1e6]]), np.array([[1.0], [0.5]]), np.array([goal, goal])
     waves = [size * (goals + share * (first * error * n**-order + floor * model)) for n in steps]
-    stacks = [Stack(w, size * goals, np.zeros(2)) for w in waves]
+    norm = np.sqrt(((size * goals) ** 2).mean(axis=1))
+    stacks = [Stack(w, size * goals, norm, np.zeros(2)) for w in waves]
     return [Trial(n, s, 1e-3 * (2 + n), 1.0) for n, s in zip(steps, stacks, strict=True)]
 
 

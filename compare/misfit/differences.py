@@ -1,0 +1,93 @@
+"""Differences of two results beside their waveforms: of peaks, and of the static state.
+
+Peak particle velocity is the largest length of the velocity vector over time; peak stress the
+largest principal stress, in magnitude, or in a section of a pillar the length of its traction. Both
+are of the motion less its static state, at the samples, over the components that both have.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from compare.misfit.metrics import Pairing, Worst, pairings, static_state, waveforms
+from compare.misfit.weight import FAINT, UNITS
+
+VELOCITY, STRESS = "PPV", "peak stress"
+_OF = {"velocity": VELOCITY, "stress": STRESS, "shear": STRESS}
+
+Position = tuple[float, ...]
+
+
+class PeakDifference(NamedTuple):
+    """|peak / peak of the reference - 1|: mean over the receivers, the largest, and its receiver.
+
+    Receivers whose reference has less than 1 % of the largest peak do not count.
+    """
+
+    mean: float
+    worst: float
+    at: Position
+
+
+def peak_differences(one: xr.Dataset, other: xr.Dataset) -> dict[str, PeakDifference]:
+    """Return the difference of two results by peak, "PPV" and "peak stress", of those that both
+    have; the second is the reference."""
+    found = {}
+    for name, peaks in _peaks(one, other).items():
+        least = FAINT * max(theirs for _, theirs in peaks.values())
+        off = {at: abs(a / b - 1) for at, (a, b) in peaks.items() if b > 0 and b >= least}
+        if off:
+            at = max(off, key=lambda at: off[at])
+            found[name] = PeakDifference(sum(off.values()) / len(off), off[at], at)
+    return found
+
+
+def peak_ratios(one: xr.Dataset, other: xr.Dataset) -> dict[tuple[str, Position], float]:
+    """Return the ratio of two results' peaks by quantity, as it is recorded, and receiver."""
+    return {
+        (quantity, at): a / b
+        for name, peaks in _peaks(one, other).items()
+        for at, (a, b) in peaks.items()
+        for quantity in (q for q, of in _OF.items() if of == name)
+        if b > 0
+    }
+
+
+def _peaks(one: xr.Dataset, other: xr.Dataset) -> dict[str, dict[Position, tuple[float, float]]]:
+    """Return the peaks of a result and of its reference by name and receiver."""
+    there: dict[tuple[str, Position], list[Pairing]] = {}
+    for pair in pairings(one, other):
+        if name := _OF.get(pair.place.quantity):
+            there.setdefault((name, pair.place.at), []).append(pair)
+    found: dict[str, dict[Position, tuple[float, float]]] = {}
+    for (name, at), some in there.items():
+        ours = _size({p.place.component: p.one for p in some})
+        theirs = _size({p.place.component: p.other for p in some})
+        found.setdefault(name, {})[at] = float(ours.max()), float(theirs.max())
+    return {name: found[name] for name in (VELOCITY, STRESS) if name in found}
+
+
+def _size(components: dict[str, np.ndarray]) -> np.ndarray:
+    """Return the length [n] of a vector, or the largest principal value of a tensor in the plane;
+    a component of a tensor that nothing excites is absent."""
+    if components.keys() & {"xx", "yy", "xy"}:
+        xx, yy, xy = (components.get(name, np.zeros(1)) for name in ("xx", "yy", "xy"))
+        return np.abs(xx + yy) / 2 + np.hypot((xx - yy) / 2, xy)
+    return np.sqrt(sum(wave**2 for wave in components.values()))
+
+
+def static_difference(one: xr.Dataset, other: xr.Dataset) -> Worst:
+    """Return the largest difference of two static states over the largest static stress of the
+    reference, which comes second; without a static state 0."""
+    pairs = zip(
+        waveforms(one, other, static_state), waveforms(other, one, static_state), strict=True
+    )
+    held = [
+        (place, float(a[0]), float(b[0]))
+        for (place, a), (_, b) in pairs
+        if place.quantity in UNITS[0]
+    ]
+    largest = max((abs(b) for *_, b in held), default=0.0)
+    found = [Worst(abs(a - b) / largest, place) for place, a, b in held if largest > 0]
+    return max(found, key=lambda w: w.misfit, default=Worst(0.0))

@@ -1,0 +1,73 @@
+"""The weight of each component in the motion of its quantity, which decides what a misfit follows.
+
+The motion of a quantity at a receiver is the root mean square over time of its vector or tensor,
+less its static state: velocity, displacement, rotation, the traction of a joint, its gap and slip,
+the stress and shear of a section, or the stress tensor with its shear stress counted twice. It does
+not depend on the axes.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from compare.misfit.places import Place
+
+#: Quantities of one unit, whose amplitudes are compared with each other.
+UNITS = (
+    ("stress", "shear", "traction"),
+    ("velocity",),
+    ("displacement", "gap", "slip"),
+    ("rotation",),
+)
+QUANTITIES = tuple(quantity for unit in UNITS for quantity in unit)
+CARRIES = 0.05  #: part of the motion from which a component decides a misfit
+FAINT = 0.01  #: part of the largest motion of a unit from which a receiver decides one
+EXCITED = 1e-6  #: part of the largest motion of a unit below which a scene does not excite anything
+ROUND_OFF = 1e-9  # of the largest displacement (m): rotations (rad) below count as zero
+_ONE_VECTOR = {"shear": "stress", "slip": "gap"}
+
+
+class Weight(NamedTuple):
+    """What the misfit of each waveform is relative to, and from where on it decides, [waveform].
+
+    norm : root mean square: of the reference's component where it carries at least 5 % of the
+    motion; else of all motion there; at a receiver below 1 % of the loudest one, of that.
+    least : misfit from which it decides: 0 of a component that carries, else CARRIES or FAINT; inf
+    where the reference leaves out all of a unit while something else moves.
+    excited : whether the reference moves there at all.
+    """
+
+    norm: np.ndarray
+    least: np.ndarray
+    excited: np.ndarray
+
+
+def weigh(places: Sequence[Place], moved: np.ndarray) -> Weight:
+    """Return the weight of each waveform; moved : root mean square in the reference [waveform]."""
+    unit_of = {quantity: k for k, unit in enumerate(UNITS) for quantity in unit}
+    vectors = [(_ONE_VECTOR.get(p.quantity, p.quantity), p.at) for p in places]
+    twice = np.array([2.0 if len(set(p.component)) == 2 else 1.0 for p in places])
+    motion = np.sqrt(_sums(vectors, twice * moved**2))
+    units = np.array([unit_of[p.quantity] for p in places], dtype=int)
+    loudest = np.zeros(len(UNITS))
+    np.maximum.at(loudest, units, motion)
+    at_rest = ((loudest == 0) & loudest.any())[units]
+    loudest[3] = max(loudest[3], ROUND_OFF / FAINT * loudest[2])
+    largest = loudest[units]
+    heard = motion >= FAINT * largest
+    carries = heard & (moved >= CARRIES * motion)
+    norm = np.where(carries, moved, np.where(heard, motion, largest))
+    least = np.where(carries, 0.0, np.where(heard, CARRIES, FAINT))
+    return Weight(
+        norm,
+        np.where(at_rest, np.inf, least),
+        (moved >= EXCITED * largest) & ~at_rest,
+    )
+
+
+def _sums(keys: Sequence[object], values: np.ndarray) -> np.ndarray:
+    """Return for each value the sum of all that have the same key."""
+    index = {key: i for i, key in enumerate(dict.fromkeys(keys))}
+    group = np.array([index[key] for key in keys], dtype=int)
+    return np.bincount(group, values, len(index))[group]

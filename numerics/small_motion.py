@@ -1,0 +1,104 @@
+"""Blocks that move further than small motion allows: contacts are those of the initial state.
+
+Faces that have moved by a share s of a block touch on 1 - s of what their contact has, and blocks
+that met nothing at the start pass through one another.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from cases.errors import StoppedError
+from cases.schema.scene import Scene
+
+if TYPE_CHECKING:
+    from cases.partition.blocks import Partition
+    from cases.schema.rock_mass import RockMass
+
+LARGEST = 0.02  # of the smaller block
+OVERLAP = 0.01  # of its area: corners that touch at the start overlap by its square
+
+
+class Moved(NamedTuple):
+    """How far a block has moved against a neighbour, `by` (m) of `size` (m), or overlaps a block
+    that was none, and where it was: y, or x and y, m."""
+
+    block: int
+    other: int
+    by: float
+    size: float
+    place: tuple[float, ...]
+    overlaps: bool = False
+
+
+def matters(scene: Scene | RockMass) -> bool:
+    """Return whether blocks that move too far stop a run of a scene.
+
+    Faces that only translate stand for faces of large extent, and finite rotations follow faces
+    that leave one another.
+    """
+    if scene.numerics.allow_large_motion:
+        return False
+    return not isinstance(scene, Scene) or scene.motion.rotation == "small"
+
+
+def farthest(by: np.ndarray, size: np.ndarray) -> int:
+    """Return the joint that has moved furthest, of distances [c] and sizes [c] (m)."""
+    return int(np.nan_to_num(by / size, nan=0.0).argmax())
+
+
+def refuse_large_motion(
+    scene: Scene | RockMass, who: str, found: Moved | None, t: float, samples: int
+) -> None:
+    """Raise StoppedError where a block has moved further than small motion allows.
+
+    who : in words. t : of the look, s. samples : how many had been taken at the look before.
+    """
+    if found is None or not (found.overlaps or found.by > LARGEST * found.size):
+        return
+    name = f"{scene.where}, {scene.name}" if scene.name else scene.where
+    at = ", ".join(f"{x:.4g}" for x in found.place)
+    place = f"[{at}]" if len(found.place) > 1 else f"y = {at}"
+    wall = "a wall" if found.other < 0 else f"block {found.other + 1}"
+    what = (
+        f"overlaps {wall}, which it did not touch, by {found.by:.3g} m"
+        if found.overlaps
+        else f"has moved by {found.by:.3g} m against {wall}"
+    )
+    error = StoppedError(
+        f"{name}: {who}: by t = {t:.4g} s block {found.block + 1} at {place} m {what}, "
+        f"{found.by / found.size:.2g} of the smaller: beyond {LARGEST:g} contacts are no longer "
+        "those of the start; numerics.allow_large_motion = true goes on with them"
+    )
+    error.samples = max(1, samples)
+    raise error
+
+
+def overlapping(partition: Partition, motion: np.ndarray) -> Moved | None:
+    """Return two blocks that have no contact and overlap, by their displacements and rotations
+    [n, 3]; None, and little done, where displacements differ too little for it."""
+    least = float(np.sqrt(partition.area.min()))
+    if not np.ptp(motion[:, :2], axis=0).max() > OVERLAP / 2 * least:
+        return None
+    import shapely
+
+    owner = np.repeat(np.arange(partition.count), np.diff(partition.first))
+    arm = partition.corners - partition.centroid[owner]
+    turned = motion[owner, 2, None] * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+    moved = partition.corners + motion[owner, :2] + turned
+    rings = [moved[a:b] for a, b in zip(partition.first[:-1], partition.first[1:], strict=True)]
+    blocks = np.array([shapely.Polygon(ring) for ring in rings])
+    i, j = shapely.STRtree(blocks).query(blocks, predicate="intersects")
+    touching = partition.contacts.blocks @ [partition.count, 1]
+    new = (i < j) & ~np.isin(i * partition.count + j, touching)
+    i, j = i[new], j[new]
+    common = shapely.area(shapely.intersection(blocks[i], blocks[j]))
+    smaller = np.minimum(partition.area[i], partition.area[j])
+    if not (common > OVERLAP * smaller).any():
+        return None
+    k = int((common / smaller).argmax())
+    size = float(np.sqrt(smaller[k]))
+    place = tuple(partition.centroid[i[k]].tolist())
+    return Moved(int(i[k]), int(j[k]), float(common[k]) / size, size, place, True)

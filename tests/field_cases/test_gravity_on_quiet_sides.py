@@ -1,0 +1,134 @@
+"""A column whose quiet base bears gravity (cb-geo/mpm PR 703, MOOSE 18233, Kratos 11107).
+
+Without a wave nothing moves, and the stress at a depth z is rho g z, rho g H at the base. With one,
+a scene of linear joints is the sum of that state and of the scene without gravity. Gravity that
+acts suddenly leaves a quiet base where it was: it bears R = M g from the start, so that what its
+dashpots take is the momentum of the column, zero at first and in the end, and its velocity has no
+integral. Until a wave returns from the top its stress is (R + Z g t) / 2: the up-going wave
+Z (v + g t) meets R - Z v.
+"""
+
+import numpy as np
+import pytest
+
+from cases.errors import SceneError
+from jointwave import load, simulate
+
+RHO, G, H = 2500.0, 9.81, 20.0
+WEIGHT = RHO * G * H
+
+PILLAR = {
+    "title": "a column on a quiet base",
+    "pillar": {"length": H, "side": 1.0, "block": 1.0},
+    "rock": {
+        "density": RHO, "equivalent_modulus": 1e9, "equivalent_poisson": 0.25,
+        "intact_modulus": 4e9,
+    },
+    "load": {"shape": "ricker", "amplitude": 1e5, "period": 0.05},
+    "ends": {"start": "free", "end": "matched"},
+    "gravity": {"direction": [0.0, 1.0, 0.0]},
+    "time": {"duration": 0.12},
+    "record": {"stress": [0.0, 5.0, H], "velocity": [0.5, H - 0.5]},
+    "numerics": {"dem": {"static_tolerance": 1e-12}},
+}  # fmt: skip
+
+ROCK = {
+    "title": "rock on a quiet base between quiet sides",
+    "domain": {"size": [3.0, H]},
+    "rock": {"density": RHO, "intact_modulus": 4e9, "intact_poisson": 0.0},
+    "joint_sets": [
+        {
+            "name": name, "dip": dip, "spacing": 1.0,
+            "normal_stiffness": 4e9, "shear_stiffness": 2e9,
+        }
+        for name, dip in (("bed", 0.0), ("cross", 90.0))
+    ],
+    "boundaries": {"bottom": "quiet", "left": "quiet", "right": "quiet"},
+    "loads": [
+        {"kind": "pressure", "side": "top", "shape": "ricker", "amplitude": 1e5, "period": 0.05}
+    ],
+    "gravity": {},
+    "time": {"duration": 0.12},
+    "record": {"points": [[1.5, H - 0.5], [1.5, H - 5.5], [1.5, 0.5]], "joints": [[1.5, 1.0]]},
+    "numerics": {"dem": {"static_tolerance": 1e-12}, "continuum": {"size": 1.0}},
+}  # fmt: skip
+
+CASES = [(PILLAR, "dem"), (PILLAR, "continuum-jointed"), (PILLAR, "lattice")]
+CASES += [(ROCK, "dem"), (ROCK, "continuum-jointed")]
+NAMES = [f"{scene['title'].split()[1]}-{solver}" for scene, solver in CASES]
+every = pytest.mark.parametrize(("scene", "solver"), CASES, ids=NAMES)
+
+
+def run(scene, solver, **changes):
+    return simulate(load(scene, changes=changes), solver)
+
+
+def quiet(scene):
+    """Return the changes that leave out the scene's wave."""
+    return {"loads": []} if "loads" in scene else {"load.amplitude": 0.0}
+
+
+def pressing(result):
+    """Return the stress along gravity [place, time], Pa."""
+    stress = result.stress.values
+    return stress[..., 1] if stress.ndim == 3 else stress
+
+
+@every
+def test_static_state_stays_and_adds_to_a_wave(scene, solver):
+    """The static tolerance of blocks is 1e-12 of the weight, which is some 5 of the wave's stress;
+    the last digits of stresses of 5e5 Pa in steps of 1e-4 s move more."""
+    still, wave = run(scene, solver, **quiet(scene)), run(scene, solver, gravity=None)
+    both, peak = run(scene, solver), np.abs(wave.velocity.values).max()
+    assert np.abs(still.velocity.values).max() < 1e-10 * peak
+    assert np.abs((both.velocity - wave.velocity).values).max() < 2e-10 * peak
+    added = pressing(both) - pressing(still)[:, :1] - pressing(wave)
+    assert np.abs(added).max() < 1e-8 * 1e5
+    depth = [H - y for _, y in scene["record"]["points"]] if "loads" in scene else [0.0, 5.0, H]
+    assert pressing(still)[:, 0] == pytest.approx(RHO * G * np.array(depth), rel=2e-6, abs=1e-2)
+
+
+@every
+def test_sudden_gravity_does_not_sink(scene, solver):
+    """The base is back where it was; what the deepest receiver has settled is half a block's share.
+
+    The sides of the rock are free: quiet ones would hold it back by their own dashpots.
+    """
+    changes = {**quiet(scene), "gravity.static": False, "time.duration": 0.3}
+    changes |= {"boundaries": {"bottom": "quiet"}} if "loads" in scene else {}
+    fallen = run(scene, solver, **changes)
+    depth = H - 0.5 if "loads" in scene else H
+    assert pressing(fallen)[-1, -1] == pytest.approx(RHO * G * depth, rel=0.03)
+    u = fallen.displacement.values
+    along = np.abs(u[:, :, min(1, u.shape[2] - 1)])
+    assert along[-1, -1] < 0.03 * along[0, -1]
+
+
+def test_base_of_a_falling_bar_gives_way_as_its_dashpot_does():
+    """Z = sqrt(E rho); c = 632 m/s: no wave comes back before H / c = 31.6 ms."""
+    fallen = run(PILLAR, "continuum-equivalent", **quiet(PILLAR), **{"gravity.static": False})
+    t, impedance = fallen.time.values, np.sqrt(1e9 * RHO)
+    before = (t > 0.01) & (t < 0.03)
+    expected = (WEIGHT + impedance * G * t) / 2
+    assert fallen.stress.values[-1][before] == pytest.approx(expected[before], rel=0.01)
+
+
+@pytest.mark.parametrize("solver", ["dem", "spatial-lattice"])
+@pytest.mark.parametrize("static", [True, False])
+def test_matched_end_bears_a_row_across_its_axis(solver, static):
+    """A cantilever of weight M g leans on its matched end: shear M g / A there, from the start."""
+    changes = quiet(PILLAR) | {
+        "pillar.length": 5.0, "record.stress": [5.0], "record.velocity": [0.5],
+        "gravity.direction": [1.0, 0.0, 0.0], "gravity.static": static, "time.duration": 0.02,
+    }  # fmt: skip
+    leaning = run(PILLAR, solver, **changes)
+    assert leaning["shear"].values[0, 0, 0] == pytest.approx(RHO * G * 5.0, rel=1e-6)
+    assert static == (np.abs(leaning.velocity.values).max() < 1e-9)
+
+
+@pytest.mark.parametrize("static", [True, False])
+@pytest.mark.parametrize(("scene", "up"), [(PILLAR, {"ends": {"end": "free", "start": "quiet"}}),
+                                           (ROCK, {"boundaries": {"top": "quiet"}})])  # fmt: skip
+def test_what_hangs_on_a_quiet_side_is_refused_with_the_way_out(scene, up, static):
+    with pytest.raises(SceneError, match=r"needs a fixed (end|side)|quiet or matched end below"):
+        load(scene, changes={**quiet(scene), **up, "gravity.static": static})
