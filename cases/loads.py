@@ -17,14 +17,14 @@ def load_history(scene: Scene) -> LoadHistory:
     """Return the scene's load as a function of time: its end stress or the motion of its base.
 
     Stress is positive in compression. Without a load the stress is zero. Of an extreme load it is
-    that over `scene.load.scale`, which a result is multiplied by when it is put together. The
-    motion that comes up to a quiet start, a compliant base, is the stress 2 rho c v: its dashpot
-    takes half of it, and the other half enters (Mejia & Dawson, 4th FLAC Symposium, 2006).
+    that over `scene.load.scale`, which a result is multiplied by when it is put together. A wave
+    that comes up to an absorbing start, a compliant base, is twice its stress, 2 rho c v: the
+    dashpot takes half of it, and the other half enters (Mejia & Dawson, 4th FLAC Symposium, 2006).
     """
     load = scene.load
     amplitude = load.amplitude / load.scale
     if not load.is_motion or scene.shakes_base:
-        return history_of(load, amplitude)
+        return history_of(load, amplitude * (2 if load.quantity == "incident-stress" else 1))
     from cases.material.calibrate import calibrate
 
     p = calibrate(scene).at_start

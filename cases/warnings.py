@@ -132,6 +132,17 @@ def look_like_milliseconds(time: np.ndarray, values: np.ndarray, end: float) -> 
     return bool(time[np.abs(values).argmax()] > end and LATE * end < last <= 1e3 * end)
 
 
+def _of_half_a_load(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
+    """Say where a dashpot takes half of a load."""
+    load, start = scene.load, scene.ends.start
+    if load.quantity == "stress" and load.amplitude and start in ("quiet", "matched"):
+        yield (
+            f"load.amplitude = {load.amplitude:g} acts on the dashpot of ends.start = '{start}', "
+            f"too, which takes half: {load.amplitude / 2:g} enters; load.quantity = "
+            "'incident-stress' is the stress that enters"
+        )
+
+
 def _of_wavelength(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
     if wave is None or wave.blocks >= LEAST_BLOCKS:
         return
@@ -266,4 +277,5 @@ RULES: tuple[Rule, ...] = (
     _of_step,
     _of_arrivals,
     _of_quiet_ends,
+    _of_half_a_load,
 )

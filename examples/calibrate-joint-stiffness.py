@@ -40,7 +40,12 @@ tables = {
         "s_speed": 800.0,
         "intact_modulus": 8.64e10,
     },
-    "load": {"shape": "ricker", "amplitude": 1.0e6, "period": 0.01},
+    "load": {
+        "shape": "ricker",
+        "amplitude": 5.0e5,  # Pa
+        "quantity": "incident-stress",  # of the wave that enters
+        "period": 0.01,  # s
+    },
     "ends": {"start": "matched", "end": "matched"},
     "time": {"duration": 0.04},
     "record": {"stress": [14.0], "interval": INTERVAL},

@@ -33,7 +33,12 @@ tables = {
     "title": "One joint between half-spaces",
     "pillar": {"length": 40.0, "side": 0.5, "block": 0.5},
     "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0},
-    "load": {"shape": "ricker", "amplitude": 2.0e6, "period": PERIOD},
+    "load": {
+        "shape": "ricker",
+        "amplitude": 1.0e6,  # Pa
+        "quantity": "incident-stress",  # of the wave that enters
+        "period": PERIOD,  # s
+    },
     "ends": {"start": "matched", "end": "matched"},
     "time": {"duration": 0.2},
     "record": {"stress": [30.0]},

@@ -28,7 +28,12 @@ tables = {
         "intact_modulus": 8.64e10,  # Pa; without it there is no rock between the joints
     },
     "soft_layers": [{"y": 8.0, "spacing_stiffness": 4.375e8}],  # m, Pa
-    "load": {"shape": "ricker", "amplitude": 1.0e6, "period": 0.01},  # Pa, s
+    "load": {
+        "shape": "ricker",
+        "amplitude": 5.0e5,  # Pa
+        "quantity": "incident-stress",  # of the wave that enters
+        "period": 0.01,  # s
+    },
     "ends": {"start": "matched", "end": "matched"},
     "time": {"duration": 0.05},  # s
     "record": {"stress": [4.0, 12.0], "fields": 2.5e-4},  # m, s

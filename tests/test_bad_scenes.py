@@ -269,7 +269,7 @@ MISTAKES = {
     "unknown quantity": (
         "[load]",
         '[load]\nquantity = "force"',
-        ["load.quantity = 'force'", "'stress', 'velocity'"],
+        ["load.quantity = 'force'", "'stress', 'incident-stress', 'velocity'"],
     ),
     "a load beside the face": (
         "[load]",

@@ -105,9 +105,10 @@ def _peak(pulse: Pulse, duration: float) -> float:
 def _stress_of(pulse: Pulse, scene: AnyScene) -> float:
     """Return the stress in rock by a pulse of one: itself, that of a velocity by the impedance, of
     a force over the least spacing of joints."""
-    if isinstance(scene, Scene) and pulse.quantity == "stress":
+    if isinstance(scene, Scene) and not scene.load.is_motion:
         lever = sum(map(abs, scene.load.at)) + (scene.load.arm or 0.0)
-        return 1 + 6 * lever / scene.pillar.side  # at the edges of the section
+        acts = 2 if pulse.quantity == "incident-stress" else 1
+        return acts * (1 + 6 * lever / scene.pillar.side)  # at the edges of the section
     if pulse.quantity == "stress":
         return 1.0
     if isinstance(scene, Scene):

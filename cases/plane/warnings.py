@@ -77,6 +77,18 @@ def _places(one: JointSet, dip: float, corners: np.ndarray) -> np.ndarray:
     return origin + one.spacing * (first + np.arange(max(int(count), 0)))
 
 
+def _of_half_a_load(scene: RockMass) -> Iterator[str]:
+    """Say where the dashpots of a quiet side take half of a pressure on it."""
+    for i, load in enumerate(scene.loads):
+        held = getattr(scene.boundaries, load.side or "", None)
+        if load.kind == "pressure" and load.amplitude and held == "quiet":
+            yield (
+                f"loads[{i}].amplitude = {load.amplitude:g} acts on the dashpots of "
+                f"boundaries.{load.side} = 'quiet', too, which take half: {load.amplitude / 2:g} "
+                "enters; one of the [[waves]] enters with its own amplitude"
+            )
+
+
 def _of_times(scene: RockMass) -> Iterator[str]:
     for table, pulse in _sources(scene):
         yield from of_pulse(table, pulse, scene.time.duration)
@@ -156,6 +168,7 @@ def _nearest(scene: RockMass, load: PlaneLoad, place: np.ndarray) -> float:
 RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
     _of_poisson,
     _of_joints_given_twice,
+    _of_half_a_load,
     _of_times,
     _of_wavelength,
     _of_arrivals,

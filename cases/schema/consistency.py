@@ -130,6 +130,12 @@ def _check_ends(scene: Scene) -> None:
     if load.is_motion and ends.start not in ("fixed", "quiet"):
         allowed = "is the motion of a base: needs ends.start = 'fixed' or 'quiet'"
         raise contradiction("load.quantity", load.quantity, allowed)
+    enters = load.quantity == "incident-stress" and load.amplitude
+    if enters and ends.start not in ("matched", "quiet"):
+        allowed = (
+            "is of a wave that an absorbing start lets in: needs ends.start = 'matched' or 'quiet'"
+        )
+        raise contradiction("load.quantity", load.quantity, allowed)
     if load.is_motion and ends.start == "quiet" and load.is_across and load.direction[1]:
         allowed = "must be along or across the axis where ends.start = 'quiet'"
         raise contradiction("load.direction", load.direction, allowed)

@@ -43,9 +43,11 @@ class Pulse(Table):
     #: 1.6 `cycles`; triangle: a blast; table: linear interpolation of the samples of a file
     shape: Literal["sine", "half-sine", "ricker", "gabor", "triangle", "step", "table"]
     amplitude: Amplitude  #: Pa, m/s or m/s2 by `quantity`; a factor on the history for "table"
-    #: velocity, acceleration: of the base under a fixed start, or of the wave that enters a quiet
-    #: start, applied as the stress 2 rho c times its velocity
-    quantity: Literal["stress", "velocity", "acceleration"] = "stress"
+    #: stress: on the start, of which a quiet or matched one takes half; incident-stress: of the
+    #: wave that enters such a start, applied as twice this stress; velocity, acceleration: of the
+    #: base under a fixed start, or of the wave that enters a quiet start, applied as the stress
+    #: 2 rho c times its velocity
+    quantity: Literal["stress", "incident-stress", "velocity", "acceleration"] = "stress"
     period: Positive | None = None  #: s; for sine, half-sine, ricker and gabor
     #: sine: default 1; gabor: cycles within two standard deviations of the envelope
     cycles: Annotated[int, Field(ge=1, le=1_000_000)] | None = None
@@ -145,7 +147,7 @@ class Load(Pulse):
     @property
     def is_motion(self) -> bool:
         """Whether the load is the motion of a base rather than a stress."""
-        return self.quantity != "stress"
+        return self.quantity in ("velocity", "acceleration")
 
     @property
     def is_eccentric(self) -> bool:

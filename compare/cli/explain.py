@@ -20,6 +20,7 @@ from compare.engines import ENGINES, solver
 from compare.experiments.cost import timings
 from compare.experiments.cost.step_cost import nanoseconds, remembered_whole, whole
 from compare.misfit.ranking import Reference, applicable, reference_of
+from compare.readings.entering_wave import EnteringWave, entering_waves
 from compare.solvers.record import Answer, Prepared
 
 if TYPE_CHECKING:
@@ -37,7 +38,8 @@ class Explanation(NamedTuple):
     each engine is held against; None where nothing checks it independently. speeds : of its waves
     in each engine, m/s. block_step,
     with_everything : what a step of one rigid block of a pillar costs here, of this scene and with
-    every effect, ns; None where it was never measured.
+    every effect, ns; None where it was never measured. entering : the plane waves that its loads
+    and waves send into the rock.
     """
 
     scene: AnyScene
@@ -51,6 +53,7 @@ class Explanation(NamedTuple):
     speeds: dict[str, Speeds]
     block_step: float | None
     with_everything: float | None
+    entering: list[EnteringWave]
 
 
 def explanation(scene: AnyScene, measured: bool = False) -> Explanation:
@@ -69,7 +72,7 @@ def explanation(scene: AnyScene, measured: bool = False) -> Explanation:
         properties, blocks, cost = None, partition_facts(scene), (None, None)
     runs, failures = _prepared(scene, engines)
     about = effects(scene), runs, failures, answers, references, speeds_of(scene, list(runs))
-    return Explanation(scene, properties, blocks, *about, *cost)
+    return Explanation(scene, properties, blocks, *about, *cost, entering_waves(scene))
 
 
 def _prepared(scene: AnyScene, engines: list[str]) -> tuple[dict[str, Prepared], dict[str, str]]:
@@ -108,6 +111,8 @@ def show_explanation(found: Explanation, as_json: bool) -> None:
         show_partition(found.blocks)
     for line in speed_words(found.scene, found.speeds):
         say(line)
+    for one in found.entering:
+        say(_entering_words(one))
     effects = [[e.name, "yes" if e.active else "no", e.reason] for e in found.effects]
     show_table(["effect", "computed", "because"], effects)
     steps = [
@@ -159,6 +164,14 @@ def _rock_words(p: Properties) -> str:
     )
 
 
+def _entering_words(one: EnteringWave) -> str:
+    length = "" if one.length is None else f", a pulse of {one.length:.4g} m"
+    return (
+        f"{one.source}: {one.stress:.4g} Pa and {one.velocity:.4g} m/s enter the rock{length}, "
+        f"{one.energy:.4g} J/m2"
+    )
+
+
 def _cost_sentence(own: float | None, everything: float | None) -> str:
     if own is None:
         return "the time per step of a rigid block is known after a run, or by --measure"
@@ -185,6 +198,7 @@ def _explanation_facts(found: Explanation) -> dict[str, Any]:
         "variant": found.scene.name,
         **pillar,
         **(found.blocks or {}),
+        "enters": [one._asdict() for one in found.entering],
         "effects": {e.name: {"active": e.active, "why": e.reason} for e in found.effects},
         "steps": [
             {"engine": name, "critical": r.critical, "dt": r.dt, "steps": r.steps}

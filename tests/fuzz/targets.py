@@ -54,7 +54,11 @@ def _asked(work: Callable[[], object]) -> str:
     """Return what came of reading something."""
     try:
         work()
-    except (SceneError, UnstableError) as error:
+    except SceneError as error:
+        for one in error.each:
+            _check(str(one))
+        return "refused"
+    except UnstableError as error:
         _check(str(error))
         return "refused"
     return "read"

@@ -154,7 +154,7 @@ def slider(share):
     tables = {
         "title": "a slider",
         "pillar": {"length": 1.0, "side": 0.5, "block": 0.5},
-        "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0},
+        "rock": {"density": 2400.0, "equivalent_modulus": 4.4e9, "equivalent_poisson": 0.42},
         "motion": {"rotation": "none"},
         "prestress": {"normal": 1e6},
         "joints": joints,

@@ -25,7 +25,13 @@ FIXED = (
 FORMS = "must be KEY, KEY=START, KEY=LOW:HIGH or KEY=LOW:START:HIGH"
 UNIT = re.compile(r"(?<![\w/])(Pa/m|Pa|kg/m3|m/s2|m/s|J/m2|degrees|s|m)(?![\w/])")
 #: Unit of an amplitude by the quantity of its pulse.
-LOADS = {"stress": "Pa", "velocity": "m/s", "acceleration": "m/s2", "force": "N/m"}
+LOADS = {
+    "stress": "Pa",
+    "incident-stress": "Pa",
+    "velocity": "m/s",
+    "acceleration": "m/s2",
+    "force": "N/m",
+}
 
 
 class Free(NamedTuple):

@@ -10,7 +10,13 @@ from compare.figures.drawing.symbols import LOAD
 from compare.figures.units import unit_for
 
 SAMPLES = 400
-UNITS = {"stress": "Pa", "force": "N/m", "velocity": "m/s", "acceleration": "m/s²"}
+UNITS = {
+    "stress": "Pa",
+    "incident-stress": "Pa",
+    "force": "N/m",
+    "velocity": "m/s",
+    "acceleration": "m/s²",
+}
 
 
 def draw_pulse(ax: Axes, pulse: Pulse, duration: float, words: str = "load") -> None:

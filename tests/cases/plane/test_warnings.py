@@ -77,7 +77,7 @@ def test_what_a_load_reaches_is_measured_from_where_it_acts(mass):
         "at": [10.0, 5.0],
         "direction": [1.0, 0.0],
     }
-    left = {"waves": [], "loads": [PRESSURE]}
+    left = {"waves": [], "loads": [PRESSURE], "boundaries__left": "free"}
     assert warnings(mass(**left, time__duration=1.01 * 10 / speed, record__interval=1e-5)) == []
     assert len(warnings(mass(**left, time__duration=0.99 * 10 / speed, record__interval=1e-5))) == 3
     beside = {"waves": [], "loads": [force]}

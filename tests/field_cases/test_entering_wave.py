@@ -1,0 +1,177 @@
+"""The wave that enters is the one that `explain` prints: stress, velocity, length and energy.
+
+A load on a start that absorbs enters at half its amplitude, since the dashpot takes the other half;
+users found their waves twice too weak. Peak stress, peak velocity and energy are those of a plane
+wave, sigma = rho c v and sigma^2 / (rho c) integrated over time, by both engines.
+"""
+
+import numpy as np
+import pytest
+
+import jointwave as jw
+from cases.errors import SceneError
+from cases.warnings import warnings
+from compare.cli.new import starter
+from compare.cli.templates import PILLAR, ROCK_MASS
+from compare.readings.entering_wave import entering_waves
+
+DENSITY, MODULUS = 2400.0, 2400.0 * 1350.0**2
+PRESSURE = {"shape": "half-sine", "amplitude": 1e6, "period": 0.02}
+INCIDENT = PRESSURE | {"quantity": "incident-stress"}
+MOTION = PRESSURE | {"quantity": "velocity", "amplitude": 0.1}
+ACROSS = {"direction": [1.0, 0.0, 0.0]}
+#: Start, load, and the stress that enters, Pa: rho c v of a velocity.
+ENTERS = [
+    ("free", PRESSURE, 1e6),
+    ("quiet", PRESSURE, 5e5),
+    ("matched", PRESSURE, 5e5),
+    ("quiet", INCIDENT, 1e6),
+    ("matched", INCIDENT, 1e6),
+    ("quiet", MOTION, 0.1 * DENSITY * 1350.0),
+    ("fixed", MOTION, 0.1 * DENSITY * 1350.0),
+    ("free", PRESSURE | ACROSS, 1e6),
+    ("matched", INCIDENT | ACROSS, 1e6),
+]
+
+
+def pillar(start, load):
+    """Return rock of 1350 m/s, and 800 m/s in shear, with a load on a start, whose wave passes a
+    receiver at 10 m."""
+    return {
+        "title": "what enters",
+        "pillar": {"length": 40.0, "side": 0.5, "block": 0.25},
+        "rock": {
+            "density": DENSITY,
+            "equivalent_modulus": MODULUS,
+            "equivalent_poisson": 0.4238281,
+        },
+        "motion": {"rotation": "none"},
+        "load": load,
+        "ends": {"start": start, "end": "matched"},
+        "time": {"duration": 0.024},
+        "record": {"stress": [10.0], "velocity": [10.125]},
+    }
+
+
+@pytest.mark.parametrize("engine", ["dem", "continuum-equivalent"])
+@pytest.mark.parametrize(("start", "load", "stress"), ENTERS)
+def test_what_explain_says_enters_a_pillar_enters(start, load, stress, engine):
+    """Closed form of half a sine: length c T / 2, energy sigma^2 T / (4 rho c). The chain of 0.25 m
+    blocks adds ripples of some (k d)^2 to the kinks of the pulse, 1 % in shear, where k d = 0.1."""
+    scene = jw.load(pillar(start, load))
+    (wave,) = entering_waves(scene)
+    across = "direction" in load
+    speed, within = (800.0, 0.012) if across else (1350.0, 2e-3)
+    impedance = DENSITY * speed
+    assert wave[1:] == pytest.approx(
+        (stress, stress / impedance, speed * 0.01, stress**2 * 0.005 / impedance), rel=1e-4
+    )
+    run = jw.simulate(scene, engine)
+    peak = np.abs(run["shear" if across else "stress"]).max()
+    assert peak == pytest.approx(wave.stress, within)
+    assert np.abs(run.velocity).max() == pytest.approx(wave.velocity, within)
+    moving = run.energy.sel(term=["kinetic", "elastic"]).sum("term").max() / scene.pillar.area
+    assert moving == pytest.approx(wave.energy, 2 * within)
+
+
+SIDE = {"shape": "half-sine", "amplitude": 1e6, "period": 0.004}
+MOVED = SIDE | {"quantity": "velocity", "amplitude": 0.1}
+P_SPEED, S_SPEED = (6e10 / 2600.0) ** 0.5, (2e10 / 2600.0) ** 0.5  # of 50 GPa, nu = 0.25
+ON_SIDES = [
+    ("quiet", "waves", SIDE | {"kind": "P", "direction": [0.0, 1.0]}, {"P": 1e6}),
+    (
+        "quiet",
+        "waves",
+        MOVED | {"kind": "S", "direction": [0.0, 1.0]},
+        {"S": 0.1 * 2600 * S_SPEED},
+    ),
+    ("free", "loads", SIDE | {"kind": "pressure", "side": "bottom"}, {"P": 1e6}),
+    ("quiet", "loads", SIDE | {"kind": "pressure", "side": "bottom"}, {"P": 5e5}),
+    (
+        "quiet",
+        "loads",
+        MOVED | {"kind": "base", "side": "bottom", "direction": [0.6, 0.8]},
+        {"P": 0.08 * 2600 * P_SPEED, "S": 0.06 * 2600 * S_SPEED},
+    ),
+    (
+        "fixed",
+        "loads",
+        MOVED | {"kind": "base", "side": "bottom", "direction": [1.0, 0.0]},
+        {"S": 0.1 * 2600 * S_SPEED},
+    ),
+]
+
+
+def rock_mass(bottom, key, one):
+    """Return rock between periodic sides, cut by all but rigid joints, and what acts below."""
+    rigid = {"normal_stiffness": 1e13, "shear_stiffness": 1e13}
+    return {
+        "title": "what enters from below",
+        "domain": {"size": [2.0, 20.0]},
+        "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.25},
+        "joint_sets": [
+            rigid | {"name": "across", "dip": 0.0, "through": [1.0, 16.0]},
+            rigid | {"name": "sides", "dip": 90.0, "spacing": 1.0},
+        ],
+        "boundaries": {"left": "periodic", "right": "periodic", "bottom": bottom, "top": "quiet"},
+        key: [one],
+        "time": {"duration": 0.006},
+        "record": {"points": [[0.75, 6.25]]},
+        "numerics": {"dem": {"block": 0.5}, "continuum": {"size": 0.5}},
+    }
+
+
+@pytest.mark.parametrize("engine", ["dem", "continuum-jointed"])
+@pytest.mark.parametrize(("bottom", "key", "one", "stresses"), ON_SIDES)
+def test_what_explain_says_enters_a_rock_mass_enters(bottom, key, one, stresses, engine):
+    """Blocks of half a metre, some (k d)^2 = 0.01 where S is 22 blocks a quarter wave."""
+    scene = jw.load(rock_mass(bottom, key, one))
+    waves, run = entering_waves(scene), jw.simulate(scene, engine)
+    assert [wave.source[-1] for wave in waves] == list(stresses)
+    for wave in waves:
+        speed = P_SPEED if wave.source.endswith("P") else S_SPEED
+        stress = stresses[wave.source[-1]]
+        expected = (stress, stress / (2600 * speed), speed * 0.002)
+        assert wave[1:4] == pytest.approx(expected, rel=1e-4)
+        component, axis = ("yy", "y") if wave.source.endswith("P") else ("xy", "x")
+        assert np.abs(run.stress.sel(stress_component=component)).max() == pytest.approx(
+            wave.stress, 0.01
+        )
+        assert np.abs(run.velocity.sel(axis=axis)).max() == pytest.approx(wave.velocity, 0.01)
+    energy = 2.0 * sum(wave.energy for wave in waves)
+    assert 2 * run.energy.sel(term="kinetic").max() == pytest.approx(energy, 0.01)
+
+
+@pytest.mark.parametrize("start", ["quiet", "matched"])
+def test_a_load_that_a_dashpot_halves_is_warned_of(start):
+    def lines(load, start=start):
+        return [line for line in warnings(jw.load(pillar(start, load))) if "takes half" in line]
+
+    (line,) = lines(PRESSURE)
+    assert "takes half: 500000 enters" in line and "'incident-stress'" in line
+    for good in (INCIDENT, PRESSURE | {"amplitude": 0.0}):
+        assert not lines(good)
+    assert not lines(PRESSURE, "free")
+    side = SIDE | {"kind": "pressure", "side": "bottom"}
+    found = warnings(jw.load(rock_mass("quiet", "loads", side)))
+    assert any("loads[0].amplitude" in line and "500000 enters" in line for line in found)
+    found = warnings(jw.load(rock_mass("free", "loads", side)))
+    assert not any("loads[0].amplitude" in line for line in found)
+
+
+@pytest.mark.parametrize("start", ["free", "fixed"])
+def test_an_incident_wave_needs_a_start_that_lets_it_in(start):
+    with pytest.raises(
+        SceneError, match=r"load.quantity = 'incident-stress': .*'matched' or 'quiet'"
+    ):
+        jw.load(pillar(start, INCIDENT))
+
+
+@pytest.mark.parametrize(("template", "source"), [(PILLAR, "load, along"), (ROCK_MASS, "waves[0]")])
+def test_a_new_scene_enters_what_it_says_and_explain_says_it(tmp_path, jointwave, template, source):
+    path = tmp_path / "new.toml"
+    path.write_text(starter(path, template))
+    (wave,) = entering_waves(jw.load(path))
+    assert wave.stress == pytest.approx(1e6) and wave.source.startswith(source)
+    if template is PILLAR:
+        assert "1e+06 Pa and 0.3086 m/s enter the rock" in jointwave("explain", path).out
