@@ -79,7 +79,8 @@ def read_history(
     if load.unit in DIMENSIONLESS:
         load = load._replace(unit="")
     sign = -1.0 if load.name.startswith("-") else 1.0
-    return Recorded(seconds, sign * load.si(UNITS[quantity])), bool(time.unit)
+    units = UNITS[quantity.removeprefix("incident-")]
+    return Recorded(seconds, sign * load.si(units)), bool(time.unit)
 
 
 def read_columns(path: Path, time_name: str = "time", least: int = 2, gaps: bool = True) -> Columns:
