@@ -17,12 +17,11 @@ from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.plausible import implausible
 from cases.schema.scene import Scene
-from cases.spectrum import ShortestWave, shortest_wave
+from cases.spectrum import LEAST_BLOCKS, ShortestWave, shortest_wave
 
 if TYPE_CHECKING:
     from cases.schema.pulse import Pulse
 
-LEAST_BLOCKS = 10.0  # and elements, a wavelength
 MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
 SHORTENED = 1.5  # a step shortened by less than this factor is not reported
 ONSET = 0.01  # of a load's peak: defines its beginning

@@ -29,6 +29,7 @@ from cases.partition.regions import rocks_of, within
 from cases.schema.joint_set import JointSet
 from cases.schema.plane import IntactRock
 from cases.schema.rock_mass import RockMass
+from cases.spectrum import LEAST_BLOCKS, highest_frequency
 
 #: Sine of the angle up to which a contact lies along joints.
 PARALLEL = 1e-9
@@ -67,7 +68,7 @@ class RockShare(NamedTuple):
     def parallel_to(self, normal: np.ndarray) -> int:
         """Return which direction a unit normal [2] is that of, -1 for none."""
         sines = np.abs(self.normals @ [-normal[1], normal[0]])
-        return int(sines.argmin()) if sines.min() < PARALLEL else -1
+        return int(sines.argmin()) if sines.min(initial=1.0) < PARALLEL else -1
 
 
 def rigid_joints(
@@ -76,8 +77,8 @@ def rigid_joints(
     """Return the stiffness between rigid blocks; further : the cuts of `partition.lattice`.
 
     kinds : of `RigidJoints`; absent: every set in the rock of no region. A joint that is alone
-    among sets adds its own compliance to theirs, and nothing else. Raises SceneError where all
-    joints are alone and no rock is cut.
+    has its own compliance, and nothing of the rock's. Raises SceneError where no lines are there to
+    pass the waves of a scene.
     """
     sets = [*scene.joint_sets, *further]
     if kinds is None:
@@ -119,6 +120,9 @@ def _share(scene: RockMass, sets: list[JointSet], real: int) -> RockShare:
         group for group in by_direction(scene.joint_sets) if any(one.spacing for one in group)
     ]
     normals = np.array([direction_of(group[0].dip)[::-1] * [-1, 1] for group in spaced])
+    if not spaced:  # rock between joints that are alone stays rigid
+        none = np.zeros((0, 2))
+        return RockShare(none, none, np.zeros(0), np.full(len(sets), -1), 1.0)
     fit = nearest_stiffness(intact(elastic_rock(scene.rock), 2), normals)
     index = {one.name: k for k, one in enumerate(sets)}
     direction, apart = np.full(len(sets), -1), np.ones(len(spaced))
@@ -185,10 +189,11 @@ def welded(
 
 
 def against(scene: RockMass) -> str | None:
-    """Return why rigid blocks cannot represent a scene, None if they can."""
+    """Return why rigid blocks cannot represent a scene, None if they can: those between joints that
+    are alone can where no wave is to be resolved."""
     if scene.domain.given is not None:
         return "cannot make rigid blocks from the cells of domain.mesh"
-    if scene.numerics.dem.block is not None:
+    if scene.numerics.dem.block is not None or (scene.joint_sets and not _drives_waves(scene)):
         return None
     names = [*(f"region {one.name!r}" for one in scene.regions), "this domain"]
     for name, one in zip(names, within(scene, scene.joint_sets), strict=True):
@@ -199,6 +204,13 @@ def against(scene: RockMass) -> str | None:
                 f"{name} {has}"
             )
     return None
+
+
+def _drives_waves(scene: RockMass) -> bool:
+    """Return whether something sends waves that are short against the domain."""
+    frequency, size = highest_frequency(scene), np.ptp(scene.domain.corners, axis=0).max()
+    slowest = min(float(elastic_rock(one).s_speed) for one in rocks_of(scene))
+    return frequency is not None and slowest < LEAST_BLOCKS * size * frequency
 
 
 def _apart(group: list[int], sets: list[JointSet], real: int) -> dict[int, float]:

@@ -6,11 +6,12 @@ have one direction, or there are none, lines across them are added: at 60 and 12
 apart, which makes equilateral triangles, or at right angles. A side along which lines run is
 met in the middle of a block where it is quiet, since the motion of a block is that of the lattice
 in its middle, and at a line elsewhere. Every region of rock has a lattice of its own, with a line
-along its boundary.
+along its boundary. Rock no wider than the size asked for is not cut.
 """
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -32,15 +33,16 @@ ALIKE = 1e-9
 
 
 def further_sets(scene: RockMass) -> list[JointSet]:
-    """Return the sets of cuts between the joints of a scene; none without numerics.dem.block.
+    """Return the sets of cuts between the joints of a scene; without numerics.dem.block only those
+    along periodic sides.
 
     Raises SceneError, in one line, for joints whose lines have no lattice.
     """
     block = scene.numerics.dem.block
-    if block is None:
+    if block is None and not scene.boundaries.sides("periodic"):
         return []
     for one in scene.joint_sets:
-        if one.ends_at or one.scatter:
+        if block is not None and (one.ends_at or one.scatter):
             key = "ends_at" if one.ends_at else "scatter"
             allowed = f"cannot cut the rock between joints with {key}, which '{one.name}' has"
             raise SceneError(scene.where, "numerics.dem.block", block, allowed)
@@ -51,7 +53,7 @@ def further_sets(scene: RockMass) -> list[JointSet]:
         corners = outline.corners if shape is None else corners_of(shape.convex_hull)
         place = Place(outline, corners, scene)
         inside = {"regions": names[k : k + 1]}
-        found += [lines.model_copy(update=inside) for lines in _cuts(own, place, block)]
+        found += [lines.model_copy(update=inside) for lines in _cuts(own, place, block or inf)]
     names = [f"cut {k}" for k in range(len(found))]
     return [one.model_copy(update={"name": name}) for one, name in zip(found, names, strict=True)]
 
@@ -72,14 +74,19 @@ def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
     for group in groups:
         first = next((one for one in group if one.spacing is not None), group[0])
         if first.spacing is None:
-            found.append(_lines(place, first.dip, block, first.through, True))
+            if min(_reach(place, first.dip), _reach(place, first.dip, first.through)) > block:
+                found.append(_lines(place, first.dip, block, first.through, True))
         elif (parts := max(1, round(first.spacing / block))) > 1:
             found.append(_set(first.dip, first.spacing / parts, first.through))
     if len(groups) < 2:
         anchor = next((one.through for one in scene.joint_sets if one.through), None)
-        if not groups:
+        if not groups and _reach(place, 0.0) > block:
             found.append(_lines(place, 0.0, block, anchor, False))
+        if not groups and not found:
+            return found
         along = (found or groups[0])[0]
+        if _reach(place, along.dip + 90.0) <= block:
+            return [*found, *_seams(place, along.dip)]
         if squared(scene):
             dip = _folded(along.dip + 90.0)
             found.append(_lines(place, dip, block, anchor, False))
@@ -87,6 +94,26 @@ def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
             dips = (_folded(along.dip + angle) for angle in (60.0, 120.0))
             found += [_set(dip, along.spacing or block, along.through) for dip in dips]
     return found
+
+
+def _seams(place: Place, dip: float) -> list[JointSet]:
+    """Return cuts along the periodic sides at an angle to rock that is cut at one dip only: there
+    blocks touch their own images, and share the rock's compliance with the other cuts."""
+    held, corners = place.scene.boundaries, place.outline.corners
+    sides = (("left", 90.0, 0), ("bottom", 0.0, 1))
+    return [
+        _set(along, float(np.ptp(corners[:, axis])), corners.min(axis=0).tolist())
+        for name, along, axis in sides
+        if getattr(held, name) == "periodic" and abs(_folded(along - dip)) > ALIKE
+    ]
+
+
+def _reach(place: Place, dip: float, through: list[float] | None = None) -> float:
+    """Return how far rock reaches from a line through a point, to the farther side, or from side to
+    side along its normal, m."""
+    normal = direction_of(dip)[::-1] * [-1, 1]
+    s = place.corners @ normal
+    return float(np.ptp(s) if through is None else np.abs(s - normal @ np.array(through)).max())
 
 
 def squared(scene: RockMass) -> bool:

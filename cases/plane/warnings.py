@@ -18,8 +18,8 @@ from cases.schema.region import Region
 from cases.schema.rock_mass import RockMass
 from cases.schema.rock_mass_checks import GRAZING, distance
 from cases.schema.sources import PlaneLoad, Wave
-from cases.spectrum import highest_frequency
-from cases.warnings import LEAST_BLOCKS, of_local_damping, of_pulse, onset
+from cases.spectrum import LEAST_BLOCKS, highest_frequency
+from cases.warnings import of_local_damping, of_pulse, onset
 
 COINCIDENT = 1e-9  # of the domain's size: distance of two joints that are one
 
@@ -128,7 +128,10 @@ def _block_size(scene: RockMass) -> float | None:
     if len(scene.joint_sets) == 1 and not scene.loads:
         along = direction_of(scene.joint_sets[0].dip)
         if all(abs(along @ wave.direction) < GRAZING for wave in scene.waves):
-            return min(spacings[0], size)
+            turned = any(wave.kind == "S" for wave in scene.waves)  # blocks as wide as the period
+            wide = turned and bool(scene.boundaries.sides("periodic"))
+            width = float(np.ptp(scene.domain.corners @ along)) if wide else 0.0
+            return min(max(spacings[0], width), size)
     return min(spacings[1], size) if len(spacings) > 1 else size
 
 

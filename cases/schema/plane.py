@@ -74,7 +74,7 @@ class DemInPlane(Table):
     """Time stepping of rigid blocks, and their size where intact rock is subdivided."""
 
     #: m, approximate block size: rock between joints is subdivided by joints of its own stiffness;
-    #: absent: blocks are cut by the joint sets only
+    #: absent: blocks are cut by the joint sets only; rock no wider than this is not cut
     block: Positive | None = None
     step_fraction: Positive = 0.2  #: of the critical step
     allow_unstable: bool = False  #: allow a step above the critical one

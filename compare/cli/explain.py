@@ -290,7 +290,7 @@ def show_partition(facts: dict[str, Any]) -> None:
     if (lack := facts["rigid_blocks_lack"]) is not None:
         share, why = "0", "their joints represent all of it"
         if lack > ROUND_OFF:
-            share = f"{100 * lack:.2g}"
+            share = f"{float(f'{100 * lack:.2g}'):g}"
             why = "only their joints deform, and joints of few directions have no Poisson effect"
         say(f"rigid blocks cannot represent {share} % of the intact rock's stiffness: {why}")
     say(f"memory of the blocks: {spoken(facts['bytes'])}, at most {at_most} during subdivision")

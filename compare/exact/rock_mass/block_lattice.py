@@ -17,6 +17,7 @@ from cases.material.quiet_sides import impedances
 from cases.material.rigid_blocks import rigid_joints, welds
 from cases.material.rock_mass import Stiffness, inertia
 from cases.partition.blocks import Partition
+from cases.partition.lattice import further_sets
 from cases.partition.locate import block_at
 from cases.partition.periodic import across_periodic
 from cases.partition.scene import block_count, partition_of
@@ -69,7 +70,7 @@ def applies(scene: RockMass) -> Answer:
 
 def solve(scene: RockMass) -> xr.Dataset:
     """Return velocity and displacement at the points of a scene."""
-    partition, times = partition_of(scene), sample_times(scene)
+    partition, times = partition_of(scene, further_sets(scene)), sample_times(scene)
     quiet = _quiet(scene, partition)
     impedance = impedances(scene, quiet.normal, partition.region[quiet.block])
     system = RigidSystem(
@@ -114,15 +115,18 @@ def masses(scene: RockMass, partition: Partition) -> np.ndarray:
 
 def _stiffness(scene: RockMass, partition: Partition):
     """Return the stiffness of all contacts, those across periodic sides included."""
-    joints, total = rigid_joints(scene, []), 0
+    further, total = further_sets(scene), 0
+    joints, sets = rigid_joints(scene, further), [*scene.joint_sets, *further]
     parts = [(partition.contacts, np.zeros(2))]
     parts += [(one.contacts, one.shift) for one in across_periodic(scene, partition)]
     for contacts, shift in parts:
-        points = contact_points(partition, contacts, scene.joint_sets, shift)
+        points = contact_points(partition, contacts, sets, shift)
         own, rock = contacts.joint_set, contacts.joint_set == NO_SET
         stiffness = Stiffness(joints.normal[own], joints.shear[own])
         pairs, start, normal = contacts.blocks[rock], contacts.start[rock], contacts.normal[rock]
-        weld = welds(scene, partition, [], pairs, start, normal, np.tile(shift, (len(pairs), 1)))
+        weld = welds(
+            scene, partition, further, pairs, start, normal, np.tile(shift, (len(pairs), 1))
+        )
         stiffness.normal[rock], stiffness.shear[rock] = weld
         total = total + stiffness_of(partition.count, contacts, points, stiffness)
     return total

@@ -20,10 +20,10 @@ def normals(*angles):
     return np.array([[-np.sin(np.radians(a)), np.cos(np.radians(a))] for a in angles])
 
 
-def scene(*sets, block=None, poisson=0.25):
+def scene(*sets, block=None, poisson=0.25, **tables):
     """Return rock with lambda = mu = 20 GPa, and these joint sets."""
     law = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
-    tables = {
+    own = {
         "title": "rigid blocks",
         "domain": {"size": [12.0, 10.0]},
         "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": poisson},
@@ -32,7 +32,7 @@ def scene(*sets, block=None, poisson=0.25):
         "time": {"duration": 0.01},
         "record": {"points": [[4.0, 2.0]]},
     }
-    return validated(tables, Path("scene.toml"), frozenset())
+    return validated(own | tables, Path("scene.toml"), frozenset())
 
 
 def found(own):
@@ -107,5 +107,22 @@ def test_a_joint_alone_among_sets_is_as_it_is():
     [([], "has no joints"), ([{"dip": 30.0, "through": [6.0, 5.0]}], "only single joints")],
 )
 def test_a_domain_that_carries_no_waves_is_refused_in_one_line(sets, why):
+    pulse = {"shape": "ricker", "amplitude": 1e6, "period": 0.005}
+    waves = {"waves": [pulse | {"kind": "P", "direction": [0.0, 1.0]}]}
+    sides = {"boundaries": dict.fromkeys(("left", "right", "bottom", "top"), "quiet")}
     with pytest.raises(SceneError, match=rf"scene\.toml: numerics\.dem\.block: is required.*{why}"):
-        found(scene(*sets))
+        found(scene(*sets, **waves, **sides))
+
+
+def test_joints_alone_carry_what_sends_no_short_wave():
+    """Free to fall, or where a load of 1 s makes waves of 2,774 / 1.67 m, ten times and
+    more of the domain: nothing of the rock is in the joint, of which rigid blocks lack all."""
+    load = {"kind": "pressure", "side": "top", "shape": "ricker", "amplitude": 1e5}
+    quick, slow = ([load | {"period": period}] for period in (0.05, 1.0))
+    joint = {"dip": 30.0, "through": [6.0, 5.0]}
+    for tables in ({}, {"gravity": {"static": False}}, {"loads": slow}):
+        own = found(scene(joint, **tables))
+        assert own.normal == [1e10] and own.shear == pytest.approx([4e9], rel=1e-15)
+        assert own.left_over == 1.0
+    with pytest.raises(SceneError, match="only single joints"):
+        found(scene(joint, loads=quick))

@@ -25,7 +25,7 @@ def scene(*sets, block=1.0, poisson=0.0, size=(12.0, 10.0), **boundaries):
         "boundaries": boundaries,
         "numerics": {"dem": {"block": block}},
         "time": {"duration": 0.01},
-        "record": {"points": [[4.0, 2.0]]},
+        "record": {"points": [[1.0, 2.0]]},
     }
     return validated(tables, Path("scene.toml"), frozenset())
 
@@ -87,6 +87,25 @@ def test_further_cuts_where_joints_are_cut_nothing():
     sets = [{"dip": 0.0, "through": [3.0, 5.0]}, {"dip": 90.0, "through": [6.0, 2.0]}]
     both = scene(*sets)
     assert cut(both).count == 120
+
+
+def test_rock_no_wider_than_a_block_stays_whole():
+    """Without joints; on both sides of one; between those of a set; a column in its height only."""
+    joint = {"dip": 20.0, "through": [6.0, 5.0]}
+    for poisson in (0.0, 0.25):
+        assert cut(scene(block=20.0, poisson=poisson)).count == 1
+        assert cut(scene(joint, block=20.0, poisson=poisson)).count == 2
+        assert cut(scene({"dip": 0.0, "spacing": 2.5}, block=20.0, poisson=poisson)).count == 4
+        assert cut(scene(block=2.5, poisson=poisson, size=(2.5, 10.0))).count == 4
+
+
+def test_rows_of_blocks_share_their_stiffness_with_periodic_sides_across_them():
+    """Blocks touch their own images at a cut, as far apart as the sides are, though none is asked
+    for."""
+    (seam,) = further_sets(
+        scene({"dip": 0.0, "spacing": 1.0}, block=None, left="periodic", right="periodic")
+    )
+    assert (seam.dip, seam.spacing) == (90.0, 12.0)
 
 
 def test_periodic_sides_lie_on_lines():

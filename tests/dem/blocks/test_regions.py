@@ -104,7 +104,9 @@ def test_every_region_needs_blocks(rock_mass, wave):
     seam = {"name": "seam", "dip": 90.0, "spacing": 1.0, "regions": ["rock"]} | LAW
     numerics = {"dem": {"block": None}}
     with pytest.raises(SceneError, match="and region 'soft' has no joints"):
-        rigid_blocks(rock_mass(regions=[SOFT], joint_sets=[seam], numerics=numerics))
+        rigid_blocks(
+            rock_mass(regions=[SOFT], joint_sets=[seam], numerics=numerics, waves=[wave()])
+        )
 
 
 def test_an_outline_in_a_lattice_closes_its_ledger(rock_mass, wave):
