@@ -8,6 +8,7 @@ from compare.readings.ground_motion import (
     peak_velocity_map,
     response_spectrum,
 )
+from compare.readings.recordings import recording
 
 __all__ = [
     "arias_intensity",
@@ -16,6 +17,7 @@ __all__ = [
     "peak_velocity",
     "peak_velocity_map",
     "quality_factor",
+    "recording",
     "response_spectrum",
     "transfer_function",
     "wave_speed",

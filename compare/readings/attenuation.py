@@ -8,19 +8,22 @@ import xarray as xr
 
 from cases.errors import SceneError
 from compare.misfit.metrics import delay, motion
+from compare.readings.recordings import Recording, recording
 from results.labels import RECEIVERS
 
 HEARD = 0.01  # of the largest amplitude of the first record: frequencies that are read
 
 
 def waveforms(
-    result: xr.Dataset, quantity: str = "velocity", axis: str | None = None
+    result: Recording, quantity: str = "velocity", axis: str | None = None
 ) -> xr.DataArray:
     """Return one component of a quantity less its static state [receiver, time], with `distance`
-    (m) from the first receiver.
+    (m) from the first receiver, nan where it is not known.
 
-    axis : the component, "x", "y", "xy" ...; None: the one that moves most.
+    result : or a recording, as `recording` takes it. axis : the component, "x", "y", "xy" ...;
+    None: the one that moves most.
     """
+    result = recording(result, quantity)
     if quantity not in result:
         where, receivers = str(result.attrs.get("title", "result")), set(RECEIVERS)
         known = [str(n) for n, x in result.items() if "time" in x.dims and receivers & set(x.dims)]
@@ -43,7 +46,7 @@ def sampling(of: xr.DataArray | xr.Dataset) -> float:
 
 
 def wave_speed(
-    result: xr.Dataset,
+    result: Recording,
     one: int = 0,
     other: int = -1,
     quantity: str = "velocity",
@@ -60,7 +63,7 @@ def wave_speed(
 
 
 def transfer_function(
-    result: xr.Dataset,
+    result: Recording,
     one: int = 0,
     other: int = -1,
     quantity: str = "velocity",
@@ -82,7 +85,7 @@ def transfer_function(
 
 
 def quality_factor(
-    result: xr.Dataset,
+    result: Recording,
     one: int = 0,
     other: int = -1,
     quantity: str = "velocity",
@@ -130,8 +133,18 @@ def _frequencies(row: xr.DataArray) -> xr.Variable:
     return xr.Variable("frequency", frequency, {"long_name": "frequency", "units": "Hz"})
 
 
+def known_distances(row: xr.DataArray) -> np.ndarray:
+    """Return the receivers' distances from the first one, m; raises SceneError without them."""
+    found = row["distance"].values
+    if np.isnan(found).any():
+        allowed = "are needed: columns named as velocity@20, or (time, values, distances)"
+        raise SceneError("recording", "places of receivers", None, allowed)
+    return found
+
+
 def _way(row: xr.DataArray, one: int, other: int) -> float:
-    return float(row["distance"][other] - row["distance"][one])
+    distance = known_distances(row)
+    return float(distance[other] - distance[one])
 
 
 def _delay(row: xr.DataArray, one: int, other: int) -> float:

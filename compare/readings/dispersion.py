@@ -24,14 +24,15 @@ import xarray as xr
 from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate, mechanisms_of
 from cases.schema.scene import Scene
-from compare.readings.attenuation import sampling, variables, waveforms
+from compare.readings.attenuation import known_distances, sampling, variables, waveforms
+from compare.readings.recordings import Recording
 
 HEARD = 1e-3  # of the largest amplitude: frequencies that are looked at
 FINER = 64  # wavenumbers in the width of a peak
 
 
 def dispersion(
-    result: xr.Dataset, quantity: str = "velocity", axis: str | None = None
+    result: Recording, quantity: str = "velocity", axis: str | None = None
 ) -> xr.Dataset:
     """Return the f-k spectrum of all receivers, `power` [frequency, wavenumber], and of its peak
     `phase_speed` (m/s) and `coherence` (0 to 1) [frequency].
@@ -40,7 +41,7 @@ def dispersion(
     to half a wave between the two nearest receivers; those of waves that come back are negative.
     """
     row = waveforms(result, quantity, axis)
-    x, spectra = row["distance"].values, np.fft.rfft(row.values)
+    x, spectra = known_distances(row), np.fft.rfft(row.values)
     size = np.sqrt((np.abs(spectra) ** 2).sum(axis=0))
     heard = size > HEARD * size.max()
     heard[0] = False
@@ -50,8 +51,10 @@ def dispersion(
     beams = np.abs(np.exp(1j * np.outer(k, x)) @ spectra[:, heard]) ** 2
     power = (beams / (len(x) * size[heard] ** 2)).T
     peak, coherence = _peaks(k, power)
+    with np.errstate(divide="ignore"):  # everywhere at once
+        speed = 2 * np.pi * frequency / peak
     named = {
-        "phase_speed": (2 * np.pi * frequency / peak, "phase speed", "m/s"),
+        "phase_speed": (speed, "phase speed", "m/s"),
         "coherence": (coherence, "share of the motion in one wave", "1"),
     }
     beams_of = {"power": (power, "share of the motion", "1")}

@@ -1,23 +1,44 @@
 """The severity of a motion: peak particle velocity, Arias intensity, response spectra.
 
-All take the recorded velocity as straight lines between its samples, for which they are exact.
+All are exact for straight lines between the samples that are recorded, velocities or accelerations;
+spectra of a recorded velocity for an acceleration that is its slope between two samples in the
+middle of these, and straight lines between the middles.
 """
 
 from collections.abc import Sequence
-from math import ceil, pi
+from math import pi
 
 import numpy as np
 import xarray as xr
 
 from cases.errors import SceneError
 from compare.readings.attenuation import sampling
+from compare.readings.oscillators import largest_displacement
+from compare.readings.recordings import Recording, recording
 
 GRAVITY = 9.81  # m/s2
 
 
-def peak_velocity(result: xr.Dataset) -> xr.DataArray:
-    """Return the peak particle velocity at every receiver, m/s: of the vector's length."""
-    return _peak(result["velocity"], "axis", "time")
+def peak_velocity(result: Recording, quantity: str = "velocity") -> xr.DataArray:
+    """Return the peak particle velocity at every receiver, m/s: of the vector's length.
+
+    Of a recorded acceleration at its samples, from rest at the first one. quantity : of a recording
+    that does not name its own.
+    """
+    found = recording(result, quantity)
+    if "velocity" not in found:
+        acceleration = _of(found, "acceleration")
+        mean = (acceleration + acceleration.shift(time=1, fill_value=0.0)) / 2
+        mean[{"time": 0}] = 0.0
+        return _peak(sampling(found) * mean.cumsum("time"), "axis", "time")
+    return _peak(found["velocity"], "axis", "time")
+
+
+def _of(result: xr.Dataset, quantity: str) -> xr.DataArray:
+    if quantity not in result:
+        where = str(result.attrs.get("title", "recording"))
+        raise SceneError(where, "velocity", None, "or acceleration must be recorded")
+    return result[quantity].transpose(..., "time")
 
 
 def peak_velocity_map(result: xr.Dataset) -> xr.DataArray:
@@ -40,40 +61,60 @@ def _peak(velocity: xr.DataArray, components: str, time: str) -> xr.DataArray:
     )
 
 
-def arias_intensity(result: xr.Dataset, gravity: float = GRAVITY) -> xr.DataArray:
+def arias_intensity(
+    result: Recording, gravity: float = GRAVITY, quantity: str = "velocity"
+) -> xr.DataArray:
     """Return the Arias intensity pi / (2 g) times the integral of the squared acceleration at every
     receiver in each direction, m/s (Arias, in: Seismic Design for Nuclear Power Plants, 1970).
 
-    gravity : g, m/s2.
+    gravity : g, m/s2. quantity : of a recording that does not name its own.
     """
-    velocity, dt = result["velocity"], sampling(result)
-    found = pi / (2 * gravity) * (velocity.diff("time") ** 2).sum("time") / dt
-    return found.rename("arias_intensity").assign_attrs(long_name="Arias intensity", units="m/s")
+    found = recording(result, quantity)
+    dt = sampling(found)
+    if "velocity" in found:
+        squares = (found["velocity"].diff("time") ** 2).sum("time") / dt
+    else:
+        a = _of(found, "acceleration")
+        before, after = a.isel(time=slice(-1)).drop_vars("time"), a.isel(time=slice(1, None))
+        after = after.drop_vars("time")
+        squares = (before**2 + before * after + after**2).sum("time") * dt / 3
+    intensity = pi / (2 * gravity) * squares
+    return intensity.rename("arias_intensity").assign_attrs(
+        long_name="Arias intensity", units="m/s"
+    )
 
 
 def response_spectrum(
-    result: xr.Dataset, periods: Sequence[float] | np.ndarray, damping: float = 0.05
+    result: Recording,
+    periods: Sequence[float] | np.ndarray,
+    damping: float = 0.05,
+    quantity: str = "velocity",
 ) -> xr.Dataset:
     """Return the response spectra of the motion at every receiver in each direction.
 
-    displacement (m) is the largest |x| of x'' + 2 zeta w x' + w^2 x = -v', up to one longest period
-    after the record, over which the ground goes on as fast as at its end; pseudo_velocity (m/s) and
-    pseudo_acceleration (m/s2) are w and w^2 times it. Stepped by the recurrence that is exact for
-    straight lines (Nigam & Jennings, Bull. Seism. Soc. Am. 59, 1969), here of the velocity v.
+    displacement (m) is the largest |x| of x'' + 2 zeta w x' + w^2 x = -a, between samples too, and
+    after the record, over which the ground no longer accelerates; pseudo_velocity (m/s) and
+    pseudo_acceleration (m/s2) are w and w^2 times it, which of short periods is the largest |a|.
 
-    periods : of the oscillator, s. damping : zeta, of the critical one, below 1.
+    periods : of the oscillator, s. damping : zeta, of the critical one, below 1. quantity : of a
+    recording that does not name its own.
     """
-    from scipy.signal import cont2discrete, lfilter
-
-    velocity, dt = result["velocity"].transpose(..., "time"), sampling(result)
-    later = ceil(max(periods) / dt)
-    ground = np.pad(velocity.values, [(0, 0)] * (velocity.ndim - 1) + [(0, later)], mode="edge")
-    peaks = []
-    for omega in 2 * pi / np.asarray(periods, dtype=float):
-        oscillator = [-1.0, 0.0], [1.0, 2 * damping * omega, omega**2]
-        (rise,), fall, _ = cont2discrete(oscillator, dt, method="foh")
-        peaks.append(np.abs(lfilter(rise, fall, ground)).max(axis=-1))
-    of = velocity.isel(time=0, drop=True)
+    found = recording(result, quantity)
+    dt = sampling(found)
+    if "acceleration" in found:
+        motion = _of(found, "acceleration")
+        ground = motion.values
+    else:
+        motion = _of(found, "velocity")
+        slopes = np.diff(motion.values) / dt
+        ground = np.pad(slopes, [(0, 0)] * (slopes.ndim - 1) + [(1, 1)])
+    if not 0 <= damping < 1:
+        raise SceneError("response_spectrum", "damping", damping, "must be from 0 to below 1")
+    if not (np.asarray(periods) > 0).all():
+        raise SceneError("response_spectrum", "periods", min(periods), "must be positive")
+    omegas = 2 * pi / np.asarray(periods, dtype=float)
+    peaks = [largest_displacement(ground, dt, omega, damping) for omega in omegas]
+    of = motion.isel(time=0, drop=True)
     period = xr.Variable("period", periods, {"long_name": "period of the oscillator", "units": "s"})
     displacement = of.expand_dims(period=period, axis=-1).copy(data=np.stack(peaks, axis=-1))
     omega = 2 * pi / displacement["period"]

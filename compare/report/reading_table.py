@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from cases.records import Column
 from compare.figures.subplots import variant_names
 from compare.misfit.pairs import Comparison
 from compare.misfit.places import Place
@@ -18,6 +19,7 @@ from compare.readings import (
     wave_speed,
 )
 from compare.readings.attenuation import sampling, waveforms
+from compare.readings.recordings import dataset_of
 from compare.report.tables import Table
 from results.labels import RECEIVERS
 
@@ -43,9 +45,20 @@ def reading_frame(comparisons: list[Comparison]) -> pd.DataFrame:
     return pd.DataFrame(
         {"variant": name, "solution": solution, **row}
         for name, comparison in zip(variant_names(comparisons), comparisons, strict=True)
-        for solution, result in comparison.results.items()
+        for solution, result in _results(comparison)
         for row in _rows(result)
     )
+
+
+def _results(comparison: Comparison) -> Iterator[tuple[str, xr.Dataset]]:
+    """Yield solutions, and then curves of others at each receiver, by name."""
+    yield from comparison.results.items()
+    for curves in (beside.curves for beside in comparison.besides):
+        moving = [place for place in curves.waveforms if place.quantity == "velocity"]
+        for at in dict.fromkeys(place.at for place in moving):
+            here = [place for place in moving if place.at == at]
+            columns = [Column(str(place), "", curves.waveforms[place]) for place in here]
+            yield curves.name, dataset_of(curves.time, columns, "velocity")
 
 
 def _rows(result: xr.Dataset) -> Iterator[dict[str, float | str]]:

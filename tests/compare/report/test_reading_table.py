@@ -9,7 +9,10 @@ from cases.material.calibrate import calibrate
 from cases.read import load_tables
 from compare.cli.comparison_view import show_comparisons
 from compare.engines import solve
+from compare.misfit.alignment import lay_beside
+from compare.misfit.external import Curves
 from compare.misfit.pairs import Comparison, measure
+from compare.misfit.places import Place
 from compare.report.reading_table import NUMBERS, reading_frame, reading_table
 
 
@@ -46,6 +49,18 @@ def test_a_sine_has_the_numbers_of_its_closed_forms(compared):
     lossless = frame["apparent Q"].iloc[1]
     assert np.isnan(lossless) or lossless > 1e4
     assert 0.5 * 200 * np.pi < first["spectral acceleration (m/s2)"] < 4 * 0.5 * 200 * np.pi
+
+
+def test_curves_of_others_stand_below_the_solutions(compared, tmp_path):
+    """A measured velocity, unevenly sampled, has its own row; a stress has none."""
+    time = np.array([0.0, 0.01, 0.02, 0.025, 0.03])
+    places = [Place("velocity", "y", (10.0,)), Place("stress", "", (10.0,))]
+    curves = Curves("gauge.csv", "gauge.csv", time, dict.fromkeys(places, np.sin(100 * time)))
+    beside = lay_beside(curves, compared.scene, compared.results, align=False)
+    with_curve = Comparison(compared.scene, compared.results, {}, compared.rows, [beside])
+    frame = reading_frame([with_curve])
+    assert list(frame["solution"]) == ["images", "images", "gauge.csv"]
+    assert frame["peak velocity (m/s)"].iloc[2] == pytest.approx(np.sin(2.0))
 
 
 def test_the_table_is_printed_and_is_in_the_json(compared, capsys):

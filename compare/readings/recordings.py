@@ -1,0 +1,137 @@
+"""Recordings as results: what files and arrays of recorders hold, as the readings take it."""
+
+from os import PathLike
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from cases.errors import SceneError
+from cases.records import Column, read_columns
+from cases.units import TIME, UNITS, split_unit
+from compare.misfit.alignment import UNEVEN
+from compare.misfit.external_columns import asked
+from compare.misfit.external_netcdf import is_netcdf
+from compare.misfit.places import LABEL
+from results.labels import RECEIVERS
+from results.netcdf import load_netcdf
+
+#: A result; a file; an array over `time`; or times (s) with values in SI [n] or [receiver, n], and
+#: the receivers' distances along a line (m) where these are known.
+Recording = xr.Dataset | xr.DataArray | str | PathLike[str] | tuple[Any, ...]
+#: What a recorder measures, by its unit.
+MEASURED = ("velocity", "acceleration", "displacement", "stress")
+MOST_SAMPLES = 4_000_000  # of an unevenly sampled recording at its smallest interval
+
+
+def recording(source: Recording, quantity: str = "velocity") -> xr.Dataset:
+    """Return a recording as a result, SI: quantities over receivers, `time` and directions.
+
+    source : a file is one that `cases.records` or xarray reads; its columns are named as
+    `velocity_x@20 [mm/s]` or `acceleration@[20,30] [g]`, or by anything with a unit; FILE:COLUMN or
+    FILE:COLUMN=LABEL selects one. quantity : of numbers without a label or unit. Uneven samples are
+    joined by straight lines. Raises SceneError, one line with what is wrong.
+    """
+    if isinstance(source, xr.Dataset):
+        return source
+    if isinstance(source, xr.DataArray):
+        return _of_array(source, quantity)
+    if isinstance(source, str | PathLike):
+        return _of_file(str(source), quantity)
+    time, values, *at = (np.asarray(one, dtype=float) for one in source)
+    rows = np.atleast_2d(values)
+    if rows.ndim != 2 or rows.shape[1] != len(time) or (at and len(at[0]) != len(rows)):
+        allowed = f"must be [n] or [receiver, n] for {len(time)} times, and one place a receiver"
+        raise SceneError("recording", "values", f"{rows.shape}", allowed)
+    places = at[0] if at else np.full(len(rows), np.nan)
+    array = xr.DataArray(
+        rows[..., None],
+        {"velocity_y": places, "time": time, "axis": [""]},
+        ["velocity_y", "time", "axis"],
+    )
+    return _even(xr.Dataset({quantity: array}))
+
+
+def _of_array(array: xr.DataArray, quantity: str) -> xr.Dataset:
+    name = array.name if array.name in UNITS else quantity
+    receiver = next((d for d in RECEIVERS if d in array.dims or d in array.coords), "velocity_y")
+    if receiver not in array.coords:
+        array = array.assign_coords({receiver: np.nan})
+    if "axis" not in array.coords and not set(array.dims) - {receiver, "time"}:
+        array = array.assign_coords(axis="")
+    missing = [d for d in (receiver, "axis") if d not in array.dims and d in array.coords]
+    return _even(array.expand_dims(missing).to_dataset(name=name))
+
+
+def _of_file(text: str, quantity: str) -> xr.Dataset:
+    choice = asked(text, lambda label: LABEL.fullmatch(split_unit(label)[0]) is not None)
+    path = choice.path
+    try:
+        if is_netcdf(path):
+            return load_netcdf(path)
+        table = read_columns(path, gaps=False)
+        columns = [one for one in table.rest if not choice.column or choice.fits(one)]
+        if choice.label and len(columns) == 1:
+            name, unit = split_unit(choice.label)
+            columns = [columns[0]._replace(name=name, unit=unit or columns[0].unit)]
+        if not columns:
+            raise ValueError(f"has no column {choice.column!r}")
+        return dataset_of(table.time.si(TIME), columns, quantity)
+    except SceneError:
+        raise
+    except (OSError, ValueError, MemoryError) as error:
+        raise SceneError(str(path), "", None, str(error)) from None
+
+
+def dataset_of(time: np.ndarray, columns: list[Column], quantity: str) -> xr.Dataset:
+    """Return columns over a time [n], s, as a result at equal intervals; raises ValueError.
+
+    quantity : of columns without a label or unit.
+    """
+    places, parts = list[tuple[float, ...] | str](), dict[tuple, xr.DataArray]()
+    for column in columns:
+        place: tuple[float, ...] | str
+        sign, name = (-1.0 if column.name.startswith("-") else 1.0), column.name.removeprefix("-")
+        measured, component, place = quantity, "", name
+        if (match := LABEL.fullmatch(name)) and match[1].lower() in UNITS:
+            measured, component = match[1].lower(), match[2] or ""
+            place = tuple(float(one) for one in match.groups()[2:] if one is not None)
+        elif column.unit and column.unit not in UNITS[quantity]:
+            measured = next((one for one in MEASURED if column.unit in UNITS[one]), quantity)
+        if place not in places:
+            places.append(place)
+        values = sign * column.si(UNITS[measured])
+        at = {"receiver": [places.index(place)], "time": time, "axis": [component]}
+        one = xr.DataArray(values[None, :, None], at, ["receiver", "time", "axis"], measured)
+        parts[measured, component, place] = one
+    if len(parts) < len(columns):
+        raise ValueError("must name each column once")
+    found = xr.merge(parts.values(), join="outer", compat="no_conflicts")
+    if any(one.isnull().any() for one in found.values()):
+        raise ValueError("must hold the same components at every receiver")
+    sizes = {0 if isinstance(place, str) else len(place) for place in places}
+    if len(sizes) > 1:
+        raise ValueError("must name the places of all its columns, or of none")
+    name = "point" if sizes == {2} else "velocity_y"
+    coordinates = np.array([(np.nan,) if isinstance(place, str) else place for place in places]).T
+    places_of = dict(zip(RECEIVERS[name], coordinates, strict=True))
+    found = found.drop_vars("receiver").rename_dims(receiver=name)
+    return _even(found.assign_coords({key: (name, at) for key, at in places_of.items()}))
+
+
+def _even(result: xr.Dataset) -> xr.Dataset:
+    """Return a recording at equal intervals: itself, or straight lines at its smallest one."""
+    time = result["time"].values
+    if len(time) < 2 or not (np.diff(time) > 0).all():
+        raise SceneError("recording", "time", None, "must hold at least two times that increase")
+    for name, values in result.items():
+        if not np.isfinite(values).all():
+            raise SceneError("recording", str(name), None, "must be finite numbers")
+    steps = np.diff(time)
+    if np.abs(time - np.linspace(time[0], time[-1], len(time))).max() <= UNEVEN * steps.min():
+        return result
+    count = round((time[-1] - time[0]) / steps.min()) + 1
+    if count > MOST_SAMPLES:
+        allowed = f"is {steps.min():g} s; must give at most {MOST_SAMPLES:,} samples"
+        raise SceneError("recording", "smallest interval", None, allowed)
+    return result.interp(time=np.linspace(time[0], time[-1], count))
