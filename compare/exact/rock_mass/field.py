@@ -14,7 +14,7 @@ less than the bound given there, about 1e-9 of a smooth pulse.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,6 +36,10 @@ if TYPE_CHECKING:
     from cases.incident import IncidentField, PlaneWave
     from cases.schema.joint_set import JointSet
     from cases.schema.rock_mass import RockMass
+
+
+#: Periodic sides, and the direction in which they repeat the rock.
+REPEATS = {"left": np.array([1.0, 0.0]), "bottom": np.array([0.0, 1.0])}
 
 
 @dataclass(frozen=True)
@@ -75,8 +79,9 @@ def field_of(scene: RockMass) -> IncidentField:
 
 def planes_of(scene: RockMass) -> RockMass:
     """Return a scene with those of its joints, boundaries of regions and free face alone that are a
-    stack of parallel planes: of joints that cross layers, or are not parallel, none; of a free face
-    that is not parallel to layers none, else no joint that is not parallel to it.
+    stack of parallel planes: of joints that cross layers, or are not parallel, none, nor those that
+    periodic sides repeat; of a free face that is not parallel to layers none, else no joint that is
+    not parallel to it.
 
     Raises SceneError where the waves in its layers are not known.
     """
@@ -93,12 +98,14 @@ def planes_of(scene: RockMass) -> RockMass:
         along(np.array(wave.direction), one, ALONG) for wave in scene.waves for one in directions
     )
     sides = {side: "quiet" for side in scene.boundaries.sides("periodic")}
+    repeats = [axis for side, axis in REPEATS.items() if side in sides]
     if face is not None and any(abs(face.normal @ one) > PARALLEL for one in directions):
         if layers:
             sides = dict.fromkeys(Boundaries.model_fields, "quiet")
         else:
             sets = []
-    if not layers and (runs_along or not all(along(*pair) for pair in pairwise(directions))):
+    parallel = all(along(*pair) for pair in (*pairwise(directions), *product(directions, repeats)))
+    if not layers and (runs_along or not parallel):
         sets = []
     if sets == scene.joint_sets and layers == scene.regions and not sides:
         return scene
