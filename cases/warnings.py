@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
 SHORTENED = 1.5  # a step shortened by less than this factor is not reported
+ON_JOINT = 1e-9  # of the pillar's length, and of a block: rounding of a receiver's place
 ONSET = 0.01  # of a load's peak: defines its beginning
 #: Of the duration: the end of a table that no one cut off there.
 LATE = 5.0
@@ -269,6 +270,22 @@ def _of_quiet_ends(scene: Scene, p: Properties, wave: ShortestWave | None) -> It
             )
 
 
+def _of_receivers_at_joints(
+    scene: Scene, p: Properties, wave: ShortestWave | None
+) -> Iterator[str]:
+    """Warn of velocities at soft layers, across which they jump."""
+    for y in scene.record.velocity:
+        for layer in scene.soft_layers:
+            where, away = f"record.velocity = {y:g} m", abs(y - layer.y)
+            if away <= ON_JOINT * scene.pillar.length:
+                yield f"{where} lies on a soft layer: it is the mean of both sides"
+            elif away < (0.5 - ON_JOINT) * p.spacing:
+                yield (
+                    f"{where} lies within half a block of the soft layer at {layer.y:g} m: rigid "
+                    "blocks interpolate across it, between their centres"
+                )
+
+
 RULES: tuple[Rule, ...] = (
     _of_poisson,
     _of_times,
@@ -277,4 +294,5 @@ RULES: tuple[Rule, ...] = (
     _of_arrivals,
     _of_quiet_ends,
     _of_half_a_load,
+    _of_receivers_at_joints,
 )

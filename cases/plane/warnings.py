@@ -9,8 +9,10 @@ import numpy as np
 from cases.incident import plane_wave
 from cases.material.rock import elastic_rock
 from cases.partition.joints import direction_of
+from cases.partition.locate import sides_at
 from cases.partition.outline import outline_of
 from cases.partition.regions import rocks_of
+from cases.partition.scene import partition_of
 from cases.schema.joint_set import JointSet
 from cases.schema.plane import IntactRock
 from cases.schema.plausible import implausible
@@ -168,6 +170,27 @@ def _nearest(scene: RockMass, load: PlaneLoad, place: np.ndarray) -> float:
     return distance(place, outline_of(scene.domain).edges(load.side, load.opening))
 
 
+def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
+    """Warn of points on joints, across which velocity and the stress along them jump."""
+    points, corners = np.array(scene.record.points).reshape(-1, 2), np.array(scene.domain.corners)
+    for k, one in enumerate(scene.joint_sets):
+        if one.scatter or scene.domain.mesh or not len(points):
+            continue
+        across = points @ (direction_of(one.dip)[::-1] * [-1, 1])
+        places = _places(one, one.dip, corners)
+        near = np.abs(np.subtract.outer(across, places)).min(axis=1, initial=np.inf)
+        on = np.flatnonzero(near <= COINCIDENT * np.hypot(*np.ptp(corners, axis=0)))
+        if len(on) and (one.ends_at or one.regions):
+            sides = sides_at(partition_of(scene), points[on])
+            on = on[[len(blocks) > 1 for blocks in sides]]
+        for i in on.tolist():
+            x, y = points[i]
+            yield (
+                f"record.points[{i}] = [{x:g}, {y:g}] lies on a joint of joint_sets[{k}], where "
+                "velocity, displacement and the stress along it are the mean of both sides"
+            )
+
+
 RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
     _of_poisson,
     _of_joints_given_twice,
@@ -175,4 +198,5 @@ RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
     _of_times,
     _of_wavelength,
     _of_arrivals,
+    _of_points_on_joints,
 )

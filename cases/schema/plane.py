@@ -62,7 +62,8 @@ class StressInPlane(Table):
 class RecordInPlane(Table):
     """The results that are recorded."""
 
-    points: list[Point] = Field(default_factory=list)  #: m, where the motion is recorded
+    #: m, where velocity, displacement and stress are recorded; on a joint the mean of both sides
+    points: list[Point] = Field(default_factory=list)
     #: m, points near joints: traction, gap and slip of the nearest joint
     joints: list[Point] = Field(default_factory=list)
     interval: Positive | None = None  #: s; default: period / 200, or duration / 2000

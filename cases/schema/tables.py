@@ -175,7 +175,8 @@ class Record(Table):
     """The results that are recorded."""
 
     stress: list[NonNegative] = Field(default_factory=list)  #: m, sections
-    velocity: list[NonNegative] = Field(default_factory=list)  #: m, points
+    #: m, points of velocity and displacement; on a joint the mean of both sides
+    velocity: list[NonNegative] = Field(default_factory=list)
     interval: Positive | None = None  #: s; default: period / 200, or duration / 2000
     fields: Positive | None = None  #: s between snapshots of the whole pillar; absent: none
     energy: bool = True  #: record the energy ledger

@@ -15,8 +15,7 @@ import numpy as np
 from cases.errors import SceneError
 from cases.partition.blocks import Partition
 from cases.partition.lattice import squared
-from cases.partition.locate import block_at, contact_at
-from cases.partition.subdivision import OUTSIDE
+from cases.partition.locate import contact_at, rock_neighbours, sides_at
 from dem.blocks.links import Links
 
 if TYPE_CHECKING:
@@ -49,24 +48,23 @@ class BlockReceivers(NamedTuple):
 def receivers_of(scene: RockMass, partition: Partition, links: Links) -> BlockReceivers:
     """Return the receivers of a scene."""
     points = np.array(scene.record.points, dtype=float).reshape(-1, 2)
-    inside = block_at(partition, points) if len(points) else np.zeros(0, dtype=int)
-    if (inside == OUTSIDE).any():
-        k = int(np.argmax(inside == OUTSIDE))
+    near, sides = rock_neighbours(partition), sides_at(partition, points)
+    if [] in sides:
+        k = sides.index([])
         raise SceneError(scene.where, f"record.points[{k}]", points[k].tolist(), "must lie in rock")
-    near = _neighbours(partition)
     shared = 0.0 if squared(scene) else SHARED
     stencils = [
-        _stencil(partition, near, int(block), at, shared)
-        for block, at in zip(inside, points, strict=True)
+        (k, 1 / len(blocks), _stencil(partition, near, block, points[k], shared))
+        for k, blocks in enumerate(sides)
+        for block in blocks
     ]
-    places = np.unique([b for own, _, _ in stencils for b in own]).astype(np.int64)
+    places = np.unique([b for *_, (own, *_) in stencils for b in own]).astype(np.int64)
     weights, turns = np.zeros((len(points), len(places))), np.zeros((len(points), len(places), 2))
-    for k, (own, weight, rest) in enumerate(stencils):
-        weights[k, np.searchsorted(places, own)] = weight
-        turns[k, np.searchsorted(places, own[0])] = -rest[1], rest[0]
+    for k, share, (own, weight, rest) in stencils:
+        weights[k, np.searchsorted(places, own)] += share * weight
+        turns[k, np.searchsorted(places, own[0])] += share * np.array([-rest[1], rest[0]])
     joints = _joint_weights(scene, partition)
-    sides = np.isin(links.blocks, places)
-    contact, side = np.nonzero(sides)
+    contact, side = np.nonzero(np.isin(links.blocks, places))
     watched = np.unique([*contact, *(c for own in joints for c in own)]).astype(np.int64)
     touching = np.stack(
         [
@@ -81,18 +79,6 @@ def receivers_of(scene: RockMass, partition: Partition, links: Links) -> BlockRe
         for c, share in mixed.items():
             table[k, np.searchsorted(watched, c)] = share
     return BlockReceivers(places, weights, turns, touching, watched, table)
-
-
-def _neighbours(partition: Partition) -> dict[int, list[int]]:
-    """Return the blocks beside each across cuts through intact rock of one region."""
-    contacts = partition.contacts
-    found: dict[int, list[int]] = {}
-    through = ~contacts.of_joints(len(partition.joint_sets))
-    through &= np.diff(partition.region[contacts.blocks], axis=1)[:, 0] == 0
-    for i, j in contacts.blocks[through].tolist():
-        found.setdefault(i, []).append(j)
-        found.setdefault(j, []).append(i)
-    return found
 
 
 def _stencil(

@@ -18,7 +18,7 @@ from cases.material.rigid_blocks import rigid_joints, welds
 from cases.material.rock_mass import Stiffness, inertia
 from cases.partition.blocks import Partition
 from cases.partition.lattice import further_sets
-from cases.partition.locate import block_at
+from cases.partition.locate import sides_at
 from cases.partition.periodic import across_periodic
 from cases.partition.scene import block_count, partition_of
 from cases.partition.subdivision import NO_SET
@@ -134,12 +134,17 @@ def _stiffness(scene: RockMass, partition: Partition):
 
 def at_points(scene: RockMass, partition: Partition, values: np.ndarray) -> np.ndarray:
     """Return the motion of the points of a scene [points, (x, y), n] from that of all blocks'
-    degrees of freedom [n, 3 N]."""
+    degrees of freedom [n, 3 N]; on joints the mean of the blocks there."""
     points = np.array(scene.record.points)
-    block = block_at(partition, points)
+    sides = sides_at(partition, points)
+    share = np.array([1 / len(blocks) for blocks in sides for _ in blocks])[:, None]
+    which = np.repeat(np.arange(len(points)), [len(blocks) for blocks in sides])
+    block = np.concatenate(sides)
     u, v, turn = values.reshape(len(values), -1, 3)[:, block].transpose(2, 1, 0)
-    x, y = (points - partition.centroid[block]).T[..., None]
-    return np.stack([u - turn * y, v + turn * x], axis=1)
+    x, y = (points[which] - partition.centroid[block]).T[..., None]
+    found = np.zeros((len(points), 2, len(values)))
+    np.add.at(found, which, np.stack([u - turn * y, v + turn * x], axis=1) * share[..., None])
+    return found
 
 
 SOLVER = Solver(

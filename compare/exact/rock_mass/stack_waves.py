@@ -1,8 +1,9 @@
 """Solution of scenes of waves at a stack of joints, at their receivers.
 
 Displacement is the same solution of the pulse's time integral; the opening and the slip of a joint
-are the jumps of displacement across it. Where P waves are evanescent the motion begins before its
-cause: its part at t = 0 is not in the scene, which begins at rest, and is added to the error bound.
+are the jumps of displacement across it, and a point on a joint reads the mean of both sides. Where
+P waves are evanescent the motion begins before its cause: its part at t = 0 is not in the scene,
+which begins at rest, and is added to the error bound.
 """
 
 from collections.abc import Callable
@@ -12,8 +13,9 @@ import numpy as np
 import xarray as xr
 
 from cases.incident import plane_wave
-from cases.partition.locate import block_at, contact_at
+from cases.partition.locate import contact_at, sides_at
 from cases.partition.outline import TOLERANCE
+from cases.partition.subdivision import OUTSIDE
 from cases.sampling import sample_times
 from cases.schema.rock_mass import RockMass
 from compare.exact.plane.pulse import pulse_fields
@@ -65,15 +67,19 @@ def holds(scene: RockMass, one: bool) -> Answer:
 def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Dataset:
     """Return the records of a scene's receivers; motion : in place of `motion_at`."""
     stack, times = stack_of(scene), sample_times(scene)
-    points, joints = point_receivers(scene, stack), joint_receivers(scene, stack)
-    beside = _beside(stack) * joints.axes[:, 0]
-    places = np.concatenate([points, joints.places - beside, joints.places + beside])
-    found = (motion or motion_at)(scene, stack, places, times)
-    m, k = len(points), len(points) + len(joints.places)
-    at_points, here, there = (
-        PlaneMotion(*(x[part] for x in found))
-        for part in (slice(0, m), slice(m, k), slice(k, None))
+    joints, (points, on_joint, beyond) = (
+        joint_receivers(scene, stack),
+        point_receivers(scene, stack),
     )
+    beside = _beside(stack) * joints.axes[:, 0]
+    places = [points, beyond, joints.places - beside, joints.places + beside]
+    found = (motion or motion_at)(scene, stack, np.concatenate(places), times)
+    ends = np.cumsum([len(part) for part in places])[:-1]
+    at_points, behind, here, there = map(
+        PlaneMotion._make, zip(*(np.split(x, ends) for x in found), strict=True)
+    )
+    for one, other in zip(at_points, behind, strict=True):
+        one[on_joint] = (one[on_joint] + other) / 2
     pressed = prestress_of(scene)[:, None]
     jump = joints.axes @ (there.displacement - here.displacement)
     traction = joints.axes @ on_face(pressed - here.stress, joints.axes[:, 0])
@@ -128,17 +134,23 @@ def motion_at(
     return PlaneMotion(*total)
 
 
-def point_receivers(scene: RockMass, stack: JointStack) -> np.ndarray:
-    """Return the points of a scene [m, 2], those on a joint moved into the first of its blocks."""
+def point_receivers(
+    scene: RockMass, stack: JointStack
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the points of a scene [m, 2], those on a joint or a face moved into the first of their
+    blocks, which are on a joint [m], and where those are on its other side."""
     points = np.array(scene.record.points, dtype=float).reshape(-1, 2)
     if not len(points):
-        return points
+        return points, np.zeros(0, dtype=bool), points
     apart = (points @ stack.normal)[:, None] - stack.offsets
     apart = np.take_along_axis(apart, np.abs(apart).argmin(axis=1)[:, None], axis=1)
-    inward = stack.partition.centroid[block_at(stack.partition, points)] - points
+    sides = sides_at(stack.partition, points)
+    inward = stack.partition.centroid[[min(blocks, default=OUTSIDE) for blocks in sides]] - points
     side = _beside(stack) * np.sign(inward @ stack.normal)[:, None]
-    on_joint = np.abs(apart) <= TOLERANCE / BESIDE * _beside(stack)
-    return np.where(on_joint, points + (side - apart) * stack.normal, points)
+    near = np.abs(apart) <= TOLERANCE / BESIDE * _beside(stack)
+    here, there = (points + (off - apart) * stack.normal for off in (side, -side))
+    on_joint = near[:, 0] & np.array([len(blocks) > 1 for blocks in sides])
+    return np.where(near, here, points), on_joint, there[on_joint]
 
 
 def joint_receivers(scene: RockMass, stack: JointStack) -> JointReceivers:

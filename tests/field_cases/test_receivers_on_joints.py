@@ -1,0 +1,126 @@
+"""Receivers exactly on a joint (exact solutions were 73 % from the continuum there).
+
+Velocity, displacement and the stress along a joint jump across it: every solver reads the mean of
+both sides, within 1e-9 of the rock's size, and a warning says so. Traction does not jump.
+"""
+
+import numpy as np
+import pytest
+
+from cases.read import load_tables
+from cases.warnings import warnings
+from compare.engines import solve
+from compare.misfit.metrics import relative_l2
+
+JOINT = {"name": "joint", "normal_stiffness": 1.6e10, "shear_stiffness": 9e9}
+SIDES = ("left", "right", "bottom", "top")
+DIP = 30.0
+NORMAL = np.array([-np.sin(np.radians(DIP)), np.cos(np.radians(DIP))])
+#: Distances from the joint, m: on it, by what a file rounds, and on either side of it.
+AWAY = [0.0, -3e-9, 3e-9, -1e-6, 1e-6]
+
+PILLAR = {
+    "title": "a soft joint in a pillar",
+    "pillar": {"length": 50.0, "side": 0.5, "block": 0.5},
+    "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0, "intact_modulus": 8.64e10},
+    "soft_layers": [{"y": 25.0, "spacing_stiffness": 1e8}],
+    "load": {"shape": "ricker", "amplitude": 1e6, "period": 0.02},
+    "ends": {"start": "matched", "end": "matched"},
+    "time": {"duration": 0.05},
+    "record": {"velocity": [25.0, 24.75, 25.25]},
+}
+
+
+def of_mass(points, sets, **tables):
+    """Return a rock mass with a P wave that travels upwards."""
+    wave = {"kind": "P", "direction": [0.0, 1.0], "amplitude": 1e6, "period": 0.01}
+    return load_tables(
+        {
+            "title": "a wave at joints",
+            "domain": {"size": [24.0, 24.0]},
+            "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.25},
+            "joint_sets": [JOINT | one for one in sets],
+            "waves": [wave | {"shape": "ricker"}],
+            "boundaries": dict.fromkeys(SIDES, "quiet"),
+            "time": {"duration": 0.02},
+            "record": {"points": points},
+            **tables,
+        }
+    )
+
+
+@pytest.fixture(scope="module")
+def mass():
+    points = [(np.array([12.0, 12.0]) + away * NORMAL).tolist() for away in AWAY]
+    one = {"dip": DIP, "through": [12.0, 12.0]}
+    return of_mass(points, [one], numerics={"dem": {"block": 1.0}})
+
+
+@pytest.fixture(scope="module")
+def exact(mass):
+    return solve("oblique-joint", mass)
+
+
+def test_the_exact_solution_reads_the_mean_of_both_sides(exact):
+    """Both sides differ; on the joint is their mean, to a wavelength's share of the distance."""
+    for name in ("velocity", "displacement", "stress"):
+        at, below, above, behind, front = exact[name].values
+        size = np.abs(at).max()
+        np.testing.assert_allclose(below, at, atol=1e-12 * size)
+        np.testing.assert_allclose(above, at, atol=1e-12 * size)
+        np.testing.assert_allclose(at, (behind + front) / 2, atol=1e-6 * size)
+        assert np.abs(front - behind).max() > 0.05 * size
+
+
+@pytest.mark.parametrize(("name", "far"), [("continuum-jointed", 0.01), ("dem", 0.12)])
+def test_both_engines_read_the_same_on_a_joint_and_off_it_by_rounding(mass, exact, name, far):
+    """Rigid blocks of 1 m, with 40 of them a wavelength of P, have no Poisson effect along x."""
+    found = solve(name, mass)
+    for quantity in ("velocity", "displacement"):
+        one = found[quantity].values
+        for rounded in (1, 2):
+            np.testing.assert_allclose(one[rounded], one[0], atol=1e-6 * np.abs(one).max())
+        assert relative_l2(one[0, :, 1], exact[quantity].values[0, :, 1]) < far
+
+
+def test_rigid_blocks_and_their_exact_lattice_read_the_same_on_a_joint():
+    """Where two sets cross, too: of the four blocks there."""
+    sets = [{"name": f"{dip:g}", "dip": dip, "spacing": 2.0} for dip in (0.0, 90.0)]
+    scene = of_mass([[11.0, 12.0], [12.0, 12.0]], sets)
+    found, exact = (solve(name, scene).velocity.values for name in ("dem", "block-lattice"))
+    np.testing.assert_allclose(found, exact, atol=2e-3 * np.abs(exact).max())
+
+
+def test_a_point_on_a_joint_is_warned_of(mass):
+    said = [line for line in warnings(mass) if "lies on a joint" in line]
+    assert [line.split()[0] for line in said] == [f"record.points[{k}]" for k in range(3)]
+    assert "joint_sets[0]" in said[0] and "mean of both sides" in said[0]
+
+
+def test_a_pillar_reads_the_mean_of_both_sides_of_a_soft_layer():
+    """Both engines, and the exact solutions of either model, within 1 % of the jointed bar."""
+    scene = load_tables(PILLAR)
+    found = {
+        name: solve(name, scene).velocity.values
+        for name in ("dem", "lattice", "continuum-jointed", "jointed-bar")
+    }
+    bar = found["jointed-bar"].reshape(3, -1)
+    sides = solve("jointed-bar", _at(scene, [25.0 - 1e-6, 25.0 + 1e-6])).velocity.values
+    np.testing.assert_allclose(bar[0], sides.mean(axis=0).ravel(), atol=1e-5 * np.abs(bar).max())
+    for values in found.values():
+        assert relative_l2(values.reshape(3, -1)[0], bar[0]) < 0.01
+    assert any("lies on a soft layer" in line for line in warnings(scene))
+
+
+def test_a_velocity_beside_a_soft_layer_is_warned_of():
+    """Within half a block rigid blocks interpolate across the layer; half a block away they do
+    not."""
+    near = warnings(_at(load_tables(PILLAR), [25.1, 25.25]))
+    assert [line.split(" m ")[0] for line in near if "half a block" in line] == [
+        "record.velocity = 25.1"
+    ]
+
+
+def _at(scene, places):
+    record = scene.record.model_copy(update={"velocity": places})
+    return scene.model_copy(update={"record": record})
