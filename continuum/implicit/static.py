@@ -82,11 +82,14 @@ def settle_static(
     """
     system = _Static(model, state, body, hold)
     done, part, steps = 0.0, 1.0, 0
-    while done < 1:
+    still = False
+    while not still:
         outcome = system.balance(min(done + part, 1.0))
         steps += len(outcome.errors) - 1
         if outcome.converged:
-            done += part
+            # A point that slips loses its cohesion for what follows: balanced again without it.
+            still = done >= 1 and outcome.errors[0] <= outcome.tolerance
+            done = min(done + part, 1.0)
         elif part > LEAST_PART:
             part /= 2
         else:
@@ -129,7 +132,7 @@ class _Static:
     ) -> None:
         self.rock, self.hold = implicit_matrices(body), hold
         self.model = model._replace(ends=Ends(None, None, model.ends.fixed))
-        if model.interfaces is not None and model.interfaces.parts.rate_state:
+        if model.interfaces is not None:
             table = model.interfaces.table.copy()
             table[IN_MOTION] = 0.0
             self.model = self.model._replace(interfaces=model.interfaces._replace(table=table))
