@@ -146,7 +146,8 @@ def _of_text(content: bytes, time_name: str) -> tuple[Columns, Where]:
     if first + 1 >= len(head) and len(content) > HEAD:
         raise ValueError(f"line {len(head)} is longer than {HEAD:,} characters, or a header is")
     if not cells:
-        raise ValueError("must hold at least two rows of numbers, has none")
+        last = next((line for line in reversed(head) if line.strip()), "")
+        raise ValueError(f"must hold rows of two or more numbers, unlike {last[:60]!r}")
     names, units = _header(head[:first], separator, cells, time_name)
     data = re.sub(rb"#[^\n]*", b"", content.split(b"\n", first)[-1])
     decimal = "," if separator != "," and data.count(b",") > data.count(b".") else "."
@@ -220,32 +221,47 @@ def _header(
     before: list[str], separator: str, cells: list[str], time_name: str
 ) -> tuple[list[str], list[str]]:
     """Return the columns' headers, and what a row of units below them gives, "" for nothing."""
-    size, units = len(cells), list[str]()
+    size, below = len(cells), list[tuple[int, list[str]]]()
+    none = [""] * size
     for number, line in reversed(list(enumerate(before, 1))):
         said = COMMENT.match(line)
         text = line[said.end() :] if said else COMMENT.split(line, maxsplit=1)[0]
         row = _row_of(text, separator, size, time_name)
-        bare = [cell.strip("[]() ") for cell in row]
-        if len(row) != size:
-            if not said and _times(row, time_name):
-                allowed = f"must hold {len(row)} numbers ({_listed(row)}), not {size}"
-                raise ValueError(f"line {len(before) + 1}: {allowed}")
-        elif not units and any(bare) and all(one in KNOWN for one in bare if one):
-            units = bare
-        elif _times(row, time_name) or not (said or any(map(is_number, row))):
-            return row, units or [""] * size
-        elif not said and separator != " ":
-            wrong = next(cell for cell in row if not is_number(cell))
-            raise ValueError(f"line {number}: {wrong!r} must be a number")
+        if len(row) == size and _times(row, time_name):
+            return row, _units_of(*below[0]) if below else none
+        if not said and _times(row, time_name):
+            allowed = f"must hold {len(row)} numbers ({_listed(row)}), not {size}"
+            raise ValueError(f"line {len(before) + 1}: {allowed}")
+        if not said and len(row) == size:
+            below.append((number, row))
+    named = [row for _, row in below if not any(map(is_number, row))]
+    if below:
+        number, row = below[0]
+        bare = [cell.strip("[]() ") for cell in row if cell]
+        if not set(bare).isdisjoint(TIME) or all(one in KNOWN for one in bare):
+            named, none = named[1:], _units_of(number, row)
+        elif is_number(row[0].replace(",", ".")):
+            _units_of(number, row)
+    if named:
+        return named[0], none
     for number, line in enumerate(before, 1):
         stray = [one for one in BRACKETED.findall(line) if KNOWN.get(one, 1.0) != 1.0]
-        if stray and not units:
+        if stray and not any(none):
             allowed = f"is no header of {size} columns, so that its unit {stray[0]} has no column"
             raise ValueError(f"line {number} {allowed}")
     names = ["time", *map(str, range(2, size + 1))]
     if size == 2 or not cells[-1]:
         names[-1] = ""
-    return names, units or [""] * size
+    return names, none
+
+
+def _units_of(number: int, row: list[str]) -> list[str]:
+    """Return the units in a row between header and numbers; raises ValueError for what is none."""
+    units = [cell.strip("[]() ") for cell in row]
+    for one in filter(None, units):
+        if one not in (*KNOWN, *DIMENSIONLESS) and not is_number(one.replace(",", ".")):
+            raise ValueError(f"line {number}: {one[:60]!r} is neither a number nor a known unit")
+    return units
 
 
 def _row_of(text: str, separator: str, size: int, time_name: str) -> list[str]:

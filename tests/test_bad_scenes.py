@@ -676,8 +676,8 @@ MISTAKES |= {
 MISTAKES |= {name: (STIFFNESS, f"{STIFFNESS}\n{lines}", w) for name, (lines, w) in THICK.items()}
 
 HISTORIES = {
-    "empty history": ("", ["at least two rows"]),
-    "header only": ("time,stress\n", ["at least two rows"]),
+    "empty history": ("", ["two or more numbers"]),
+    "header only": ("time,stress\n", ["two or more numbers"]),
     "history of one row": ("0,0\n", ["at least 2 samples, not 1"]),
     "unsorted history": ("0,0\n2,1\n1,0\n", ["line 3: time = 1", "later than", "2"]),
     "a time twice": ("s,Pa\n0,0\n0,1\n", ["line 3: time = 0", "is repeated"]),

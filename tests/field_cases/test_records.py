@@ -221,11 +221,15 @@ FAULTS = {
     "a cell too few": ("time v\n0 0\n1\n2 1\n", r"line 3: must hold 2 numbers \(time, v\), not 1"),
     "a cell too many": ("# made\n\ntime,v\n0,0\n1,1,1\n", "line 5: must hold 2 numbers .* not 3"),
     "a header too long": ("time,v,w\n0,0\n1,1\n2,1\n", "line 2: must hold 3 numbers .* not 2"),
-    "text in the first row": ("0,none\n1,1\n2,1\n3,1\n", "line 1: 'none' must be a number"),
+    "text in the first row": ("0,none\n1,1\n2,1\n3,1\n", "line 1: 'none' is neither a number"),
+    "a unit unknown": ("time;v\nms;bar\n0;0\n1;1\n", "line 2: 'bar' is neither a number"),
+    "units without names": ("ms;bar\n0;0\n1;1\n2;0\n", "line 1: 'bar' is neither a number nor"),
+    "exponents of Fortran": ("0.0 1D0\n1.0 2.0\n2.0 3\n", "line 1: '1D0' is neither a number"),
+    "thousands": ("0;1.000,5\n1;2.000,5\n", "two or more numbers, unlike '1;2.000,5'"),
     "unit of nothing": ("# in (MPa)\n0,0\n1,1\n2,0\n", "line 1 is no header .* its unit MPa"),
     "unit of another thing": ("time,v [mm/s]\n0,0\n1,1\n2,1\n", "unit of v = 'mm/s': must be Pa"),
     "an unknown unit": ("time [h],v\n0,0\n1,1\n2,1\n", r"unit of time = 'h': must be s, ms"),
-    "no numbers": ("time,v\n", "must hold at least two rows of numbers"),
+    "no numbers": ("time,v\n", "must hold rows of two or more numbers, unlike 'time,v'"),
     "one row": ("time,v\n0,0\n", "must hold at least . samples, not 1"),
 }  # fmt: skip
 

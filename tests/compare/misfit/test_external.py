@@ -386,7 +386,7 @@ FAULTS = {
     ),
     "ragged": ("time,stress@20\n0,0\n1e-3\n2e-3,2\n", "curve.csv: line 3", "2 numbers"),
     "short": ("time,stress@20\n0,0\n1e-3,1\n", "curve.csv", "at least 3 samples"),
-    "empty": ("", "curve.csv", "has none"),
+    "empty": ("", "curve.csv", "two or more numbers"),
     "no time": ("h,stress@20,v\n0,0,0\n1,1,1\n", "header = 'h, stress@20, v'", ":h=time"),
     "one column named": ("t\n0,0\n1,1\n2,2\n", "line 2: must hold 1", "(t), not 2"),
     "no place": ("time,stress\n0,0\n1,1\n2,2\n", "curve.csv: stress", "stress@20"),
