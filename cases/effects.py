@@ -79,7 +79,7 @@ def _of_joints(scene: Scene, p: Properties) -> Iterator[Effect]:
     yield called_for("scatter", random and f"seed {random.seed}", "no [scatter]")
     barred, differ = int((~p.tension).sum()), len(p.soft)
     whose = barred and f"{barred} of {len(p.tension)} joints"
-    yield called_for("no tension", whose, "every joint carries tension")
+    yield called_for("no tension", whose, carries(p.friction is not None))
     alike = "all joints are equal: scalars, no arrays" if p.is_uniform else "no soft layers"
     yield called_for("joints that differ", differ and f"{differ} soft layers", alike)
 
@@ -87,6 +87,11 @@ def _of_joints(scene: Scene, p: Properties) -> Iterator[Effect]:
 def _of_ends(scene: Scene, kind: str) -> Effect:
     places = [f"ends.{k}" for k in ("start", "end") if getattr(scene.ends, k) == kind]
     return called_for(f"{kind} ends", " and ".join(places), f"no end is {kind}")
+
+
+def carries(slides: bool) -> str:
+    """Return why no joint opens; slides : whether joints have friction, which bounds no tension."""
+    return "every joint carries tension" + ", also with friction" * slides
 
 
 def of_ledger(scene: AnyScene) -> Effect:

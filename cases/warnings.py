@@ -95,9 +95,15 @@ def of_pulse(table: str, pulse: Pulse, end: float, crossings: float = nan) -> It
             f"time.duration = {end:g} s"
         )
     elif pulse.period and pulse.period > end:
+        meant = f"; {pulse.period:g} Hz is {1 / pulse.period:g} s" if pulse.period > 1 else ""
         yield (
             f"{table}.period = {pulse.period:g} s is longer than the scene, time.duration = "
-            f"{end:g} s"
+            f"{end:g} s{meant}"
+        )
+    elif pulse.period and STATIC < crossings < 1e3 * STATIC:
+        yield (
+            f"{table}.period = {pulse.period:g} s: a wave crosses the rock {crossings:.3g} times "
+            f"in it; {pulse.period:g} ms is {pulse.period / 1e3:g} s"
         )
 
 
@@ -112,7 +118,7 @@ def _of_table(table: str, pulse: Pulse, end: float, crossings: float) -> Iterato
         why = (
             f"the scene ends at {end:g} s"
             if late
-            else f"a wave crosses the pillar {crossings:.3g} times in a period of them"
+            else f"a wave crosses the rock {crossings:.3g} times in a period of them"
         )
         yield (
             f"{table}.file = {file!r}: its times, up to {last:g} s, look like milliseconds "

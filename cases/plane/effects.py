@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from cases.effects import SLIPS, STICKS, Effect, called_for, of_body_forces, of_fields, of_ledger
+from cases.effects import (
+    SLIPS,
+    STICKS,
+    Effect,
+    called_for,
+    carries,
+    of_body_forces,
+    of_fields,
+    of_ledger,
+)
 from cases.schema.joint import PARTS
 
 if TYPE_CHECKING:
@@ -34,7 +43,8 @@ def _of_joints(scene: RockMass) -> Iterator[Effect]:
     else:
         yield _of_sets("dashpots", damped, "damping_ratio is given", "no damping_ratio")
     barred = [one for one in scene.joint_sets if one.tension is False]
-    yield _of_sets("no tension", barred, "tension = false", "every joint carries tension")
+    slides = any(one.friction_angle is not None for one in scene.joint_sets)
+    yield _of_sets("no tension", barred, "tension = false", carries(slides))
     slips = [s for s in scene.joint_sets if s.friction_angle is not None or s.cohesion is not None]
     yield _of_sets("slip", slips, SLIPS, STICKS)
     for part in PARTS:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from itertools import combinations
+from math import nan
 from typing import cast
 
 import numpy as np
@@ -15,14 +16,15 @@ from cases.partition.regions import rocks_of
 from cases.partition.scene import partition_of
 from cases.schema.joint_set import JointSet
 from cases.schema.plane import IntactRock
-from cases.schema.plausible import implausible
+from cases.schema.plausible import LENGTH, implausible, of_dip, of_value
 from cases.schema.region import Region
 from cases.schema.rock_mass import RockMass
 from cases.schema.rock_mass_checks import GRAZING, distance
 from cases.schema.sources import PlaneLoad, Wave
-from cases.spectrum import LEAST_BLOCKS, highest_frequency
+from cases.spectrum import LEAST_BLOCKS, frequency_of, highest_frequency
 from cases.warnings import of_local_damping, of_pulse, onset
 
+NEAR = 0.05  # of the domain's size: distance of a receiver from the joint that it is meant for
 COINCIDENT = 1e-9  # of the domain's size: distance of two joints that are one
 
 Source = tuple[str, "Wave | PlaneLoad"]  # its table in the scene and itself
@@ -79,6 +81,46 @@ def _places(one: JointSet, dip: float, corners: np.ndarray) -> np.ndarray:
     return origin + one.spacing * (first + np.arange(max(int(count), 0)))
 
 
+def _of_places(scene: RockMass) -> Iterator[str]:
+    """Say which spacings exceed the domain, and which receivers of joints are far from any."""
+    corners, sets = np.array(scene.domain.corners), scene.joint_sets
+    for i, one in enumerate(sets):
+        extent = float(np.ptp(corners @ (direction_of(one.dip)[::-1] * [-1, 1])))
+        if one.spacing is not None and one.spacing > extent and scene.domain.mesh is None:
+            yield (
+                f"joint_sets[{i}].spacing = {one.spacing:g} m exceeds the domain, {extent:g} m "
+                f"across its joints; {one.spacing:g} mm is {one.spacing / 1e3:g} m"
+            )
+    if any(one.scatter or one.ends_at or one.regions for one in sets) or scene.domain.mesh:
+        return  # where joints run, only the cuts know
+    far = NEAR * float(np.ptp(corners, axis=0).max())
+    for k, place in enumerate(scene.record.joints):
+        away = min(
+            float(
+                np.abs(
+                    _places(one, one.dip, corners) - direction_of(one.dip)[::-1] * [-1, 1] @ place
+                ).min(initial=np.inf)
+            )
+            for one in sets
+        )
+        if away > far:
+            yield (
+                f"record.joints[{k}] = [{place[0]:g}, {place[1]:g}] is {away:.3g} m from the "
+                "nearest joint, whose motion it records"
+            )
+
+
+def _of_directions(scene: RockMass) -> Iterator[str]:
+    for i, one in enumerate(scene.regions):
+        yield from of_dip(f"regions[{i}].dip", one.dip)
+    for key in ("size", "outline"):
+        for value in np.ravel(getattr(scene.domain, key) or []):
+            yield from of_value(f"domain.{key}", abs(float(value)), LENGTH)
+    if scene.gravity is not None and scene.gravity.direction[1] > 0:
+        x, y = scene.gravity.direction
+        yield f"gravity.direction = [{x:g}, {y:g}] pulls upwards: y points up"
+
+
 def _of_half_a_load(scene: RockMass) -> Iterator[str]:
     """Say where the dashpots of a quiet side take half of a pressure on it."""
     for i, load in enumerate(scene.loads):
@@ -92,8 +134,13 @@ def _of_half_a_load(scene: RockMass) -> Iterator[str]:
 
 
 def _of_times(scene: RockMass) -> Iterator[str]:
+    fastest = max(float(elastic_rock(one).p_speed) for one in rocks_of(scene))
+    crossings = fastest / float(np.ptp(scene.domain.corners, axis=0).max())
     for table, pulse in _sources(scene):
-        yield from of_pulse(table, pulse, scene.time.duration)
+        frequency = frequency_of(pulse, scene.time.duration)
+        yield from of_pulse(
+            table, pulse, scene.time.duration, crossings / frequency if frequency else nan
+        )
 
 
 def _of_wavelength(scene: RockMass) -> Iterator[str]:
@@ -195,6 +242,8 @@ RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
     _of_poisson,
     _of_joints_given_twice,
     _of_half_a_load,
+    _of_places,
+    _of_directions,
     _of_times,
     _of_wavelength,
     _of_arrivals,

@@ -128,7 +128,8 @@ class JointLaw(Table):
     normal_stiffness: Positive | None = None  #: Pa/m, the joint's own K_n; absent: from (4)
     maximum_closure: Positive | None = None  #: m, d_m of hyperbolic closure, K_n initially
     shear_stiffness: Positive | None = None  #: Pa/m, the joint's own K_s; absent: from (7)
-    tension: bool | None = None  #: False: the joint carries no tension (10)
+    #: False: the joint carries no tension (10); True, absent: any, also with friction
+    tension: bool | None = None
     damping_ratio: NonNegative | None = None  #: zeta; dashpot c_n = 2 zeta sqrt(m k_n)
     friction_angle: Annotated[float, Field(ge=0, lt=90)] | None = None  #: degrees (3)
     #: degrees, friction after slip of weakening_distance; its tangent falls linearly

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from cases.kinds import AnyScene
 from cases.schema.joint import PARTS
+from cases.schema.pulse import shortest_period
 from cases.schema.values import contradiction
 
 if TYPE_CHECKING:
@@ -21,9 +22,10 @@ def check_time(scene: AnyScene) -> None:
     """Raise a contradiction between the sampling interval and the duration."""
     interval, duration = scene.interval, scene.time.duration
     if interval > duration:
-        raise contradiction(
-            "record.interval", interval, f"must not exceed time.duration = {duration:g}"
-        )
+        allowed = f"must not exceed time.duration = {duration:g}"
+        if scene.record.interval is None and (period := shortest_period(scene.pulses)):
+            allowed += f": absent, it is a 200th of the period, {period:g} s"
+        raise contradiction("record.interval", interval, allowed)
     if duration / interval > MOST_SAMPLES:
         raise contradiction(
             "record.interval", interval, f"must give at most {MOST_SAMPLES:,} samples"

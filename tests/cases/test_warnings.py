@@ -96,6 +96,7 @@ def test_highest_frequency_of_a_record_is_that_of_the_same_wave(tmp_path, scene_
 def test_warnings_do_not_depend_on_the_size_of_the_load(scene_with, amplitude, sign):
     changes = {"load.period": 0.001, "ends.end": "quiet", "source": None, "record.energy": False}
     found = warnings(scene_with(**changes, **{"load.amplitude": sign * amplitude}))
+    found = [line for line in found if not line.startswith("load.amplitude")]  # of its unit
     assert found == warnings(scene_with(**changes)) and len(found) >= 2
 
 
