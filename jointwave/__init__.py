@@ -198,7 +198,7 @@ def verdicts(comparison: Comparison) -> dict[str, Held]:
 
 def read_curves(files: Sequence[str], scenes: Sequence[AnyScene]) -> list[Curves]:
     """Return waveforms of another code, a figure or an experiment: FILE, FILE:stress@20 or
-    FILE:COLUMN=stress@20 each, CSV or NetCDF."""
+    FILE:COLUMN=stress@20 each, a table, a seismogram or NetCDF."""
     from compare.misfit import external as curves
 
     return curves.read_curves(list(files), list(scenes))

@@ -95,6 +95,8 @@ def response_spectrum(
     displacement (m) is the largest |x| of x'' + 2 zeta w x' + w^2 x = -a, between samples too, and
     after the record, over which the ground no longer accelerates; pseudo_velocity (m/s) and
     pseudo_acceleration (m/s2) are w and w^2 times it, which of short periods is the largest |a|.
+    With n samples in a period of the motion, spectra of a velocity are low by (2 pi / n)^2 / 8, of
+    an acceleration by two thirds of that.
 
     periods : of the oscillator, s. damping : zeta, of the critical one, below 1. quantity : of a
     recording that does not name its own.

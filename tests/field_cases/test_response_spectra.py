@@ -75,6 +75,21 @@ def test_steady_ground_asks_one_plus_exp_of_a_fast_oscillator(damping, period):
     assert found == pytest.approx(3.0 * exact, rel=1e-5)
 
 
+@pytest.mark.parametrize("rate", [20, 50, 200])
+@pytest.mark.parametrize("recorded, lost", [("velocity", 3), ("acceleration", 2)])
+def test_what_sampling_takes_from_a_resonance(rate, recorded, lost):
+    """sinc(1 / n) for each of: slopes between samples, and twice for straight lines; (pi / n)^2 / 6
+    each, of a sine of n samples a period that shakes an oscillator of its own period."""
+
+    def largest(rate):
+        time = np.arange(10 * rate + 1) / rate
+        return pseudo((time, np.sin(2 * np.pi * time)), [1.0], quantity=recorded).item()
+
+    assert 1 - largest(rate) / largest(4000) == pytest.approx(
+        lost * (np.pi / rate) ** 2 / 6, rel=0.04
+    )
+
+
 def test_what_follows_the_record_counts():
     """A blow of 1 m/s2 for 1 ms, straight up and down: v / omega of an oscillator of a second."""
     found = jw.response_spectrum(([0.0, 5e-4, 1e-3], [0.0, 1.0, 0.0]), [1.0], 0.0, "acceleration")
