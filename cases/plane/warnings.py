@@ -27,6 +27,8 @@ from cases.warnings import of_local_damping, of_pulse, onset
 NEAR = 0.05  # of the domain's size: distance of a receiver from the joint that it is meant for
 COINCIDENT = 1e-9  # of the domain's size: distance of two joints that are one
 
+EARLY = 1e-6  # of the duration: by which a wave may seem to be early
+
 Source = tuple[str, "Wave | PlaneLoad"]  # its table in the scene and itself
 
 
@@ -200,6 +202,19 @@ def _of_arrivals(scene: RockMass) -> Iterator[str]:
                 )
 
 
+def _of_starts(scene: RockMass) -> Iterator[str]:
+    """Warn of waves that are inside the domain before the scene begins, from rest."""
+    corners = np.array(scene.domain.corners)
+    for i, wave in enumerate(scene.waves):
+        begun = -float(plane_wave(scene, wave).lateness(corners).min())
+        early = begun > onset(wave) + EARLY * scene.time.duration
+        if wave.amplitude and wave.through is not None and early:
+            yield (
+                f"waves[{i}].through = [{wave.through[0]:g}, {wave.through[1]:g}]: the wave enters "
+                f"the domain {begun:.3g} s before t = 0, when the rock is at rest: move it back"
+            )
+
+
 def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> float:
     """Return when a wave or load is first felt at a place in intact rock, s."""
     if pulse.kind in ("P", "S"):
@@ -248,4 +263,5 @@ RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
     _of_wavelength,
     _of_arrivals,
     _of_points_on_joints,
+    _of_starts,
 )

@@ -7,7 +7,7 @@ from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from compare.solvers.incident import incident
+from compare.solvers.incident import incident, note_sides
 from compare.solvers.record import (
     BAR,
     JOINTED,
@@ -51,7 +51,9 @@ def run(
     from continuum import simulate
 
     about: dict[str, Any] = {"progress": progress, "comm": comm, "keeper": keeper}
-    return simulate(scene, model=model, **about, incident=incident(scene))
+    found = simulate(scene, model=model, **about, incident=incident(scene))
+    note_sides(found.attrs, scene)
+    return found
 
 
 def again(scene: Scene | RockMass, model: str) -> Callable[[], float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from compare.solvers.incident import incident
+from compare.solvers.incident import incident, note_sides
 from compare.solvers.record import (
     BLOCKS,
     YES,
@@ -30,14 +30,18 @@ def run(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -> xr.Da
     """Return the result of a scene; `comm` is unused, one process runs it."""
     from dem import simulate
 
-    return simulate(scene, progress, keeper, incident(scene))
+    found = simulate(scene, progress, keeper, incident(scene))
+    note_sides(found.attrs, scene)
+    return found
 
 
 def run_fields(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -> Fields:
     """Return the result as plain arrays, without importing xarray."""
     from dem import simulate_fields
 
-    return simulate_fields(scene, progress, keeper, incident(scene))
+    found = simulate_fields(scene, progress, keeper, incident(scene))
+    note_sides(found.attributes, scene)
+    return found
 
 
 def prepare(scene: Scene | RockMass) -> Prepared:

@@ -6,7 +6,8 @@ the intact rock in front of the joints, as theirs do, and the distance between t
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import json
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from cases.incident import IncidentField
@@ -41,3 +42,9 @@ def side_warnings(scene: Scene | RockMass) -> list[str]:
     """Return that error in a line; none without."""
     found = side_error(scene)
     return [] if found is None else [found.words]
+
+
+def note_sides(attributes: dict[str, Any], scene: Scene | RockMass) -> None:
+    """Add that line to the warnings that a result bears."""
+    if lines := side_warnings(scene):
+        attributes["warnings"] = json.dumps([*json.loads(attributes["warnings"]), *lines])

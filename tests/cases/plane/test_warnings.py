@@ -85,5 +85,14 @@ def test_what_a_load_reaches_is_measured_from_where_it_acts(mass):
     assert [line.split(" = ")[0] for line in found] == ["record.points[1]"]
 
 
+def test_a_wave_that_is_inside_before_the_scene_begins_is_named(mass):
+    """From 18 m above the bottom a P wave has entered 18 m / a before t = 0; from 2 m its first
+    0.646 T have, which are none of it."""
+    speed = (5e10 * 0.75 / (1.25 * 0.5) / 2600) ** 0.5
+    assert not any("through" in line for line in warnings(mass(waves__0__through=[0.0, 2.0])))
+    (line,) = (x for x in warnings(mass(waves__0__through=[0.0, 18.0])) if "through" in x)
+    assert f"enters the domain {18 / speed:.3g} s before t = 0" in line
+
+
 def test_gravity_that_acts_suddenly_reaches_everything(mass):
     assert warnings(mass(time__duration=0.008, gravity={"static": False})) == []
