@@ -267,13 +267,11 @@ def _units_of(number: int, row: list[str]) -> list[str]:
 def _row_of(text: str, separator: str, size: int, time_name: str) -> list[str]:
     """Return the cells of a line before the numbers, by their separator; by another one where
     only that gives a header of this size."""
-    rows = []
-    for one in (separator, *SEPARATORS):
-        row = _cells(text, one)
+    rows = [_cells(text, one) for one in (separator, *SEPARATORS)]
+    for i, row in enumerate(rows):
         if len(row) == 2 * size and all(cell in KNOWN for cell in row[1::2]):  # time, s, load, Pa
             row = [f"{name}, {unit}" for name, unit in zip(row[::2], row[1::2], strict=True)]
-        rows.append(row)
-        if len(row) == size and (one == separator or _times(row, time_name)):
+        if len(row) == size and (i == 0 or _times(row, time_name)):
             return row
     return rows[0]
 

@@ -54,11 +54,9 @@ def asked(text: str, is_label: Callable[[str], bool]) -> Asked:
     colons = [i for i, letter in enumerate(text) if letter == ":"]
     found = next((i for i in colons if Path(text[:i]).is_file()), None)
     if found is None:
-        file, colon, label = text.rpartition(":")
+        file, _, label = text.rpartition(":")
         return (
-            Asked(text, Path(file), "", label)
-            if colon and "@" in label
-            else Asked(text, Path(text))
+            Asked(text, Path(file), "", label) if file and "@" in label else Asked(text, Path(text))
         )
     path, which = Path(text[:found]), text[found + 1 :].strip()
     if is_label(which):

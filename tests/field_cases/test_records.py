@@ -323,3 +323,25 @@ def test_numbers_of_a_bare_table_are_columns_by_number(tmp_path, pillar):
         [f"{tmp_path / 'a'}:3=stress@20"], [pillar(time__duration=0.02)]
     )
     assert next(iter(curve.waveforms.values())).tolist() == [1.0, 2.0, 3.0]
+
+
+def test_a_wave_and_a_base_of_a_rock_mass_are_read_in_their_units(tmp_path, monkeypatch):
+    """mm/s of a wave, and g of a base, over milliseconds; the wave's times look like none."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "wave").write_text("time [ms];v [mm/s]\n0;0\n5;2\n10;0\n")
+    (tmp_path / "base").write_text("time\ta\nms\tg\n0\t0\n5\t0,1\n10\t0\n")
+    table = {"shape": "table", "amplitude": 1.0}
+    base = {"kind": "base", "side": "bottom", "direction": [1.0, 0.0], "quantity": "acceleration"}
+    wave = {"kind": "P", "direction": [0.0, 1.0], "quantity": "velocity"}
+    rock = {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.25}
+    shared = {"title": "a", "domain": {"size": [10.0, 10.0]}, "rock": rock}
+    shared |= {"time": {"duration": 0.02}, "record": {"points": [[5.0, 5.0]]}}
+    quiet = dict.fromkeys(("left", "right", "bottom", "top"), "quiet")
+    hit = {**shared, "boundaries": quiet, "waves": [{**table, **wave, "file": "wave"}]}
+    shaken = {**shared, "boundaries": {**quiet, "bottom": "fixed"}}
+    shaken |= {"loads": [{**table, **base, "file": "base"}]}
+    (one,), (other,) = (jointwave.load(tables).pulses for tables in (hit, shaken))
+    assert one.history.time.tolist() == other.history.time.tolist() == [0.0, 0.005, 0.01]
+    assert one.history.stress.tolist() == [0.0, 0.002, 0.0]
+    assert other.history.stress.tolist() == [0.0, 0.1 * 9.80665, 0.0]
+    assert one.timed and other.timed
