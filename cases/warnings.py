@@ -62,6 +62,10 @@ def _of_poisson(scene: Scene, p: Properties, wave: ShortestWave | None) -> Itera
             f"rock.p_speed = {rock.p_speed:g} below sqrt(2) rock.s_speed = {rock.s_speed:g} m/s "
             f"gives a negative Poisson's ratio, {p.poisson:.3g}"
         )
+    given = rock.equivalent_modulus or rock.p_speed
+    if given and rock.intact_modulus is None and "intact_poisson" in rock.model_fields_set:
+        poisson = rock.intact_poisson
+        yield f"rock.intact_poisson = {poisson:g} is not used: it needs rock.intact_modulus"
     for key in ("equivalent_poisson", "intact_poisson"):
         value = getattr(rock, key)
         if value is not None and value < 0:

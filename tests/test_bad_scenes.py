@@ -660,6 +660,10 @@ THICK = {
         "thickness = 0.1\ncohesion = 0.0\n",
         ["soft_layers[0].cohesion = 0.0", "a layer with thickness is rock"],
     ),
+    "a layer with a shear stiffness": (
+        "thickness = 0.1\nshear_stiffness = 1e9\n",
+        ["soft_layers[0].shear_stiffness = 1000000000.0", "a layer with thickness is rock"],
+    ),
     "a layer that opens": (
         "thickness = 0.1\ntension = false\n",
         ["soft_layers[0].tension = false", "a layer with thickness is rock"],

@@ -42,8 +42,14 @@ def check_scheme(scene: Scene) -> None:
             )
 
 
-#: Keys of joints that a layer meshed as rock does not take.
-STRENGTH = ("tension", "friction_angle", "cohesion", *(part.keys[0] for part in PARTS))
+#: Keys of joints that a layer meshed as rock does not take: its shear stiffness is half of K_n.
+OF_JOINTS = (
+    "shear_stiffness",
+    "tension",
+    "friction_angle",
+    "cohesion",
+    *(part.keys[0] for part in PARTS),
+)
 
 
 def check_discretisation(scene: Scene) -> None:
@@ -101,7 +107,7 @@ def _check_layer(table: str, layer: SoftLayer, scene: Scene) -> None:
         raise contradiction(key, layer.thickness, "needs a spacing_stiffness or normal_stiffness")
     if scene.numerics.continuum.mesh is not None:
         raise contradiction(key, layer.thickness, "cannot be meshed with numerics.continuum.mesh")
-    for other in STRENGTH:
+    for other in OF_JOINTS:
         value = getattr(layer, other)
         if value is not None and value is not True:
             raise contradiction(

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from cases.errors import SceneError
 from cases.histories import Gabor, LoadHistory, Ricker, Step
 from cases.incident import WITHIN, plane_wave
 from cases.kinds import AnyScene
@@ -70,13 +71,19 @@ def _along_pillar(scene: Scene) -> Iterator[EnteringWave]:
 
 
 def _of_waves(scene: RockMass) -> Iterator[EnteringWave]:
-    field = field_of(scene) if scene.waves else None
+    try:
+        field = field_of(scene) if scene.waves else None
+    except SceneError:  # no engine takes them, which says why
+        field = None
     for i, one in enumerate(scene.waves):
-        wave = field.waves[i] if isinstance(field, MediumField) else plane_wave(scene, one)
-        density = getattr(getattr(wave, "rock", None), "density", scene.rock.density)
-        name = f"waves[{i}], {one.kind}"
+        if isinstance(field, MediumField):
+            density, speed, pulse = scene.rock.density, field.waves[i].speed, field.waves[i].pulse
+        else:
+            wave = plane_wave(scene, one)
+            density, speed, pulse = float(wave.rock.density), wave.speed, wave.pulse
         if one.amplitude:
-            yield _wave(name, wave.pulse, 1.0, density, wave.speed, scene.time.duration)
+            name = f"waves[{i}], {one.kind}"
+            yield _wave(name, pulse, 1.0, density, speed, scene.time.duration)
 
 
 def _through_side(scene: RockMass, table: str, load: PlaneLoad) -> Iterator[EnteringWave]:

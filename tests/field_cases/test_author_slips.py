@@ -89,6 +89,10 @@ OF_PILLARS = {
         {"load": PILLAR["load"] | {"period": 10.0}, "time": {"duration": 50.0}},
         "load.period = 10 s: a wave crosses the rock",
     ),
+    "blocks of nothing": (
+        {"rock": PILLAR["rock"] | {"intact_poisson": 0.3}},
+        "rock.intact_poisson = 0.3 is not used: it needs rock.intact_modulus",
+    ),
     "hertz": (
         {
             "load": PILLAR["load"] | {"shape": "sine", "period": 100.0},
