@@ -123,9 +123,11 @@ def _parts(shape: shapely.Geometry) -> list[shapely.Polygon]:
 
 
 def corners_of(polygon: shapely.Geometry) -> np.ndarray:
-    """Return the corners of a polygon counter-clockwise, without those that turn nowhere."""
+    """Return the corners of a polygon counter-clockwise from the leftmost, and of these the lowest,
+    one: in whichever order they are given. Those that turn nowhere are left out."""
     points = shapely.get_coordinates(shapely.geometry.polygon.orient(polygon).exterior)[:-1]
     before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     flat = np.abs(turn) <= TOLERANCE * np.hypot(*before.T) * np.hypot(*after.T)
-    return points[~flat]
+    kept = points[~flat]
+    return np.roll(kept, -np.lexsort([kept[:, 1], kept[:, 0]])[0], axis=0)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from cases.partition.blocks import Partition
-from cases.partition.outline import outline_of
+from cases.partition.outline import Outline, outline_of
 from cases.schema.domain import Domain
 from cases.schema.rock_mass import RockMass
 from cases.schema.sources import PlaneLoad
@@ -16,10 +16,7 @@ def loaded_part(
     scene: RockMass, partition: Partition, load: PlaneLoad
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return which boundary edges a pressure acts on, bool array [b], and from where to where along
-    each, of its length [b, 2].
-
-    Of an opening the part from the first point to the second is that counter-clockwise around it.
-    """
+    each, of its length [b, 2]."""
     edges, name = partition.boundary, load.side or f"opening {load.opening}"
     chosen = np.flatnonzero(edges.side == partition.sides.index(name))
     part = np.zeros((len(edges), 2))
@@ -33,14 +30,12 @@ def covered(domain: Domain, load: PlaneLoad, starts: np.ndarray, ends: np.ndarra
     if load.between is None:
         return np.tile([0.0, 1.0], (len(starts), 1))
     outline = outline_of(domain)
-    lines = outline.edges(load.side, load.opening)
-    active = _segments(lines, np.array(load.between), load.opening is not None)
     part, tolerance = np.zeros((len(starts), 2)), BESIDE * outline.size
-    for start, end in active:
+    for start, end in loaded_lines(outline, load):
         length = float(np.hypot(*(end - start)))
-        along = (end - start) / length
         if length <= tolerance:
             continue
+        along = (end - start) / length
         s, off = [], []
         for points in (starts, ends):
             s.append((points - start) @ along)
@@ -54,15 +49,20 @@ def covered(domain: Domain, load: PlaneLoad, starts: np.ndarray, ends: np.ndarra
     return part
 
 
-def _segments(
-    lines: np.ndarray, between: np.ndarray, closed: bool
-) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the straight parts of lines [n, 2, 2], m, that lie between two points of them."""
-    (i, s), (j, t) = (_place(lines, point) for point in between)
-    if not closed and (j, t) < (i, s):
-        (i, s), (j, t), between = (j, t), (i, s), between[::-1]
-    if i == j and s <= t:
+def loaded_lines(outline: Outline, load: PlaneLoad) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return the straight parts of the boundary, from point to point, between the two points of a
+    load: of one face what is between them; of a side that has ends, from one to the other; else,
+    as of an opening, from the first to the second counter-clockwise around it."""
+    lines, between = outline.edges(load.side, load.opening), np.array(load.between)
+    near = [_off(lines, point) <= BESIDE * outline.size for point in between]
+    if (near[0] & near[1]).any():
         return [(between[0], between[1])]
+    gaps = np.flatnonzero((lines[:, 0] != np.roll(lines[:, 1], 1, axis=0)).any(axis=1))
+    if gaps.size:
+        lines = np.roll(lines, -gaps[0], axis=0)
+    (i, s), (j, t) = (_place(lines, point) for point in between)
+    if gaps.size and (j, t) < (i, s):
+        (i, s), (j, t), between = (j, t), (i, s), between[::-1]
     found = [(between[0], lines[i, 1])]
     k = (i + 1) % len(lines)
     while k != j:
@@ -73,8 +73,13 @@ def _segments(
 
 def _place(lines: np.ndarray, point: np.ndarray) -> tuple[int, float]:
     """Return the line that is nearest to a point, and where on it, of its length."""
+    k = int(_off(lines, point).argmin())
+    start, along = lines[k, 0], lines[k, 1] - lines[k, 0]
+    return k, float(np.clip((point - start) @ along / (along @ along), 0.0, 1.0))
+
+
+def _off(lines: np.ndarray, point: np.ndarray) -> np.ndarray:
+    """Return the distance of a point from each line [n], m."""
     start, along = lines[:, 0], np.diff(lines, axis=1)[:, 0]
     t = np.clip(((point - start) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
-    off = np.hypot(*(start + t[:, None] * along - point).T)
-    k = int(off.argmin())
-    return k, float(t[k])
+    return np.hypot(*(start + t[:, None] * along - point).T)

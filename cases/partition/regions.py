@@ -11,6 +11,7 @@ import shapely
 from cases.partition.joints import direction_of
 from cases.partition.lines import one_line
 from cases.partition.openings import passed_by
+from cases.partition.outline import corners_of
 from cases.partition.split import split
 from cases.partition.subdivision import Subdivision
 from cases.schema.region import REST
@@ -101,7 +102,7 @@ def cut_into_regions(sub: Subdivision, regions: Sequence[Region], tolerance: flo
     for k in reversed(range(len(regions))):
         one = regions[k]
         if one.outline is not None:
-            corners = np.array(one.outline, dtype=float)
+            corners = corners_of(shapely.Polygon(one.outline))
             for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
                 free = sub.region == ROCK
                 passed = free & passed_by(sub, sub.halves(), start, end, tolerance)

@@ -12,6 +12,7 @@ from cases.material.rock import elastic_rock
 from cases.partition.joints import direction_of
 from cases.partition.locate import sides_at
 from cases.partition.outline import outline_of
+from cases.partition.parts import loaded_lines
 from cases.partition.regions import rocks_of
 from cases.partition.scene import partition_of
 from cases.schema.joint_set import JointSet
@@ -186,6 +187,23 @@ def _block_size(scene: RockMass) -> float | None:
     return min(spacings[1], size) if len(spacings) > 1 else size
 
 
+def _of_parts(scene: RockMass) -> Iterator[str]:
+    """Say where a pressure acts on more than half of an opening, which its points in the other
+    order would not."""
+    outline = outline_of(scene.domain)
+    for i, load in enumerate(scene.loads):
+        if load.between is not None and load.opening is not None:
+            whole = np.diff(outline.edges(opening=load.opening), axis=1)[:, 0]
+            of = float(np.hypot(*whole.T).sum())
+            own = sum(float(np.hypot(*(b - a))) for a, b in loaded_lines(outline, load))
+            if own > (0.5 + COINCIDENT) * of:
+                yield (
+                    f"loads[{i}].between is {own:.4g} m of the {of:.4g} m around opening "
+                    f"{load.opening}, counter-clockwise from its first point to its second: in "
+                    f"the other order it is the other {of - own:.4g} m"
+                )
+
+
 def _of_arrivals(scene: RockMass) -> Iterator[str]:
     """Warn of receivers that no wave in intact rock reaches before the end of the scene."""
     falls = scene.gravity is not None and not scene.gravity.static
@@ -261,6 +279,7 @@ RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
     _of_directions,
     _of_times,
     _of_wavelength,
+    _of_parts,
     _of_arrivals,
     _of_points_on_joints,
     _of_starts,

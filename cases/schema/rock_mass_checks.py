@@ -185,7 +185,7 @@ def _check_part(table: str, load: PlaneLoad, outline: Outline) -> None:
         if distance(np.array(point), edges) > BESIDE * outline.size:
             on = load.side or f"openings[{load.opening}]"
             raise contradiction(f"{table}.between", point, f"must lie on {on}")
-    if load.between[0] == load.between[1]:
+    if np.hypot(*np.diff(load.between, axis=0)[0]) <= BESIDE * outline.size:
         raise contradiction(f"{table}.between", load.between, "must be two points")
 
 

@@ -47,7 +47,8 @@ class PlaneLoad(Pulse):
     kind: Literal["pressure", "force", "base"]
     side: Side | None = None  #: loaded by a pressure, or moved as a base
     opening: Annotated[int, Field(ge=0)] | None = None  #: loaded by a pressure, counted from 0
-    #: m, two points of the boundary: the pressure acts only between them
+    #: m, two points of the boundary: the pressure acts only between them; around an opening
+    #: counter-clockwise from the first to the second, unless both are on one face
     between: Annotated[list[Point], Field(min_length=2, max_length=2)] | None = None
     at: Point | None = None  #: m, where a force acts
     direction: DirectionInPlane | None = None  #: x, y: of a force or of the motion of a base

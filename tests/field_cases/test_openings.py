@@ -1,0 +1,118 @@
+"""Pressure on faces of an opening, as in SPECFEM2D's issue 1229: which faces are loaded, and that
+the order in which points are listed says nothing about it."""
+
+import numpy as np
+import pytest
+
+from cases.errors import SceneError
+from cases.read import load_tables
+from cases.warnings import warnings
+from compare.engines import solve
+
+ENGINES = ("dem", "continuum-jointed")
+SQUARE = [[11.0, 11.0], [13.0, 11.0], [13.0, 13.0], [11.0, 13.0]]
+OCTAGON = [[11.3, 11.1], [12.8, 11.2], [13.4, 12.1], [12.9, 13.2], [11.4, 13.3], [10.6, 12.3]]
+LAW = {"normal_stiffness": 5e10, "shear_stiffness": 2e10}
+ORDERS = ["reversed", "from another corner", "both"]
+
+
+def ordered(points, order):
+    """Return a list of points in another order around the same polygon."""
+    found = points if order == "reversed" else points[3:] + points[:3]
+    return found if order == "from another corner" else found[::-1]
+
+
+def opened(opening, between=None, **tables):
+    """Return rock in blocks of 2 m with an opening, under pressure on its faces."""
+    load = {"kind": "pressure", "opening": 0, "shape": "sine", "amplitude": 1e6, "period": 4e-3}
+    domain = {"size": [24.0, 24.0], "openings": [opening], "non_convex": "cut"}
+    grid = [
+        {"name": name, "dip": dip, "spacing": 2.0, "through": [11.0, 11.0], **LAW}
+        for name, dip in (("bed", 0.0), ("cross", 90.0))
+    ]
+    own = {
+        "title": "an opening",
+        "domain": domain | tables.pop("domain", {}),
+        "rock": {"density": 2600.0, "intact_modulus": 5e10},
+        "joint_sets": grid,
+        "loads": [load if between is None else load | {"between": between}],
+        "boundaries": dict.fromkeys(("left", "right", "bottom", "top"), "quiet"),
+        "time": {"duration": 4e-3},
+        "record": {"points": [[10.0, 12.1], [14.0, 12.1], [12.1, 10.0], [12.1, 14.0]]},
+        "numerics": {"continuum": {"size": 1.0}},
+    }
+    return load_tables(own | tables)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("order", ORDERS)
+def test_the_order_of_an_openings_points_changes_nothing(engine, order):
+    """Bit by bit, though its blocks are not convex and their parts depend on how they are cut."""
+    found, other = (solve(engine, opened(points)) for points in (OCTAGON, ordered(OCTAGON, order)))
+    assert np.abs(found.velocity).max() > 0.01
+    assert (found.velocity.values == other.velocity.values).all()
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("order", ORDERS)
+def test_nor_does_that_of_an_outline_or_a_region(engine, order):
+    """A domain with a cut corner and a bay, and a soft lens beside the opening."""
+    around = [[0.0, 0.0], [24.0, 0.0], [24.0, 24.0], [15.0, 24.0], [14.0, 21.0], [0.0, 20.0]]
+    lens = [[3.1, 3.2], [6.3, 3.1], [7.2, 5.3], [5.1, 7.2], [3.2, 6.1]]
+
+    def scene(outline, soft):
+        region = {"name": "lens", "outline": soft, "intact_modulus": 1e10}
+        domain = {"size": None, "outline": outline}
+        held = {"left": "quiet", "outline": "free"}
+        return opened(SQUARE, domain=domain, regions=[region], boundaries=held)
+
+    found, other = (
+        solve(engine, one)
+        for one in (scene(around, lens), scene(ordered(around, order), ordered(lens, order)))
+    )
+    assert (found.velocity.values == other.velocity.values).all()
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("points", [SQUARE, SQUARE[::-1]], ids=["counter-clockwise", "clockwise"])
+def test_two_corners_of_a_face_load_this_face(engine, points):
+    """In either order: the rock beside the left face moves to the left, by some 1 MPa / rho c, and
+    that beyond the right one little, later."""
+    ends = [[11.0, 11.0], [11.0, 13.0]]
+    found, other = (
+        solve(engine, opened(points, between)).velocity.values for between in (ends, ends[::-1])
+    )
+    assert (found == other).all()
+    loaded, beyond = found[0, :, 0], found[1, :, 0]
+    assert loaded.min() < -0.02 and np.abs(beyond).max() < 0.3 * np.abs(loaded).max()
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_faces_are_loaded_counter_clockwise_and_two_parts_make_the_whole(engine):
+    """From the middle of the left face down, right and up to the middle of the right one; from
+    there back over the top; together the pressure all around, by superposition."""
+    left, right = [11.0, 12.0], [13.0, 12.0]
+    below, above, whole = (
+        solve(engine, opened(SQUARE, between)).velocity.values
+        for between in ([left, right], [right, left], None)
+    )
+    down, up = below[2, :, 1], above[3, :, 1]
+    assert down.min() < -0.01 and np.abs(above[2, :, 1]).max() < 0.5 * np.abs(down).max()
+    assert up.max() > 0.01 and np.abs(below[3, :, 1]).max() < 0.5 * np.abs(up).max()
+    assert np.abs(below + above - whole).max() < 1e-9 * np.abs(whole).max()
+
+
+def test_what_goes_more_than_half_around_is_said():
+    """6.5 of 8 m by way of floor and right face; of one face nothing is said, in either order. Two
+    points that are one are refused."""
+
+    def said(*between):
+        return [line for line in warnings(opened(SQUARE, list(between))) if "between" in line]
+
+    corner = [11.0, 13.0]
+    assert not said(corner, [11.0, 11.5]) and not said([11.0, 11.5], corner)
+    assert not said([11.5, 13.0], [11.0, 12.0])
+    (line,) = said([11.0, 12.0], [11.5, 13.0])
+    assert line.startswith("loads[0].between is 6.5 m of the 8 m around opening 0")
+    with pytest.raises(SceneError, match="must be two points"):
+        opened(SQUARE, [corner, [11.0, 13.0 - 1e-9]])
