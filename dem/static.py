@@ -83,8 +83,8 @@ def prestressed(scene: Scene, p: Properties) -> np.ndarray:
     normal = scene.prestress.normal if scene.prestress else 0.0
     u = np.append(0.0, np.cumsum(gaps_under(p, normal)))
     if end == "fixed":
-        return u - u[-1] + normal / (2 * p.at_end.regular_stiffness)
-    half = normal / (2 * p.at_start.regular_stiffness)
+        return u - u[-1] + normal / p.at_end.wall_stiffness
+    half = normal / p.at_start.wall_stiffness
     return u - half if start == "fixed" else u - u.mean()
 
 

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from cases.material.constant_q import Mechanisms
     from cases.schema.scene import Scene
 
+#: Times that intact rock may be stiffer than rock with joints where it joins an end block to a
+#: wall: stiffer yet it would but shorten the step, of a half block that is rigid beside the joints.
+RIGID = 100.0
+
 
 @dataclass(frozen=True, kw_only=True)
 class Properties(Strength):
@@ -166,6 +170,21 @@ class Properties(Strength):
         return float(self.own_shear_stiffness[ordinary[0] if ordinary.size else 0])
 
     @property
+    def wall_stiffness(self) -> float:
+        """Of the half block of rock between the centre of an end block and a wall, Pa/m: intact
+        rock, for no joint is there; a block and its joint where no more is known."""
+        return _half_block(self.regular_stiffness, self.intact_modulus, self.spacing)
+
+    @property
+    def wall_shear_stiffness(self) -> float:
+        """The same in shear, Pa/m."""
+        whole, rock = self.regular_shear_stiffness, None
+        if self.own_shear_stiffness is not None:  # what is left of the compliance without the joint
+            left = 1 / whole - 1 / self.regular_own_shear_stiffness
+            rock = self.spacing / left if left > 0 else inf
+        return _half_block(whole, rock, self.spacing)
+
+    @property
     def rock_compliance(self) -> np.ndarray | None:
         """What rock has of the compliance between rigid blocks [N - 1], m/Pa, at most all but a
         billionth of it; None where no joint stiffens."""
@@ -195,6 +214,14 @@ class Properties(Strength):
             (self.time_constant or 0.0) if usual is None else usual
         )
         return differs & (self.excess_compliance == 0)
+
+
+def _half_block(whole: float, rock: float | None, spacing: float) -> float:
+    """Return the stiffness of half a block of rock of this modulus (Pa), from that of a block with
+    its joint, both Pa/m; None: rock that is not known apart."""
+    if rock is None:
+        return 2 * whole
+    return 2 * min(rock / spacing, RIGID * whole)
 
 
 #: The scene that was calibrated last, while it lives, and its properties: a run asks several times.

@@ -1,4 +1,4 @@
-"""The two ends of the chain: a half-block spring and a dashpot on the end block.
+"""The two ends of the chain: a spring and a dashpot on the end block.
 
 Everything is written for the outward motion of the end block, with the reaction positive in
 compression.
@@ -30,24 +30,25 @@ def build_end(kind: str, p: Properties, dt: float) -> End:
     """Return the end of this kind for a step dt (s).
 
     quiet: -rho c v A on the end block (9). matched: the same dashpot behind the half-block spring
-    2 k; fixed: that spring to a wall (`joints.ends`).
+    2 k; fixed: half a block of rock to a wall (`joints.ends`).
     """
     if kind == "free":
         return End()
     if kind == "quiet":
         return End(viscosity=p.impedance * p.area)
-    spring = _half_block(kind, p, dt)
+    spring = _spring(kind, p, dt)
     return End(spring.stiffness, spring.viscosity, spring.decay, spring.gain)
 
 
 def end_stiffness(kind: str, p: Properties) -> float:
     """Return the end's contribution to the end block's stiffness at the critical step, N/m."""
-    return 0.0 if kind in ("free", "quiet") else _half_block(kind, p).critical_stiffness
+    return 0.0 if kind in ("free", "quiet") else _spring(kind, p).critical_stiffness
 
 
-def _half_block(kind: str, p: Properties, dt: float = 0.0) -> HalfSpring:
-    z = inf if kind == "fixed" else p.impedance * p.area
-    return half_spring(2 * p.regular_stiffness * p.area, p.time_constant or 0.0, z, dt)
+def _spring(kind: str, p: Properties, dt: float = 0.0) -> HalfSpring:
+    fixed, eta = kind == "fixed", p.time_constant or 0.0
+    stiffness = p.wall_stiffness if fixed else 2 * p.regular_stiffness
+    return half_spring(stiffness * p.area, eta, inf if fixed else p.impedance * p.area, dt)
 
 
 @formula

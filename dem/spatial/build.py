@@ -137,13 +137,14 @@ def build_ends(scene: Scene, p: Properties, block: Block) -> np.ndarray:
     """Return the constants of start and end, with the prestress that they carry where they give
     way."""
     size = 3 if scene.motion.rotation == "none" else 6
-    springs, base = end_springs(p, face_of(contact_points(scene)), size), np.zeros(size)
+    face, base = face_of(contact_points(scene)), np.zeros(size)
     base[:3] = scene.load.direction if scene.shakes_base else 0.0
     kinds, found = (scene.ends.start, scene.ends.end), []
     for kind, side, moved in zip(kinds, (1.0, -1.0), (base, 0.0 * base), strict=True):
         steady = np.zeros(size)
         if scene.prestress is not None and kind != "fixed":
             steady[1] = side * scene.prestress.normal * p.area
+        springs = end_springs(kind, p, face, size)
         found.append(end_constants(kind, side, springs, block, steady, moved))
     return np.array(found)
 

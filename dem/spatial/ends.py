@@ -64,7 +64,7 @@ def face_of(points: np.ndarray) -> Face:
 
 
 class Springs(NamedTuple):
-    """Half-block springs (N/m, N m) and the dashpots (N s/m, N m s) of the rock beyond an end,
+    """The springs of an end face (N/m, N m) and the dashpots (N s/m, N m s) of the rock beyond it,
     each [freedoms], and the springs' time constant eta, s."""
 
     stiffness: np.ndarray
@@ -72,9 +72,13 @@ class Springs(NamedTuple):
     time_constant: float
 
 
-def end_springs(p: Properties, face: Face, size: int) -> Springs:
-    """Return the springs 2 K' and the dashpots Z of an end face, spread over its freedoms."""
-    stiffness = face.spread(2 * p.regular_stiffness, 2 * p.regular_shear_stiffness, size)
+def end_springs(kind: str, p: Properties, face: Face, size: int) -> Springs:
+    """Return the springs, 2 K' or those of half a block of rock to a wall, and the dashpots Z of an
+    end face of this kind, spread over its freedoms."""
+    springs = 2 * p.regular_stiffness, 2 * p.regular_shear_stiffness
+    if kind == "fixed":
+        springs = p.wall_stiffness, p.wall_shear_stiffness
+    stiffness = face.spread(*springs, size)
     dashpot = face.spread(p.impedance, p.shear_impedance, size)
     return Springs(stiffness, dashpot, p.time_constant or 0.0)
 

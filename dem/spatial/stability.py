@@ -71,10 +71,10 @@ def _assembled(
         + p.shear_stiffness[: count - 1, None] * face.shear
     )
     outer = sparse.lil_matrix((size * count, size * count))
-    held = end_springs(p, face, size)
     for kind, lever, at in ((ends[0], start, 0), (ends[1], end, count - 1)):
         block = slice(size * at, size * (at + 1))
-        outer[block, block] += lever.T @ np.diag(face_stiffness(kind, held)) @ lever
+        held = face_stiffness(kind, end_springs(kind, p, face, size))
+        outer[block, block] += lever.T @ np.diag(held) @ lever
     return relative.tocsr(), springs[:, :size].ravel(), outer.tocsr()
 
 

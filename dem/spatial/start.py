@@ -185,7 +185,7 @@ class RowRelaxation:
     def _load(self, scene: Scene, p: Properties) -> None:
         """Place the blocks where elastic joints carry the prestress."""
         along = prestressed(scene, p)[None]
-        half = self.prestress / (2 * p.regular_stiffness)
+        half = self.prestress / p.wall_stiffness
         for side, kind, closure in ((0, scene.ends.start, -half), (1, scene.ends.end, half)):
             if kind == "fixed":
                 self.state.ends[side, CLOSURE, 1] = closure

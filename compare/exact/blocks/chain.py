@@ -6,10 +6,10 @@ Blocks of mass m, joints k_j and dashpots c_j between them, gap g_j = u_{j+1} - 
 
 and in a joint without tension F_j = max(F_j, 0), 0 while P < k_j g_j (Guo & Li 2002, equation
 10). F_0 and F_N are P and the reactions of the ends: none (free), dashpot Z A on the block (quiet,
-equation 9), dashpot Z A on a massless face behind the half-block spring 2k (matched), or that
-spring to a wall (fixed), moved by a load that is a motion. Each block is also subject to its weight
-and the damping -alpha m v_j. Quiet and matched ends that bear the weight exert, beside, what they
-would if they were fixed. Displacements are measured from the prestressed state.
+equation 9), dashpot Z A on a massless face behind the half-block spring 2k (matched), or half a
+block of rock to a wall (fixed), moved by a load that is a motion. Each block is also subject to its
+weight and the damping -alpha m v_j. Quiet and matched ends that bear the weight exert, beside, what
+they would if they were fixed. Displacements are measured from the prestressed state.
 
 A state is an array whose last axis holds w u of the N blocks (m/s), their N velocities (m/s) and
 w times the displacement of the two faces; w = 2 sqrt(k/m) makes its parts of equal magnitude.
@@ -29,7 +29,7 @@ from compare.exact.conditions import static_stress
 
 
 class EndOfChain(NamedTuple):
-    """The support of an end: its kind; the spring (N/m) and dashpot (N s/m) of its half block;
+    """The support of an end: its kind; the spring (N/m) and dashpot (N s/m) in front of it;
     the dashpot Z A of a quiet or matched one, N s/m."""
 
     kind: str
@@ -49,6 +49,7 @@ class Chain:
     contact_y, centre_y : float arrays [N + 1] and [N], faces and centres of the blocks, m.
     stiffness, viscosity : float arrays [N - 1], N/m and N s/m.
     tension : bool array [N - 1], whether a joint carries tension.
+    regular : stiffness of an ordinary joint, N/m; the largest of the two ends' rock.
     start, end : supports of the ends.
     prestress : N, compression positive.
     gravity : its component along y, m/s2. borne : what start and end bear of it beside their
@@ -65,6 +66,7 @@ class Chain:
     stiffness: np.ndarray
     viscosity: np.ndarray
     tension: np.ndarray
+    regular: float
     start: EndOfChain
     end: EndOfChain
     prestress: float
@@ -82,8 +84,7 @@ class Chain:
     @cached_property
     def rate(self) -> float:
         """2 sqrt(k/m) of an ordinary joint, rad/s: the largest frequency of a long chain."""
-        stiffness = max(self.start.stiffness, self.end.stiffness) / 2
-        return 2 * sqrt(stiffness / np.min(self.mass))
+        return 2 * sqrt(self.regular / np.min(self.mass))
 
     @property
     def size(self) -> int:
@@ -104,6 +105,7 @@ def chain(scene: Scene) -> Chain:
         stiffness=p.stiffness * p.area,
         viscosity=np.zeros_like(p.stiffness) if etas is None else p.stiffness * p.area * etas,
         tension=p.tension,
+        regular=max(p.at_start.regular_stiffness, p.at_end.regular_stiffness) * p.area,
         start=_end(scene.ends.start, p.at_start),
         end=_end(scene.ends.end, p.at_end),
         prestress=static_stress(scene) * p.area,
@@ -129,9 +131,10 @@ def standing(scene: Scene, chain: Chain) -> tuple[Chain, np.ndarray]:
 
     Every joint is taken to carry tension.
     """
+    p, ends = calibrate(scene), (chain.start, chain.end)
     start, end = (
-        own._replace(kind="fixed" if bears or own.kind == "fixed" else "free")
-        for own, bears in zip((chain.start, chain.end), scene.bears, strict=True)
+        _end("fixed" if bears or own.kind == "fixed" else "free", rock)
+        for own, bears, rock in zip(ends, scene.bears, (p.at_start, p.at_end), strict=True)
     )
     carrying = np.ones_like(chain.tension)
     held = replace(chain, start=start, end=end, borne=(0.0, 0.0), tension=carrying)
@@ -144,8 +147,9 @@ def standing(scene: Scene, chain: Chain) -> tuple[Chain, np.ndarray]:
 
 
 def _end(kind: str, p: Properties) -> EndOfChain:
-    half = 2 * p.regular_stiffness * p.area
-    return EndOfChain(kind, half, half * (p.time_constant or 0.0), p.impedance * p.area)
+    stiffness = p.wall_stiffness if kind == "fixed" else 2 * p.regular_stiffness
+    spring = stiffness * p.area
+    return EndOfChain(kind, spring, spring * (p.time_constant or 0.0), p.impedance * p.area)
 
 
 def rates(chain: Chain, state: np.ndarray, drive: float = 0.0) -> np.ndarray:

@@ -102,13 +102,15 @@ def row(scene: Scene, held: bool = False) -> Row:
         kinds = "fixed" if at_start else "free", "fixed" if at_end else "free"
     points = face_points(scene.pillar.side, scene.joints.contact_points, scene.joints.point_rule)
     half = face_matrix(points, 2 * p.regular_stiffness, 2 * p.regular_shear_stiffness)
+    wall = face_matrix(points, p.wall_stiffness, p.wall_shear_stiffness)
     dashpot = face_matrix(points, p.impedance, p.shear_impedance)
     springs = [
         face_matrix(points, normal, shear)
         for normal, shear in zip(p.stiffness, p.shear_stiffness, strict=True)
     ]
     etas = np.zeros(len(springs)) if p.joint_time_constant is None else p.joint_time_constant
-    start, end = (_end(kind, half, dashpot, p.time_constant or 0.0) for kind in kinds)
+    eta = p.time_constant or 0.0
+    start, end = (_end(k, wall if k == "fixed" else half, dashpot, eta) for k in kinds)
     dashpots = [eta * spring for eta, spring in zip(etas, springs, strict=True)]
     across, along = p.inertia_across, p.inertia_along
     return Row(
@@ -176,7 +178,7 @@ def _diagonal(blocks: list[np.ndarray]) -> np.ndarray:
     return matrix.reshape(n * c, n * c)
 
 
-def _end(kind: str, half: np.ndarray, dashpot: np.ndarray, eta: float) -> tuple:
+def _end(kind: str, spring: np.ndarray, dashpot: np.ndarray, eta: float) -> tuple:
     if kind == "free":
-        return 0 * half, 0 * half
-    return (0 * half, dashpot) if kind == "quiet" else (half, eta * half)
+        return 0 * spring, 0 * spring
+    return (0 * spring, dashpot) if kind == "quiet" else (spring, eta * spring)
