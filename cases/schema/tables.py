@@ -143,7 +143,8 @@ class Motion(Table):
 
 class Ends(Table):
     """Boundary conditions of the ends: matched, a dashpot behind the end block's half-block spring,
-    reflects least; quiet, (9), has the dashpot on the end block; fixed has the spring and a wall.
+    reflects least; quiet, (9), has the dashpot on the end block; fixed is a wall that the rock
+    joins without a joint.
     """
 
     start: Literal["free", "quiet", "matched", "fixed"] = "free"  #: at y = 0

@@ -1,0 +1,94 @@
+"""A wall is a wall in every solver: rock joins it without a joint (blocks and elements disagreed).
+
+The exact bar with joints is the referee: rigid blocks tend to it with the square of their size
+when the end block is joined to the wall by half a block of its rock. With half a joint there, the
+frequency of 20 blocks was 2.4 % off, and its distance fell with the size alone.
+"""
+
+import numpy as np
+import pytest
+
+from cases.material.calibrate import calibrate
+from jointwave import load, misfit, simulate
+
+L, RHO, E, G = 10.0, 2400.0, 8.64e10, 8.64e10 / 2.5
+PILLAR = {
+    "title": "a bar on a wall",
+    "pillar": {"length": L, "side": 1.0, "block": 0.5},
+    "rock": {"density": RHO, "p_speed": 2200.0, "s_speed": 800.0, "intact_modulus": E},
+    "load": {"shape": "ricker", "amplitude": 1e5, "period": 0.05},
+    "ends": {"start": "free", "end": "fixed"},
+    "time": {"duration": 0.15},
+    "record": {"stress": [5.0, L], "velocity": [0.5]},
+    "numerics": {"dem": {"step_fraction": 0.1}},
+}
+ROCK = {
+    "title": "rock on a wall",
+    "domain": {"size": [1.0, L]},
+    "rock": {"density": RHO, "intact_modulus": E, "intact_poisson": 0.0},
+    "joint_sets": [
+        {
+            "name": "bed", "dip": 0.0, "spacing": 0.5, "through": [0.0, 0.5],
+            "normal_stiffness": 9e9, "shear_stiffness": 4e9,
+        }
+    ],
+    "boundaries": {"bottom": "fixed"},
+    "loads": [
+        {"kind": "pressure", "side": "top", "shape": "ricker", "amplitude": 1e5, "period": 0.05}
+    ],
+    "time": {"duration": 0.15},
+    "record": {"points": [[0.5, 9.75]], "joints": [[0.5, 5.0]]},
+    "numerics": {"continuum": {"size": 0.5}},
+}  # fmt: skip
+
+
+def run(solver, **changes):
+    return simulate(load(PILLAR, changes=changes), solver)
+
+
+def test_blocks_on_a_wall_tend_to_the_jointed_bar():
+    """At order 2; the continuum and the exact chain are the bar's and the blocks' to 1e-4."""
+    far = []
+    for block in (1.0, 0.5):
+        bar, blocks = (run(s, **{"pillar.block": block}) for s in ("jointed-bar", "dem"))
+        far.append(misfit(blocks, bar))
+    assert far[1] < 2e-3 and far[0] / far[1] > 3.5
+    assert misfit(run("continuum-jointed"), bar) < 1e-4
+    assert misfit(blocks, run("lattice")) < 1e-4
+
+
+@pytest.mark.parametrize("solver", ["dem", "continuum-jointed"])
+@pytest.mark.parametrize("across", [False, True])
+def test_static_deflection_on_a_wall(solver, across):
+    """Weight rho g y over the rock, and the joints between: none at the wall. Along the axis, and
+    across it without rotation.
+
+    Blocks have their weight at their centres, which adds rho g d^2 / 8 over the modulus to the
+    deflection of the first centre, 1e-4 of it.
+    """
+    changes = {
+        "load.amplitude": 0.0, "motion.rotation": "none", "time.duration": 0.01,
+        "gravity": {"direction": [1.0, 0.0, 0.0] if across else [0.0, 1.0, 0.0]},
+        "record": {"stress": [5.0], "velocity": [0.25]},
+    }  # fmt: skip
+    scene = load(PILLAR, changes=changes)
+    p, u = calibrate(scene), simulate(scene, solver).displacement.values[0, 0]
+    own = p.own_shear_stiffness if across else p.own_stiffness
+    modulus = G if across else E
+    expected = RHO * 9.81 * ((L**2 - 0.25**2) / 2 / modulus + (p.joint_y / own).sum())
+    assert np.abs(u).max() == pytest.approx(expected, rel=2e-4)
+
+
+def test_walls_of_rock_masses_follow_the_same_rule():
+    """Blocks and elements: 20 beds, one of them cut off at the wall without a joint."""
+    scene = load(ROCK)
+    assert misfit(simulate(scene, "dem"), simulate(scene, "continuum-jointed")) < 0.01
+
+
+def test_rock_that_is_all_but_rigid_does_not_decide_the_step():
+    """Half a block is at most 100 times as stiff at a wall as with half a joint: 8 times the steps
+    of a free end at most, sqrt((2 * 100 + 1) / 4) = 7.1 in a long chain."""
+    stiff = load(PILLAR, changes={"rock.intact_modulus": 1e20})
+    free = load(PILLAR, changes={"rock.intact_modulus": 1e20, "ends.end": "free"})
+    steps = [simulate(one, "dem").attrs["critical_dt"] for one in (free, stiff)]
+    assert steps[0] / steps[1] == pytest.approx(np.sqrt(201 / 4), rel=0.01)
