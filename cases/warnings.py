@@ -196,10 +196,16 @@ def _least_critical_step(scene: Scene, p: Properties) -> float:
     """Return a critical step (s) of the row of blocks that no motion of it falls short of.
 
     From bounds on its largest frequency (Gershgorin): of axial motion 4 K'_n A / m, of motion in
-    space twice the larger of those of the faces' springs in translation and in rotation. With
+    space twice the larger of those of the faces' springs in translation and in rotation. Where a
+    block is joined to a wall, whose spring counts once, their mean takes the place of K'. With
     dashpots 2 / omega (sqrt(1 + (omega eta)^2) - omega eta), as leapfrog's that extrapolates rates.
     """
-    normal, shear = float(p.stiffness.max()) * p.area, float(p.shear_stiffness.max()) * p.area
+    normal, shear = float(p.stiffness.max()), float(p.shear_stiffness.max())
+    for kind, rock in ((scene.ends.start, p.at_start), (scene.ends.end, p.at_end)):
+        if kind == "fixed":
+            normal = max(normal, (rock.wall_stiffness + 2 * normal) / 4)
+            shear = max(shear, (rock.wall_shear_stiffness + 2 * shear) / 4)
+    normal, shear = normal * p.area, shear * p.area
     square = 4 * normal / (p.block_mass if p.masses is None else float(p.masses.min()))
     if is_spatial(scene):
         turning = shear * p.spacing**2 / 4 + normal * p.side**2 / 4

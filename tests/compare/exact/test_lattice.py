@@ -19,8 +19,9 @@ QUICK = {"shape": "sine", "amplitude": 1e6, "period": 0.002}
 SOFT = [{"y": 2.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.1}]
 
 
-def assembled(stiffness, eta, ends, modulus, density, d, area, rock_eta):
-    """Return K, C over N blocks and two faces, element by element, and the mass of each."""
+def assembled(stiffness, eta, ends, modulus, intact, density, d, area, rock_eta):
+    """Return K, C over N blocks and two faces, element by element: at a wall half a block of intact
+    rock, on a massless face half a block and its joint."""
     n, half, dashpot = len(stiffness) + 1, 2 * modulus / d * area, area * np.sqrt(modulus * density)
     K, C = np.zeros((2, n + 2, n + 2))
 
@@ -35,8 +36,9 @@ def assembled(stiffness, eta, ends, modulus, density, d, area, rock_eta):
     for kind, block, face in ((ends[0], 0, n), (ends[1], n - 1, n + 1)):
         partner = face if kind == "matched" else None
         if kind in ("fixed", "matched"):
-            element(K, half, block, partner)
-            element(C, half * rock_eta, block, partner)
+            spring = 2 * intact / d * area if kind == "fixed" else half
+            element(K, spring, block, partner)
+            element(C, spring * rock_eta, block, partner)
         if kind in ("quiet", "matched"):
             element(C, dashpot, face if kind == "matched" else block)
     return K, C
@@ -47,7 +49,8 @@ def integrated(scene):
     p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
     eta = np.zeros(9) if p.joint_time_constant is None else p.joint_time_constant
     ends, rock_eta = (scene.ends.start, scene.ends.end), p.time_constant or 0.0
-    K, C = assembled(p.stiffness, eta, ends, p.modulus, p.density, 0.5, p.area, rock_eta)
+    moduli = p.modulus, p.intact_modulus
+    K, C = assembled(p.stiffness, eta, ends, *moduli, p.density, 0.5, p.area, rock_eta)
     n, b, f = 10, slice(0, 10), [i for i in (10, 11) if C[i, i] > 0]
     x, rows, at = np.zeros(2 * n + 2), [np.zeros(n)], [0.0, *load.breaks[1:], times[-1]]
 

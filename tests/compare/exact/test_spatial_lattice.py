@@ -31,6 +31,8 @@ class Points:
         eta, joints = p.time_constant or 0.0, p.joint_time_constant
         joints = np.zeros(3) if joints is None else joints
         self.half = self.matrix(2 * p.regular_stiffness, 2 * p.regular_shear_stiffness), eta
+        intact = 2 * scene.rock.intact_modulus / 0.5  # of half a block
+        self.wall = self.matrix(intact, intact / 2.5), eta
         springs = map(self.matrix, p.stiffness, p.shear_stiffness)
         self.joints = list(zip(springs, joints, strict=True))
         self.dashpot = self.matrix(p.impedance, p.shear_impedance)
@@ -60,7 +62,7 @@ class Points:
             return np.zeros(6), np.zeros(6)
         if kind == "quiet":
             return self.dashpot @ v, np.zeros(6)
-        spring, eta = self.half
+        spring, eta = self.wall if kind == "fixed" else self.half
         if kind == "fixed":
             return spring @ (q - face + eta * (v - wall)), wall
         w = np.linalg.solve(self.dashpot + eta * spring, spring @ (q - face + eta * v))

@@ -52,7 +52,8 @@ def fourth(pillar):
 
     def scene(fraction, **changes):
         numerics = {"scheme": "fourth-order", "step_fraction": fraction, "allow_unstable": True}
-        return pillar(**{"load": RICKER, "record": RECORD, "numerics__dem": numerics, **changes})
+        tables = {"load": RICKER, "record": RECORD, "numerics__dem": numerics}
+        return pillar(**{"rock__intact_modulus": None, **tables, **changes})
 
     return scene
 

@@ -17,6 +17,7 @@ from numerics.divergence import guard
 
 SHORT: dict[str, Any] = {
     "pillar__length": 8.0,
+    "rock__intact_modulus": None,  # at a wall the half spring of a joint, whose numbers are at hand
     "load__amplitude": 1e5,
     "load__direction": [0.48, 0.6, -0.64],
     "load__at": [0.1, -0.05],
