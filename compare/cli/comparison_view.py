@@ -115,7 +115,8 @@ def _remarks(stand: dict[str, Standing], several: bool) -> Iterator[str]:
     """Yield the references, engines not checked independently, and bounds that are exceeded."""
     held = [one for standing in stand.values() for one in standing.variants]
     reasons = dict.fromkeys(f"{one.against}: {one.reason}" for one in held if one.against)
-    others = [e for e, one in stand.items() if Kind.MODELLING.words in one.meanings]
+    own = Kind.NUMERICAL.words
+    others = [engine for engine, one in stand.items() if {*one.meanings} - {own}]
     said = [f"a modelling difference of {', '.join(others)}"] if others else []
     said += [
         f"static state of {e} {one.static_words}" for e, one in stand.items() if one.static_words
