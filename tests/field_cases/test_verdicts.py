@@ -12,7 +12,9 @@ import re
 import pytest
 
 from cases.read import load_tables
-from compare.misfit.ranking import applicable, kind_of, own_exact
+from compare.engines import solve
+from compare.misfit.pairs import meaning, measure
+from compare.misfit.ranking import applicable, kind_of, own_exact, reference_of
 from compare.solvers.record import Kind
 
 #: In front of the tunnel's right wall, which the wave passes along, and around the tunnel.
@@ -89,3 +91,17 @@ def test_a_bar_is_no_measure_of_the_own_error_of_rock_that_widens(dim, own, kind
     found = own_exact(engine, there, scene)
     assert (found is None) == (own is None)
     assert kind_of(engine, bar, scene) is kind
+    wave = solve(bar, scene)
+    rows = measure({engine: wave, bar: wave}, scene=scene)
+    assert {row.pair.kind for row in rows} == {kind.words}
+    assert meaning(rows[0].pair).startswith("another model; ") == (kind is Kind.MODELLING)
+
+
+def test_without_intact_rock_an_exact_solution_comes_before_a_computed_one():
+    """Rigid blocks and homogenised rock are two readings of the same speeds; with it, rock with
+    every joint resolves more than the slipping joint between half-spaces."""
+    there = ["dem", "continuum-equivalent", "continuum-jointed", "slip-joint"]
+    for rock, reference in (({}, "slip-joint"), ({"intact_modulus": 9.6e10}, "continuum-jointed")):
+        scene = load_tables(TPV5 | {"rock": TPV5["rock"] | rock})
+        able = there if rock else [name for name in there if name != "continuum-jointed"]
+        assert {reference_of(name, able, scene).name for name in there[:2]} == {reference}
