@@ -47,13 +47,7 @@ def chain(pillar, **changes):
     """Return the same as a pillar."""
     return pillar(
         pillar={"length": 10.0, "side": 0.5, "block": 0.5},
-        rock={
-            "density": 2600.0,
-            "equivalent_modulus": 2.5e10,
-            "equivalent_poisson": 0.0,
-            "intact_modulus": 5e10,
-            "intact_poisson": 0.0,
-        },
+        rock={"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.0},
         joints={"normal_stiffness": 1e11, "shear_stiffness": 4e10} | changes.pop("joint", {}),
         soft_layers=[],
         load=changes.pop("load", SINE | {"direction": [0, 1, 0]}),
@@ -73,15 +67,14 @@ FAILS = {"tensile_strength": 2e5, "fracture_energy": 1.0, "damping_ratio": 0.02}
     [
         ("free", {}),
         ("quiet", {}),
-        ("fixed", {"normal_stiffness": 1e25}),
+        ("fixed", {}),
         ("free", FAILS),
         ("quiet", FAILS),
     ],
 )
 def test_a_column_is_the_chain(end, joint, rock_mass, pillar):
-    """Joints of 1e11 Pa/m in rock of 5e10 Pa, 0.5 m apart: K' = 5e10 Pa/m, E_eq = 2.5e10 Pa. The
-    wall of a fixed side is half a block of rock, of the chain half a block with its joint: they
-    are the same where joints are stiff. Both take five steps between samples, to the round-off of
+    """Joints of 1e11 Pa/m in rock of 5e10 Pa, 0.5 m apart: K' = 5e10 Pa/m, E_eq = 2.5e10 Pa. At
+    the wall of a fixed side is half a block of rock, without a joint. Both take five steps between samples, to the round-off of
     1250. Half of the compliance is the joint's own: its 2 zeta sqrt(m K) is 2 zeta sqrt(m K')
     (K'/K)^1.5 of the contact. The pulse of 1 MPa spends a strength of 0.2 MPa."""
 
