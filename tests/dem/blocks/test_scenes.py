@@ -74,9 +74,10 @@ FAILS = {"tensile_strength": 2e5, "fracture_energy": 1.0, "damping_ratio": 0.02}
 )
 def test_a_column_is_the_chain(end, joint, rock_mass, pillar):
     """Joints of 1e11 Pa/m in rock of 5e10 Pa, 0.5 m apart: K' = 5e10 Pa/m, E_eq = 2.5e10 Pa. At
-    the wall of a fixed side is half a block of rock, without a joint. Both take five steps between samples, to the round-off of
-    1250. Half of the compliance is the joint's own: its 2 zeta sqrt(m K) is 2 zeta sqrt(m K')
-    (K'/K)^1.5 of the contact. The pulse of 1 MPa spends a strength of 0.2 MPa."""
+    the wall of a fixed side is half a block of rock, without a joint. Both take five steps between
+    samples, to the round-off of 1250. Half of the compliance is the joint's own: its
+    2 zeta sqrt(m K) is 2 zeta sqrt(m K') (K'/K)^1.5 of the contact. The pulse of 1 MPa spends a
+    strength of 0.2 MPa."""
 
     def run(scene):
         critical = simulate(scene(0.2)).critical_dt
