@@ -68,6 +68,12 @@ def off_axis(scene: Scene) -> str | None:
     return None
 
 
+def bends(scene: Scene) -> bool:
+    """Return whether a load or gravity bends a pillar whose blocks may rotate."""
+    twists = scene.load.arm is not None and not scene.load.is_across and scene.gravity is None
+    return is_spatial(scene) and scene.motion.rotation != "none" and not twists
+
+
 def _of_joints(scene: Scene, p: Properties) -> Iterator[Effect]:
     source = "damping.rayleigh" if scene.damping.rayleigh else "damping_ratio"
     damped = p.joint_time_constant is not None and f"{source} is given"

@@ -11,20 +11,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.effects import is_spatial
+from cases.effects import bends, is_spatial
 from cases.histories import Gabor, Ricker, Sine, periodic
 from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
+from cases.material.contact_points import lever
 from cases.schema.plausible import implausible
 from cases.schema.scene import Scene
 from cases.spectrum import LEAST_BLOCKS, ShortestWave, shortest_wave
 
 if TYPE_CHECKING:
+    from cases.schema.joint import Joints
     from cases.schema.pulse import Pulse
 
 MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
 SHORTENED = 1.5  # a step shortened by less than this factor is not reported
 ON_JOINT = 1e-9  # of the pillar's length, and of a block: rounding of a receiver's place
+LEAST_LEVER = 0.75  # of contact points where a face opens, over half its width
 ONSET = 0.01  # of a load's peak: defines its beginning
 #: Of the duration: the end of a table that no one cut off there.
 LATE = 5.0
@@ -302,6 +305,23 @@ def _of_receivers_at_joints(
                 )
 
 
+def _of_contact_points(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
+    if bends(scene) and (scene.joints.tensile_strength is not None or not p.tension.all()):
+        yield from of_lever("joints", scene.joints)
+
+
+def of_lever(table: str, joints: Joints) -> Iterator[str]:
+    """Warn of contact points far from the edges of a face that may open under bending."""
+    rule, count = joints.point_rule, joints.contact_points
+    if (found := lever(rule, count)) < LEAST_LEVER:
+        thicker = f"{1 / found:.3g} times the thickness" if found else "more than any thickness"
+        yield (
+            f"{table}.contact_points = {count} ({rule}): a face of rigid blocks that opens bears "
+            f"at {found:.3g} of its half width, so that what stands by its edges needs {thicker}; "
+            f"contact_points = 8 with point_rule = 'gauss' bears at {lever('gauss', 8):.3g}"
+        )
+
+
 RULES: tuple[Rule, ...] = (
     _of_poisson,
     _of_times,
@@ -311,4 +331,5 @@ RULES: tuple[Rule, ...] = (
     _of_quiet_ends,
     _of_half_a_load,
     _of_receivers_at_joints,
+    _of_contact_points,
 )

@@ -60,6 +60,12 @@ def contact_points(
     return ContactPoints(contact, arm, np.concatenate(weights)[order] * contacts.length[contact])
 
 
+def lever(rule: str, count: int) -> float:
+    """Return how far the outermost points are from the centre of an edge, over half its length:
+    1 - 1/n of n midpoints, which bear all that a face bears when it opens as far as it can."""
+    return float(2 * points_of(rule, count)[0].max() - 1)
+
+
 def points_of(rule: str, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return places and weights [count] of a rule on an edge from 0 to 1; weights add up to 1."""
     if rule == "gauss":

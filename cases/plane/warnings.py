@@ -23,7 +23,7 @@ from cases.schema.rock_mass import RockMass
 from cases.schema.rock_mass_checks import GRAZING, distance
 from cases.schema.sources import PlaneLoad, Wave
 from cases.spectrum import LEAST_BLOCKS, frequency_of, highest_frequency
-from cases.warnings import of_local_damping, of_pulse, onset
+from cases.warnings import of_lever, of_local_damping, of_pulse, onset
 
 NEAR = 0.05  # of the domain's size: distance of a receiver from the joint that it is meant for
 COINCIDENT = 1e-9  # of the domain's size: distance of two joints that are one
@@ -271,6 +271,16 @@ def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
             )
 
 
+def _of_contact_points(scene: RockMass) -> Iterator[str]:
+    """Warn once of contact points of joints that may open."""
+    for i, one in enumerate(scene.joint_sets):
+        if one.tension is False or one.tensile_strength is not None:
+            found = list(of_lever(f"joint_sets[{i}]", one))
+            yield from found
+            if found:
+                return
+
+
 RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
     _of_poisson,
     _of_joints_given_twice,
@@ -283,4 +293,5 @@ RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
     _of_arrivals,
     _of_points_on_joints,
     _of_starts,
+    _of_contact_points,
 )

@@ -14,7 +14,14 @@ from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
 from cases.size import spoken
-from compare.cli.speeds import Speeds, speed_facts, speed_words, speeds_of
+from compare.cli.engine_facts import (
+    Speeds,
+    lever_words,
+    levers_of,
+    speed_facts,
+    speed_words,
+    speeds_of,
+)
 from compare.cli.terminal import print_json, say, show_table
 from compare.engines import ENGINES, solver
 from compare.experiments.cost import timings
@@ -36,7 +43,7 @@ class Explanation(NamedTuple):
     properties : of a pillar. blocks : of a rock mass, see `partition_facts`. runs : of each engine
     that applies, with its step; failures : why one that applies could not run. references : what
     each engine is held against; None where nothing checks it independently. speeds : of its waves
-    in each engine, m/s. block_step,
+    in each engine, m/s. levers : of contact points, `engine_facts.levers_of`. block_step,
     with_everything : what a step of one rigid block of a pillar costs here, of this scene and with
     every effect, ns; None where it was never measured. entering : the plane waves that its loads
     and waves send into the rock.
@@ -51,6 +58,7 @@ class Explanation(NamedTuple):
     answers: dict[str, Answer]
     references: dict[str, Reference | None]
     speeds: dict[str, Speeds]
+    levers: dict[str, float]
     block_step: float | None
     with_everything: float | None
     entering: list[EnteringWave]
@@ -71,7 +79,8 @@ def explanation(scene: AnyScene, measured: bool = False) -> Explanation:
     else:
         properties, blocks, cost = None, partition_facts(scene), (None, None)
     runs, failures = _prepared(scene, engines)
-    about = effects(scene), runs, failures, answers, references, speeds_of(scene, list(runs))
+    of_engines = speeds_of(scene, list(runs)), levers_of(scene, list(runs))
+    about = effects(scene), runs, failures, answers, references, *of_engines
     return Explanation(scene, properties, blocks, *about, *cost, entering_waves(scene))
 
 
@@ -111,6 +120,8 @@ def show_explanation(found: Explanation, as_json: bool) -> None:
         show_partition(found.blocks)
     for line in speed_words(found.scene, found.speeds):
         say(line)
+    if found.levers:
+        say(lever_words(found.levers))
     for one in found.entering:
         say(_entering_words(one))
     effects = [[e.name, "yes" if e.active else "no", e.reason] for e in found.effects]
@@ -207,6 +218,7 @@ def _explanation_facts(found: Explanation) -> dict[str, Any]:
         ],
         "cannot_run": found.failures,
         "speeds": speed_facts(found.speeds),
+        "levers": found.levers,
         "nanoseconds_per_block_step": found.block_step,
         "nanoseconds_with_everything": found.with_everything,
         "references": {k: r._asdict() if r else None for k, r in found.references.items()},

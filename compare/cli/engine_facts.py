@@ -1,16 +1,20 @@
-"""The speeds of waves that each engine has in a scene, before any run."""
+"""What each engine has in a scene before any run: speeds of waves, levers of contact points."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from math import isfinite, sqrt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cases.effects import bends
 from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
+from cases.material.contact_points import lever
 from cases.material.elastic import shear_modulus
+from cases.schema.joint import Joints
 from cases.schema.scene import Scene
 from cases.schema.segment import alone, regions
 
@@ -52,6 +56,42 @@ def speed_facts(found: dict[str, Speeds]) -> dict[str, Any]:
         name: {what: [v if np.isfinite(v) else None for v in pair] for what, pair in own.items()}
         for name, own in found.items()
     }
+
+
+def levers_of(scene: AnyScene, engines: list[str]) -> dict[str, float]:
+    """Return by engine how far the outermost points of joints are from the centre of a face, over
+    its half width; of rock masses of the joint set that has the least. Empty where nothing bends.
+    """
+    if isinstance(scene, Scene) and not bends(scene):
+        return {}
+    rules: Sequence[Joints] = [scene.joints] if isinstance(scene, Scene) else scene.joint_sets
+    found = {}
+    if "dem" in engines and rules:
+        found["dem"] = min(lever(one.point_rule, one.contact_points) for one in rules)
+    if "continuum-jointed" in engines and (of_elements := _of_elements(scene)) is not None:
+        found["continuum-jointed"] = of_elements
+    return found
+
+
+def _of_elements(scene: AnyScene) -> float | None:
+    """Return that of the joints between elements; None of a pillar's mesh that a file gives."""
+    from continuum.mesh.cells import KINDS
+    from continuum.space import interface
+    from continuum.space.kinematics import kinematics
+
+    if not isinstance(scene, Scene):
+        return interface.lever("triangle", scene.numerics.continuum.order)
+    numerics = scene.numerics.continuum
+    if numerics.mesh is not None:
+        return None
+    kind = KINDS[kinematics(scene).dim, numerics.cell]
+    return interface.lever(kind, numerics.order, numerics.elements_across)
+
+
+def lever_words(found: dict[str, float]) -> str:
+    """Return a line of them."""
+    each = ", ".join(f"{name} {value:.3g}" for name, value in found.items())
+    return f"a joint's face that opens bears at this part of its half width: {each}"
 
 
 def _number(speed: float) -> str:
