@@ -29,7 +29,10 @@ STEPS_BETWEEN_LOOKS = 10
 STEP_FRACTION = 0.9  # of the critical step: only the final state matters
 NEVER = 1 << 60  # steps between samples where none are taken
 UNBORNE = "what quiet boundaries bear of the weight is not found: fix the one below"
-PATIENCE = 20  # a stall is a twentieth of the most steps without progress
+#: A stall is this part of the most steps without progress, and at least as many as led there: what
+#: bears on ever fewer points comes to rest ever more slowly.
+PATIENCE = 80
+FASTER = 1.5  # of a way to that in the same time before: 3 at a constant acceleration from rest
 
 
 class System(Protocol):
@@ -59,17 +62,32 @@ class System(Protocol):
     def stop(self) -> None:
         """Set all velocities to zero."""
 
+    def fastest(self, change: np.ndarray) -> tuple[str, float]:
+        """Return the block that moves farthest in a change of displacement, in words, and how
+        fast it would be if that took one step, m/s."""
+
 
 class Rest(NamedTuple):
-    """How a static state was reached: steps taken, largest unbalanced force over the scale."""
+    """How a static state was reached: steps taken, largest unbalanced force over the scale; moving,
+    the block that moves ever farther and how fast, m/s, None where none does."""
 
     steps: int
     ratio: float
+    moving: tuple[str, float] | None = None
 
     @property
     def attributes(self) -> dict[str, Any]:
         """Attributes of a result."""
         return {"static_steps": self.steps, "static_out_of_balance": self.ratio}
+
+
+def fastest_of_row(p: Properties, change: np.ndarray, dt: float) -> tuple[str, float]:
+    """Return the block of a pillar that moves farthest in a step dt (s), in words, and how fast
+    (m/s); change : [directions, blocks], m."""
+    moved = np.linalg.norm(change, axis=0)
+    k = int(moved.argmax())
+    y = (p.contact_y[k] + p.contact_y[k + 1]) / 2
+    return f"the block at y = {y:.4g} m", float(moved[k]) / dt
 
 
 def prestressed(scene: Scene, p: Properties) -> np.ndarray:
@@ -149,39 +167,56 @@ def settle(scene: AnyScene, system: System, unborne: str = "") -> Rest:
     tolerance = scene.numerics.dem.static_tolerance
     rest = relax(system, tolerance, system.most_steps)
     if not rest.ratio <= tolerance:
-        where = " around the openings" if scene.excavated else ""
-        key, remedy = ("prestress", f"the joints{where} cannot carry it")
-        if scene.gravity is not None and scene.gravity.static:
-            key = "gravity"
-            remedy = "a joint slides or a block is unsupported: static = false starts without it"
-        if unborne:
-            key, remedy = "gravity", unborne
-        raise SceneError(
-            scene.where,
-            key,
-            None,
-            f"no static state within {rest.steps} steps: the out-of-balance ratio stays at "
-            f"{rest.ratio:.1e}, above {tolerance:.1e}; {remedy}",
-        )
+        key, remedy = "gravity", unborne or "static = false starts without it"
+        if not unborne and (scene.gravity is None or not scene.gravity.static):
+            where = " around the openings" if scene.excavated else ""
+            key, remedy = "prestress", f"the joints{where} cannot carry it"
+        raise SceneError(scene.where, key, None, _why(rest, tolerance, remedy))
     return rest
+
+
+def _why(rest: Rest, tolerance: float, remedy: str) -> str:
+    """Return why there is no static state: a block that moves on is another thing than a residual
+    that is still too large."""
+    if rest.moving is None:
+        return (
+            f"has not come to rest: out-of-balance ratio {rest.ratio:.1e} after {rest.steps} steps,"
+            f" above numerics.dem.static_tolerance = {tolerance:.1e}: raise it to accept this state"
+        )
+    block, speed = rest.moving
+    return (
+        f"no static state: {block} moves ever faster, {speed:.2g} m/s after {rest.steps} steps of "
+        f"dynamic relaxation: it slides, tips or is unsupported; {remedy}"
+    )
 
 
 def relax(system: System, tolerance: float, most_steps: int) -> Rest:
     """Relax a system until its out-of-balance ratio is within the tolerance.
 
-    It ends earlier after `most_steps`, or if the ratio stops falling.
+    It ends earlier after `most_steps`, or if the ratio stops falling. The system moves if it has
+    gone farther since then than until then, or goes on the same way faster and faster.
     """
     steps, damped = 0, Damped(system)
+    start, mass = damped.u, system.mass
     ratio = _ratio(damped.force, system.scale)
-    best, best_at = ratio, 0
-    while tolerance < ratio and steps - best_at <= most_steps / PATIENCE and steps < most_steps:
+    best, best_at, at_best, at_half = ratio, 0, damped.u, damped.u
+    patience = last = most_steps / PATIENCE
+    while tolerance < ratio and steps < min(last, most_steps):
+        before = damped.u
         damped.advance()
         steps += STEPS_BETWEEN_LOOKS
         ratio = _ratio(damped.force, system.scale)
         if ratio < 0.9 * best:
-            best, best_at = ratio, steps
+            best, best_at, at_best = ratio, steps, damped.u
+            last = best_at + max(patience, best_at)
+        if steps <= (best_at + last) / 2:
+            at_half = damped.u
     system.stop()
-    return Rest(steps, ratio)
+    first, second = at_half - at_best, damped.u - at_half
+    farther = mass @ (first + second) ** 2 > mass @ (at_best - start) ** 2
+    if ratio <= tolerance or not (farther or mass @ (first * (second - FASTER * first)) > 0):
+        return Rest(steps, ratio)
+    return Rest(steps, ratio, system.fastest((damped.u - before) / STEPS_BETWEEN_LOOKS))
 
 
 class Damped:

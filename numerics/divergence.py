@@ -14,7 +14,7 @@ from joints.formula import formula
 EVERY = 96  # steps, at most, between two checks of the speeds
 RUNAWAY = 100.0  # over the speed that forces can cause: leapfrog overshoots at the critical step
 CREATED = 0.1  # of the largest term of the ledger: more than any bounded run of any scheme gains
-LAST_DIGITS = 1e-9  # of the ledger's initial terms, from which small changes are differences
+LAST_DIGITS = 1e-8  # of the ledger's initial terms, from which small changes are differences
 
 SPEED, ENERGY = 0, 1  # the exceeded bound
 

@@ -1,7 +1,10 @@
 """Static states: rock and joints at rest under gravity and around openings, by Newton's method.
 
 The static forces are applied in increments, halved if they do not converge, because the state of
-joints that slide, open or break depends on the path.
+joints that slide, open or break depends on the path. Where that ends, as among joints that open and
+bear on their edges, the rock creeps on under the whole forces: implicit steps against a drag, mass
+times 1/s2, that falls until it is next to nothing. What stands stops (the proximal point method,
+Rockafellar, SIAM J. Control Optim. 14, 1976); what does not moves on, however little holds it.
 
 Quiet sides that bear the weight are held by springs far stiffer than the rock; what these carry at
 rest goes on to act beside the dashpots, so that how stiff they are does not matter.
@@ -37,7 +40,14 @@ if TYPE_CHECKING:
     from cases.schema.scene import Scene
 
 TOLERANCE = 1e-10  # of the residual, over the largest summed force
-LEAST_PART = 2.0**-10  # of the steady forces
+LEAST_PART = 2.0**-4  # of the steady forces
+CREEP = 1e-2  # the first drag, of the largest stiffness over mass, above all modes of joints
+LAST_DIGITS = 8 * np.finfo(float).eps  # of the forces that displacements from the start would cause
+ROUGH = 1e-3  # residual of a step against a drag, over what the drag bears
+EASED = 8.0  # by which the drag falls after a step, and rises after one that does not converge
+MOST_CREEPS = 400  # steps against a drag
+LEAST_DRAG = 1e-14  # above round-off
+PATIENCE = 8  # of these without progress, and at least as many as led there: a stall
 #: Of the largest stiffness over mass: what holds loose rock. Far below its slowest mode, by 1e-3
 #: and less, and far above the round-off of the largest.
 LOOSE = 1e-10
@@ -93,7 +103,8 @@ def settle_static(
         elif part > LEAST_PART:
             part /= 2
         else:
-            _refuse(scene, done)
+            steps += _creep(scene, system, done)
+            done = 1.0
     fill(state, system.state)
     memory = system.model.rock.memory
     if memory is not None and state.ledger is not None:
@@ -102,29 +113,53 @@ def settle_static(
     return {"static_steps": steps, "static_out_of_balance": ratio}
 
 
-def _refuse(scene: Scene | RockMass, done: float) -> None:
-    key, what, remedy = "gravity", "the weight", "static = false starts without it"
+def _creep(scene: Scene | RockMass, system: _Static, done: float) -> int:
+    """Let the rock creep to rest under all of its forces, and return the corrections made.
+
+    Raises SceneError where the unbalanced forces stop falling: rock that goes on to move under
+    them is loose, and where the steps do not converge it has not come to rest.
+    """
+    drag, least = CREEP * system.stiffest, LEAST_DRAG * system.stiffest
+    corrections, largest = 0, system.rock.communicator.largest
+    best, best_at, moves = np.inf, 0, 0
+    for k in range(MOST_CREEPS):
+        outcome = system.balance(1.0, drag)
+        corrections += len(outcome.errors) - 1
+        if outcome.converged and system.unbalanced <= largest(system.allowed):
+            return corrections
+        if outcome.converged and system.unbalanced < 0.9 * best:
+            best, best_at, moves = system.unbalanced, k, 0
+        moves += outcome.converged
+        if k - best_at > max(PATIENCE, best_at):
+            break
+        drag *= EASED if not outcome.converged else 1 / EASED if drag > least else 1
+    if moves > PATIENCE / 2:
+        raise _refusal(scene, f"no static state beyond {done:.3g} of", system.fastest())
+    ratio = f"{best / largest(system.size):.1e} out of balance after {corrections} corrections, of"
+    raise _refusal(scene, f"has not come to rest: {ratio}", None)
+
+
+def _refusal(scene: Scene | RockMass, what: str, moving: str | None) -> SceneError:
+    """Return why there is no static state; moving : what moves on, None where nothing does."""
+    key, of, remedy = "gravity", "the weight", "static = false starts without it"
     if scene.excavated and (scene.gravity is None or not scene.gravity.static):
-        key, what, remedy = "prestress", "the excavation", "the joints around it cannot carry it"
-    raise SceneError(
-        scene.where,
-        key,
-        None,
-        f"no static state beyond {done:.3g} of {what}: a joint slides or opens, or a block is "
-        f"unsupported: {remedy}",
-    )
+        key, of, remedy = "prestress", "the excavation", "the joints around it cannot carry it"
+    on = "" if moving is None else f": {moving}; it slides, tips or is unsupported"
+    return SceneError(scene.where, key, None, f"{what} {of}{on}: {remedy}")
 
 
-def _hold(stiffness: csr_matrix, rock: Matrices) -> csr_matrix:
-    """Return what holds loose rock, N/m."""
-    k, m = stiffness.diagonal()[rock.moves], rock.mass.diagonal()[rock.moves]
-    return LOOSE * rock.communicator.largest(float((k[m > 0] / m[m > 0]).max())) * rock.mass
+def _stiffest(rock: Matrices) -> float:
+    """Return the largest stiffness of a freedom over its mass, 1/s2."""
+    k, m = rock.stiffness.diagonal()[rock.moves], rock.mass.diagonal()[rock.moves]
+    return rock.communicator.largest(float((k[m > 0] / m[m > 0]).max()))
 
 
 class _Static:
     """The forces of a model at rest, without what absorbs at its ends and without its load.
 
-    state : the last one in balance. size : the largest force that is summed up, N.
+    state : the last one in balance. size : the largest force that is summed up, N. stiffest : the
+    largest stiffness over mass, 1/s2. unbalanced : what a drag has borne in the last step, N.
+    allowed : what may be left, N: of the forces, and the round-off of those of whole displacements.
     """
 
     def __init__(
@@ -141,37 +176,67 @@ class _Static:
             self.model = self.model._replace(rock=model.rock._replace(memory=memory.at_rest()))
             stiffness = memory.relaxed * stiffness
         self.state, self.trial, self.size = copied(state), copied(state), 0.0
+        self.body, self.stiffest, self.unbalanced = body, _stiffest(self.rock), 0.0
+        self.carries, self.allowed = self.rock.stiffness.diagonal(), 0.0
+        if hold is not None:
+            self.carries = self.carries + hold.diagonal()
         fixed = np.zeros(0, dtype=int) if model.ends.fixed is None else model.ends.fixed.freedom
         if hold is not None:
             stiffness = stiffness + hold
         elif model.ends.fixed is None:
-            stiffness = stiffness + _hold(stiffness, self.rock)
-        self.system = System(model, self.rock, fixed, [stiffness])
+            stiffness = stiffness + LOOSE * self.stiffest * self.rock.mass
+        self.system = System(model, self.rock, fixed, [stiffness, self.rock.mass])
+        self.acceleration = np.zeros(self.system.free.size)
 
-    def balance(self, share: float) -> Outcome:
-        """Try to balance a share of the weight; what comes of it is kept where that succeeds."""
+    def balance(self, share: float, drag: float = 0.0) -> Outcome:
+        """Try to balance a share of the weight against a drag (1/s2) on what moves from the state
+        before; what comes of it is kept where that succeeds."""
         model = self.model._replace(weight=share * self.model.weight)
         system, communicator = self.system, self.rock.communicator
         set_forces = trial_forces(model, self.rock, self.state, self.trial, system.tangents)
+        before = self.state.u.copy()
+
+        def dragged() -> np.ndarray:
+            share = drag * (self.rock.mass @ (self.trial.u - before))
+            return communicator.total(share)[system.free]
 
         def residual(u: np.ndarray) -> tuple[np.ndarray, float]:
             self.trial.u[system.free] = u
             self.size, force = set_forces(UNLOADED), self.trial.force
             if self.hold is not None:
                 force = force - self.hold @ self.trial.u
-            return communicator.total(force)[system.free], TOLERANCE * self.size
+            force, borne = communicator.total(force)[system.free], dragged()
+            carried = float((self.carries * np.abs(self.trial.u)).max())
+            self.allowed = float(TOLERANCE * self.size + LAST_DIGITS * carried)
+            return force - borne, max(self.allowed, ROUGH * float(np.abs(borne).max(initial=0.0)))
 
         def correction(rest: np.ndarray) -> np.ndarray:
             if not self.trial.u.any():
                 self.stick_joints()
-            system.factorise(system.with_joints(system.pattern.fixed[0]))
+            rock, mass = system.pattern.fixed
+            system.factorise(system.with_joints(rock + drag * mass))
             return system.solve(rest)
 
         outcome = newton(residual, correction, self.state.u[system.free], communicator)
         if outcome.converged:
+            self.unbalanced = communicator.largest(float(np.abs(dragged()).max(initial=0.0)))
+            self.acceleration = drag * (self.trial.u - before)[system.free]
             self.trial.v_before[:] = 0.0
             fill(self.state, self.trial)
         return outcome
+
+    def fastest(self) -> str:
+        """Return where the rock has moved farthest in the last step, in words, with the
+        acceleration that the forces borne by the drag would give it."""
+        body, free = self.body, self.system.free
+        k = int(np.abs(self.acceleration).argmax())
+        components = np.arange(body.section.components)
+        nodes = np.arange(len(body.x))[:, None]
+        node = np.flatnonzero((body.freedom(nodes, components) == free[k]).any(axis=1))[0]
+        place = ", ".join(f"{x:.4g}" for x in body.x[node].round(6) + 0.0)
+        most = float(np.abs(self.acceleration[k]))
+        words = f"the rock at [{place}] moves on, at {most:.3g} m/s2"
+        return self.rock.communicator.of_largest(most, words)
 
     def stick_joints(self) -> None:
         """Give all joints their elastic stiffness: one that nothing presses has no friction, and

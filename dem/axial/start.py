@@ -12,7 +12,16 @@ from dem.axial.model import Chain, Model, unloaded, with_mass_damping
 from dem.axial.springs import spring_forces
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State
-from dem.static import STEP_FRACTION, Rest, gaps_under, held_ends, settle, stiffest, undamped
+from dem.static import (
+    STEP_FRACTION,
+    Rest,
+    fastest_of_row,
+    gaps_under,
+    held_ends,
+    settle,
+    stiffest,
+    undamped,
+)
 from joints.law import Parts
 from numerics.jit import jitted
 
@@ -89,7 +98,7 @@ class ChainRelaxation:
         self.properties, self.stiffness = p, p.stiffness * p.area
         self.mass = np.full(p.block_count, p.block_mass) if p.masses is None else p.masses
         self.scale = max(abs(self.chain.weight) * p.block_count, abs(self.prestress))
-        self.most_steps = 10_000 + 1000 * p.block_count
+        self.most_steps = 40_000 + 4000 * p.block_count
 
     def advance(self, steps: int, alpha: float) -> None:
         """Take steps under mass-proportional damping alpha, 1/s."""
@@ -117,6 +126,10 @@ class ChainRelaxation:
     def stop(self) -> None:
         """Set all velocities to zero."""
         self.state.v[:] = 0.0
+
+    def fastest(self, change: np.ndarray) -> tuple[str, float]:
+        """Return the block that moves farthest in a step, and how fast, m/s."""
+        return fastest_of_row(self.properties, change[None], self.chain.dt)
 
     def is_at_rest(self, tolerance: float) -> bool:
         """Return whether the state is in equilibrium."""

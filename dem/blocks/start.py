@@ -142,7 +142,8 @@ class PlaneRelaxation:
         self.scale = float(
             g * blocks.inertia.mass.sum() + pressed * partition.boundary.length.sum()
         )
-        self.most_steps = 10_000 + 10_000 * int(np.sqrt(self.count))
+        self.most_steps = 40_000 + 40_000 * int(np.sqrt(self.count))
+        self.centroid = partition.centroid
 
     def excavate(self) -> int:
         """Release the walls of openings but for the last part, and return the steps taken: all at
@@ -194,3 +195,10 @@ class PlaneRelaxation:
     def stop(self) -> None:
         """Set all velocities to zero."""
         self.state.v[:] = 0.0
+
+    def fastest(self, change: np.ndarray) -> tuple[str, float]:
+        """Return the block that moves farthest in a step, and how fast, m/s."""
+        moved = np.hypot(*change.reshape(-1, 3)[:, :2].T)
+        k = int(moved.argmax())
+        x, y = self.centroid[k].round(6) + 0.0
+        return f"the block at [{x:.4g}, {y:.4g}]", float(moved[k]) / self.model.blocks.dt

@@ -23,6 +23,7 @@ from dem.static import (
     STEP_FRACTION,
     UNBORNE,
     Rest,
+    fastest_of_row,
     held_ends,
     prestressed,
     settle,
@@ -94,7 +95,7 @@ class RowRelaxation:
         dt = STEP_FRACTION * critical_spatial_step(
             stiffest(scene, p), face, (scene.ends.start, scene.ends.end), turns
         )
-        self.blocks = p.block_count
+        self.blocks, self.properties = p.block_count, p
         self.rigid = run.ends.start == "fixed", run.ends.end == "fixed"
         block = build_block(scene, p, dt, model.points)
         table = model.table.reshape(len(model.table), -1, LANES).copy()
@@ -122,7 +123,7 @@ class RowRelaxation:
         weight = np.abs(block.weight).max()
         self.prestress = scene.prestress.normal if scene.prestress else 0.0
         self.scale = max(float(weight) * p.block_count, abs(self.prestress) * p.area)
-        self.most_steps = 10_000 + 20_000 * p.block_count
+        self.most_steps = 40_000 + 80_000 * p.block_count
         self._load(scene, p)
 
     def advance(self, steps: int, alpha: float) -> None:
@@ -149,6 +150,11 @@ class RowRelaxation:
         """Set all velocities to zero."""
         first = self.model.form.freedoms * STRIDE
         self.state.motion[:, first : 2 * first] = 0.0
+
+    def fastest(self, change: np.ndarray) -> tuple[str, float]:
+        """Return the block that moves farthest in a step, and how fast, m/s."""
+        moved = change.reshape(-1, self.blocks)[:3]
+        return fastest_of_row(self.properties, moved, self.model.block.dt)
 
     def leave(self, model: RowModel, state: RowState) -> None:
         """Put the static state into the state of a run, whose joints may have rates besides."""
