@@ -32,7 +32,7 @@ UNBORNE = "what quiet boundaries bear of the weight is not found: fix the one be
 #: A stall is this part of the most steps without progress, and at least as many as led there: what
 #: bears on ever fewer points comes to rest ever more slowly.
 PATIENCE = 80
-FASTER = 1.5  # of a way to that in the same time before: 3 at a constant acceleration from rest
+STEADY = 0.9  # of a way to that in the same time before: 1 at a constant speed, 3 from rest
 
 
 class System(Protocol):
@@ -185,7 +185,7 @@ def _why(rest: Rest, tolerance: float, remedy: str) -> str:
         )
     block, speed = rest.moving
     return (
-        f"no static state: {block} moves ever faster, {speed:.2g} m/s after {rest.steps} steps of "
+        f"no static state: {block} moves on, at {speed:.2g} m/s after {rest.steps} steps of "
         f"dynamic relaxation: it slides, tips or is unsupported; {remedy}"
     )
 
@@ -193,30 +193,36 @@ def _why(rest: Rest, tolerance: float, remedy: str) -> str:
 def relax(system: System, tolerance: float, most_steps: int) -> Rest:
     """Relax a system until its out-of-balance ratio is within the tolerance.
 
-    It ends earlier after `most_steps`, or if the ratio stops falling. The system moves if it has
-    gone farther since then than until then, or goes on the same way faster and faster.
+    It ends earlier after `most_steps`, or once the ratio no longer falls and the system moves: it
+    goes farther in as many steps as led there than until then, or on the same way at no less speed.
     """
     steps, damped = 0, Damped(system)
-    start, mass = damped.u, system.mass
-    ratio = _ratio(damped.force, system.scale)
-    best, best_at, at_best, at_half = ratio, 0, damped.u, damped.u
-    patience = last = most_steps / PATIENCE
-    while tolerance < ratio and steps < min(last, most_steps):
+    start, ratio = damped.u, _ratio(damped.force, system.scale)
+    best, begin, moving = ratio, 0, None
+    at_begin = at_half = start
+    while tolerance < ratio and steps < most_steps and moving is None:
         before = damped.u
         damped.advance()
         steps += STEPS_BETWEEN_LOOKS
         ratio = _ratio(damped.force, system.scale)
-        if ratio < 0.9 * best:
-            best, best_at, at_best = ratio, steps, damped.u
-            last = best_at + max(patience, best_at)
-        if steps <= (best_at + last) / 2:
+        patience = max(most_steps / PATIENCE, begin)
+        if steps - begin <= patience / 2:
             at_half = damped.u
+        elif steps - begin > patience:
+            first, second = at_half - at_begin, damped.u - at_half
+            if _moves(first, second, at_begin - start, system.mass):
+                moving = system.fastest((damped.u - before) / STEPS_BETWEEN_LOOKS)
+        if ratio < 0.9 * best or steps - begin > patience:
+            best, begin, at_begin = min(best, ratio), steps, damped.u
     system.stop()
-    first, second = at_half - at_best, damped.u - at_half
-    farther = mass @ (first + second) ** 2 > mass @ (at_best - start) ** 2
-    if ratio <= tolerance or not (farther or mass @ (first * (second - FASTER * first)) > 0):
-        return Rest(steps, ratio)
-    return Rest(steps, ratio, system.fastest((damped.u - before) / STEPS_BETWEEN_LOOKS))
+    return Rest(steps, ratio, None if ratio <= tolerance else moving)
+
+
+def _moves(first: np.ndarray, second: np.ndarray, until: np.ndarray, mass: np.ndarray) -> bool:
+    """Return whether two changes of displacement, in as many steps, are of one that moves, which
+    had been displaced by `until`."""
+    farther = mass @ (first + second) ** 2 > mass @ until**2
+    return bool(farther or mass @ (first * (second - STEADY * first)) > 0)
 
 
 class Damped:

@@ -42,7 +42,10 @@ if TYPE_CHECKING:
 TOLERANCE = 1e-10  # of the residual, over the largest summed force
 LEAST_PART = 2.0**-4  # of the steady forces
 CREEP = 1e-2  # the first drag, of the largest stiffness over mass, above all modes of joints
-LAST_DIGITS = 8 * np.finfo(float).eps  # of the forces that displacements from the start would cause
+LAST_DIGITS = 8 * float(
+    np.finfo(float).eps
+)  # of the forces that displacements from the start would cause
+MOST_LEFT = 1e-8  # of these, over the largest summed force
 ROUGH = 1e-3  # residual of a step against a drag, over what the drag bears
 EASED = 8.0  # by which the drag falls after a step, and rises after one that does not converge
 MOST_CREEPS = 400  # steps against a drag
@@ -116,12 +119,14 @@ def settle_static(
 def _creep(scene: Scene | RockMass, system: _Static, done: float) -> int:
     """Let the rock creep to rest under all of its forces, and return the corrections made.
 
-    Raises SceneError where the unbalanced forces stop falling: rock that goes on to move under
-    them is loose, and where the steps do not converge it has not come to rest.
+    Raises SceneError where rock moves farther than it is large, or the unbalanced forces stop
+    falling: rock that goes on to move under them is loose, and where the steps do not converge it
+    has not come to rest.
     """
     drag, least = CREEP * system.stiffest, LEAST_DRAG * system.stiffest
     corrections, largest = 0, system.rock.communicator.largest
-    best, best_at, moves = np.inf, 0, 0
+    best, best_at, moves, far = np.inf, 0, 0, False
+    size = largest(float(np.ptp(system.body.x, axis=0).max()))
     for k in range(MOST_CREEPS):
         outcome = system.balance(1.0, drag)
         corrections += len(outcome.errors) - 1
@@ -130,10 +135,11 @@ def _creep(scene: Scene | RockMass, system: _Static, done: float) -> int:
         if outcome.converged and system.unbalanced < 0.9 * best:
             best, best_at, moves = system.unbalanced, k, 0
         moves += outcome.converged
-        if k - best_at > max(PATIENCE, best_at):
+        far = largest(float(np.abs(system.state.u).max())) > size
+        if far or k - best_at > max(PATIENCE, best_at):
             break
         drag *= EASED if not outcome.converged else 1 / EASED if drag > least else 1
-    if moves > PATIENCE / 2:
+    if far or moves > PATIENCE / 2:
         raise _refusal(scene, f"no static state beyond {done:.3g} of", system.fastest())
     ratio = f"{best / largest(system.size):.1e} out of balance after {corrections} corrections, of"
     raise _refusal(scene, f"has not come to rest: {ratio}", None)
@@ -207,7 +213,8 @@ class _Static:
                 force = force - self.hold @ self.trial.u
             force, borne = communicator.total(force)[system.free], dragged()
             carried = float((self.carries * np.abs(self.trial.u)).max())
-            self.allowed = float(TOLERANCE * self.size + LAST_DIGITS * carried)
+            digits = min(LAST_DIGITS * carried, MOST_LEFT * self.size)
+            self.allowed = TOLERANCE * self.size + digits
             return force - borne, max(self.allowed, ROUGH * float(np.abs(borne).max(initial=0.0)))
 
         def correction(rest: np.ndarray) -> np.ndarray:
