@@ -306,7 +306,8 @@ def _of_receivers_at_joints(
 
 
 def _of_contact_points(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
-    if bends(scene) and (scene.joints.tensile_strength is not None or not p.tension.all()):
+    breaks = any(one.tensile_strength is not None for one in (scene.joints, *scene.layers))
+    if bends(scene) and (breaks or not p.tension.all()):
         yield from of_lever("joints", scene.joints)
 
 

@@ -106,8 +106,8 @@ def settle_static(
         elif part > LEAST_PART:
             part /= 2
         else:
-            steps += _creep(scene, system, done)
-            done = 1.0
+            outcome, corrections = _creep(scene, system, done)
+            steps, still = steps + corrections, True
     fill(state, system.state)
     memory = system.model.rock.memory
     if memory is not None and state.ledger is not None:
@@ -116,8 +116,9 @@ def settle_static(
     return {"static_steps": steps, "static_out_of_balance": ratio}
 
 
-def _creep(scene: Scene | RockMass, system: _Static, done: float) -> int:
-    """Let the rock creep to rest under all of its forces, and return the corrections made.
+def _creep(scene: Scene | RockMass, system: _Static, done: float) -> tuple[Outcome, int]:
+    """Let the rock creep to rest under all of its forces; return the last step, which found it
+    there, and the corrections made.
 
     Raises SceneError where rock moves farther than it is large, or the unbalanced forces stop
     falling: rock that goes on to move under them is loose, and where the steps do not converge it
@@ -130,10 +131,11 @@ def _creep(scene: Scene | RockMass, system: _Static, done: float) -> int:
     for k in range(MOST_CREEPS):
         outcome = system.balance(1.0, drag)
         corrections += len(outcome.errors) - 1
-        if outcome.converged and system.unbalanced <= largest(system.allowed):
-            return corrections
-        if outcome.converged and system.unbalanced < 0.9 * best:
-            best, best_at, moves = system.unbalanced, k, 0
+        unbalanced = outcome.errors[0]  # before the step, as nothing drags yet
+        if outcome.converged and unbalanced <= largest(system.allowed):
+            return outcome, corrections
+        if unbalanced < 0.9 * best:
+            best, best_at, moves = unbalanced, k, 0
         moves += outcome.converged
         far = largest(float(np.abs(system.state.u).max())) > size
         if far or k - best_at > max(PATIENCE, best_at):
@@ -164,7 +166,7 @@ class _Static:
     """The forces of a model at rest, without what absorbs at its ends and without its load.
 
     state : the last one in balance. size : the largest force that is summed up, N. stiffest : the
-    largest stiffness over mass, 1/s2. unbalanced : what a drag has borne in the last step, N.
+    largest stiffness over mass, 1/s2. acceleration : of the free freedoms in the last step, m/s2.
     allowed : what may be left, N: of the forces, and the round-off of those of whole displacements.
     """
 
@@ -182,7 +184,7 @@ class _Static:
             self.model = self.model._replace(rock=model.rock._replace(memory=memory.at_rest()))
             stiffness = memory.relaxed * stiffness
         self.state, self.trial, self.size = copied(state), copied(state), 0.0
-        self.body, self.stiffest, self.unbalanced = body, _stiffest(self.rock), 0.0
+        self.body, self.stiffest = body, _stiffest(self.rock)
         self.carries, self.allowed = self.rock.stiffness.diagonal(), 0.0
         if hold is not None:
             self.carries = self.carries + hold.diagonal()
@@ -226,7 +228,6 @@ class _Static:
 
         outcome = newton(residual, correction, self.state.u[system.free], communicator)
         if outcome.converged:
-            self.unbalanced = communicator.largest(float(np.abs(dragged()).max(initial=0.0)))
             self.acceleration = drag * (self.trial.u - before)[system.free]
             self.trial.v_before[:] = 0.0
             fill(self.state, self.trial)
