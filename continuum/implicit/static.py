@@ -103,6 +103,7 @@ def settle_static(
             # A point that slips loses its cohesion for what follows: balanced again without it.
             still = done >= 1 and outcome.errors[0] <= outcome.tolerance
             done = min(done + part, 1.0)
+            still = still or (done == 1 and model.interfaces is None)
         elif part > LEAST_PART:
             part /= 2
         else:
