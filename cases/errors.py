@@ -5,7 +5,6 @@ from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from typing import Any
 
-MOST_LISTED = 100  # mistakes of a file, besides the first
 CLOSE = 0.6  # difflib's least similarity of a name and its suggestion
 
 
@@ -88,9 +87,6 @@ def all_of(errors: Iterable[SceneError]) -> SceneError:
     for one in (one for error in errors for one in error.each):
         said.setdefault((one.key, repr(one.value), one.allowed), one)
     first, *others = said.values()
-    if len(others) > MOST_LISTED:
-        left = f"{len(others) - MOST_LISTED:,} more mistakes"
-        others = [*others[:MOST_LISTED], SceneError(first.where, "", None, left)]
     return SceneError(first.where, first.key, first.value, first.allowed, others)
 
 

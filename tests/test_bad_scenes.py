@@ -901,3 +901,10 @@ def test_every_mistake_of_a_rock_mass_has_its_line(tmp_path, jointwave, one_join
         line.removeprefix(f"jointwave: {scene}: ").split(" = ")[0] for line in said.splitlines()
     ]
     assert keys == ["record.points[0]", "record.interval", "gravity.static"]
+
+
+def test_of_very_many_mistakes_the_first_hundred_are_listed(tmp_path, jointwave):
+    places = ", ".join(f'"{i}"' for i in range(300))
+    scene = write(tmp_path / "scene.toml", GOOD.replace("[20.0]", f"[{places}]"))
+    lines = jointwave("compare", scene, code=2).err.splitlines()
+    assert len(lines) == 101 and lines[-1] == "jointwave: and 200 more"

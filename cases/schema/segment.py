@@ -190,7 +190,7 @@ def _beside(scene: Scene) -> Iterator[tuple[str, object, str]]:
 
     numerics, why = scene.numerics, off_axis(scene)
     table, gives = ("segments", len(scene.segments)) if scene.segments else ("scatter", "given")
-    yield table, why and gives, f"supports axial motion only: {why}"
+    yield table, why and gives, f"supports axial motion only, as pillar.joints does: {why}"
     gravity = None if scene.gravity is None else scene.gravity.acceleration
     yield "gravity.acceleration", gravity, "is not supported with segments or scatter"
     yield "numerics.continuum.mesh", numerics.continuum.mesh, "has no segments or scatter"

@@ -29,6 +29,7 @@ UsageError: type[Exception] = next(
     c for c in typer.BadParameter.__mro__ if c.__name__ == "ClickException"
 )
 
+MOST_LISTED = 100  # mistakes of a file
 LONGEST = 1500  # characters of a message; an argument or a path in it may be of any length
 
 
@@ -45,7 +46,7 @@ def main() -> None:
         code = app(standalone_mode=False)
         sys.stdout.flush()
     except SceneError as error:
-        processes.fail("\n".join(f"jointwave: {_line(str(one))}" for one in error.each), 2)
+        processes.fail("\n".join(_listed([_line(str(one)) for one in error.each])), 2)
     except InterruptedRun as error:
         _fail(processes, str(error), error.code)
     except UnstableError as error:
@@ -87,6 +88,12 @@ def _usage(error: Any) -> str:
 
 def _fail(processes: Processes, message: str, code: int) -> None:
     processes.fail(f"jointwave: {_line(message)}", code)
+
+
+def _listed(lines: list[str]) -> list[str]:
+    more = len(lines) - MOST_LISTED
+    lines = [*lines[:MOST_LISTED], f"and {more:,} more"] if more > 0 else lines
+    return [f"jointwave: {line}" for line in lines]
 
 
 def _line(message: str) -> str:
