@@ -10,7 +10,6 @@ from continuum.model import Model
 from continuum.parallel.serial import SERIAL, Serial
 from continuum.space.receivers import is_on_joint
 from continuum.state import TERMS, Samples
-from joints.law import Law
 from results.dataset import ALL_TERMS
 
 
@@ -56,7 +55,7 @@ def energy_terms(
     law = None if model.interfaces is None else model.interfaces.law
     there = {
         "fracture": law is not None and law.tensile_strength is not None,
-        "friction": law is not None and slides(law),
+        "friction": model.interfaces is not None and model.interfaces.parts.limited,
         "gravity": model.weight is not None,
     }
     there = {term: communicator.any(is_there) for term, is_there in there.items()}
@@ -64,8 +63,3 @@ def energy_terms(
     if energy is None:
         return terms, None
     return terms, energy[[TERMS.index(t) for t in terms]]
-
-
-def slides(law: Law) -> bool:
-    """Return whether joints of this law have a strength in shear."""
-    return law.shear_stiffness is not None and not (law.cohesion is None and law.friction is None)

@@ -43,6 +43,7 @@ DIMENSIONS: dict[str, tuple[str, ...]] = {
     "energy": ("term",),
 }
 
+MOST_OPEN = 1e-3  # of a ledger's largest term, that no term may account for
 #: Of the energy at rest: a million times the round-off of double precision.
 AT_REST = 1e6 * float(np.finfo(float).eps)
 
@@ -214,6 +215,22 @@ def imbalance(energy: np.ndarray, terms: Sequence[str] = TERMS) -> float:
     scale = float(np.abs(work if work.any() else since).max())
     scale = max(scale, AT_REST * float(np.abs(energy[:, 0]).max()))
     return float(np.abs(balance).max()) / scale if scale > 0 else 0.0
+
+
+def open_ledger(energy: np.ndarray, terms: Sequence[str], about: Mapping[str, Any]) -> str:
+    """Return a warning of an energy ledger [len(terms), n] that is open by more than `MOST_OPEN` of
+    its largest term; "" where it closes. about : the attributes of the result."""
+    since = energy - energy[:, :1]
+    left = float(np.abs(since.sum(axis=0) - 2 * since[list(terms).index("work")]).max())
+    scale = max(float(np.abs(since).max()), AT_REST * float(np.abs(energy[:, 0]).max()))
+    if not left > MOST_OPEN * scale:
+        return ""
+    damps = about.get("scheme") == "implicit"
+    why = "the damping of implicit steps, or steps too long" if damps else "steps too long"
+    return (
+        f"{about['engine']}: the energy ledger is open by {left / scale:.2g} of its largest term, "
+        f"{scale:.3g} J: {why}"
+    )
 
 
 def _with_axis(values: np.ndarray) -> np.ndarray:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from math import isnan
 from typing import Any
 
-from compare.cli.terminal import print_json, say, show_numbers, show_table
+from compare.cli.terminal import print_json, say, say_warnings, show_numbers, show_table
 from compare.engines import ENGINES
 from compare.misfit.differences import STRESS, VELOCITY, PeakDifference
 from compare.misfit.metrics import Worst
@@ -15,7 +15,7 @@ from compare.report.tables import mean_and_worst, percent
 from compare.report.verdict import Standing, held_to, standings
 from compare.solvers.incident import side_error
 from compare.solvers.record import Kind
-from results.dataset import energy_residual
+from results.dataset import energy_residual, open_ledger
 
 MOST_LINES = 10  # of the answer
 HINT = "all misfits, and solutions that do not apply: --all; as JSON: --json"
@@ -30,6 +30,7 @@ def show_comparisons(
 
     reads : also what engineers read off the velocities of all solutions.
     """
+    say_warnings(line for comparison in found for line in _open_ledgers(comparison))
     if as_json:
         read = [_readings(c) for c in found] if reads else [{}] * len(found)
         print_json([_comparison_facts(c) | more for c, more in zip(found, read, strict=True)])
@@ -273,6 +274,16 @@ def _engine_facts(engine: str, comparison: Comparison) -> dict[str, Any]:
         "seconds_stepping": about["seconds_stepping"],
         "out_of_bounds": list(held.broken),
     }
+
+
+def _open_ledgers(comparison: Comparison) -> Iterator[str]:
+    for result in comparison.results.values():
+        if "energy" in result:
+            line = open_ledger(
+                result["energy"].values, result["term"].values.tolist(), result.attrs
+            )
+            if line:
+                yield f"{comparison.scene.name}: {line}".lstrip(": ")
 
 
 def _residuals(comparison: Comparison) -> dict[str, float]:

@@ -1,7 +1,6 @@
 """The program `jointwave`, what its commands take, and how they read scenes."""
 
 import os
-import sys
 from collections.abc import Callable, Iterable, Sequence
 from enum import StrEnum
 from pathlib import Path
@@ -9,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from cases.errors import SceneError, all_of, printable
+from cases.errors import SceneError, all_of
 from cases.kinds import AnyScene
 from compare import scenes
 from compare.cli import completion
@@ -158,8 +157,9 @@ def warn(
     if strict and lines:
         where, why = scenes[0].where, "(an error by --strict)"
         raise all_of(SceneError(where, "", None, f"{line} {why}") for line in lines)
-    for line in lines:
-        print(f"jointwave: warning: {printable(line)}", file=sys.stderr)
+    from compare.cli.terminal import say_warnings
+
+    say_warnings(lines)
 
 
 def _whose(said: Sequence["AnyScene"], scenes: Sequence["AnyScene"]) -> str:

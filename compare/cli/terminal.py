@@ -6,7 +6,7 @@ Titles and names come from others: no text gets here that is not `printable`.
 import json
 import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from itertools import zip_longest
 from threading import TIMEOUT_MAX, Event, Thread
@@ -76,6 +76,12 @@ def _lines(label: str) -> Iterator[Callable[[float], None]]:
 def say(text: str, style: str = "") -> None:
     """Print a line of text, or several."""
     _console().print("\n".join(map(printable, text.split("\n"))), style=style)
+
+
+def say_warnings(lines: Iterable[str]) -> None:
+    """Print warnings, a line each, beside what a command prints."""
+    for line in lines:
+        print(f"jointwave: warning: {printable(line)}", file=sys.stderr)
 
 
 def show_table(columns: list[str], rows: list[list[str]], styles: Sequence[str] = ()) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cases.kinds import AnyScene
-from compare.cli.terminal import print_json, say, show_numbers, show_table
+from compare.cli.terminal import print_json, say, say_warnings, show_numbers, show_table
 
 if TYPE_CHECKING:
     from compare.report.report import Report
@@ -34,6 +34,7 @@ def show_scenes(rows: list[tuple[Path, list[AnyScene]]], as_json: bool) -> None:
 
 def show_runs(done: list[Done], as_json: bool) -> None:
     """Print what was run, what it cost and where it is."""
+    say_warnings(f"{d.job.scene.name}: {d.ledger}".lstrip(": ") for d in done if d.ledger)
     if as_json:
         print_json([_run_facts(d) for d in done])
         return

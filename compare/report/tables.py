@@ -13,7 +13,7 @@ from compare.misfit.differences import STRESS, VELOCITY, PeakDifference, peak_ra
 from compare.misfit.pairs import Comparison, Pair, Row, meaning, pairs
 from compare.misfit.places import Place
 from compare.report.verdict import Standing
-from results.dataset import energy_residual
+from results.dataset import energy_residual, open_ledger
 
 
 class Table(NamedTuple):
@@ -217,8 +217,15 @@ def _run_cells(result: xr.Dataset) -> list[str]:
         f"{1e6 * about['dt']:.3g}",
         f"{about['dt'] / about['critical_dt']:.3f}",
         f"{about['seconds_stepping']:.3f}",
-        f"{energy_residual(result):.1e}" if "energy" in result else "not recorded",
+        _energy_cell(result),
     ]
+
+
+def _energy_cell(result: xr.Dataset) -> str:
+    if "energy" not in result:
+        return "not recorded"
+    ledger = result["energy"].values, result["term"].values.tolist()
+    return f"{energy_residual(result):.1e}{' (open)' if open_ledger(*ledger, result.attrs) else ''}"
 
 
 def reason_table(comparisons: list[Comparison]) -> Table:

@@ -13,7 +13,7 @@ from compare.runs.checkpoint.resume import Keeping, Watch, result_of, watch
 from compare.runs.jobs import Job
 from compare.runs.output import fields_of, write_fields
 from compare.runs.processes import ALONE, Processes
-from results.dataset import Fields, imbalance
+from results.dataset import Fields, imbalance, open_ledger
 
 
 class Done(NamedTuple):
@@ -21,6 +21,7 @@ class Done(NamedTuple):
 
     fragments : the pieces between broken joints, see `dem.fragments`; None if no joint can break.
     out_of_balance : force ratio of the static state at its start; None without one.
+    ledger : the warning of an energy ledger that is open, "" where it closes.
     fields : the files that show its snapshots; empty without snapshots.
     """
 
@@ -28,6 +29,7 @@ class Done(NamedTuple):
     steps: int
     seconds: float
     residual: float | None
+    ledger: str
     fragments: list[dict] | None
     out_of_balance: float | None
     fields: list[Path]
@@ -150,7 +152,7 @@ def _finished(job: Job, watched: Watch, vtx: bool, result: Fields | None = None)
         job,
         int(result.attributes.get("steps", 0)),
         float(result.attributes.get("seconds_stepping", 0.0)),
-        _residual(result),
+        *_residual(result),
         json.loads(result.attributes.get("fragments", "null")),
         result.attributes.get("static_out_of_balance"),
         _write_snapshots(job, result, vtx),
@@ -182,8 +184,10 @@ def _write_snapshots(job: Job, result: Fields, vtx: bool) -> list[Path]:
     return [*files, write_vtx(job.path.with_suffix(".bp"), found)] if vtx else files
 
 
-def _residual(result: Fields) -> float | None:
+def _residual(result: Fields) -> tuple[float | None, str]:
+    """Return how far the energy ledger of a result is open, over the work, and its warning."""
     if "energy" not in result.variables:
-        return None
-    terms = {**result.variables, **result.coords}["term"][1]
-    return imbalance(result.variables["energy"][1], terms.tolist())
+        return None, ""
+    terms = {**result.variables, **result.coords}["term"][1].tolist()
+    energy = result.variables["energy"][1]
+    return imbalance(energy, terms), open_ledger(energy, terms, result.attributes)
