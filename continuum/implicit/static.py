@@ -143,18 +143,19 @@ def _creep(scene: Scene | RockMass, system: _Static, done: float) -> tuple[Outco
             break
         drag *= EASED if not outcome.converged else 1 / EASED if drag > least else 1
     if far or moves > PATIENCE / 2:
-        raise _refusal(scene, f"no static state beyond {done:.3g} of", system.fastest())
-    ratio = f"{best / largest(system.size):.1e} out of balance after {corrections} corrections, of"
-    raise _refusal(scene, f"has not come to rest: {ratio}", None)
+        why = f"{system.fastest()}; it slides, tips or is unsupported"
+        raise _refusal(scene, f"no static state beyond {done:.3g} of", why)
+    ratio = f"an out-of-balance ratio of {best / largest(system.size):.1e}"
+    why = f"{ratio} stays after {corrections} corrections"
+    raise _refusal(scene, "has not come to rest under", why)
 
 
-def _refusal(scene: Scene | RockMass, what: str, moving: str | None) -> SceneError:
-    """Return why there is no static state; moving : what moves on, None where nothing does."""
+def _refusal(scene: Scene | RockMass, what: str, why: str) -> SceneError:
+    """Return the refusal of a scene: `what` of its weight or excavation, and why."""
     key, of, remedy = "gravity", "the weight", "static = false starts without it"
     if scene.excavated and (scene.gravity is None or not scene.gravity.static):
         key, of, remedy = "prestress", "the excavation", "the joints around it cannot carry it"
-    on = "" if moving is None else f": {moving}; it slides, tips or is unsupported"
-    return SceneError(scene.where, key, None, f"{what} {of}{on}: {remedy}")
+    return SceneError(scene.where, key, None, f"{what} {of}: {why}: {remedy}")
 
 
 def _stiffest(rock: Matrices) -> float:
