@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from compare.misfit.places import Place, places_of
-from compare.misfit.weight import QUANTITIES, Weight, weigh
+from compare.misfit.weight import EXCITED, QUANTITIES, UNITS, Weight, weigh
 
 Reading = Callable[[xr.Dataset, str], np.ndarray]
 JUDGED = 10.0  # times its own error: the smallest misfit that a reference can resolve
@@ -137,9 +137,13 @@ def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
     """Return every waveform that both results have, while the reference is known.
 
     Left out is what the scene does not excite: what is zero in both, and what the reference keeps
-    below a millionth of the largest motion, unless the result moves there enough to decide.
+    below a millionth of the largest motion, unless the result moves there enough to decide. Nothing
+    is left where both stay at rest: where no stress changes by a millionth of the static one.
     """
     found, weight = _weighed(one, other)
+    changed = [max(rms(p.one), rms(p.other)) for p in found if p.place.quantity in UNITS[0]]
+    if changed and max(changed) < EXCITED * _static_stress(other):
+        return []
     return [
         p
         for p, excited in zip(found, weight.excited, strict=True)
@@ -223,12 +227,24 @@ def motion(result: xr.Dataset, quantity: str) -> np.ndarray:
 
 def static_state(result: xr.Dataset, quantity: str) -> np.ndarray:
     """Return the static value of a quantity before the load, broadcastable over time."""
-    values, starts = result[quantity].values, result.attrs.get("starts")
-    in_plane = result.attrs.get("kind") == "rock mass"
-    if starts == "at rest under gravity" or (starts == "prestressed" and in_plane):
+    values = result[quantity].values
+    if _found_its_rest(result):
         return values[:, :1]
     prestress = float(result.attrs.get("prestress", 0.0)) if quantity == "stress" else 0.0
     return np.full_like(values[:, :1], prestress)
+
+
+def _found_its_rest(result: xr.Dataset) -> bool:
+    """Whether a result starts from a static state that was sought, and so has a tolerance."""
+    starts, in_plane = result.attrs.get("starts"), result.attrs.get("kind") == "rock mass"
+    return starts == "at rest under gravity" or (starts == "prestressed" and in_plane)
+
+
+def _static_stress(result: xr.Dataset) -> float:
+    """Return the largest component of the static stresses that were sought, Pa; 0 without."""
+    quantities = [name for name in UNITS[0] if name in result and _found_its_rest(result)]
+    held = (static_state(result, name) for name in quantities)
+    return max((float(np.abs(values).max(initial=0.0)) for values in held), default=0.0)
 
 
 def error_of(result: xr.Dataset, place: Place) -> float:
