@@ -201,14 +201,20 @@ def _of_a_jump(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterat
     """Warn of a step load on joints that can fail: behind its front a chain of blocks overshoots by
     23 to 27 % (Airy's function), behind a rise over 40 blocks by at most 2 % up to 200 blocks on.
     """
-    load, fails = scene.load, bool(p.given) or not p.tension.all()
-    if load.shape == "step" and load.amplitude and fails:
-        speed = p.shear_speed if load.is_across else p.bar_speed
-        rise = OF_A_RISE * scene.pillar.block / speed
+    if scene.load.amplitude and (bool(p.given) or not p.tension.all()):
+        speed = p.shear_speed if scene.load.is_across else p.bar_speed
+        yield from of_a_jump("load", scene.load, scene.pillar.block, speed)
+
+
+def of_a_jump(table: str, pulse: Pulse, block: float, speed: float) -> Iterator[str]:
+    """Say what a step does to joints that can fail, and the rise that blocks (m) need of waves of
+    this speed (m/s). table : of the scene that holds it."""
+    if pulse.shape == "step":
         yield (
-            f"load.shape = 'step': blocks of {scene.pillar.block:g} m overshoot behind its front "
-            "by up to 27 %, and joints that slip, open or break do so too early: a load that rises "
-            f"in {rise:.3g} s (a 'triangle' of long decay, a 'table') overshoots by at most 2 %"
+            f"{table}.shape = 'step': blocks of {block:.3g} m overshoot behind its front by up to "
+            "27 %, and joints that slip, open or break do so too early: a load that rises in "
+            f"{OF_A_RISE * block / speed:.3g} s (a 'triangle' of long decay, a 'table') overshoots "
+            "by at most 2 %"
         )
 
 

@@ -23,7 +23,7 @@ from cases.schema.rock_mass import RockMass
 from cases.schema.rock_mass_checks import GRAZING, distance
 from cases.schema.sources import PlaneLoad, Wave
 from cases.spectrum import LEAST_BLOCKS, frequency_of, highest_frequency
-from cases.warnings import of_lever, of_local_damping, of_pulse, onset
+from cases.warnings import of_a_jump, of_lever, of_local_damping, of_pulse, onset
 
 NEAR = 0.05  # of the domain's size: distance of a receiver from the joint that it is meant for
 COINCIDENT = 1e-9  # of the domain's size: distance of two joints that are one
@@ -134,6 +134,16 @@ def _of_half_a_load(scene: RockMass) -> Iterator[str]:
                 f"boundaries.{load.side} = 'quiet', too, which take half: {load.amplitude / 2:g} "
                 "enters; one of the [[waves]] enters with its own amplitude"
             )
+
+
+def _of_a_jump(scene: RockMass) -> Iterator[str]:
+    """Warn of steps where joints can slip, open or break."""
+    keys = ("friction_angle", "cohesion", "tensile_strength")
+    fails = [x for x in scene.joint_sets if x.tension is False or any(getattr(x, k) for k in keys)]
+    block, fastest = scene.numerics.dem.block or _block_size(scene), elastic_rock(scene.rock)
+    for table, pulse in _sources(scene) if fails and block else ():
+        speed = fastest.s_speed if pulse.kind == "S" else fastest.p_speed
+        yield from of_a_jump(table, pulse, block, float(speed))
 
 
 def _of_times(scene: RockMass) -> Iterator[str]:
@@ -285,6 +295,7 @@ RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
     _of_poisson,
     _of_joints_given_twice,
     _of_half_a_load,
+    _of_a_jump,
     _of_places,
     _of_directions,
     _of_times,
