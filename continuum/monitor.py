@@ -88,7 +88,8 @@ class Monitor:
         found = farthest_joint(run)
         share = -1.0 if found is None else found.by / found.size
         found = self.communicator.of_largest(share, found)
-        if run.scene.kind == "rock mass" and not share > LARGEST:
+        beyond = found is not None and found.by > LARGEST * found.size
+        if run.scene.kind == "rock mass" and not beyond:
             from continuum.plane.rock import motion_of_blocks
 
             moved = motion_of_blocks(run.discrete, run.state.u)

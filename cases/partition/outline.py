@@ -83,8 +83,11 @@ def outline_of(domain: Domain) -> Outline:
     ]
     _check_openings(whole, openings)
     hull = whole.convex_hull
-    bays = [] if hull.equals(whole) else _parts(hull.difference(whole))
     size = float(np.hypot(*np.ptp(shapely.get_coordinates(hull), axis=0)))
+    bays = [] if hull.equals(whole) else _parts(hull.difference(whole))
+    bays = [
+        bay for bay in bays if bay.area > TOLERANCE * size**2
+    ]  # no round-off of a straight side
     return Outline(
         corners=corners_of(whole),
         hull=corners_of(hull),

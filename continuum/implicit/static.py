@@ -95,7 +95,8 @@ def settle_static(
     """
     system = _Static(model, state, body, hold)
     done, part, steps = 0.0, 1.0, 0
-    still = False
+    still, largest = False, body.communicator.largest
+    jointed = largest(float(model.interfaces is not None)) > 0  # of any process
     while not still:
         outcome = system.balance(min(done + part, 1.0))
         steps += len(outcome.errors) - 1
@@ -103,7 +104,7 @@ def settle_static(
             # A point that slips loses its cohesion for what follows: balanced again without it.
             still = done >= 1 and outcome.errors[0] <= outcome.tolerance
             done = min(done + part, 1.0)
-            still = still or (done == 1 and model.interfaces is None)
+            still = still or (done == 1 and not jointed)
         elif part > LEAST_PART:
             part /= 2
         else:
@@ -113,7 +114,7 @@ def settle_static(
     memory = system.model.rock.memory
     if memory is not None and state.ledger is not None:
         state.ledger[0] += memory.energy(system.rock.stiffness, state.u, state.elongation)
-    ratio = outcome.errors[-1] / (body.communicator.largest(system.size) or 1.0)
+    ratio = outcome.errors[-1] / (largest(system.size) or 1.0)
     return {"static_steps": steps, "static_out_of_balance": ratio}
 
 

@@ -14,7 +14,7 @@ from closed_forms.spall import lattice_spall
 from compare.scenes import SHIPPED
 from dem.fragments import fragments
 
-FREE = {"ends.start": "free", "load.amplitude": 0.5}
+FREE = {"ends.start": "free", "load.quantity": "stress"}
 
 
 def spalled(**changes):

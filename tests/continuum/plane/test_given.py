@@ -1,5 +1,6 @@
 """Rock masses on meshes of users: files that gmsh has made, with joints at any angle and shape."""
 
+import re
 from itertools import pairwise
 
 import numpy as np
@@ -203,10 +204,11 @@ def test_joints_of_a_mesh_may_bend_and_end_inside_the_rock(given):
         (None, SCENE.replace('.msh"', '.msh", size = [1.0, 1.0]'), "exactly one of domain.size"),
     ],
 )
-def test_what_does_not_fit_a_mesh_is_said_in_one_line(joints, text, words, given):
-    with pytest.raises(SceneError, match=words) as error:
+def test_what_does_not_fit_a_mesh_is_said_in_a_line(joints, text, words, given):
+    with pytest.raises(SceneError) as error:
         given(joints, text)
-    assert "\n" not in str(error.value)
+    said = [str(one) for one in error.value.each]
+    assert any(re.search(words, line) for line in said) and "\n" not in "".join(said)
 
 
 def test_only_the_continuum_takes_a_mesh(given):

@@ -73,13 +73,13 @@ def scaled(trial: CaseTrial) -> Judgement:
     return Judgement(found, EPS * (2 + float(one.attrs["steps"])), "misfit over the amplitude")
 
 
-@criterion("refused in one line that names the key")
+@criterion("refused in a line that names the key")
 def refused(trial: CaseTrial) -> Judgement:
-    """An uncomputable scene is refused in one line that names the key."""
+    """An uncomputable scene is refused, each mistake in one line that names the key."""
     try:
         trial.run()
     except SceneError as error:
-        wrong = "\n" in str(error) or not error.key
+        wrong = any("\n" in str(one) or not one.key for one in error.each)
         return Judgement(float(wrong), 0.0, f"{error.key}: {error.allowed}")
     return Judgement(1.0, 0.0, "was not refused")
 
