@@ -141,7 +141,9 @@ def _of_a_jump(scene: RockMass) -> Iterator[str]:
     keys = ("friction_angle", "cohesion", "tensile_strength")
     fails = [x for x in scene.joint_sets if x.tension is False or any(getattr(x, k) for k in keys)]
     block, fastest = scene.numerics.dem.block or _block_size(scene), elastic_rock(scene.rock)
-    for table, pulse in _sources(scene) if fails and block else ():
+    if not fails or block is None:
+        return
+    for table, pulse in _sources(scene):
         speed = fastest.s_speed if pulse.kind == "S" else fastest.p_speed
         yield from of_a_jump(table, pulse, block, float(speed))
 
