@@ -1,4 +1,4 @@
-"""What each engine has in a scene before any run: speeds of waves, levers of contact points."""
+"""Properties of each engine's model of a scene: speeds of waves, levers of contact points."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ from cases.material.elastic import shear_modulus
 from cases.schema.joint import Joints
 from cases.schema.scene import Scene
 from cases.schema.segment import alone, regions
+from compare.engines import ENGINES
+from compare.solvers.record import Rock
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
@@ -33,9 +35,8 @@ def speeds_of(scene: AnyScene, engines: list[str]) -> dict[str, Speeds]:
 
     Long waves are those of wavelengths that are large against the blocks and a pillar's side.
     """
-    if isinstance(scene, Scene):
-        return {name: _of_pillar(scene, "jointed" in name) for name in engines}
-    return {name: _of_rock_mass(scene, name) for name in engines}
+    speeds: Any = _of_pillar if isinstance(scene, Scene) else _of_rock_mass
+    return {name: speeds(scene, ENGINES[name].rock) for name in engines}
 
 
 def speed_words(scene: AnyScene, found: dict[str, Speeds]) -> list[str]:
@@ -66,10 +67,12 @@ def levers_of(scene: AnyScene, engines: list[str]) -> dict[str, float]:
         return {}
     rules: Sequence[Joints] = [scene.joints] if isinstance(scene, Scene) else scene.joint_sets
     found = {}
-    if "dem" in engines and rules:
-        found["dem"] = min(lever(one.point_rule, one.contact_points) for one in rules)
-    if "continuum-jointed" in engines and (of_elements := _of_elements(scene)) is not None:
-        found["continuum-jointed"] = of_elements
+    for name in engines:
+        rock = ENGINES[name].rock
+        if rock is Rock.RIGID_BLOCKS and rules:
+            found[name] = min(lever(one.point_rule, one.contact_points) for one in rules)
+        elif rock is Rock.JOINTED and (of_elements := _of_elements(scene)) is not None:
+            found[name] = of_elements
     return found
 
 
@@ -98,14 +101,14 @@ def _number(speed: float) -> str:
     return f"{speed:.4g}" if np.isfinite(speed) else "none (rigid)"
 
 
-def _of_pillar(scene: Scene, resolved: bool) -> Speeds:
-    """Return the speeds of each segment; resolved : whether joints stand apart from intact rock."""
+def _of_pillar(scene: Scene, rock: Rock) -> Speeds:
+    """Return the speeds of each segment, and those between joints that stand apart from rock."""
     p, found = calibrate(scene), {}
     ends = p.contact_y[np.cumsum([0, *(one.block_count for one in p.each)])].tolist()
     for one, region, (start, stop) in zip(p.each, regions(scene), pairwise(ends), strict=True):
         where = f"{start:g} to {stop:g} m, " if len(p.each) > 1 else ""
         found[f"{where}long waves"] = one.bar_speed, one.shear_speed
-        if resolved and isfinite(one.regular_own_stiffness):
+        if rock is Rock.JOINTED and isfinite(one.regular_own_stiffness):
             found[f"{where}between joints"] = _intact(one, alone(scene, region))
     return found
 
@@ -116,19 +119,19 @@ def _intact(p: Properties, scene: Scene) -> tuple[float, float]:
     return sqrt(modulus / p.density), sqrt(shear_modulus(modulus, poisson) / p.density)
 
 
-def _of_rock_mass(scene: RockMass, engine: str) -> Speeds:
+def _of_rock_mass(scene: RockMass, resolved: Rock) -> Speeds:
     from cases.material.effective_medium import compliant, stiffness
     from cases.material.rigid_blocks import long_wave_stiffness
     from cases.material.rock import elastic_rock
     from cases.partition.lattice import further_sets
     from cases.partition.regions import within
 
-    if engine == "dem":
+    if resolved is Rock.RIGID_BLOCKS:
         return _along_axes(long_wave_stiffness(scene, further_sets(scene)), scene)
     rock = elastic_rock(scene.rock)
     sets = compliant(within(scene, scene.joint_sets)[-1].joint_sets)
     found = _along_axes(stiffness(rock, sets), scene) if sets else {}
-    if engine == "continuum-jointed" or not sets:
+    if resolved is Rock.JOINTED or not sets:
         found["intact rock"] = float(rock.p_speed), float(rock.s_speed)
     return found
 

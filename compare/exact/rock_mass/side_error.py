@@ -1,4 +1,4 @@
-"""What the incident field of a scene leaves out at its quiet sides, and how far from them.
+"""Error of the incident field at the quiet sides of a scene, and its reach into the rock.
 
 The field (`field.field_of`) is that of joints that stay linear. What they do otherwise beside a
 side changes the true motion there, by about as much as the traction beyond their strength moves
