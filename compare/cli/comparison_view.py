@@ -10,11 +10,10 @@ from compare.engines import ENGINES
 from compare.misfit.differences import STRESS, VELOCITY, PeakDifference
 from compare.misfit.metrics import Worst
 from compare.misfit.pairs import GIVEN, Comparison, Row
-from compare.report.overview import in_seconds
-from compare.report.tables import mean_and_worst, percent
 from compare.report.verdict import Standing, held_to, standings
 from compare.solvers.incident import side_error
 from compare.solvers.record import Kind
+from compare.text import cell, in_seconds, mean_and_worst, percent
 from results.dataset import energy_residual, open_ledger
 
 MOST_LINES = 10  # of the answer
@@ -62,18 +61,20 @@ def _show_answer(found: list[Comparison], every: bool) -> None:
 
 
 def _readings(comparison: Comparison) -> dict[str, Any]:
-    from compare.report.reading_table import reading_frame
+    from compare.figures.tables import reading_frame
 
     return {"readings": reading_frame([comparison]).to_dict("records")}
 
 
 def _show_readings(found: list[Comparison]) -> None:
-    from compare.report.reading_table import reading_frame, reading_table
+    from compare.figures.tables import reading_frame
 
-    header, groups = reading_table(reading_frame(found))
+    read = reading_frame(found)
     say("")
-    if groups:
-        show_numbers(header, groups)
+    if len(read):
+        variants = read.set_index("variant").map(cell).groupby(level=0, sort=False)
+        groups = {str(name): rows.values.tolist() for name, rows in variants}
+        show_numbers([*read.columns[1:]], groups)
     else:
         say("no velocities are recorded: record.velocity or record.points is empty")
 

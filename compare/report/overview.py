@@ -11,6 +11,7 @@ from typing import NamedTuple
 from compare.engines import ENGINES, stepping
 from compare.misfit.pairs import Comparison
 from compare.report.verdict import NOT_CHECKED, Standing
+from compare.text import in_seconds, times
 
 
 class RankedScene(NamedTuple):
@@ -55,13 +56,6 @@ class Overview(NamedTuple):
         }
 
 
-def in_seconds(x: float) -> str:
-    """Return a time to two digits, in the unit that suits it."""
-    factor, unit = (1, "s") if x >= 1 else (1e3, "ms") if x >= 1e-3 else (1e6, "µs")
-    shown = factor * x
-    return f"{shown:.0f} {unit}" if shown >= 10 else f"{shown:.2g} {unit}"
-
-
 def _sentence(engine: str, scenes: list[RankedScene]) -> str:
     totals = [x for s in scenes if not isnan(x := s.standings[engine].total)]
     own = [x for s in scenes if not isnan(x := s.standings[engine].own)]
@@ -90,11 +84,6 @@ def _span(write: Callable[[float], str], values: list[float]) -> str:
 def _short(x: float) -> str:
     """Return a ratio in percent to two digits."""
     return "< 0.001" if 0 < x < 1e-5 else f"{100 * x:.2g}"
-
-
-def times(x: float) -> str:
-    """Return a ratio as it is read, "15×"."""
-    return f"{x:.0f}×" if x >= 9.95 else f"{x:.1f}×"
 
 
 PACKAGES = ("scipy", "xarray", "obspy", "matplotlib", "plotly")

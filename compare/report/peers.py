@@ -21,10 +21,11 @@ from compare.experiments.study.findings import assured
 from compare.experiments.study.study import Curve, Study
 from compare.experiments.summary import Summary
 from compare.figures.export import save
-from compare.report.tables import Table, percent
+from compare.report.tables import Table
 from compare.runs.output import write_csv
 from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from compare.solvers.dem import DEM
+from compare.text import percent
 
 PLACE = Path("out/peers/points.csv")  # where `make bench-peers` writes
 NAME = "peers"

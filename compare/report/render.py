@@ -15,9 +15,10 @@ from compare.experiments.summary import Summary
 from compare.figures.snapshots import SnapshotsSection
 from compare.figures.style import style
 from compare.report.findings import Finding
-from compare.report.overview import Overview, in_seconds, times
+from compare.report.overview import Overview
 from compare.report.section import Section
-from compare.report.tables import Table, mean_and_worst, percent
+from compare.report.tables import Table
+from compare.text import in_seconds, mean_and_worst, percent, times
 
 
 class RockMasses(NamedTuple):

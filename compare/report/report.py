@@ -26,20 +26,14 @@ from compare.experiments.study.summary import reported as reported_studies
 from compare.experiments.study.summary import run as run_study
 from compare.experiments.study.summary import summarise as summarise_study
 from compare.experiments.summary import Summary
-from compare.figures.charts.static import draw
-from compare.figures.charts.waveforms import by_solutions
-from compare.figures.export import save
 from compare.figures.snapshots import SnapshotsSection, make_snapshots
-from compare.figures.subplots import curve_table
-from compare.misfit.pairs import Comparison
 from compare.report import peers, tables
 from compare.report.findings.pillar import mostly_dispersion
 from compare.report.overview import Overview, RankedScene, seconds, versions
-from compare.report.reading_table import reading_frame
 from compare.report.render import Page, RockMasses, render
 from compare.report.scenes import ROCK_MASSES, Solved, asked_for, solve
 from compare.report.section import SceneRequest
-from compare.runs.output import write_csv, write_text
+from compare.runs.output import write_text
 from compare.runs.workers import Workers
 
 FREE_PILLAR = "fig-03"  # the scene that says what the paper's own comparison is made of
@@ -256,19 +250,3 @@ def _with_measured(
             peers=section,
             peers_file=str(peers.PLACE),
         )
-
-
-def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
-    """Write the figure, the curves, the distances and what is read off one scene's variants into a
-    folder.
-
-    With curves of others also how they were aligned, as comparison-alignment.csv.
-    """
-    folder, name = Path(out), "comparison"
-    curves = curve_table(comparisons).reset_index()
-    save(draw(name, by_solutions(comparisons)), folder, name, comparisons[0].scene.title, curves)
-    write_csv(folder / f"{name}-misfits.csv", tables.distance_frame(comparisons))
-    if not (read := reading_frame(comparisons)).empty:
-        write_csv(folder / f"{name}-readings.csv", read)
-    if any(comparison.besides for comparison in comparisons):
-        write_csv(folder / f"{name}-alignment.csv", tables.alignment_frame(comparisons))

@@ -10,10 +10,11 @@ from typing import NamedTuple
 import cases
 from compare.figures.export import Drawn, save
 from compare.figures.figure import SceneFigure
+from compare.figures.tables import distance_frame, reading_frame
 from compare.misfit.pairs import Comparison
 from compare.report import tables
 from compare.report.findings import Finding, findings
-from compare.report.reading_table import reading_frame, reading_table
+from compare.report.reading_table import reading_table
 from compare.report.verdict import Standing, standings
 from compare.runs.output import write_csv
 
@@ -114,7 +115,7 @@ def make_section(
         scene.source or "",
         request.file.read_text(encoding="utf-8-sig"),
         figures,
-        write_csv(distances, tables.distance_frame(comparisons)),
+        write_csv(distances, distance_frame(comparisons)),
         None if read.empty else write_csv(readings, read),
         findings(request.number, comparisons) if request.number else [],
         tables.misfit_table(comparisons),

@@ -5,14 +5,14 @@ from itertools import chain
 from math import isfinite
 from typing import NamedTuple
 
-import pandas as pd
 import xarray as xr
 
 from compare.figures.subplots import variant_names
-from compare.misfit.differences import STRESS, VELOCITY, PeakDifference, peak_ratios
+from compare.misfit.differences import STRESS, VELOCITY
 from compare.misfit.pairs import Comparison, Pair, Row, meaning, pairs
 from compare.misfit.places import Place
 from compare.report.verdict import Standing
+from compare.text import mean_and_worst, percent
 from results.dataset import energy_residual, open_ledger
 
 
@@ -26,20 +26,6 @@ class Table(NamedTuple):
 def title(pair: Pair) -> str:
     """Return a pair as scene files write it."""
     return f"{pair.one} ~ {pair.other}"
-
-
-def percent(x: float) -> str:
-    """Return a ratio in percent to three digits; below 0.001 % only that it is."""
-    if not isfinite(x):
-        return "–"
-    if 0 < x < 1e-5:
-        return "< 0.001"
-    return f"{100 * x:#.3g}".rstrip(".")
-
-
-def mean_and_worst(peak: PeakDifference | None) -> str:
-    """Return a difference of peaks in percent, of all receivers and of the worst."""
-    return f"{100 * peak.mean:.2g}, ≤ {100 * peak.worst:.2g}" if peak else ""
 
 
 def verdict_table(standings: dict[str, Standing]) -> Table:
@@ -142,60 +128,6 @@ def _distances(row: Row) -> list[str]:
     ]
     spectral = ["" if x is None else percent(x) for x in (d.envelope, d.phase)]
     return [percent(d.misfit), *ratios, *spectral]
-
-
-def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return the same as numbers, SI, for a machine to read; beside it the ratio of what engineers
-    read off all components at the receiver."""
-    peaks = {
-        (name, pair): peak_ratios(one.results[pair.one], one.results[pair.other])
-        for name, one in zip(variant_names(comparisons), comparisons, strict=True)
-        for pair in dict.fromkeys(row.pair for row in one.rows)
-        if {pair.one, pair.other} <= one.results.keys()
-    }
-    return pd.DataFrame(
-        {
-            "kind": row.pair.kind,
-            "pair": title(row.pair),
-            "variant": name,
-            "quantity": row.place.named,
-            **{f"{axis} (m)": at for axis, at in row.place.coordinates.items()},
-            "relative L2": row.distance.misfit,
-            "own error of the reference": row.floor,
-            "faint": row.faint,
-            "of all motion": row.of_all,
-            "peak ratio": row.distance.peak_ratio,
-            "PPV or peak stress ratio": peaks.get((name, row.pair), {}).get(
-                (row.place.quantity, row.place.at)
-            ),
-            "delay (s)": row.distance.delay,
-            "period ratio": row.distance.period_ratio,
-            "envelope misfit": row.distance.envelope,
-            "phase misfit": row.distance.phase,
-        }
-        for name, row in _rows(comparisons)
-    )
-
-
-def alignment_frame(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return how each file of others' curves was put beside each variant, SI."""
-    return pd.DataFrame(
-        {
-            "file": beside.curves.name,
-            "variant": name,
-            "samples": len(beside.time),
-            "times": "file" if beside.own_times else "scene",
-            "start (s)": beside.time[0],
-            "end (s)": beside.time[-1],
-            "outside": beside.outside,
-            "missed": beside.missed,
-            "moved by (s)": beside.shift.seconds if beside.shift else 0.0,
-            "onto": beside.shift.onto if beside.shift else "",
-            "correlation": beside.shift.correlation if beside.shift else None,
-        }
-        for name, comparison in zip(variant_names(comparisons), comparisons, strict=True)
-        for beside in comparison.besides
-    )
 
 
 def run_table(comparisons: list[Comparison]) -> Table:

@@ -106,7 +106,7 @@ def compare(
             else:
                 found.append(pairs.solved(one, deciding(one), advance))
     if out is not None:
-        from compare.report.report import write_comparisons
+        from compare.figures.comparison import write_comparisons
 
         write_comparisons(found, out)
     comparison_view.show_comparisons(found, every, as_json, reads)

@@ -9,8 +9,9 @@ from compare.experiments.ablation.ablation import Ablation, EffectCost
 from compare.experiments.ablation.diagram import draw
 from compare.experiments.summary import Summary, number
 from compare.figures.export import save
-from compare.report.tables import Table, percent
+from compare.report.tables import Table
 from compare.runs.output import write_csv
+from compare.text import percent
 
 NAME = "effects"
 TITLE = "Cost and influence of each effect"

@@ -6,7 +6,7 @@ from compare.cli.terminal import print_json, say, show_table
 from compare.experiments.common import ErrorReference
 from compare.experiments.planner.planner import Plan, options_of
 from compare.experiments.planner.trials import Choice
-from compare.report.tables import percent
+from compare.text import percent
 
 
 def show_plans(found: list[Plan], misfit: float, as_json: bool) -> None:

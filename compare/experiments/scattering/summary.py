@@ -17,7 +17,8 @@ from compare.experiments.scattering.points import AT, COUNTS, JointsRow, closed_
 from compare.experiments.summary import Summary, frame, grouped, number, write_tables
 from compare.figures.export import blank, save
 from compare.figures.style import style
-from compare.report.tables import Table, percent
+from compare.report.tables import Table
+from compare.text import percent
 
 WAVES = {"R_p": ("o", "-"), "R_s": ("s", "--"), "T_p": ("^", "-."), "T_s": ("v", ":")}
 LINE = "#30363b"  # of the closed form

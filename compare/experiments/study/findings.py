@@ -16,7 +16,7 @@ from compare.experiments.study.check import ARGUMENTS
 from compare.experiments.study.measure import PointRow
 from compare.experiments.study.study import Curve, FineRun, Study
 from compare.misfit.metrics import JUDGED
-from compare.report.tables import percent
+from compare.text import percent
 
 TARGETS = (0.1, 0.01, 1e-3, 1e-4)
 CLEARLY = 0.9  # of the expected error: a smaller one is due to cancellation

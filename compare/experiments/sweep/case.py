@@ -105,7 +105,7 @@ class Comparing(NamedTuple):
 
         found = pairs.compare(scene, None, self.spectral, self.curves, self.align)
         if self.writes:
-            from compare.report.report import write_comparisons
+            from compare.figures.comparison import write_comparisons
 
             write_comparisons([found], folder / scene.name)
         if not found.rows:

@@ -5,8 +5,9 @@ import pytest
 from cases.read import load_tables
 from compare.figures.scene_figures import figures_of
 from compare.figures.subplots import curve_table, panels
+from compare.figures.tables import distance_frame
 from compare.misfit.pairs import measure
-from compare.report.tables import distance_frame, misfit_table
+from compare.report.tables import misfit_table
 
 
 @pytest.fixture

@@ -13,6 +13,7 @@ from cases.schema.tables import Prestress
 from compare.exact.blocks import lattice, spatial_lattice
 from compare.figures.charts.static import draw
 from compare.figures.charts.waveforms import by_solutions
+from compare.figures.comparison import write_comparisons
 from compare.figures.export import DIGITS, write_csv
 from compare.figures.subplots import curve_table, panels
 from compare.misfit import pairs
@@ -20,7 +21,6 @@ from compare.misfit.alignment import distance_at, distances, lay_beside
 from compare.misfit.external import read_curves
 from compare.misfit.pairs import Comparison, compare, measure_curves
 from compare.misfit.places import Place
-from compare.report.report import write_comparisons
 from compare.solvers.record import YES
 
 SCENE = "guo-li-2002/fig-03"

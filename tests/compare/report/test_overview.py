@@ -8,8 +8,9 @@ import xarray as xr
 
 from compare.misfit.metrics import Worst
 from compare.misfit.pairs import Comparison
-from compare.report.overview import Overview, RankedScene, in_seconds, times
+from compare.report.overview import Overview, RankedScene
 from compare.report.verdict import NOT_CHECKED, Held, Standing, standings
+from compare.text import in_seconds, times
 
 
 @pytest.fixture

@@ -14,9 +14,9 @@ from compare.experiments.study.study import load
 from compare.experiments.study.summary import REPORTED
 from compare.report.report import build
 from compare.report.section import PAPER
-from compare.report.tables import percent
 from compare.report.verdict import NOT_CHECKED
 from compare.runs.field_files import read_pvd
+from compare.text import percent
 
 pytestmark = pytest.mark.slow  # minutes: small pages are opened in test_browser and test_layout
 

@@ -9,11 +9,11 @@ from cases.material.calibrate import calibrate
 from cases.read import load_tables
 from compare.cli.comparison_view import show_comparisons
 from compare.engines import solve
+from compare.figures.tables import READINGS, reading_frame
 from compare.misfit.alignment import lay_beside
 from compare.misfit.external import Curves
 from compare.misfit.pairs import Comparison, measure
 from compare.misfit.places import Place
-from compare.report.reading_table import NUMBERS, reading_frame, reading_table
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +67,7 @@ def test_the_table_is_printed_and_is_in_the_json(compared, capsys):
     show_comparisons([compared], False, False, reads=True)
     lines = capsys.readouterr().out.splitlines()
     assert [" ".join(line.split()) for line in lines][-1].startswith("images 30 m 0.5 ")
-    assert all(name in "\n".join(lines) for name in NUMBERS)
+    assert all(name in "\n".join(lines) for name in READINGS)
     show_comparisons([compared], False, True, reads=True)
     (facts,) = json.loads(capsys.readouterr().out)
     assert [row["at"] for row in facts["readings"]] == ["10 m", "30 m"]
@@ -77,7 +77,7 @@ def test_the_table_is_printed_and_is_in_the_json(compared, capsys):
 def test_nothing_is_read_where_no_velocity_is_recorded(compared, capsys):
     silent = {name: result.isel(velocity_y=[]) for name, result in compared.results.items()}
     nothing = compared.__class__(compared.scene, silent, {}, compared.rows)
-    assert not reading_table(reading_frame([nothing])).groups
+    assert reading_frame([nothing]).empty
     show_comparisons([nothing], False, False, reads=True)
     assert (
         "no velocities are recorded: record.velocity or record.points is empty"

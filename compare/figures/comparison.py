@@ -1,0 +1,29 @@
+"""Files of a comparison: its figure, the curves, the distances, and what is read off them."""
+
+from pathlib import Path
+
+from compare.figures.charts.static import draw
+from compare.figures.charts.waveforms import by_solutions
+from compare.figures.export import save
+from compare.figures.subplots import curve_table
+from compare.figures.tables import alignment_frame, distance_frame, reading_frame
+from compare.misfit.pairs import Comparison
+from compare.runs.output import write_csv
+
+NAME = "comparison"
+
+
+def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
+    """Write the figure and the tables of a scene's variants into a folder: comparison.csv with the
+    curves, comparison-misfits.csv, and where there are velocities or curves of others
+    comparison-readings.csv and comparison-alignment.csv."""
+    folder = Path(out)
+    curves = curve_table(comparisons).reset_index()
+    save(draw(NAME, by_solutions(comparisons)), folder, NAME, comparisons[0].scene.title, curves)
+    write_csv(folder / f"{NAME}-misfits.csv", distance_frame(comparisons))
+    for name, table in (
+        ("readings", reading_frame(comparisons)),
+        ("alignment", alignment_frame(comparisons)),
+    ):
+        if not table.empty:
+            write_csv(folder / f"{NAME}-{name}.csv", table)

@@ -1,0 +1,147 @@
+"""Tables of a comparison in SI: distances, readings of velocities, how curves were aligned."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from cases.records import Column
+from compare.figures.subplots import variant_names
+from compare.misfit.differences import peak_ratios
+from compare.misfit.pairs import Comparison, Row
+from compare.misfit.places import Place
+from compare.readings import (
+    arias_intensity,
+    peak_velocity,
+    quality_factor,
+    response_spectrum,
+    wave_speed,
+)
+from compare.readings.attenuation import sampling, waveforms
+from compare.readings.recordings import dataset_of
+from results.labels import RECEIVERS
+
+PERIODS, SHORTEST = 60, 8  # of oscillators: how many, and the shortest period in samples
+READINGS = (
+    "peak velocity (m/s)",
+    "Arias intensity (m/s)",
+    "spectral acceleration (m/s2)",
+    "at period (s)",
+    "speed (m/s)",
+    "apparent Q",
+)
+
+
+def rows_of(comparisons: list[Comparison]) -> list[tuple[str, Row]]:
+    """Return every distance, with the name of its variant."""
+    named = zip(variant_names(comparisons), comparisons, strict=True)
+    return [(name, row) for name, comparison in named for row in comparison.rows]
+
+
+def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return every distance of every pair at every receiver of every variant; beside it the ratio
+    of PPV or peak stress, which are of all components at the receiver."""
+    peaks = {
+        (name, pair): peak_ratios(one.results[pair.one], one.results[pair.other])
+        for name, one in zip(variant_names(comparisons), comparisons, strict=True)
+        for pair in dict.fromkeys(row.pair for row in one.rows)
+        if {pair.one, pair.other} <= one.results.keys()
+    }
+    return pd.DataFrame(
+        {
+            "kind": row.pair.kind,
+            "pair": f"{row.pair.one} ~ {row.pair.other}",
+            "variant": name,
+            "quantity": row.place.named,
+            **{f"{axis} (m)": at for axis, at in row.place.coordinates.items()},
+            "relative L2": row.distance.misfit,
+            "own error of the reference": row.floor,
+            "faint": row.faint,
+            "of all motion": row.of_all,
+            "peak ratio": row.distance.peak_ratio,
+            "PPV or peak stress ratio": peaks.get((name, row.pair), {}).get(
+                (row.place.quantity, row.place.at)
+            ),
+            "delay (s)": row.distance.delay,
+            "period ratio": row.distance.period_ratio,
+            "envelope misfit": row.distance.envelope,
+            "phase misfit": row.distance.phase,
+        }
+        for name, row in rows_of(comparisons)
+    )
+
+
+def alignment_frame(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return how each file of others' curves was put beside each variant."""
+    return pd.DataFrame(
+        {
+            "file": beside.curves.name,
+            "variant": name,
+            "samples": len(beside.time),
+            "times": "file" if beside.own_times else "scene",
+            "start (s)": beside.time[0],
+            "end (s)": beside.time[-1],
+            "outside": beside.outside,
+            "missed": beside.missed,
+            "moved by (s)": beside.shift.seconds if beside.shift else 0.0,
+            "onto": beside.shift.onto if beside.shift else "",
+            "correlation": beside.shift.correlation if beside.shift else None,
+        }
+        for name, comparison in zip(variant_names(comparisons), comparisons, strict=True)
+        for beside in comparison.besides
+    )
+
+
+def reading_frame(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return what engineers read off each receiver of velocity of each solution of each variant.
+
+    Peak particle velocity; Arias intensity and the largest pseudo-acceleration of oscillators with
+    5 % damping, of the direction in which they are largest; and from the first receiver, of whole
+    records, the speed by cross-correlation and the apparent Q where the first one is loudest.
+    """
+    return pd.DataFrame(
+        {"variant": name, "solution": solution, **row}
+        for name, comparison in zip(variant_names(comparisons), comparisons, strict=True)
+        for solution, result in _velocities(comparison)
+        for row in _readings(result)
+    )
+
+
+def _velocities(comparison: Comparison) -> Iterator[tuple[str, xr.Dataset]]:
+    """Yield the solutions with velocities, then the velocities of others at each receiver."""
+    for name, result in comparison.results.items():
+        if "velocity" in result and result["velocity"].size:
+            yield name, result
+    for curves in (beside.curves for beside in comparison.besides):
+        moving = [place for place in curves.waveforms if place.quantity == "velocity"]
+        for at in dict.fromkeys(place.at for place in moving):
+            here = [place for place in moving if place.at == at]
+            columns = [Column(str(place), "", curves.waveforms[place]) for place in here]
+            yield curves.name, dataset_of(curves.time, columns, "velocity")
+
+
+def _readings(result: xr.Dataset) -> Iterator[dict[str, float | str]]:
+    receiver = str(next(d for d in result["velocity"].dims if d in RECEIVERS))
+    time = result["time"].values
+    periods = np.geomspace(SHORTEST * (time[1] - time[0]), time[-1] - time[0], PERIODS)
+    acceleration = response_spectrum(result, periods)["pseudo_acceleration"].max("axis")
+    peaks, intensities = peak_velocity(result).values, arias_intensity(result).max("axis").values
+    at = np.stack([result[name].values for name in RECEIVERS[receiver]], axis=1)
+    for i, values in enumerate(acceleration.values):
+        apart = i and peaks[i] and peaks[0]
+        speed, Q = (wave_speed(result, 0, i), _quality(result, i)) if apart else (np.nan, np.nan)
+        top = int(values.argmax())
+        found = peaks[i], intensities[i], values[top], periods[top], speed, Q
+        place = Place("velocity", "", tuple(at[i].tolist()))
+        yield {"at": place.receiver} | dict(zip(READINGS, map(float, found), strict=True))
+
+
+def _quality(result: xr.Dataset, i: int) -> float:
+    """Return the apparent Q from the first receiver to another at the frequency that is loudest;
+    nan where nothing is lost there."""
+    row = waveforms(result)
+    size = np.abs(np.fft.rfft(row[0].values))
+    loudest = np.fft.rfftfreq(row.sizes["time"], sampling(row))[1 + size[1:].argmax()]
+    Q = float(quality_factor(result, 0, i).quality.sel(frequency=loudest, method="nearest"))
+    return Q if 0 < Q < np.inf else np.nan

@@ -1,0 +1,43 @@
+"""Numbers as text, the same on the terminal and on the page."""
+
+from math import isfinite
+from typing import Any
+
+from compare.misfit.differences import PeakDifference
+
+NONE = "–"  # where there is no number
+
+
+def percent(x: float) -> str:
+    """Return a ratio in percent to three digits; below 0.001 % only that it is."""
+    if not isfinite(x):
+        return NONE
+    if 0 < x < 1e-5:
+        return "< 0.001"
+    return f"{100 * x:#.3g}".rstrip(".")
+
+
+def mean_and_worst(peak: PeakDifference | None) -> str:
+    """Return a difference of peaks in percent, of all receivers and of the worst."""
+    return f"{100 * peak.mean:.2g}, ≤ {100 * peak.worst:.2g}" if peak else ""
+
+
+def in_seconds(x: float) -> str:
+    """Return a time to two digits, in the unit that suits it."""
+    factor, unit = (1, "s") if x >= 1 else (1e3, "ms") if x >= 1e-3 else (1e6, "µs")
+    shown = factor * x
+    return f"{shown:.0f} {unit}" if shown >= 10 else f"{shown:.2g} {unit}"
+
+
+def times(x: float) -> str:
+    """Return a ratio as it is read, "15×"."""
+    return f"{x:.0f}×" if x >= 9.95 else f"{x:.1f}×"
+
+
+def cell(value: Any) -> str:
+    """Return a value of a table: whole numbers and text as they are, others to four digits."""
+    if isinstance(value, float):
+        if not isfinite(value):
+            return NONE
+        return f"{value:.0f}" if value.is_integer() and abs(value) < 1e9 else f"{value:.4g}"
+    return str(value)
