@@ -347,7 +347,6 @@ PRINTED = {
     "compare/runs/processes.py",  # a message of compare/cli/program.py, which made it printable
     "compare/cli/start.py",  # `fault`, in ASCII
     "compare/cli/terminal.py",  # JSON, dumped the line before
-    "compare/cli/diagnostics/doctor.py",  # a number, in another process
 }
 
 

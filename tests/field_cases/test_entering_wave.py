@@ -12,7 +12,6 @@ import jointwave as jw
 from cases.errors import SceneError
 from cases.warnings import warnings
 from compare.cli.new import starter
-from compare.cli.templates import PILLAR, ROCK_MASS
 from compare.readings.entering_wave import entering_waves
 
 DENSITY, MODULUS = 2400.0, 2400.0 * 1350.0**2
@@ -167,11 +166,13 @@ def test_an_incident_wave_needs_a_start_that_lets_it_in(start):
         jw.load(pillar(start, INCIDENT))
 
 
-@pytest.mark.parametrize(("template", "source"), [(PILLAR, "load, along"), (ROCK_MASS, "waves[0]")])
+@pytest.mark.parametrize(
+    ("template", "source"), [("pillar", "load, along"), ("rock-mass", "waves[0]")]
+)
 def test_a_new_scene_enters_what_it_says_and_explain_says_it(tmp_path, jointwave, template, source):
     path = tmp_path / "new.toml"
-    path.write_text(starter(path, template))
+    path.write_text(starter(path.name, template))
     (wave,) = entering_waves(jw.load(path))
     assert wave.stress == pytest.approx(1e6) and wave.source.startswith(source)
-    if template is PILLAR:
+    if template == "pillar":
         assert "1e+06 Pa and 0.3086 m/s enter the rock" in jointwave("explain", path).out

@@ -190,7 +190,7 @@ SOLVERS = (
     "compare.figures.print.make.make",
     "compare.figures.animation.snapshots.take",
     "compare.cli.explain.explanation",
-    "compare.cli.diagnostics.doctor.examine",
+    "compare.cli.doctor.examine",
 )
 
 

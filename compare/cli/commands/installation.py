@@ -29,13 +29,12 @@ def new(
 
     Existing files are not overwritten.
     """
-    from compare.cli import new as starter
-    from compare.cli import templates, terminal
+    from compare.cli import terminal
+    from compare.cli.new import write_new
 
     if rock_mass and source is not None:
         raise SceneError("--rock-mass", "", None, "has no meaning with --from")
-    template = templates.ROCK_MASS if rock_mass else templates.PILLAR
-    for path in starter.write_new(name, source, template):
+    for path in write_new(name, source, "rock-mass" if rock_mass else "pillar"):
         terminal.say(f"wrote {path}")
 
 
@@ -47,9 +46,9 @@ def doctor(as_json: JsonOption = False) -> None:
     compiles kernels, which takes up to a minute.
     """
     from compare.cli import terminal
-    from compare.cli.diagnostics.doctor import examine, show_health
+    from compare.cli.doctor import examine, show_health
 
     with terminal.progress("looking") as advance:
-        found = examine(advance)
-    show_health(found, as_json)
-    raise typer.Exit(0 if found.is_well else 1)
+        parts, checks = examine(advance)
+    show_health(parts, checks, as_json)
+    raise typer.Exit(0 if all(one.holds for one in checks) else 1)

@@ -144,7 +144,7 @@ def test_strict_refuses_what_is_warned_of(jointwave, command, tmp_path, monkeypa
 
 def test_strict_refuses_a_sweep_and_a_page(jointwave, tmp_path):
     """The page takes only files; neither is run."""
-    (tmp_path / "new.toml").write_text(starter(tmp_path / "new.toml").replace("2400.0", "2.4"))
+    (tmp_path / "new.toml").write_text(starter("new.toml").replace("2400.0", "2.4"))
     for options in (
         ("run", SCENE, "--sweep", "load.period=0.01,0.001"),
         ("report", tmp_path / "new.toml"),
