@@ -127,9 +127,8 @@ def check(pair: str, needed: Part) -> Check:
 
 def _part(name: str, command: list[str], hint: str) -> Part:
     """Return what a command prints, or how it ends."""
-    captured = {"stdin": subprocess.DEVNULL, "capture_output": True, "text": True}
     try:
-        done = subprocess.run(command, timeout=PATIENCE, **captured)
+        done = subprocess.run(command, input="", capture_output=True, text=True, timeout=PATIENCE)
     except FileNotFoundError:
         return Part(name, "missing", "is not on the PATH", hint)
     except subprocess.TimeoutExpired:
@@ -148,8 +147,8 @@ def show_health(parts: list[Part], checks: list[Check], as_json: bool) -> None:
     well, cache = all(one.holds for one in checks), str(jit.DIRECTORY.parent)
     if as_json:
         facts = [{**one._asdict(), "holds": one.holds} for one in checks]
-        found = {"parts": [one._asdict() for one in parts], "self_check": facts}
-        print_json({**found, "kernel_cache": cache, "well": well})
+        own = {"parts": [one._asdict() for one in parts], "kernel_cache": cache}
+        print_json({**own, "self_check": facts, "well": well})
         return
     say(f"jointwave {version('jointwave')}, Python {platform.python_version()} ({sys.executable})")
     rows = [[one.part, one.state, "; ".join(filter(None, one[2:]))] for one in parts]
