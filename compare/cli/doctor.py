@@ -97,7 +97,7 @@ def examine(progress: Callable[[float], None]) -> tuple[list[Part], list[Check]]
         parts = list(pool.map(look, PARTS))
     launcher = ["mpiexec", "-n", RANKS, sys.executable, "-c", SEEN]
     parts.append(_part("mpiexec", launcher, LAUNCHER))
-    by_name, checks = {part.part: part for part in parts}, []
+    by_name, checks = {part.part: part for part in parts}, list[Check]()
     for pair, needed in PAIRS.items():
         progress(0.3 + 0.35 * len(checks))
         if by_name[needed].state != "missing":
