@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from cases.kinds import AnyScene
     from cases.material.calibrate import Properties
     from cases.material.closure import Closure
-    from compare.experiments.fit.result import Fit
     from compare.experiments.planner.planner import Plan
     from compare.misfit.external import Curves
     from compare.misfit.pairs import Comparison
@@ -40,6 +39,7 @@ if TYPE_CHECKING:
         wave_speed,
     )
     from compare.report.verdict import Held
+    from compare.studies.fit import Fit
 
 __all__ = [
     "arias_intensity",
@@ -218,7 +218,7 @@ def fit(
 
     Raises SceneError for what cannot be fitted, StoppedError where the search does not converge.
     """
-    from compare.experiments.fit import fit as fitting
+    from compare.studies import fit as fitting
 
     return fitting.fit(scene, curves, free, solver, progress)
 

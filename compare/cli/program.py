@@ -9,9 +9,9 @@ import typer
 
 from cases.errors import InterruptedRun, SceneError, UnstableError, printable
 from compare.cli.commands import animation, experiments, installation, scenes, solutions
+from compare.cli.commands import fit as fitting
 from compare.cli.options import app
 from compare.cli.start import SHOWN, fault
-from compare.experiments.fit import command as fitting
 from compare.runs.checkpoint.signals import Ended, exit_code, watched
 from compare.runs.processes import Processes, started
 

@@ -1,7 +1,7 @@
-"""The keys that a fit may change, with starting values and bounds."""
+"""The keys that a fit may change, with their starting values and bounds."""
 
-import re
 from collections.abc import Mapping
+from fnmatch import fnmatch
 from itertools import pairwise
 from math import exp, inf, isfinite, log, nan, nextafter
 from typing import Annotated, Any, NamedTuple
@@ -11,35 +11,26 @@ from pydantic.fields import FieldInfo
 
 from cases.errors import SceneError
 from cases.kinds import AnyScene, Either, checked
-from cases.schema.keys import field_comments, model_in
-from cases.schema.pulse import Pulse
+from cases.schema.keys import model_in
 
 CLOCK = "clock"  # shift added to the times of the files, s
-DECADES = 3.0  # default range of a key on a logarithmic scale
+FACTOR = 1000.0  # by which a positive key may change, if nothing else bounds it
+#: Of an unknown at the start: scipy's difference steps are a fraction of the unknown.
+ORIGIN = 10.0
 #: Keys of discretisation, solution and recording: not continuous parameters.
 FIXED = (
-    *("pillar.length", "pillar.block", "soft_layers.*.y", "time", "record", "numerics", "expect"),
-    *("domain", "regions.*.dip", "segments.*.y", "segments.*.block"),
-    *(f"joint_sets.*.{key}" for key in ("dip", "spacing", "offset", "scatter")),
+    *("pillar.length", "pillar.block", "soft_layers.*.y", "time.*", "record.*", "numerics.*"),
+    *("expect.*", "domain.*", "regions.*.dip", "segments.*.y", "segments.*.block"),
+    *("joint_sets.*.dip", "joint_sets.*.spacing", "joint_sets.*.offset", "joint_sets.*.scatter*"),
 )
 FORMS = "must be KEY, KEY=START, KEY=LOW:HIGH or KEY=LOW:START:HIGH"
-UNIT = re.compile(r"(?<![\w/])(Pa/m|Pa|kg/m3|m/s2|m/s|J/m2|degrees|s|m)(?![\w/])")
-#: Unit of an amplitude by the quantity of its pulse.
-LOADS = {
-    "stress": "Pa",
-    "incident-stress": "Pa",
-    "velocity": "m/s",
-    "acceleration": "m/s2",
-    "force": "N/m",
-}
 
 
-class Free(NamedTuple):
+class FreeKey(NamedTuple):
     """A key that is fitted.
 
     start : nan if it is to be found (clock only). low, high : bounds. logarithmic : whether it is
-    positive and searched on such a scale. size : on a linear scale the change of the value for a
-    change of 1 in the unknown. unit : "" for a ratio.
+    positive and searched on such a scale.
     """
 
     key: str
@@ -47,29 +38,39 @@ class Free(NamedTuple):
     low: float
     high: float
     logarithmic: bool
-    size: float
-    unit: str
+
+    @property
+    def size(self) -> float:
+        """The change of the value for a change of 1 in the unknown, on a linear scale."""
+        if self.key == CLOCK:
+            return (self.high - self.low) / 2
+        return abs(self.start) or (self.high - self.low if isfinite(self.high) else 1.0)
 
     def unknown(self, value: float) -> float:
         """Return the search variable of a value."""
-        return log(value / self.start) if self.logarithmic else (value - self.start) / self.size
+        if self.logarithmic:
+            return ORIGIN + log(value / self.start)
+        return ORIGIN + (value - self.start) / self.size
 
     def value(self, unknown: float) -> float:
-        """Return the value of a search variable."""
-        linear = self.start + self.size * unknown
-        found = self.start * exp(unknown) if self.logarithmic else linear
-        return min(max(found, self.low), self.high)
+        """Return the value of a search variable, not limited by the bounds."""
+        x = unknown - ORIGIN
+        return self.start * exp(x) if self.logarithmic else self.start + self.size * x
+
+    def within(self, value: float) -> float:
+        """Return the value limited by the bounds."""
+        return min(max(value, self.low), self.high)
 
 
-def free_keys(texts: list[str], scene: AnyScene) -> list[Free]:
+def free_keys(texts: list[str], scene: AnyScene) -> list[FreeKey]:
     """Return the keys of `--free`, several in one text separated by commas; raises SceneError."""
-    found: list[Free] = []
+    found: dict[str, FreeKey] = {}
     for text in [part for given in texts for part in given.split(",")]:
         key, numbers = _parsed(text)
-        if any(key == other.key for other in found):
+        if key in found:
             raise SceneError("--free", key, None, "must be given only once")
-        found.append(_free(key, numbers, scene))
-    return found
+        found[key] = _free_key(key, numbers, scene)
+    return list(found.values())
 
 
 def changed(scene: Either, values: Mapping[str, float]) -> Either:
@@ -92,14 +93,13 @@ def _with(table: Any, parts: list[str], value: float) -> Any:
     old = getattr(table, name)
     if isinstance(old, list):
         i = int(rest[0])
-        return table.model_copy(
-            update={name: [*old[:i], _with(old[i], rest[1:], value), *old[i + 1 :]]}
-        )
-    if old is None:
-        made = model_in(type(table).model_fields[name].annotation)
-        assert made is not None
-        return table.model_copy(update={name: made.model_validate({rest[0]: value})})
-    return table.model_copy(update={name: _with(old, rest, value)})
+        new = [*old[:i], _with(old[i], rest[1:], value), *old[i + 1 :]]
+    elif old is None:
+        model: Any = model_in(type(table).model_fields[name].annotation)
+        new = model.model_validate({rest[0]: value})
+    else:
+        new = _with(old, rest, value)
+    return table.model_copy(update={name: new})
 
 
 def _parsed(text: str) -> tuple[str, list[float]]:
@@ -115,44 +115,31 @@ def _parsed(text: str) -> tuple[str, list[float]]:
     return key, found
 
 
-def _free(key: str, numbers: list[float], scene: AnyScene) -> Free:
+def _free_key(key: str, numbers: list[float], scene: AnyScene) -> FreeKey:
     """Return a key with its start and bounds, as given or else from the scene and its models."""
     if key == CLOCK:
-        start, low, high = _three(numbers, None, -inf, inf)
-        return Free(key, nan if start is None else start, low, high, False, 1.0, "s")
-    field, owner, old = _find(key, scene)
-    number = _number(field)
-    if number is None or any(_matches(key, fixed) for fixed in FIXED):
+        start, low, high = _bounded(numbers, None, -inf, inf)
+        return FreeKey(key, nan if start is None else start, low, high, False)
+    field, old = _find(key, scene)
+    limits = _limits(field)
+    if limits is None or any(fnmatch(key, fixed) for fixed in FIXED):
         raise SceneError("--free", key, None, "must be a continuous number")
-    least, most, logarithmic = number
+    least, most, logarithmic = limits
     if old is None and not numbers:
         allowed = f"is not in {scene.where}: give a start, --free {key}=START"
         raise SceneError("--free", key, None, allowed)
-    start, low, high = _three(numbers, old, least, most)
+    start, low, high = _bounded(numbers, old, least, most)
     if start is None:
         start = (low * high) ** 0.5 if logarithmic and low > 0 else (low + high) / 2
     if not (least <= low and high <= most and low <= start <= high):
         allowed = f"must start and stay within {max(low, least):.6g} to {min(high, most):.6g}"
         raise SceneError("--free", key, start, allowed)
     if logarithmic:
-        low, high = max(low, start * 10**-DECADES), min(high, start * 10**DECADES)
-    size = abs(start) or (high - low if isfinite(high) else 1.0)
-    return Free(key, start, low, high, logarithmic, size, _unit(key, owner))
+        low, high = max(low, start / FACTOR), min(high, start * FACTOR)
+    return FreeKey(key, start, low, high, logarithmic)
 
 
-def _unit(key: str, owner: type[BaseModel] | BaseModel) -> str:
-    """Return the unit of a key of a table (or of its model if the scene has none) from the comment
-    of its field; "" for a ratio."""
-    name = key.rpartition(".")[2]
-    if isinstance(owner, Pulse) and name == "amplitude":
-        return "" if owner.file else LOADS[owner.quantity]
-    model = owner if isinstance(owner, type) else type(owner)
-    about = field_comments(model).get(name, "")
-    found = UNIT.search(re.split(r"[;(]", about)[0])
-    return found[0] if found else ""
-
-
-def _three(
+def _bounded(
     numbers: list[float], start: float | None, low: float, high: float
 ) -> tuple[float | None, float, float]:
     """Return start and bounds as given, or the defaults."""
@@ -164,36 +151,29 @@ def _three(
     return (numbers[1], numbers[0], numbers[2]) if numbers else (start, low, high)
 
 
-def _find(key: str, scene: AnyScene) -> tuple[FieldInfo, type[BaseModel] | BaseModel, Any]:
-    """Return the field of a dotted key, its table (or the table's model if the scene has none), and
-    its value, None if absent."""
+def _find(key: str, scene: AnyScene) -> tuple[FieldInfo, Any]:
+    """Return the field of a dotted key and its value, None if the scene has none."""
     table: Any = scene
     model: type[BaseModel] | None = type(scene)
-    field, owner, parts = None, None, key.split(".")
-    for i, part in enumerate(parts):
+    field, parts = None, key.split(".")
+    while parts:
+        part = parts.pop(0)
         if model is None or part not in model.model_fields:
             known = f"; allowed: {', '.join(model.model_fields)}" if model else ""
             raise SceneError("--free", key, None, f"is not a key of a scene{known}")
-        field, owner = model.model_fields[part], table or model
+        field = model.model_fields[part]
         model, table = model_in(field.annotation), getattr(table, part, None)
-        if isinstance(table, list) and model is not None and i + 1 < len(parts):
-            number = parts.pop(i + 1)
+        if isinstance(table, list) and model is not None and parts:
+            number = parts.pop(0)
             if not number.isdecimal() or int(number) >= len(table):
                 allowed = f"must be {part}.0 to {part}.{len(table) - 1}" if table else "has none"
                 raise SceneError("--free", key, None, f"{part}: {allowed}")
             table = table[int(number)]
-    assert field is not None and owner is not None
-    return field, owner, table
+    assert field is not None
+    return field, table
 
 
-def _matches(key: str, fixed: str) -> bool:
-    parts, wanted = key.split("."), fixed.split(".")
-    return len(parts) >= len(wanted) and all(
-        w in ("*", p) for p, w in zip(parts, wanted, strict=False)
-    )
-
-
-def _number(field: FieldInfo) -> tuple[float, float, bool] | None:
+def _limits(field: FieldInfo) -> tuple[float, float, bool] | None:
     """Return the smallest and largest number allowed by a field, and whether it is positive; None
     if it is not a number."""
     kind: Any = Annotated[field.annotation, field]

@@ -7,20 +7,17 @@ import pytest
 from scipy.stats import binom
 
 import cases
-import dem
 import jointwave
 from cases.errors import SceneError, StoppedError
 from cases.schema.keys import keys
 from compare.engines import solve
 from compare.exact.blocks import lattice
-from compare.experiments.fit import search
-from compare.experiments.fit.files import draw, scene_text
-from compare.experiments.fit.keys import changed, free_keys
-from compare.experiments.fit.problem import Problem, problem_of
-from compare.experiments.fit.statistics import autocorrelation_time
 from compare.misfit.external import Curves, read_curves
 from compare.misfit.places import Place
 from compare.scenes import shipped
+from compare.studies import fit as fitting
+from compare.studies.fit_files import draw, scene_text
+from compare.studies.fit_keys import changed, free_keys
 
 LAYER, LOAD, RATIO = "soft_layers.0.spacing_stiffness", "load.amplitude", "joints.damping_ratio"
 AT_3 = Place("stress", "", (3.0,))
@@ -62,18 +59,10 @@ def heard(scene, places=(AT_3,), values=TRUE, late=0.0, interval=None, noise=Non
     return Curves("gauge.csv", "gauge.csv", time + late, waveforms)
 
 
-def noise_of(seed, size, memory=0.0):
-    """Return a function that gives noise of a root mean square, of which each sample keeps a part
-    of the one before (AR(1)); white without."""
+def noise_of(seed, size):
+    """Return a function that gives white noise of a root mean square."""
     random = np.random.default_rng(seed)
-
-    def noise(_, n):
-        found = random.normal(size=n)
-        for i in range(1, n):
-            found[i] = memory * found[i - 1] + (1 - memory**2) ** 0.5 * found[i]
-        return size * found
-
-    return noise
+    return lambda _, n: size * random.normal(size=n)
 
 
 def by_key(found):
@@ -82,27 +71,16 @@ def by_key(found):
 
 @pytest.mark.parametrize("solver", ["lattice", "dem"])
 def test_known_values_are_found_to_round_off(solver, scene):
-    """From the very solution, by the exact chain and by time steps; three keys, three waveforms."""
-    true = {**TRUE, RATIO: 0.08}
+    """From the very solution, by the exact chain and by time steps; three waveforms."""
+    true = TRUE if solver == "dem" else {**TRUE, RATIO: 0.08}  # which would change the step
     places = (Place("stress", "", (1.0,)), AT_3, Place("velocity", "y", (3.25,)))
-    steps = problem_of(scene, solver, [heard(scene)], None, 0.0)._stepped
-    result = solve(solver, steps(changed(scene, true)))
+    result = solve(solver, changed(scene, true))
     waveforms = {place: place.waveform(result) for place in places}
     curves = Curves("run.nc", "run.nc", result.time.values, waveforms)
     found = jointwave.fit(scene, [curves], list(true), solver)
     assert found.solver == solver and found.before > 0.1 and found.after < 1e-6
     for key, estimate in by_key(found).items():
         assert estimate.value == pytest.approx(true[key], rel=1e-6) and not estimate.at_bound
-    assert by_key(found)[LAYER].unit == by_key(found)[LOAD].unit == "Pa"
-    assert by_key(found)[RATIO].unit == ""
-
-
-def test_rigid_blocks_keep_their_steps(scene):
-    """A stiffer joint would take more of them by itself, and the waveform would jump."""
-    problem = problem_of(scene, "dem", [heard(scene)], None, 0.0)
-    stiff = changed(scene, {LAYER: 3 * TRUE[LAYER], RATIO: 0.2})
-    runs = [dem.simulate(problem._stepped(one)) for one in (scene, stiff)]
-    assert problem.steps > 1 and runs[0].attrs["dt"] == pytest.approx(runs[1].attrs["dt"], 1e-12)
 
 
 def test_truth_lies_within_the_interval(scene):
@@ -117,34 +95,24 @@ def test_truth_lies_within_the_interval(scene):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("memory", [0.0, 0.7])
-def test_intervals_hold_the_truth_in_19_of_20_cases(memory, scene):
-    """40 repeats each of white noise, and of noise that is alike from sample to sample.
+def test_intervals_hold_the_truth_in_19_of_20_cases(scene):
+    """40 repeats of white noise.
 
-    Were the intervals right, 33 or fewer would hold the truth in 0.34 % of such tests; of white
-    noise they are also no wider than the scatter of the estimates asks for: half of one is 1.98
-    standard deviations, known from 40 repeats to 11 %, and 30 % is 2.7 of these.
+    Were the intervals right, 33 or fewer would hold the truth in 0.34 % of such tests; they are
+    also no wider than the scatter of the estimates asks for: half of one is 1.98 standard
+    deviations, known from 40 repeats to 11 %, and 30 % is 2.7 of these.
     """
     repeats, inside, values, halves = 40, 0, [], []
     assert binom.cdf(33, repeats, 0.95) < 0.0035
     near = changed(scene, TRUE)
     for seed in range(repeats):
-        curves = heard(scene, noise=noise_of(seed, 3e4, memory))
+        curves = heard(scene, noise=noise_of(seed, 3e4))
         (layer, _) = jointwave.fit(near, [curves], list(TRUE)).estimates
         inside += layer.low <= TRUE[LAYER] <= layer.high
         values.append(np.log(layer.value))
         halves.append(np.log(layer.high / layer.low) / 2)
     assert inside >= 34
-    if not memory:
-        assert np.mean(halves) / np.std(values, ddof=1) == pytest.approx(1.98, rel=0.3)
-
-
-def test_alike_residuals_count_as_fewer():
-    """(1 + a) / (1 - a) samples of AR(1) noise count as one; white noise counts as it is."""
-    noise = noise_of(1, 1.0, 0.8)(0, 200_000)
-    assert autocorrelation_time(noise) == pytest.approx(9, rel=0.15)
-    assert autocorrelation_time(noise_of(2, 1.0)(0, 200_000)) == pytest.approx(1, abs=0.1)
-    assert autocorrelation_time(np.zeros(10)) == 1.0
+    assert np.mean(halves) / np.std(values, ddof=1) == pytest.approx(1.98, rel=0.3)
 
 
 @pytest.mark.parametrize(
@@ -162,22 +130,8 @@ def test_clock_is_found_to_a_thousandth_of_an_interval(late, free, scene):
     fitted = jointwave.fit(start, [heard(scene, late=late)], free)
     clock = by_key(fitted)["clock"]
     assert clock.value == pytest.approx(-late, abs=1e-3 * scene.interval, rel=0)
-    assert clock.unit == "s" and fitted.after < 1e-6
+    assert fitted.after < 1e-6
     assert fitted.before > 0.2 or "=" not in free[0]
-
-
-def test_no_solution_is_found_twice(scene, monkeypatch):
-    """The search asks again for where another has ended; what it counts are its questions."""
-    asked, residual = [], Problem.residual
-
-    def counted(problem, values):
-        asked.append(tuple(values.items()))
-        return residual(problem, values)
-
-    monkeypatch.setattr(Problem, "residual", counted)
-    places = (AT_3, Place("stress", "", (1.0,)))
-    found = jointwave.fit(scene, [heard(scene, places)], list(TRUE))
-    assert len(set(asked)) == len(asked) < found.trials
 
 
 def test_poor_start_is_left_for_another(scene):
@@ -241,7 +195,7 @@ def test_trials_without_a_solution_are_left_out(scene):
 
 
 def test_search_that_does_not_end_is_an_error(scene, monkeypatch):
-    monkeypatch.setattr(search, "MOST", 2)
+    monkeypatch.setattr(fitting, "MOST", 2)
     with pytest.raises(StoppedError, match="not converged after"):
         jointwave.fit(scene, [heard(scene)], list(TRUE))
 
@@ -325,7 +279,7 @@ def test_fault_is_one_line_and_exit_2(arguments, words, files, command):
 
 
 def test_no_convergence_is_exit_3(files, monkeypatch, command):
-    monkeypatch.setattr(search, "MOST", 1)
+    monkeypatch.setattr(fitting, "MOST", 1)
     assert "not converged" in command(*asked(files), "--free", LAYER, code=3).err
 
 
@@ -334,8 +288,9 @@ def test_command_fits_writes_and_says_how_to_go_on(files, tmp_path, command):
     free = ["--free", f"{LAYER},{LOAD}", "--free", "clock"]
     out = tmp_path / "out"
     facts = json.loads(command(*asked(files), *free, "--out", out, "--json").out)
-    written = json.loads((out / "fit.json").read_text())
-    assert {**facts, "files": []} == {**written, "files": []}
+    table = np.genfromtxt(out / "fit.csv", delimiter=",", names=True, dtype=None, encoding=None)
+    assert table["key"].tolist() == [e["key"] for e in facts["keys"]]
+    assert table["value"].tolist() == pytest.approx([e["value"] for e in facts["keys"]])
     found = {e["key"]: e for e in facts["keys"]}
     for key, true in {**TRUE, "clock": -1e-3}.items():
         assert found[key]["low"] < true < found[key]["high"]

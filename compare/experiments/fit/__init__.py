@@ -1,1 +1,0 @@
-"""Keys of a scene fitted to measured waveforms by least squares."""

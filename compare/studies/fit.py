@@ -1,0 +1,427 @@
+"""Fit keys of a scene to measured waveforms by nonlinear least squares.
+
+lmfit searches and gives standard errors and correlations from the Jacobian at the best fit; the
+95 % interval is that of Student's t. Positive keys are searched on a logarithmic scale.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from math import inf
+from typing import Any, NamedTuple
+
+import numpy as np
+from lmfit import Parameters, minimize
+from scipy.interpolate import CubicSpline
+from scipy.stats import qmc
+from scipy.stats import t as student
+
+from cases.errors import SceneError, StoppedError, UnstableError
+from cases.kinds import AnyScene
+from cases.schema.pulse import shortest_period
+from cases.schema.scene import Scene
+from compare.engines import ENGINES, Progress, applies, solve
+from compare.exact.blocks import lattice
+from compare.misfit.alignment import INSTANT, lay_beside, static_level
+from compare.misfit.external import Curves, is_recorded
+from compare.misfit.places import Place
+from compare.solvers.dem import DEM
+from compare.studies.fit_keys import CLOCK, ORIGIN, FreeKey, changed, free_keys
+
+SHORT = 200  # blocks, up to which matrix exponentials are cheap
+FINER = 4  # samples of the solution per sample of the scene, if the clock is free
+LARGEST_STEP = 0.9  # of the critical step, in a trial
+EXACT_STEP, COMPUTED_STEP = 1e-4, 1e-3  # of an unknown, for differences
+LEAST_SAMPLES = 10  # of a waveform
+TOLERANCE = 1e-12  # of the squares, the unknowns and the gradient
+MOST = 60  # steps of a search, each with its derivatives
+POOR = 0.2  # misfit above which other starts are tried
+STARTS, OTHERS = 12, 2  # other starts for each key, and the best of them that are searched from
+DECADES = 2.0  # in which other starts lie, on either side
+LEAST_NOISE = 0.01  # of a waveform, relative to the noisiest one
+NEAR = 1e-6  # of an unknown to its bound
+ALIKE = 0.99  # correlation above which two keys are indistinguishable
+SINGULAR = 1e-9  # of the largest eigenvalue: accuracy of derivatives by differences
+
+
+class Estimate(NamedTuple):
+    """A fitted key: its value, its standard error, its 95 % interval (infinite if the waveforms do
+    not bound it), and its starting value, SI; at_bound : whether it is at a bound of the key."""
+
+    key: str
+    value: float
+    error: float
+    low: float
+    high: float
+    start: float
+    at_bound: bool
+
+
+class Fitted(NamedTuple):
+    """One measured waveform [n] and the fitted one at the same times, s on the scene's clock, SI;
+    before, after : relative L2 misfit of the motion at the start and at the end."""
+
+    name: str
+    place: Place
+    time: np.ndarray
+    measured: np.ndarray
+    fitted: np.ndarray
+    before: float
+    after: float
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The result of a fit.
+
+    scene : with the fitted keys, else as given. solver : the engine or exact solution.
+    estimates : one per key. correlation : [p, p] of the keys. waveforms : both measured and fitted.
+    trials : number of solutions of the scene. notes : warnings, one sentence each.
+    """
+
+    scene: AnyScene
+    solver: str
+    estimates: list[Estimate]
+    correlation: np.ndarray
+    waveforms: list[Fitted]
+    trials: int
+    notes: list[str]
+
+    @property
+    def settings(self) -> list[str]:
+        """The fitted keys of the scene as arguments of `--set`."""
+        return [f"{e.key}={e.value:.12g}" for e in self.estimates if e.key != CLOCK]
+
+    @property
+    def before(self) -> float:
+        """Misfit of the worst waveform at the start."""
+        return max(one.before for one in self.waveforms)
+
+    @property
+    def after(self) -> float:
+        """Misfit of the worst waveform at the end."""
+        return max(one.after for one in self.waveforms)
+
+
+class Measured(NamedTuple):
+    """One measured waveform [n] at times [n] in s on its file's own clock, SI; size : root mean
+    square of its motion, less the solution's value before its load."""
+
+    name: str
+    place: Place
+    time: np.ndarray
+    values: np.ndarray
+    size: float
+
+
+@dataclass
+class Trials:
+    """Solutions of a scene for values of its free keys, beside the measured waveforms.
+
+    scene : with the sampling and duration that the fit needs. steps : of rigid blocks per sample,
+    the same in every trial, so that waveforms vary smoothly with a key; 0 without steps.
+    """
+
+    scene: AnyScene
+    solver: str
+    keys: list[FreeKey]
+    measured: list[Measured]
+    steps: int
+    tell: Progress
+    count: int = 0
+    refused: int = 0
+    weights: list[float] = field(default_factory=list)
+
+    def residuals(self, x: np.ndarray) -> list[np.ndarray] | None:
+        """Return solution minus measurement [n] of each waveform, SI; None without a solution."""
+        self.count += 1
+        self.tell(1 - 0.97**self.count)  # the number of trials is unknown
+        values = {k.key: k.within(k.value(u)) for k, u in zip(self.keys, x, strict=True)}
+        shift = values.pop(CLOCK, 0.0)
+        try:
+            result = solve(self.solver, self.stepped(changed(self.scene, values)))
+        except (SceneError, UnstableError):
+            self.refused += 1
+            return None
+        time, found = result.time.values, []
+        for one in self.measured:
+            ours = one.place.waveform(result)
+            assert ours is not None
+            at = np.clip(one.time + shift, time[0], time[-1])  # at rest before its first sample
+            found.append(CubicSpline(time, ours)(at) - one.values)
+        return found
+
+    def stepped(self, scene: AnyScene) -> AnyScene:
+        """Return a scene with the step of all trials; raises UnstableError above its critical."""
+        if not self.steps:
+            return scene
+        fraction = scene.interval / self.steps / DEM.prepare(scene).critical
+        if fraction > LARGEST_STEP:
+            raise UnstableError("the initial step exceeds the critical step of this trial")
+        step = {"step_fraction": fraction * (1 + 1e-6)}  # otherwise rounding adds a step
+        dem = scene.numerics.dem.model_copy(update=step)
+        return scene.model_copy(update={"numerics": scene.numerics.model_copy(update={"dem": dem})})
+
+    def misfits(self, residuals: list[np.ndarray]) -> list[float]:
+        """Return the relative L2 misfit of each waveform, of the measured motion."""
+        return [_rms(r) / m.size for r, m in zip(residuals, self.measured, strict=True)]
+
+    def worst(self, x: np.ndarray) -> float:
+        """Return the largest misfit; infinite without a solution."""
+        found = self.residuals(x)
+        return inf if found is None else max(self.misfits(found))
+
+    def search(self, start: np.ndarray) -> Any:
+        """Return lmfit's result from a start; None if the search does not converge."""
+
+        def weighted(p: Parameters) -> np.ndarray:
+            found = self.residuals(np.array([one.value for one in p.values()]))
+            if found is None:  # such a step is taken back
+                return np.full(sum(len(m.time) for m in self.measured), inf)
+            return np.concatenate([w * r for w, r in zip(self.weights, found, strict=True)])
+
+        given, p = Parameters(), len(self.keys)
+        for i, (key, value) in enumerate(zip(self.keys, start, strict=True)):
+            given.add(f"key_{i}", value, min=key.unknown(key.low), max=key.unknown(key.high))
+        step = COMPUTED_STEP if self.solver in ENGINES else EXACT_STEP
+        options = {"jac": "3-point", "diff_step": step / ORIGIN, "x_scale": "jac"}
+        options |= dict.fromkeys(("ftol", "xtol", "gtol"), TOLERANCE)
+        try:
+            found = minimize(
+                weighted,
+                given,
+                method="least_squares",
+                nan_policy="propagate",
+                max_nfev=MOST * (2 * p + 1),
+                **options,
+            )
+        except ValueError:  # no derivative: a neighbour has no solution
+            return None
+        return found if found.success else None
+
+
+def fit(
+    scene: AnyScene,
+    curves: Sequence[Curves],
+    free: Sequence[str],
+    solver: str | None = None,
+    progress: Progress | None = None,
+) -> Fit:
+    """Fit keys of a scene to measured waveforms by least squares, with confidence intervals.
+
+    curves : from `read_curves`. free : dotted keys, KEY, KEY=START, KEY=LOW:HIGH or
+    KEY=LOW:START:HIGH, and `clock`, a shift added to the times of all files, s. solver : an engine
+    or exact solution; None: the exact chain of rigid blocks if it applies and is short, else
+    `dem`. Each waveform is weighted by its own noise; amplitudes are not scaled. Intervals are of
+    95 %, linearised at the best fit, and valid if the model is correct and residuals independent.
+
+    Raises SceneError for keys and curves that cannot be fitted, StoppedError if the search does not
+    converge.
+    """
+    keys = free_keys(list(free), scene)
+    first = changed(scene, {k.key: k.start for k in keys if k.key != CLOCK})
+    name = _solver_of(first, solver)
+    mine = [curve for curve in curves if curve.holds_for(scene)]
+    if not mine or not keys:
+        raise SceneError(scene.where, "", None, "a fit needs a curve of this scene and a free key")
+    _refuse_several(mine)
+    keys = [_started(key, first, name, mine) if key.key == CLOCK else key for key in keys]
+    trials = _trials_of(first, name, mine, keys, progress or (lambda fraction: None))
+    start = np.array([key.unknown(key.start) for key in keys])
+    begun = trials.residuals(start)
+    assert begun is not None  # it was solved before
+    return _finished(scene, trials, trials.misfits(begun), _best(trials, start))
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.linalg.norm(values)) / max(len(values), 1) ** 0.5
+
+
+def _solver_of(scene: AnyScene, asked: str | None) -> str:
+    """Return the solver of every trial; raises SceneError if it does not apply."""
+    if asked is None and isinstance(scene, Scene) and scene.block_count <= SHORT:
+        asked = lattice.SOLVER.name if lattice.applies(scene) else None
+    name = asked or DEM.name
+    answer = applies(name, scene)
+    if not answer:
+        raise SceneError(scene.where, "", None, f"{name} does not apply: {answer.reason}")
+    return name
+
+
+def _refuse_several(curves: list[Curves]) -> None:
+    """Raise SceneError if two curves of one file are at the same place, as of two solutions."""
+    for i, one in enumerate(curves):
+        for other in curves[:i]:
+            if one.file == other.file and one.waveforms.keys() & other.waveforms.keys():
+                several = ", ".join(c.name for c in curves if c.file == one.file)
+                raise SceneError(one.file, "", None, f"holds {several}: fit to one of them")
+
+
+def _started(clock: FreeKey, scene: AnyScene, solver: str, curves: list[Curves]) -> FreeKey:
+    """Return the clock with its start, unless given the shift with the best correlation of the
+    first file to the solution, and with bounds within its reach."""
+    start, reach = clock.start, _clock_reach(scene)
+    if np.isnan(start):
+        found = lay_beside(curves[0], scene, {solver: solve(solver, scene)}, align=True).shift
+        start = found.seconds if found else 0.0
+    if not clock.low <= start <= clock.high:
+        start = (clock.low + clock.high) / 2
+    low, high = max(clock.low, start - reach), min(clock.high, start + reach)
+    return clock._replace(start=start, low=low, high=high)
+
+
+def _clock_reach(scene: AnyScene) -> float:
+    """Return the largest shift of a clock from its start, s: a period of the load."""
+    return shortest_period(scene.pulses) or scene.time.duration / 10
+
+
+def _trials_of(
+    scene: AnyScene, name: str, curves: list[Curves], keys: list[FreeKey], tell: Progress
+) -> Trials:
+    """Return the trials of a fit; raises SceneError if a curve shares too few samples."""
+    shift = next((key.start for key in keys if key.key == CLOCK), None)
+    interval = scene.interval / (FINER if shift is not None else 1)
+    record = scene.record.model_copy(update={"interval": interval, "energy": False, "fields": None})
+    longer = scene.time.duration + (0.0 if shift is None else _clock_reach(scene))
+    clock = scene.time.model_copy(update={"duration": longer})
+    base = scene.model_copy(update={"record": record, "time": clock, "expect": {}})
+    result = solve(name, base)
+    measured = []
+    for one in curves:
+        own = one.time + (shift or 0.0)
+        inside = (own >= -INSTANT) & (own <= scene.time.duration + 1e-6 * scene.interval)
+        for place, whole in one.waveforms.items():
+            if is_recorded(place, scene) and place.waveform(result) is not None:
+                time, values = one.time[inside], whole[inside]
+                size = _rms(values - static_level(place, result)) or 1.0
+                measured.append(Measured(one.name, place, time, values, size))
+    _require_samples(measured, curves, scene)
+    steps = round(interval / float(result.attrs["dt"])) if name == DEM.name else 0
+    weights = [1 / m.size / np.sqrt(len(m.time)) for m in measured]
+    return Trials(base, name, keys, measured, steps, tell, weights=weights)
+
+
+def _require_samples(measured: list[Measured], curves: list[Curves], scene: AnyScene) -> None:
+    if not measured:
+        raise SceneError(curves[0].file, "", None, "has no waveform at a receiver of the scene")
+    for one in measured:
+        if len(one.time) < LEAST_SAMPLES:
+            allowed = (
+                f"must share at least {LEAST_SAMPLES} samples with the scene, 0 to "
+                f"{scene.time.duration:g} s, not {len(one.time)}; --free clock shifts its time"
+            )
+            raise SceneError(one.name, str(one.place), None, allowed)
+
+
+def _best(trials: Trials, start: np.ndarray) -> Any:
+    """Return lmfit's result of the best search, also from other starts if the first is poor.
+
+    Raises StoppedError if no search has converged.
+    """
+    first = trials.search(start)
+    found = [first]
+    if first is None or trials.worst(first.x) > POOR:
+        found += [trials.search(x) for x in _other_starts(trials, start)]
+    converged = [one for one in found if one is not None]
+    if not converged:
+        raise StoppedError(
+            f"fit: not converged after {trials.count} solutions: start closer "
+            "(--free KEY=START), bound the keys, or free fewer"
+        )
+    best = min(converged, key=lambda one: one.chisqr)
+    if len(trials.measured) > 1:
+        _weigh_by_noise(trials, best.x)
+        best = trials.search(best.x) or best
+    return best
+
+
+def _other_starts(trials: Trials, start: np.ndarray) -> list[np.ndarray]:
+    """Return the best of some starts that fill the decades around the first (Latin hypercube)."""
+    p = len(start)
+    reach = DECADES * np.log(10)
+    low = [max(k.unknown(k.low), x - reach) for k, x in zip(trials.keys, start, strict=True)]
+    high = [min(k.unknown(k.high), x + reach) for k, x in zip(trials.keys, start, strict=True)]
+    points = qmc.scale(qmc.LatinHypercube(p, seed=0).random(STARTS * p), low, high)
+    ranked = sorted((trials.worst(x), i) for i, x in enumerate(points))
+    return [points[i] for misfit, i in ranked[:OTHERS] if np.isfinite(misfit)]
+
+
+def _weigh_by_noise(trials: Trials, x: np.ndarray) -> None:
+    """Weight each waveform by its residual, as the noise of its gauge."""
+    found = trials.residuals(x)
+    assert found is not None
+    noise = np.array(trials.misfits(found))
+    if noise.any():
+        relative = np.maximum(noise, LEAST_NOISE * noise.max()) / noise.max()
+        trials.weights = [w / r for w, r in zip(trials.weights, relative, strict=True)]
+
+
+def _finished(scene: AnyScene, trials: Trials, before: list[float], best: Any) -> Fit:
+    keys, measured = trials.keys, trials.measured
+    residuals = trials.residuals(best.x)
+    assert residuals is not None
+    errors, correlation = _uncertainty(best)
+    quantile = float(student.ppf(0.975, max(best.nfree, 1)))
+    estimates = [
+        _estimate(*one, quantile) for one in zip(keys, best.x.tolist(), errors, strict=True)
+    ]
+    values = {e.key: e.value for e in estimates}
+    clock = values.get(CLOCK, 0.0)
+    waveforms = [
+        Fitted(m.name, m.place, m.time + clock, m.values, m.values + r, b, a)
+        for m, r, b, a in zip(measured, residuals, before, trials.misfits(residuals), strict=True)
+    ]
+    fitted = changed(scene, {k: v for k, v in values.items() if k != CLOCK})
+    notes = _notes(estimates, correlation, trials)
+    return Fit(fitted, trials.solver, estimates, correlation, waveforms, trials.count, notes)
+
+
+def _uncertainty(best: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return the standard errors of the unknowns [p] and their correlations [p, p].
+
+    Their covariance is that of lmfit, (J^T J)^-1 times the reduced chi-square; an error is infinite
+    where waveforms do not change with an unknown, or with a combination that has it.
+    """
+    size = np.linalg.norm(best.jac, axis=0)
+    scale = np.where(size > 0, size, 1.0)
+    values, vectors = np.linalg.eigh((best.jac / scale).T @ (best.jac / scale))
+    lost = (np.abs(vectors[:, values < SINGULAR * values[-1]]) > 0.01).any(axis=1) | (size == 0)
+    covariance = (vectors / np.maximum(values, 1e-16)) @ vectors.T
+    deviation = np.sqrt(np.diag(covariance))
+    errors = np.where(lost, inf, deviation / scale * np.sqrt(best.redchi))
+    return errors, covariance / np.outer(deviation, deviation)
+
+
+def _estimate(key: FreeKey, x: float, error: float, quantile: float) -> Estimate:
+    ends = [key.unknown(key.low), key.unknown(key.high)]
+    stopped = bool(min(x - ends[0], ends[1] - x) <= NEAR)
+    value = key.within(key.value(x))
+    if not np.isfinite(error):
+        low = 0.0 if key.logarithmic else -inf
+        return Estimate(key.key, value, inf, low, inf, key.start, stopped)
+    low, high = (key.value(x + s * quantile * error) for s in (-1, 1))
+    own = value * error if key.logarithmic else key.size * error
+    return Estimate(key.key, value, own, low, high, key.start, stopped)
+
+
+def _notes(estimates: list[Estimate], correlation: np.ndarray, trials: Trials) -> list[str]:
+    """Return warnings about the values, in sentences."""
+    found = [
+        f"{e.key} stopped at its bound, {e.value:.6g}: its interval is not valid"
+        for e in estimates
+        if e.at_bound
+    ]
+    found += [
+        f"{e.key} is not determined by these waveforms: they do not depend on it, or only "
+        "in combination with another key"
+        for e in estimates
+        if not np.isfinite(e.high)
+    ]
+    found += [
+        f"{one.key} and {other.key} cannot be distinguished: correlation {correlation[i, j]:+.5f}"
+        for i, one in enumerate(estimates)
+        for j, other in enumerate(estimates[:i])
+        if abs(correlation[i, j]) > ALIKE
+    ]
+    if trials.refused:
+        found.append(f"{trials.refused} of {trials.count} trials had no solution and were skipped")
+    return found
