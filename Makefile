@@ -27,7 +27,7 @@ test-all:  ## make test with the slow tests, the longest hard cases
 	@tools/setup.sh browser
 	@$(TESTS) -m "slow or not slow" tests cases
 
-docs:  ## the documentation as pages, site/index.html, with the outcomes of the last make test
+docs:  ## the documentation as pages, site/index.html
 	@tools/setup.sh docs
 	@$(RUN) python tools/docs/notebooks.py
 	@NO_MKDOCS_2_WARNING=1 $(RUN) python -m mkdocs build --strict
@@ -44,7 +44,7 @@ check: setup  ## lint, formatting, types, and the direction of imports
 bench: setup  ## both engines: start-up, kernels compared with bare loops and other solvers, threads, MPI, memory
 	@$(RUN) python tools/bench
 
-bench-peers: setup  ## the same pillar in LAMMPS, Akantu and Yade, a lattice in LAMMPS, installed separately in .peers, compared with ours
+bench-peers: setup  ## the same pillar in LAMMPS and Akantu, a lattice in LAMMPS, installed separately in .peers, compared with ours
 	@$(RUN) python tools/peers
 	@$(RUN) python tools/peers/lattice.py
 

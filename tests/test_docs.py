@@ -125,40 +125,6 @@ def test_every_term_and_quantity_of_a_result_is_explained():
     assert not [term for term in ALL_TERMS if f"`{term}`" not in page]
 
 
-RUN = """<testsuites><testsuite timestamp="2001-02-03T04:05:06.7+00:00">
-<testcase classname="tests.compare.exact.test_images" name="test_one[a]" time="0.5"/>
-<testcase classname="tests.compare.exact.test_images" name="test_one[b.c]" time="0.25">
-<failure/></testcase>
-<testcase classname="cases.guo-li-2002.fig-03.toml" name="dem ~ lattice" time="1">
-<properties><property name="misfit" value="0.0013"/></properties></testcase>
-<testcase classname="cases.guo-li-2002.fig-03.toml" name="zeta 0.02: dem ~ lattice" time="1">
-<failure/></testcase>
-</testsuite></testsuites>"""
-
-
-def test_results_are_read_by_test_and_by_pair(tools, tmp_path):
-    """Cases of one test are counted together; a pair has its misfit, or none where it failed so."""
-    (tmp_path / "tests.xml").write_text(RUN)
-    found = tools("outcomes").read(tmp_path / "tests.xml")
-    one = found.tests["tests/compare/exact/test_images.py", "test_one"]
-    assert dict(one.counts) == {"passed": 1, "failed": 1} and one.seconds == 0.75
-    file = "cases/guo-li-2002/fig-03.toml"
-    assert found.pairs[file, "dem ~ lattice"] == (0.0013, True)
-    assert found.pairs[file, "zeta 0.02: dem ~ lattice"] == (None, False)
-
-
-def test_verification_says_what_ran_and_what_did_not(tools, tmp_path):
-    """Outcomes where there are results, and plainly none where there are not."""
-    verification = tools("verification")
-    without = verification.page(ROOT / "tests", tmp_path / "tests.xml")
-    assert "No results of a test run" in without and "passed" not in without
-    (tmp_path / "tests.xml").write_text(RUN)
-    page = verification.page(ROOT / "tests", tmp_path / "tests.xml")
-    assert "2 passed" in page and "2 failed" in page and "changed since" in page
-    assert "| guo-li-2002/fig-03 | dem ~ lattice | 0.002 | 0.0013 |" in page
-    assert "fails**" in page and "not run" in page
-
-
 def test_a_new_parameter_passes_through_the_files_that_are_listed():
     """The list to copy names every file that knows the parameter which it is copied from."""
     page = (DOCS / "extend.md").read_text(encoding="utf-8").partition("### A new parameter")[2]

@@ -178,14 +178,6 @@ def test_akantu_reads_the_layers_beside_the_receiver(peers, pillar, dim, n):
     assert set(np.round(centres, 9)) == {20 - 0.25 / n, 20 + 0.25 / n}
 
 
-def test_yade_contact_has_the_stiffness_of_the_joint(peers, pillar):
-    p = peers("pillar").pillar(pillar(), 1)
-    given = peers("yade_chain").numbers(p)
-    assert given["modulus"] * given["radius"] == pytest.approx(p.normal)
-    assert given["density"] * 4 / 3 * np.pi * given["radius"] ** 3 == pytest.approx(p.mass)
-    assert given["load"] == (p.load * p.area).tolist()
-
-
 def test_elements_are_stepped_below_their_critical_step(peers, pillar):
     from closed_forms.leapfrog import frequencies
 
@@ -200,31 +192,26 @@ def test_elements_are_stepped_below_their_critical_step(peers, pillar):
             assert p.dt * stride / (stride - 1) * highest / 2 > 0.8  # and no smaller than needed
 
 
-def test_peer_that_is_not_installed_is_missing(peers, tmp_path, monkeypatch):
+def test_peer_that_is_not_installed_is_missing(peers, tmp_path):
     environment = peers("environment")
-    monkeypatch.setattr(environment.shutil, "which", lambda name: None)
-    for peer in (environment.lammps, environment.akantu, environment.yade):
+    for peer in (environment.lammps, environment.akantu):
         assert peer(tmp_path, install=False).missing == "not installed"
-    assert environment.yade(tmp_path).missing == "neither a program yade nor apt here"
 
 
 def test_failed_installation_is_a_reason(peers, tmp_path, monkeypatch):
     environment = peers("environment")
     monkeypatch.setattr(environment, "_failed", lambda *_: "No matching distribution found")
     assert environment.lammps(tmp_path).missing == "No matching distribution found"
-    monkeypatch.setattr(environment.shutil, "which", lambda name: name if "-" in name else None)
-    monkeypatch.setattr(environment, "_said", lambda command: "")
-    assert "no package yade" in environment.yade(tmp_path).missing
 
 
 def test_missing_peer_is_in_the_table_and_says_why(peers, tmp_path):
     own = peers("table")
-    rows = own.frame([own.missing_row("Yade spheres", "cohesive spheres", "no apt here")])
+    rows = own.frame([own.missing_row("Akantu bar", "the homogenised bar", "no wheel here")])
     (shown,) = table(rows).groups.values()
-    assert shown[0][0] == "missing: no apt here"
+    assert shown[0][0] == "missing: no wheel here"
     found = read(write_csv(tmp_path / "points.csv", rows))
     assert found.loc[0, ["state", "message", "solves"]].tolist() == [
-        *("missing", "no apt here", "cohesive spheres")
+        *("missing", "no wheel here", "the homogenised bar")
     ]
 
 
@@ -276,11 +263,11 @@ def test_ratios_are_of_runs_in_the_same_round(peers):
     assert found["whole_over_ours"] == found["whole_over_ours_least"] == 2
 
 
-@pytest.mark.parametrize("curve", ["LAMMPS bonds", "LAMMPS BPM bonds", "Yade spheres"])
+@pytest.mark.parametrize("curve", ["LAMMPS bonds", "LAMMPS BPM bonds"])
 def test_chain_is_leapfrog_on_the_lattice(peers, place, pillar, tmp_path, curve):
     scene = pillar()
     where = place(curve.split()[0].lower())
-    module = peers("yade_chain" if "Yade" in curve else "lammps_bonds")
+    module = peers("lammps_bonds")
     lattice, misfits = solve("lattice", scene)["stress"].values[0], []
     for job in module.jobs(scene, where, tmp_path):
         if job.curve == curve and job.settings["stride"] in (2, 4):

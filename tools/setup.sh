@@ -7,8 +7,6 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 locked=${LOCKED:-$(cat .venv/.setup-locked 2>/dev/null || echo 0)}
-every=30  # s
-
 say() { printf 'setup: %s\n' "$*"; }
 fail() { say "$*" >&2; exit 1; }
 
@@ -17,7 +15,7 @@ telling() {  # what, command ...
     local what=$1 code=0 began=$SECONDS teller
     shift
     # What sleeps on after the end holds no pipe open.
-    while sleep "$every" </dev/null >/dev/null 2>&1; do say "$what, for $((SECONDS - began)) s" >&2; done &
+    while sleep 30 </dev/null >/dev/null 2>&1; do say "$what, for $((SECONDS - began)) s" >&2; done &
     teller=$!
     "$@" || code=$?
     kill "$teller"
@@ -51,7 +49,6 @@ apt_install() {
     fi
     say "${admin[*]:+sudo }apt-get install ${missing[*]}"
     local get=("${admin[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=600)
-    # A bare image has no package lists.
     apt-cache show "${missing[@]}" >/dev/null 2>&1 || telling 'apt-get update' "${get[@]}" update >&2 || return 1
     telling 'apt-get install' "${get[@]}" install -y --no-install-recommends "${missing[@]}" >/dev/null || { say "apt-get failed"; return 1; }
 }
@@ -76,8 +73,7 @@ by_pip() {
 }
 make_environment() {
     local way ways='active pip apt'
-    # Debian 12's Python is too old for the wheel.
-    if grep -qs '^VERSION_CODENAME=bookworm' /etc/os-release; then ways='active apt'; fi
+    if grep -qs '^VERSION_CODENAME=bookworm' /etc/os-release; then ways='active apt'; fi  # its Python is too old for the wheel
     for way in $ways; do
         rm -rf .venv
         if "by_$way"; then return; fi
@@ -95,7 +91,6 @@ install_project() {  # with these extras
     telling 'pip install' .venv/bin/python -m pip --disable-pip-version-check install -q -e ".[$1]" ${options[@]+"${options[@]}"}
 }
 
-# A venv does not survive being moved or copied.
 base_key() { echo "$PWD $(python3 -c 'import sys; print(sys.executable, sys.version)' 2>/dev/null || echo none)"; }
 key() { echo "$(base_key) $locked $(cat pyproject.toml constraints.txt tools/setup.sh | cksum)"; }
 
@@ -109,7 +104,6 @@ else
     rm -f .venv/.setup-done
     echo "$locked" >.venv/.setup-locked
     extras=test,check
-    # Only pip's dolfinx is ours to install.
     if ! has dolfinx || has dolfinx_solver; then extras=$extras,continuum; fi
     install_project "$extras"
     .venv/bin/python -c "$dolfinx, numba, compare" && key >.venv/.setup-done || fail ".venv does not import dolfinx, numba and compare"

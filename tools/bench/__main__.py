@@ -1,13 +1,12 @@
 """All benchmarks, as ratios and costs of one run on this machine.
 
 usage: python tools/bench [PART ...], of
-    startup, kernels, plane, guards, continuum, masses, memory
+    startup, kernels, plane, continuum, masses, memory
 """
 
 import sys
 
 import deformable
-import guards
 import kernels
 import masses
 import memory
@@ -18,7 +17,6 @@ PARTS = {
     "startup": startup.main,
     "kernels": kernels.main,
     "plane": plane.main,
-    "guards": guards.main,
     "continuum": deformable.main,
     "masses": masses.main,
     "memory": memory.main,

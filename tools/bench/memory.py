@@ -1,4 +1,4 @@
-"""What a block takes in memory, and what a block-step costs from a thousand blocks to a million."""
+"""The memory of a block, from whole runs."""
 
 import resource
 import subprocess
@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 
 from compare.experiments.cost.scenes import changed
-from compare.experiments.cost.step_cost import nanoseconds
 
 MOST = 1_000_000
 
@@ -39,17 +38,11 @@ def one_run(blocks: int) -> None:
 
 
 def main() -> None:
-    """Print bytes per block of whole runs, and the cost of a block-step over the row's length."""
+    """Print bytes per block of whole runs."""
     few, many = (float(_apart(blocks)) for blocks in (1000, MOST))
     print(
         f"memory: {(many - few) / MOST:.0f} bytes a block, peak of a whole run of {MOST:,} blocks"
     )
-    scene = {**SLIDES, "record.energy": False, "time.duration": 1e-3}
-    costs = {n: nanoseconds(changed(scene, n)) for n in (1000, 10_000, 100_000, MOST)}
-    print("cost of a block-step in space with slip and dashpots, one thread, over the row's length")
-    for blocks, cost in costs.items():
-        over = cost / min(costs.values())
-        print(f"  {blocks:9,} blocks {cost:7.2f} ns ({over:.2f} times the least)")
 
 
 def _apart(blocks: int) -> str:

@@ -21,9 +21,9 @@ def without_zeros(pillar: Pillar) -> csr_matrix:
     return without_round_off(stiffness(pillar))
 
 
-def multiplied(pillar: Pillar, zeros: bool = False) -> Steps:
-    """Return the steps that multiply; `zeros`: with the entries that are zero, as assembled."""
-    matrix = -(stiffness(pillar) if zeros else without_zeros(pillar))
+def multiplied(pillar: Pillar) -> Steps:
+    """Return the steps that multiply."""
+    matrix = -without_zeros(pillar)
 
     def internal(u: np.ndarray, force: np.ndarray) -> None:
         force[:] = matrix @ u

@@ -10,26 +10,21 @@ from html import unescape
 from pathlib import Path
 
 import api
-import citation
 import commands
 import notebooks
 import scene_reference
-import verification
 
 from cases.schema.rock_mass import RockMass
 
 ROOT = Path(__file__).parents[2]
-RESULTS = ROOT / "out" / "tests.xml"
 
 #: What can stand in a page, by name; each is a function of the rest of the line.
 GENERATED = {
     "scene-reference": lambda _: scene_reference.page(),
     "rock-mass-reference": lambda _: scene_reference.page(RockMass, "rock-"),
-    "verification": lambda _: verification.page(ROOT / "tests", RESULTS),
     "api": lambda module: api.page(ROOT, module),
     "commands": lambda _: commands.page(),
     "example": lambda name: notebooks.page(name),
-    "citation": lambda _: citation.page(ROOT / "CITATION.cff"),
 }
 MARK = re.compile(r"^<!-- generated: (\S+) ?(.*?) -->$", re.MULTILINE)
 FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)

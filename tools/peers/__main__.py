@@ -11,7 +11,6 @@ import lammps_bonds
 import measure
 import ours
 import table
-import yade_chain
 from environment import Place
 from job import Job
 
@@ -41,7 +40,6 @@ PEERS = {
         akantu_bar.jobs,
         {akantu_bar.CURVES[dim]: akantu_bar.SOLVES[dim] for dim in (1, 3)},
     ),
-    "yade": Peer(environment.yade, yade_chain.jobs, {yade_chain.CURVE: yade_chain.SOLVES}),
 }
 
 
