@@ -4,7 +4,7 @@
 #                                              "docs": also mkdocs, which builds the documentation)
 # dolfinx is that of the active environment, else apt's on Debian 12, else pip's wheel, else any other apt's.
 #   LOCKED=1   the versions of constraints.txt, also in later calls until LOCKED=0: the newest that pyproject.toml admits
-set -euo pipefail
+set -euo pipefail; every=30  # s
 cd "$(dirname "$0")/.."
 locked=${LOCKED:-$(cat .venv/.setup-locked 2>/dev/null || echo 0)}
 say() { printf 'setup: %s\n' "$*"; }
@@ -15,7 +15,7 @@ telling() {  # what, command ...
     local what=$1 code=0 began=$SECONDS teller
     shift
     # What sleeps on after the end holds no pipe open.
-    while sleep 30 </dev/null >/dev/null 2>&1; do say "$what, for $((SECONDS - began)) s" >&2; done &
+    while sleep "$every" </dev/null >/dev/null 2>&1; do say "$what, for $((SECONDS - began)) s" >&2; done &
     teller=$!
     "$@" || code=$?
     kill "$teller"
