@@ -6,8 +6,6 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from cases.errors import SceneError, UnstableError
-
 
 class ErrorReference(NamedTuple):
     """The reference of errors.
@@ -31,11 +29,3 @@ def combinations(values: Mapping[str, Sequence[Any]]) -> Iterator[dict[str, Any]
     """Yield every combination of the values of some keys, the last key first to change."""
     for one in product(*values.values()):
         yield dict(zip(values, one, strict=True))
-
-
-FAILURES = (SceneError, UnstableError)  # of an invalid scene, or an unstable run
-
-
-def reason_of(error: Exception) -> str:
-    """Return why something could not be run, without the place in the scene."""
-    return getattr(error, "allowed", str(error))

@@ -12,13 +12,12 @@ import xarray as xr
 
 from compare.cli.terminal import print_json, progress, say, show_numbers, show_table
 from compare.engines import Progress
-from compare.experiments.pool import Pool, on_pool
-from compare.experiments.store import plain
 from compare.figures.export import Drawn
 from compare.report.tables import Table
 from compare.runs.checkpoint.lock import locked
 from compare.runs.output import write, write_csv
 from compare.runs.processes import started
+from compare.studies.store import Pool, on_pool, plain
 
 
 class Summary(NamedTuple):

@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from threading import Lock
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from pandas import DataFrame
 
@@ -17,7 +17,6 @@ from compare.engines import Progress
 from compare.experiments.ablation import runner as ablation_runs
 from compare.experiments.ablation.summary import summarise as summarise_ablation
 from compare.experiments.cost.timings import measured_on
-from compare.experiments.pool import Lent, Pool, alone
 from compare.experiments.robustness.summary import make_study as make_hard_cases
 from compare.experiments.scattering import summary as scattering
 from compare.experiments.study.study import load as load_study
@@ -31,10 +30,11 @@ from compare.report import peers, tables
 from compare.report.findings.pillar import mostly_dispersion
 from compare.report.overview import Overview, RankedScene, seconds, versions
 from compare.report.render import Page, RockMasses, render
-from compare.report.scenes import ROCK_MASSES, Solved, asked_for, solve
+from compare.report.scenes import ROCK_MASSES, Pool, Solved, asked_for, solve
 from compare.report.section import SceneRequest
 from compare.runs.output import write_text
 from compare.runs.workers import Workers
+from compare.studies.store import alone, on_executor
 
 FREE_PILLAR = "fig-03"  # the scene that says what the paper's own comparison is made of
 #: How much of the paper's page each part takes, %, where kernels are compiled.
@@ -50,6 +50,18 @@ class Report(NamedTuple):
 
     file: Path
     page: Page
+
+
+class Lent(Executor):
+    """An executor that is not shut down by its users."""
+
+    def __init__(self, executor: Executor) -> None:
+        self.submit = executor.submit  # type: ignore[method-assign]
+
+
+def _shared(pool: Pool) -> Callable[..., Any]:
+    """Return how studies use the executor of the report."""
+    return partial(on_executor, pool())
 
 
 class _Untimed(NamedTuple):
@@ -159,9 +171,9 @@ def _untimed(
         joints = threads.submit(_joints, out / "studies", pool, part("rock masses"))
         others = threads.submit(_untimed_studies, out / "studies", studies, pool)
         cases = ablation_runs.reported()
-        effects = threads.submit(ablation_runs.prepared, cases, out / "effects", pool)
+        effects = threads.submit(ablation_runs.prepared, cases, out / "effects", _shared(pool))
         tell = part("hard cases")
-        stability = make_hard_cases(out / "studies", pool, False, tell) if hard else None
+        stability = make_hard_cases(out / "studies", _shared(pool), False, tell) if hard else None
         tell(1.0)  # also where they are left out
         effects.result()
         return _Untimed(stability, joints.result(), others.result())
@@ -170,7 +182,7 @@ def _untimed(
 def _joints(folder: Path, pool: Pool, progress: Progress) -> list[Summary]:
     """Return the studies of what joints reflect and pass, drawn by processes of the pool."""
     for i, name in enumerate(scattering.TITLES, start=1):
-        scattering.run(name, folder / name, None, True, pool)
+        scattering.run(name, folder / name, None, True, _shared(pool))
         progress(i / len(scattering.TITLES))
     with pool() as executor:
         made = partial(scattering.make_study, out=folder, brief=True)
@@ -183,7 +195,7 @@ def _untimed_studies(folder: Path, studies: tuple[str, ...], pool: Pool) -> dict
     with pool() as executor:
         for name, study in ((name, load_study(name)) for name in studies):
             if not study.timed:
-                rows = run_study(study, folder / name, pool)
+                rows = run_study(study, folder / name, _shared(pool))
                 found[name] = executor.submit(summarise_study, folder, name, study, rows)
         return {name: one.result() for name, one in found.items()}
 
@@ -236,8 +248,8 @@ def _with_measured(
     once no more are to be measured."""
     kept = out / "effects"
     timed = tuple(name for name in studies if name not in untimed.studies)
-    measured = reported_studies(out, timed, part("studies"), pool)
-    effects = ablation_runs.run(ablation_runs.reported(), kept, pool, part("effects"))
+    measured = reported_studies(out, timed, part("studies"), _shared(pool))
+    effects = ablation_runs.run(ablation_runs.reported(), kept, _shared(pool), part("effects"))
     with pool() as executor:
         submitted = [executor.submit(summarise_study, *one) for one in measured]
         drawn = dict(zip(timed, submitted, strict=True))

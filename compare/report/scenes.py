@@ -15,7 +15,6 @@ from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments.cost import timings
-from compare.experiments.pool import Pool
 from compare.experiments.sweep.diagram import ensemble_in
 from compare.figures.scene_figures import along_pillar, figures_of, recorded_along
 from compare.misfit.pairs import Comparison, compare
@@ -29,6 +28,7 @@ RATE = "scene of the report"  # what the seconds of scenes are remembered by
 TAKEN = {"", "overview", "made", "said", "rock-masses"}  # what the page calls its own parts
 #: From which to which fraction of the progress scenes are solved, and drawn.
 SOLVED, DRAWN = (0.0, 0.5), (0.5, 1.0)
+Pool = Callable[[], Executor]
 Submit = Callable[[Executor], list[Future]]
 
 

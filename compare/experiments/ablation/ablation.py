@@ -15,13 +15,13 @@ from cases.effects import active_effects
 from cases.kinds import AnyScene
 from compare.engines import applies, solve
 from compare.experiments.ablation.variants import left_out, only
-from compare.experiments.common import FAILURES, reason_of
 from compare.experiments.cost.scenes import everything_like
 from compare.experiments.cost.step_cost import StepCost, freedoms_in_turns, in_turns, stretch
 from compare.misfit.metrics import pairings, rms
 from compare.misfit.weight import ROUND_OFF
 from compare.solvers.continuum import JOINTED_ROCK
 from compare.solvers.dem import DEM
+from compare.studies.store import FAILURES, reason_of
 
 ROCK = JOINTED_ROCK.name
 MISSING = StepCost(nan, nan)  # not timed

@@ -7,12 +7,11 @@ import cases
 from cases.kinds import AnyScene, pillar_of
 from cases.schema.scene import Scene
 from compare.engines import Progress
-from compare.experiments import store
 from compare.experiments.ablation.ablation import Ablation, Dropped, ablate, prepare
 from compare.experiments.cost import timings
-from compare.experiments.pool import Pool, alone
-from compare.experiments.store import Store
 from compare.scenes import find, shipped
+from compare.studies import store
+from compare.studies.store import Pool, Store, alone
 from results.dataset import scene_hash
 
 RATE = "effects of a variant"  # key of the timings of cases

@@ -11,11 +11,11 @@ from compare.experiments.cost.dry_run import UNKNOWN, in_words
 from compare.experiments.robustness import run as robustness
 from compare.experiments.robustness.summary import NAME as HARD_CASES
 from compare.experiments.scattering import points as scattering
-from compare.experiments.store import Store
 from compare.experiments.study import summary as studies
 from compare.experiments.study.measure import PointRow
 from compare.experiments.study.study import load
 from compare.experiments.study.summary import REPORTED
+from compare.studies.store import Store
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from cases.errors import StoppedError
 from cases.kinds import AnyScene
 from compare.engines import Progress
-from compare.experiments.common import FAILURES, ErrorReference, reason_of
+from compare.experiments.common import ErrorReference
 from compare.experiments.planner.families import (
     Effort,
     Family,
@@ -40,6 +40,7 @@ from compare.experiments.planner.trials import (
     trial,
 )
 from compare.misfit.metrics import misfit as misfit_of
+from compare.studies.store import FAILURES, reason_of
 
 #: A family is not tried if it would be too expensive even at this fraction of the smallest time per
 #: freedom-step measured so far.

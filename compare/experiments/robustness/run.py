@@ -9,9 +9,6 @@ import numpy as np
 
 from cases.errors import SceneError
 from compare.engines import ENGINES, Progress
-from compare.experiments import store
-from compare.experiments.common import FAILURES
-from compare.experiments.pool import Pool
 from compare.experiments.robustness.case import (
     SCHEMES,
     CaseTrial,
@@ -24,7 +21,8 @@ from compare.experiments.robustness.failing_cases import FAILING
 from compare.experiments.robustness.linear_cases import LINEAR
 from compare.experiments.robustness.map import StabilityMap, make_map
 from compare.experiments.robustness.rock_mass_cases import ROCK_MASSES
-from compare.experiments.store import Store
+from compare.studies import store
+from compare.studies.store import FAILURES, Pool, Store
 
 RATE = "hard case"  # key of the timings of rows
 HELD, FAILED, NONE = "passed", "failed", "does not apply"

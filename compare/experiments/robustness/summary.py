@@ -10,18 +10,17 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from compare.engines import Progress
-from compare.experiments import store
-from compare.experiments.pool import Pool
 from compare.experiments.robustness.case import EQUIVALENT, JOINTED, LEAPFROG, CaseTrial
 from compare.experiments.robustness.criteria.energies import Drift, drift
 from compare.experiments.robustness.linear_cases import MILLION
 from compare.experiments.robustness.map import StabilityMap, boundary
 from compare.experiments.robustness.run import FAILED, HELD, NONE, CaseRow, run, run_maps
-from compare.experiments.store import Store
 from compare.experiments.summary import Summary, frame, grouped, number, write_tables
 from compare.figures.export import blank, save
 from compare.figures.style import style
 from compare.report.tables import Table
+from compare.studies import store
+from compare.studies.store import Pool, Store
 
 LIGHT = "#eceff2"  # of unstable cells
 LONG = {stepper.name: stepper for stepper in (LEAPFROG, JOINTED, EQUIVALENT)}

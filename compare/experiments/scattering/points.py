@@ -20,11 +20,9 @@ from compare.exact.plane import parallel_joints
 from compare.exact.plane.oblique_joint import Coefficients, Joint
 from compare.exact.plane.pulse import axes_of
 from compare.exact.plane.waves import KINDS, Kind
-from compare.experiments import store
-from compare.experiments.common import FAILURES, reason_of
-from compare.experiments.pool import Pool, alone
 from compare.experiments.scattering.extraction import Scattered, scattered
-from compare.experiments.store import Store
+from compare.studies import store
+from compare.studies.store import FAILURES, Pool, Store, alone, reason_of
 
 SCENE = Path(__file__).parent / "joints.toml"
 ANGLES = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0)  # degrees from the joints' normal

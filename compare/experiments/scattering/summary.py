@@ -12,12 +12,12 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from compare.engines import Progress, solver
 from compare.exact.plane.waves import KINDS
 from compare.experiments.cost.timings import machine
-from compare.experiments.pool import Pool
 from compare.experiments.scattering.points import AT, COUNTS, JointsRow, closed_form, run, scene_of
 from compare.experiments.summary import Summary, frame, grouped, number, write_tables
 from compare.figures.export import blank, save
 from compare.figures.style import style
 from compare.report.tables import Table
+from compare.studies.store import Pool
 from compare.text import percent
 
 WAVES = {"R_p": ("o", "-"), "R_s": ("s", "--"), "T_p": ("^", "-."), "T_s": ("v", ":")}

@@ -11,11 +11,11 @@ import xarray as xr
 from cases.errors import SceneError
 from cases.kinds import AnyScene, pillar_of
 from compare.engines import ENGINES, applies, solve, solver, stepping
-from compare.experiments.common import FAILURES
 from compare.experiments.study.methods import METHODS
 from compare.experiments.study.reference import UNKNOWN, error, finest_of, known, own_of
 from compare.experiments.study.study import StudyPoint
 from compare.solvers.record import Answer
+from compare.studies.store import FAILURES
 
 LONG = 0.1  # s: longer steps are timed once, and repeats begin for no longer
 

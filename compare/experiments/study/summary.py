@@ -4,16 +4,15 @@ from contextlib import nullcontext
 from pathlib import Path
 
 from compare.engines import Progress
-from compare.experiments import store
 from compare.experiments.cost.timings import machine
-from compare.experiments.pool import Pool, alone
-from compare.experiments.store import Store
 from compare.experiments.study.diagram import write_diagram
 from compare.experiments.study.findings import digits_per_second, judged, orders, sentences
 from compare.experiments.study.measure import PointRow, measure
 from compare.experiments.study.study import Study, StudyPoint, load
 from compare.experiments.summary import Summary, frame, grouped, number, write_tables
 from compare.report.tables import Table
+from compare.studies import store
+from compare.studies.store import Pool, Store, alone
 
 #: The studies of the report, in its order.
 REPORTED = ("free-pillar", "convergence", "uniform-chain", "one-joint")

@@ -12,9 +12,9 @@ import xarray as xr
 
 from cases.errors import InterruptedRun, SceneError, UnstableError
 from cases.kinds import AnyScene
-from compare.experiments import store
 from compare.misfit.external import Curves
 from compare.misfit.places import Place, places_of
+from compare.studies import store
 from results.dataset import scene_hash
 
 Rows = list[dict[str, Any]]

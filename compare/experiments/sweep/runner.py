@@ -8,16 +8,15 @@ from cases.errors import SceneError
 from cases.read import parse_override
 from compare.engines import Progress
 from compare.experiments.common import combinations
-from compare.experiments.pool import Pool
-from compare.experiments.store import Store
 from compare.experiments.sweep.axis import axes
 from compare.experiments.sweep.case import SweepCase, SweepOutcome, Work, key, outcome
 from compare.experiments.sweep.ensemble import MEMBER, member
 from compare.scenes import find, load, load_variant
+from compare.studies.store import DIED, Pool, Store
 
 POINTS = "points"  # the folder of completed points
 LONGEST = 100  # characters of a folder's name
-LOST = SweepOutcome("failed", "its process ended early, possibly for lack of memory", [])
+LOST = SweepOutcome("failed", DIED, [])
 
 
 class Sweep(NamedTuple):
@@ -91,4 +90,4 @@ def run(
     folder = asked.out and asked.out / POINTS
     outcomes: Store[SweepOutcome] = Store(SweepOutcome, folder, has_files)
     key_of, outcome_of = partial(key, work=work), partial(outcome, work=work)
-    return outcomes.compute(asked.cases, key_of, outcome_of, pool, progress, lost=LOST)
+    return outcomes.compute(asked.cases, key_of, outcome_of, pool, progress, lost=lambda case: LOST)

@@ -14,7 +14,6 @@ from cases.errors import SceneError
 from compare.cli.options import warn
 from compare.engines import Progress
 from compare.experiments.cost import dry_run
-from compare.experiments.pool import Pool
 from compare.experiments.summary import Summary, cell, grouped, number, run_and_show, write_tables
 from compare.experiments.sweep import runner
 from compare.experiments.sweep.axis import MEMBER
@@ -30,6 +29,7 @@ from compare.experiments.sweep.runner import Sweep
 from compare.misfit.metrics import Distance
 from compare.misfit.places import Place
 from compare.report.tables import Table
+from compare.studies.store import Pool
 
 NAME = "sweep"
 #: The numbers of a run, of a receiver of it, and of a pair of solutions at a receiver.

@@ -6,9 +6,9 @@ import sys
 
 import pytest
 
-from compare.experiments.pool import alone
 from compare.experiments.study import measure, summary
 from compare.experiments.study.summary import run
+from compare.studies.store import alone
 
 TIMED = ("seconds", "spread", "setup", "compile")
 
@@ -68,7 +68,7 @@ def test_timed_points_are_run_one_at_a_time_whatever_the_pool(study, tmp_path):
 
 def test_two_timed_studies_do_not_run_at_once(study, tmp_path):
     """The second waits for the lock of the first."""
-    program = "from compare.experiments.pool import alone\nwith alone(): print('in')"
+    program = "from compare.studies.store import alone\nwith alone(): print('in')"
     with alone():
         waiting = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE)
         with pytest.raises(subprocess.TimeoutExpired):

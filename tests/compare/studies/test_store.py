@@ -12,7 +12,7 @@ import pytest
 
 from cases.errors import SceneError
 from compare.experiments.cost import timings
-from compare.experiments.store import Store, key, plain
+from compare.studies.store import Store, in_processes, key, on_executor, plain
 
 
 class Square(NamedTuple):
@@ -54,10 +54,13 @@ def test_points_are_computed_once_in_their_order(store):
     assert store.has("1") and not store.has("2")
 
 
-def test_processes_give_what_one_gives(store):
-    pool = partial(ProcessPoolExecutor, 2, get_context("spawn"))
-    found = store.compute(range(5), str, square, pool)
-    assert [one.number for one in found] == list(range(5)) and store.has("4")
+def test_processes_and_executors_give_what_one_process_gives(tmp_path):
+    """In the order of the points, whichever is done first."""
+    with ProcessPoolExecutor(2, get_context("spawn")) as executor:
+        for pool in (partial(in_processes, 2), partial(on_executor, executor)):
+            store = Store(Square, tmp_path / str(id(pool)))
+            found = store.compute(range(5), str, square, pool)
+            assert [one.number for one in found] == list(range(5)) and store.has("4")
 
 
 def test_an_interrupted_experiment_has_saved_what_was_done(store):
@@ -71,12 +74,14 @@ def test_an_interrupted_experiment_has_saved_what_was_done(store):
     assert [store.has(str(n)) for n in range(5)] == [True, True, False, False, False]
 
 
-def test_a_point_whose_process_dies_is_lost_and_not_saved(store):
-    """Where the experiment has a result for it; else that is an error."""
-    pool, lost = partial(ProcessPoolExecutor, 1, get_context("spawn")), Square(-1, nan)
-    found = store.compute([2], str, dies, pool, lost=lost)
-    assert found == [lost] and not store.has("2")
-    with pytest.raises(Exception, match="terminated abruptly"):
+def test_a_point_whose_process_dies_is_lost_and_stops_nobody(store):
+    """It is not saved. Where a study has no result for it, that is an error."""
+    pool = partial(in_processes, 2)
+    found = store.compute(range(8), str, dies, pool, lost=lambda number: Square(number, nan))
+    assert [one.number for one in found] == list(range(8))
+    assert [isnan(one.square) for one in found] == [n == 2 for n in range(8)]
+    assert [store.has(str(n)) for n in range(8)] == [n != 2 for n in range(8)]
+    with pytest.raises(MemoryError, match="its process ended early"):
         store.compute([2], str, dies, pool)
 
 
@@ -92,11 +97,11 @@ def test_without_a_folder_nothing_is_saved(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     store = Store(Square, None)
     assert store.compute([2], str, square)[0].square == 4.0
-    assert store.file("2") is None and store.read("2") is None and not list(tmp_path.iterdir())
+    assert store.read("2") is None and not list(tmp_path.iterdir())
 
 
 def test_a_damaged_file_is_one_line_that_names_it(store):
-    store.file("1").write_text('{"number": "many"}')
+    (store.folder / "1.json").write_text('{"number": "many"}')
     with pytest.raises(SceneError, match=r"1\.json.*is damaged, remove it") as error:
         store.compute([1], str, square)
     assert "\n" not in str(error.value)
@@ -114,7 +119,7 @@ def test_keys_tell_all_that_decides_a_point_apart(monkeypatch):
     assert key("a", {"x": 1, "y": 2}) == key("a", {"y": 2, "x": 1})
     assert len({key("a", 1), key("a", 2), key("b", 1), key("a", [1])}) == 4
     before = key("a")
-    monkeypatch.setattr("compare.experiments.store.program", lambda: "another")
+    monkeypatch.setattr("compare.studies.store.program", lambda: "another")
     assert key("a") != before
 
 

@@ -1,0 +1,206 @@
+"""The store of studies: each point is computed once, by any processes, and saved when done.
+
+A point is saved as a JSON file whose name is a hash of everything that determines its result,
+including the program. An interrupted study thus resumes, and a changed one starts afresh.
+"""
+
+import hashlib
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from tempfile import gettempdir
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+from joblib import Parallel, delayed
+
+from cases.errors import SceneError, UnstableError
+from compare.engines import Progress
+from compare.experiments.cost import timings
+from compare.runs.checkpoint.lock import exclusive
+from compare.runs.checkpoint.signature import program
+from compare.runs.output import read_kept, write_text
+from compare.runs.processes import Processes
+
+P = TypeVar("P")
+T = TypeVar("T")
+#: Yields the name and the result of each point as soon as it is done; None: its process has died.
+Pool = Callable[[Callable[[Any], Any], Mapping[str, Any]], Iterator[tuple[str, Any]]]
+
+FAILURES = (SceneError, UnstableError)  # of an invalid scene, or an unstable run
+DIED = "its process ended early, possibly for lack of memory"
+
+
+def reason_of(error: Exception) -> str:
+    """Return why something could not be run, without the place in the scene."""
+    return getattr(error, "allowed", str(error))
+
+
+def key(*about: Any) -> str:
+    """Return the key of a point: a hash of its determining data (JSON) and of this program."""
+    text = json.dumps([*about, program()], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def plain(value: Any) -> Any:
+    """Return a result in JSON's types: named tuples as objects, arrays and tuples as lists."""
+    if hasattr(value, "_asdict"):
+        return plain(value._asdict())
+    if isinstance(value, dict):
+        return {name: plain(part) for name, part in value.items()}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return [plain(part) for part in value] if isinstance(value, list | tuple) else value
+
+
+@dataclass(frozen=True)
+class Store(Generic[T]):
+    """The results of a study's points.
+
+    form : the type of a result: a NamedTuple, or a list of them. folder : of the files; None:
+    nothing is saved. is_valid : whether a saved result is still valid.
+    """
+
+    form: Any
+    folder: Path | None
+    is_valid: Callable[[T], bool] = lambda result: True
+
+    def has(self, key: str) -> bool:
+        """Return whether a point is done."""
+        return self.folder is not None and (self.folder / f"{key}.json").is_file()
+
+    def read(self, key: str) -> T | None:
+        """Return a saved result; None without one, or if it is no longer valid.
+
+        Raises SceneError if its file is damaged.
+        """
+        if self.folder is None or not self.has(key):
+            return None
+        found: T = read_kept(self.folder / f"{key}.json", self.form)
+        return found if self.is_valid(found) else None
+
+    def save(self, key: str, result: T) -> None:
+        """Save a result."""
+        if self.folder is not None:
+            write_text(self.folder / f"{key}.json", json.dumps(plain(result), indent=1))
+
+    def compute(
+        self,
+        points: Sequence[P],
+        key: Callable[[P], str],
+        work: Callable[[P], T],
+        pool: Pool | None = None,
+        progress: Progress | None = None,
+        rate: str = "",
+        lost: Callable[[P], T] | None = None,
+    ) -> list[T]:
+        """Return the results of points, in order; saved ones are not recomputed.
+
+        work : returns the result of a point. pool : does the work; None: this process, one point
+        after the other. rate : key of the timings of a point. lost : returns the result of a point
+        whose process has died, not saved; None: MemoryError is raised.
+        """
+        named = {key(point): point for point in points}
+        found = {name: done for name in named if (done := self.read(name)) is not None}
+        missing = {name: point for name, point in named.items() if name not in found}
+        with timings.timing(rate, len(missing)) if rate else nullcontext():
+            for name, result in (pool or in_turn)(work, missing):
+                if result is not None:
+                    self.save(name, result)
+                elif lost is None:
+                    raise MemoryError(f"a point has no result: {DIED}")
+                found[name] = lost(named[name]) if result is None and lost else result
+                if progress:
+                    progress(len(found) / len(named))
+        return [found[key(point)] for point in points]
+
+
+def in_turn(work: Callable[[P], T], points: Mapping[str, P]) -> Iterator[tuple[str, T]]:
+    """Compute points in this process, one after the other."""
+    for name, point in points.items():
+        yield name, work(point)
+
+
+def in_processes(
+    count: int, work: Callable[[P], T], points: Mapping[str, P]
+) -> Iterator[tuple[str, T | None]]:
+    """Compute points in so many processes of this machine.
+
+    All processes end with one that dies. Which point it had is then unknown: each of those that
+    were begun is repeated alone.
+    """
+    left = dict(points)
+    while left:
+        begun: list[str] = []
+        try:
+            for name, result in _parallel(count, work, left, begun):
+                del left[name]
+                yield name, result
+        except BrokenProcessPool:
+            for name in [name for name in begun if name in left]:
+                yield name, _isolated(work, left.pop(name))
+
+
+def _parallel(
+    count: int, work: Callable[[P], T], points: Mapping[str, P], begun: list[str]
+) -> Iterator[tuple[str, T]]:
+    """Yield named results, in the order in which they are done; `begun` gets the names."""
+
+    def calls() -> Iterator[Any]:
+        for name, point in list(points.items()):
+            begun.append(name)
+            yield delayed(_named)(name, work, point)
+
+    run = Parallel(
+        count, return_as="generator_unordered", pre_dispatch=count, batch_size=1, max_nbytes=None
+    )
+    yield from run(calls())
+
+
+def _named(name: str, work: Callable[[P], T], point: P) -> tuple[str, T]:
+    return name, work(point)
+
+
+def _isolated(work: Callable[[P], T], point: P) -> T | None:
+    try:
+        return Parallel(2, max_nbytes=None)([delayed(work)(point)])[0]  # 1 would be this process
+    except BrokenProcessPool:
+        return None
+
+
+def on_executor(
+    executor: Executor, work: Callable[[P], T], points: Mapping[str, P]
+) -> Iterator[tuple[str, T | None]]:
+    """Compute points on an executor."""
+    futures = {executor.submit(work, point): name for name, point in points.items()}
+    for future in as_completed(futures):
+        try:
+            yield futures[future], future.result()
+        except BrokenProcessPool:
+            yield futures[future], None
+
+
+def on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]) -> T | None:
+    """Return the result of `work(pool)`; the first of several MPI processes hands points to the
+    others, and these return None when it is done.
+
+    workers : processes of this machine, if MPI has started none; 1: only this one.
+    """
+    if processes.comm is None:
+        return work(partial(in_processes, workers) if workers > 1 else None)
+    from mpi4py.futures import MPICommExecutor
+
+    with MPICommExecutor(processes.comm, root=0) as executor:
+        return None if executor is None else work(partial(on_executor, executor))
+
+
+@contextmanager
+def alone() -> Iterator[None]:
+    """Wait until no other timed study is running on this machine."""
+    with exclusive(Path(gettempdir()), wait=True):
+        yield
