@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from numerics.time_loop import Keeper
-    from results.dataset import Fields
 
 #: The engines by name; their packages are imported when they run.
 ENGINES: dict[str, Solver] = {one.name: one for one in (DEM, JOINTED_ROCK, EQUIVALENT_ROCK)}
@@ -125,15 +124,3 @@ def stepping(name: str, scene: AnyScene) -> Callable[[], float]:
     if again is not None:
         return again(scene)
     return lambda: float(solve(name, scene).attrs["seconds_stepping"])
-
-
-def solve_fields(
-    name: str, scene: AnyScene, progress: Progress | None, comm=None, keeper: Keeper | None = None
-) -> Fields:
-    """Return the result that `solve` returns as plain arrays."""
-    from compare.runs.output import fields_of
-
-    one = solver(name)
-    if one.fields is not None:
-        return one.fields(scene, progress, comm, keeper)
-    return fields_of(solve(name, scene, progress, comm, keeper))

@@ -27,7 +27,7 @@ from continuum.validity import applies
 from continuum.waveforms import energy_terms, waveforms
 from numerics.time_loop import Keeper, run_in_stretches
 from results.arrays import changed, copied, fill, size_of
-from results.dataset import Fields, fields
+from results.dataset import dataset
 
 FREEDOM_STEPS_AT_ONCE = 10_000_000  # some 0.1 s: often enough for a progress bar
 LEAST_STRETCHES = 20  # however short the run
@@ -80,7 +80,7 @@ def simulate(
         }
         about = _about(run) | begun.rest | engine.attributes() | seconds
         found = _recorded(run, run.choice.time.times[:count], about)
-        return xr.Dataset(*(found if film is None else film.developed(found)))
+        return found if film is None else film.developed(found)
 
     try:
         begun.march(film, progress, keeper)
@@ -154,7 +154,7 @@ def start(
     return Start(run, monitor, begin(run, monitor), rest)
 
 
-def _recorded(run: Run, times: np.ndarray, about: dict[str, Any]) -> Fields:
+def _recorded(run: Run, times: np.ndarray, about: dict[str, Any]) -> xr.Dataset:
     """Return what was recorded at these times as a result, with attributes about the run."""
     for rows in (run.samples.waves, run.samples.energy):
         if rows is not None:
@@ -167,7 +167,7 @@ def _recorded(run: Run, times: np.ndarray, about: dict[str, Any]) -> Fields:
     terms, energy = energy_terms(run.model, until.energy, run.communicator)
     waves = waveforms(run.scene, run.discrete, until)
     name = f"continuum-{run.rock}"
-    return fields(run.scene, name, times, **waves, energy=energy, terms=terms, **about)
+    return dataset(run.scene, name, times, **waves, energy=energy, terms=terms, **about)
 
 
 def _about(run: Run) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray as xr
 from scipy.sparse import csr_matrix
 
 from cases.schema.scene import Scene
@@ -15,7 +16,6 @@ from continuum.space.body import axis
 from continuum.space.evaluation import at_reference, matrix_of
 from continuum.space.receivers import section_tractions
 from continuum.state import State
-from results.dataset import Fields
 from results.snapshots import Film, Snapshots, snapshots, with_snapshots
 from results.subcells import KINDS, linear_cells
 
@@ -55,7 +55,7 @@ class RockFilm(Film):
         stress = self.stress @ strained + self.prestress if self.axial else np.zeros(0)
         return u[self.freedoms], v[self.freedoms], stress
 
-    def developed(self, result: Fields) -> Fields:
+    def developed(self, result: xr.Dataset) -> xr.Dataset:
         """Return the run's result with its snapshots, which the first process alone has."""
         body = self.discrete.body
         u, v, stress = (np.stack(column, axis=1) for column in zip(*self.shots, strict=True))
@@ -65,11 +65,11 @@ class RockFilm(Film):
         whole = body.communicator.joined(own)
         return result if whole is None else with_snapshots(result, self._of_all(result, whole))
 
-    def _of_all(self, result: Fields, whole: Pieces) -> Snapshots:
+    def _of_all(self, result: xr.Dataset, whole: Pieces) -> Snapshots:
         """Return the snapshots of the whole body."""
         x, u, v = whole.of_nodes
         cells = whole.table[:, self.parts].reshape(-1, self.parts.shape[1])
-        time = result.coords["time"][1][:: self.every][: u.shape[1]]
+        time = result["time"].values[:: self.every][: u.shape[1]]
         u, v, *stresses = (
             np.ascontiguousarray(np.moveaxis(a, 1, 0))
             for a in (u, v, *(of.reshape(len(cells), -1) for of in whole.of_cells))

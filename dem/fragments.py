@@ -4,9 +4,9 @@ import json
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from cases.material.calibrate import Properties
-from results.dataset import Fields
 from results.labels import label
 
 
@@ -40,19 +40,18 @@ def fragments(p: Properties, broken: np.ndarray, velocity: np.ndarray) -> list[d
 
 
 def with_fragments(
-    result: Fields,
+    result: xr.Dataset,
     p: Properties,
     broken: np.ndarray,
     velocity: np.ndarray,
     break_time: np.ndarray | None = None,
-) -> Fields:
+) -> xr.Dataset:
     """Return a result with its `fragments`, as JSON in an attribute, and `break_time`.
 
     break_time : float array [N - 1], s, nan where a joint holds; None where it is not known.
     """
-    found = json.dumps(fragments(p, broken, velocity))
-    variables, coords = dict(result.variables), dict(result.coords)
-    if break_time is not None:
-        coords["joint_y"] = (("joint_y",), p.joint_y, label("joint_y"))
-        variables["break_time"] = (("joint_y",), break_time, label("break_time"))
-    return Fields(variables, coords, {**result.attributes, "fragments": found})
+    found = result.assign_attrs(fragments=json.dumps(fragments(p, broken, velocity)))
+    if break_time is None:
+        return found
+    found = found.assign_coords(joint_y=("joint_y", p.joint_y, label("joint_y")))
+    return found.assign(break_time=("joint_y", break_time, label("break_time")))

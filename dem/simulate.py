@@ -6,11 +6,10 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from cases.effects import is_spatial
-from cases.errors import SceneError, StoppedError
+from cases.errors import SceneError
 from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from numerics.time_loop import Keeper
-from results.dataset import Fields
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,35 +33,19 @@ def simulate(
     large for their kinematics and an unsupported quality factor; StoppedError, an
     UnstableError with the result so far, when the motion leaves its bounds.
     """
-    import xarray as xr
-
-    try:
-        return xr.Dataset(*simulate_fields(scene, progress, keeper, incident))
-    except StoppedError as error:
-        error.result = xr.Dataset(*error.result)
-        raise
-
-
-def simulate_fields(
-    scene: AnyScene,
-    progress: Callable[[float], None] | None = None,
-    keeper: Keeper | None = None,
-    incident: IncidentField | None = None,
-) -> Fields:
-    """Simulate a scene as `simulate` does, and return the result as plain arrays."""
     if (quality := scene.rock.quality_factor) is not None:
         from cases.material.constant_q import beyond_blocks
 
         if reason := beyond_blocks(scene):
             raise SceneError(scene.where, "rock.quality_factor", quality, reason)
     if not isinstance(scene, Scene):
-        from dem.blocks.simulate import simulate_fields as in_plane
+        from dem.blocks.simulate import simulate as in_plane
 
         return in_plane(scene, progress, keeper, incident)
     if is_spatial(scene):
-        from dem.spatial.simulate import simulate_fields as in_space
+        from dem.spatial.simulate import simulate as in_space
 
         return in_space(scene, progress, keeper)
-    from dem.axial.simulate import simulate_fields as along_axis
+    from dem.axial.simulate import simulate as along_axis
 
     return along_axis(scene, progress, keeper)

@@ -6,13 +6,13 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from cases.loads import with_load_itself
 from cases.material.calibrate import Properties
 from cases.sampling import interpolation
 from cases.schema.scene import Scene
 from dem.static import prestressed
-from results.dataset import Fields
 from results.snapshots import Film, in_space, snapshots, with_snapshots
 from results.subcells import CORNERS
 
@@ -46,9 +46,9 @@ class BlockFilm(Film):
         self.scene, self.p, self.step = scene, p, step
         self.at_rest = prestressed(scene, p) if scene.prestress else None
 
-    def developed(self, result: Fields) -> Fields:
+    def developed(self, result: xr.Dataset) -> xr.Dataset:
         """Return the run's result with its snapshots."""
-        time, count = result.coords["time"][1][:: self.every], self.p.block_count
+        time, count = result["time"].values[:: self.every], self.p.block_count
         corners, centres = corners_of(self.p), np.zeros((count, 1, 3))
         centres[:, 0, 1] = self.p.centre_y
         shots = self.shots[: len(time)]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numba
 import numpy as np
+import xarray as xr
 
 from cases.errors import StoppedError
 from cases.kinds import AnyScene
@@ -16,7 +17,6 @@ from cases.sampling import Clock
 from numerics.divergence import ENERGY, Guard
 from numerics.instability import Sighting, stopped
 from numerics.time_loop import Keeper, run_in_stretches
-from results.dataset import Fields
 
 if TYPE_CHECKING:
     from results.snapshots import Film
@@ -43,11 +43,11 @@ class Run(NamedTuple):
 
 def followed(
     run: Run,
-    result: Callable[[int], Fields],
+    result: Callable[[int], xr.Dataset],
     progress: Callable[[float], None] | None,
     film: Film | None,
     keeper: Keeper | None,
-) -> Fields:
+) -> xr.Dataset:
     """Return the result of a run; if it stops early, the error has the valid part. result : a
     function of the number of valid samples."""
 

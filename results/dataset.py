@@ -1,23 +1,18 @@
 """The common form of all results, whether from an engine or an exact solution."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from cases.effects import active_effects
 from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from cases.warnings import warnings
 from results.labels import label
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 #: All terms of an energy ledger, and those of axial motion with joints that do not break.
 ALL_TERMS = (
@@ -47,20 +42,6 @@ MOST_OPEN = 1e-3  # of a ledger's largest term, that no term may account for
 #: Of the energy at rest: a million times the round-off of double precision.
 AT_REST = 1e6 * float(np.finfo(float).eps)
 
-Variable = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
-
-
-class Fields(NamedTuple):
-    """A result as plain arrays, in the order of xarray.Dataset's arguments.
-
-    variables, coords : name to (dimensions, values, attributes). attributes : of the whole.
-    Importing xarray takes longer than running most scenes; code that needs no Dataset uses this.
-    """
-
-    variables: dict[str, Variable]
-    coords: dict[str, Variable]
-    attributes: dict[str, Any]
-
 
 def scene_hash(scene: AnyScene, text: str | None = None) -> str:
     """Return a short hash of everything that determines a result, including samples of loads.
@@ -75,14 +56,7 @@ def scene_hash(scene: AnyScene, text: str | None = None) -> str:
     return digest.hexdigest()[:16]
 
 
-def dataset(*arguments: Any, **attributes: Any) -> xr.Dataset:
-    """Return a result as xarray.Dataset; same arguments as `fields`."""
-    import xarray as xr
-
-    return xr.Dataset(*fields(*arguments, **attributes))
-
-
-def fields(
+def dataset(
     scene: Scene,
     engine: str,
     time: np.ndarray,
@@ -92,11 +66,12 @@ def fields(
     energy: np.ndarray | None = None,
     shear: np.ndarray | None = None,
     rotation: np.ndarray | None = None,
+    *,
     terms: Sequence[str] = TERMS,
     errors: Mapping[str, np.ndarray] | None = None,
     **attributes: Any,
-) -> Fields:
-    """Return a result with the common schema of all engines and exact solutions.
+) -> xr.Dataset:
+    """Return the result of a pillar with the common schema of all engines and exact solutions.
 
     Parameters
     ----------
@@ -133,35 +108,48 @@ def fields(
         "energy": energy,
     }
     places = {"stress_y": record.stress, "velocity_y": record.velocity}
-    coords: dict[str, Variable] = {"time": (("time",), time, label("time"))}
-    coords |= {name: ((name,), np.array(at, float), label(name)) for name, at in places.items()}
+    coords = {name: ((name,), np.array(at, float)) for name, at in places.items()}
     components = {"axis": "xyz" if spatial else "y", "across": "xz", "term": terms}
-    variables = variables_of(quantities, DIMENSIONS, components, errors or {}, coords)
-    return Fields(variables, coords, attributes_of(scene, engine, attributes))
+    return assemble(
+        {"time": (("time",), time), **coords},
+        quantities,
+        DIMENSIONS,
+        components,
+        errors or {},
+        attributes_of(scene, engine, attributes),
+    )
 
 
-def variables_of(
+def assemble(
+    coords: Mapping[str, tuple[tuple[str, ...], np.ndarray]],
     quantities: Mapping[str, np.ndarray | None],
     dimensions: Mapping[str, tuple[str, ...]],
     components: Mapping[str, Sequence[str]],
     errors: Mapping[str, np.ndarray],
-    coords: dict[str, Variable],
-) -> dict[str, Variable]:
-    """Return the quantities that are known, and the bounds of their errors, as variables; add the
-    names of their components, by dimension, to `coords`."""
-    variables: dict[str, Variable] = {}
+    attributes: Mapping[str, Any],
+) -> xr.Dataset:
+    """Return a result of the quantities that are known, with the bounds of their errors.
+
+    coords : times and receivers. dimensions : of each quantity except time, its receivers or terms
+    first. components : names along the other dimensions.
+    """
+    variables, named = {}, dict(coords)
     for name, values in quantities.items():
         if values is not None:
             receivers, *others = dimensions[name]
-            variables[name] = ((receivers, "time", *others), values, label(name))
-            for one in dimensions[name]:
-                if one in components:
-                    coords[one] = ((one,), np.array(list(components[one])), label(one))
+            variables[name] = ((receivers, "time", *others), values)
+            for one in set(components) & set(dimensions[name]):
+                named[one] = ((one,), np.array(list(components[one])))
     for name, bound in errors.items():
         found = np.asarray(bound, dtype=float)
         found = found[:, None] if found.ndim < len(dimensions[name]) else found  # one axis
-        variables[f"{name}_error"] = (dimensions[name], found, label(f"{name}_error"))
-    return variables
+        variables[f"{name}_error"] = (dimensions[name], found)
+    return xr.Dataset(labelled(variables), labelled(named), attributes)
+
+
+def labelled(variables: Mapping[str, tuple]) -> dict[str, tuple]:
+    """Return variables (dimensions, values) with their names and units for plots."""
+    return {name: (*variable, label(name)) for name, variable in variables.items()}
 
 
 def attributes_of(scene: AnyScene, engine: str, own: Mapping[str, Any]) -> dict[str, Any]:
@@ -217,19 +205,21 @@ def imbalance(energy: np.ndarray, terms: Sequence[str] = TERMS) -> float:
     return float(np.abs(balance).max()) / scale if scale > 0 else 0.0
 
 
-def open_ledger(energy: np.ndarray, terms: Sequence[str], about: Mapping[str, Any]) -> str:
-    """Return a warning of an energy ledger [len(terms), n] that is open by more than `MOST_OPEN` of
-    its largest term; "" where it closes. about : the attributes of the result."""
+def open_ledger(result: xr.Dataset) -> str:
+    """Return a warning of an energy ledger that is open by more than `MOST_OPEN` of its largest
+    term; "" where it closes."""
+    energy = result["energy"].values
     since = energy - energy[:, :1]
-    left = float(np.abs(since.sum(axis=0) - 2 * since[list(terms).index("work")]).max())
+    work = since[result["term"].values.tolist().index("work")]
+    left = float(np.abs(since.sum(axis=0) - 2 * work).max())
     scale = max(float(np.abs(since).max()), AT_REST * float(np.abs(energy[:, 0]).max()))
     if not left > MOST_OPEN * scale:
         return ""
-    damps = about.get("scheme") == "implicit"
+    damps = result.attrs.get("scheme") == "implicit"
     why = "the damping of implicit steps, or steps too long" if damps else "steps too long"
     return (
-        f"{about['engine']}: the energy ledger is open by {left / scale:.2g} of its largest term, "
-        f"{scale:.3g} J: {why}"
+        f"{result.attrs['engine']}: the energy ledger is open by {left / scale:.2g} of its largest "
+        f"term, {scale:.3g} J: {why}"
     )
 
 

@@ -1,17 +1,13 @@
 """The common form of rock-mass results, whether from an engine or an exact solution."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
-from results.dataset import Fields, Variable, attributes_of, variables_of
-from results.labels import label
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
+from cases.schema.rock_mass import RockMass
+from results.dataset import assemble, attributes_of
 
 #: Dimensions of each quantity except time, its receivers or the terms of the ledger first.
 DIMENSIONS: dict[str, tuple[str, ...]] = {
@@ -35,7 +31,7 @@ TERMS = (
 )  # fmt: skip
 
 
-def plane_fields(
+def plane_dataset(
     scene: RockMass,
     engine: str,
     time: np.ndarray,
@@ -44,7 +40,7 @@ def plane_fields(
     terms: Sequence[str] = TERMS,
     errors: Mapping[str, np.ndarray] | None = None,
     **attributes: Any,
-) -> Fields:
+) -> xr.Dataset:
     """Return a result with the common schema of all solutions of rock masses.
 
     Parameters
@@ -65,13 +61,16 @@ def plane_fields(
     Joint receivers are identified by their places in [record]; the tangent of a joint is its
     normal, out of the block with the smaller number, rotated to the left.
     """
-    coords: dict[str, Variable] = {"time": (("time",), time, label("time"))}
+    coords: dict[str, tuple[tuple[str, ...], np.ndarray]] = {"time": (("time",), time)}
     for name, places in (("point", scene.record.points), ("joint_point", scene.record.joints)):
         at = np.array(places, dtype=float).reshape(-1, 2)
-        coords[name] = ((name,), np.arange(len(at), dtype=np.int32), label(name))
-        for k, axis in enumerate("xy"):
-            coords[f"{name}_{axis}"] = ((name,), at[:, k], label(f"{name}_{axis}"))
-    components = COMPONENTS | {"term": tuple(terms)}
-    every = {**quantities, "energy": energy}
-    variables = variables_of(every, DIMENSIONS, components, errors or {}, coords)
-    return Fields(variables, coords, attributes_of(scene, engine, attributes))
+        coords[name] = ((name,), np.arange(len(at), dtype=np.int32))
+        coords |= {f"{name}_{axis}": ((name,), at[:, k]) for k, axis in enumerate("xy")}
+    return assemble(
+        coords,
+        {**quantities, "energy": energy},
+        DIMENSIONS,
+        COMPONENTS | {"term": tuple(terms)},
+        errors or {},
+        attributes_of(scene, engine, attributes),
+    )

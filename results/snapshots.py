@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from cases.errors import SceneError
 from cases.kinds import AnyScene
 from cases.size import LARGEST_VARIABLE
 from results.arrays import copied
-from results.dataset import Fields, Variable
-from results.labels import label
-
-if TYPE_CHECKING:
-    import xarray as xr
-
+from results.dataset import labelled
 
 AXES = {1: [1], 2: [0, 1], 3: [0, 1, 2]}  # of x, y, z, by the number of components
 DIMENSIONS = {
@@ -129,31 +125,26 @@ def refuse_beyond_room(scene: AnyScene, nodes: int) -> None:
         )
 
 
-def with_snapshots(result: Fields, s: Snapshots) -> Fields:
+def with_snapshots(result: xr.Dataset, s: Snapshots) -> xr.Dataset:
     """Return a result with snapshots as variables field_NAME, on dimensions of their own."""
-    variables: dict[str, Variable] = dict(result.variables)
-    for name, dimensions in DIMENSIONS.items():
-        values = getattr(s, name)
-        if values is not None:
-            variables[f"field_{name}"] = (dimensions, values, label(f"field_{name}"))
-    variables["field_cells"][2]["kind"] = s.kind
-    coords = {
-        **result.coords,
-        "field_time": (("field_time",), s.time, label("field_time")),
-        "component": (("component",), np.array(list("xyz")), label("component")),
+    variables = {
+        f"field_{name}": (dimensions, getattr(s, name))
+        for name, dimensions in DIMENSIONS.items()
+        if getattr(s, name) is not None
     }
-    return Fields(variables, coords, result.attributes)
+    coords = {"field_time": ("field_time", s.time), "component": ("component", list("xyz"))}
+    found = result.assign(labelled(variables)).assign_coords(labelled(coords))
+    found["field_cells"].attrs["kind"] = s.kind
+    return found
 
 
-def snapshots_of(result: Fields | xr.Dataset) -> Snapshots | None:
+def snapshots_of(result: xr.Dataset) -> Snapshots | None:
     """Return the snapshots of a result; None if it has none."""
-    if isinstance(result, Fields):
-        found = {name: (v[1], v[2]) for name, v in {**result.coords, **result.variables}.items()}
-    else:
-        found = {str(name): (v.values, v.attrs) for name, v in result.variables.items()}
-    if "field_cells" not in found:
+    if "field_cells" not in result:
         return None
+    names = [name for name in Snapshots._fields if name != "kind"]
     arrays: dict[str, Any] = {
-        name: found.get(f"field_{name}", (None,))[0] for name in ("time", *DIMENSIONS)
+        name: result[f"field_{name}"].values if f"field_{name}" in result else None
+        for name in names
     }
-    return Snapshots(kind=found["field_cells"][1]["kind"], **arrays)
+    return Snapshots(kind=result["field_cells"].attrs["kind"], **arrays)

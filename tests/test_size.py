@@ -137,8 +137,8 @@ CHILD = """
 import sys
 from pathlib import Path
 import cases
-from compare.runs.output import write_fields
-from dem import simulate_fields
+from compare.runs.output import write_dataset
+from dem import simulate
 
 
 def highest():
@@ -149,8 +149,8 @@ def highest():
 def run(blocks, samples):
     changes = {"variants": [], "pillar.length": 0.5 * blocks, "record.stress": [1.0],
                "record.velocity": [1.0], "record.interval": 1e-6, "time.duration": 1e-6 * samples}
-    found = simulate_fields(cases.load_variant(sys.argv[1], "", changes))
-    write_fields(Path(sys.argv[4]), found)
+    found = simulate(cases.load_variant(sys.argv[1], "", changes))
+    write_dataset(Path(sys.argv[4]), found)
 
 
 run(10, 10)

@@ -279,12 +279,8 @@ def _engine_facts(engine: str, comparison: Comparison) -> dict[str, Any]:
 
 def _open_ledgers(comparison: Comparison) -> Iterator[str]:
     for result in comparison.results.values():
-        if "energy" in result:
-            line = open_ledger(
-                result["energy"].values, result["term"].values.tolist(), result.attrs
-            )
-            if line:
-                yield f"{comparison.scene.name}: {line}".lstrip(": ")
+        if "energy" in result and (line := open_ledger(result)):
+            yield f"{comparison.scene.name}: {line}".lstrip(": ")
 
 
 def _residuals(comparison: Comparison) -> dict[str, float]:

@@ -41,7 +41,7 @@ def pytest_configure_node(node: Any) -> None:
 
 def _once(file: Path, make: Callable[[], Any]) -> Any:
     """Return the result that the first worker that asks makes and writes, for which others wait."""
-    from compare.runs.output import fields_of, write_fields
+    from compare.runs.output import write_dataset
     from results.netcdf import load_netcdf
 
     with file.with_suffix(".lock").open("w") as lock:
@@ -49,7 +49,7 @@ def _once(file: Path, make: Callable[[], Any]) -> Any:
         if file.is_file():
             return load_netcdf(file)
         result = make()
-        write_fields(file, fields_of(result))
+        write_dataset(file, result)
         return result
 
 

@@ -15,7 +15,7 @@ from compare.engines import Progress
 from compare.figures.export import Drawn
 from compare.report.tables import Table
 from compare.runs.checkpoint.lock import locked
-from compare.runs.output import write, write_csv
+from compare.runs.output import write_csv, write_dataset
 from compare.runs.processes import started
 from compare.studies.store import Pool, on_pool, plain
 
@@ -109,9 +109,7 @@ def write_tables(
     """Write NAME.csv and, for a dataset, NAME.nc into a folder; return the files."""
     files = [write_csv(folder / f"{name}.csv", table)]
     if data is not None:
-        texts = {k: v.astype(str) for k, v in data.variables.items() if v.dtype == object}
-        safe, place = data.assign(texts), folder / f"{name}.nc"
-        files.append(write(place, lambda path: safe.to_netcdf(path, engine="scipy")))
+        files.append(write_dataset(folder / f"{name}.nc", data))
     return files
 
 

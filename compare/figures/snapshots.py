@@ -106,7 +106,7 @@ def make_snapshots(out: Path) -> SnapshotsSection:
     from compare.runs.field_files import read_pvd, write_pvd
 
     scene = pillar_of(cases.load_variant(find(SCENE), "", CHANGES))
-    found = snapshots_of(dem.simulate_fields(scene))
+    found = snapshots_of(dem.simulate(scene))
     assert found is not None
     file = write_pvd(out / "fields" / "dem.pvd", found)
     shown = read_pvd(file).since(1)

@@ -156,8 +156,7 @@ def _run_cells(result: xr.Dataset) -> list[str]:
 def _energy_cell(result: xr.Dataset) -> str:
     if "energy" not in result:
         return "not recorded"
-    ledger = result["energy"].values, result["term"].values.tolist()
-    return f"{energy_residual(result):.1e}{' (open)' if open_ledger(*ledger, result.attrs) else ''}"
+    return f"{energy_residual(result):.1e}{' (open)' if open_ledger(result) else ''}"
 
 
 def reason_table(comparisons: list[Comparison]) -> Table:

@@ -1,7 +1,5 @@
 """The only place that writes files: each under a temporary name first, then renamed."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import tempfile
@@ -9,25 +7,19 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from errno import EIO
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
+import pandas as pd
+import xarray as xr
+from pydantic import TypeAdapter
 
 from cases.errors import SceneError, printable
 from cases.files import is_number, read_json
-from results.dataset import Fields
-from results.labels import RECEIVERS
-from results.netcdf import netcdf3
-
-if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
-
 
 T = TypeVar("T")
 
 LARGEST_ROW = 100_000_000  # bytes, of a point saved by a study, a sweep or the robustness suite
-AT_ONCE = 10_000  # rows of a table that are formatted together
 FORMULA = ("=", "+", "-", "@")  # first characters of a spreadsheet formula
 UNFINISHED = ".unfinished-"  # in the names of files being written, which begin with a dot
 
@@ -146,28 +138,11 @@ def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
 def write_csv(path: Path, table: pd.DataFrame, digits: int = 9) -> Path:
     """Write a table without its index; text is escaped by `csv_cell`."""
     safe = table.rename(columns=csv_cell)
-    if all(kind.kind == "f" for kind in safe.dtypes) and not safe.isna().to_numpy().any():
-        text = safe.iloc[:0].to_csv(index=False) + _rows(safe.to_numpy(), digits)
-        return write_text(path, text)
     for i, kind in enumerate(safe.dtypes):
-        if kind.kind == "f":
-            safe.isetitem(i, [csv_number(value, digits) for value in safe.iloc[:, i].tolist()])
-        elif kind.kind not in "biu":
+        if kind.kind not in "biuf":
             safe.isetitem(i, [csv_cell(value) for value in safe.iloc[:, i]])
-    return write(path, lambda file: safe.to_csv(file, index=False))
-
-
-def _rows(values: np.ndarray, digits: int) -> str:
-    """Return the rows of a table of numbers [n, k], without NaN: one format for many of them takes
-    half the time of one each."""
-    row = ",".join([f"%.{digits}g"] * values.shape[1]) + "\n"
-    parts = (values[i : i + AT_ONCE] for i in range(0, len(values), AT_ONCE))
-    return "".join(row * len(part) % tuple(part.ravel().tolist()) for part in parts)
-
-
-def csv_number(value: float, digits: int) -> str:
-    """Return a number as text, NaN as none: pandas takes twice as long."""
-    return "" if value != value else f"{value:.{digits}g}"
+    form = f"%.{digits}g"
+    return write(path, lambda file: safe.to_csv(file, index=False, float_format=form))
 
 
 def csv_cell(value: object) -> object:
@@ -191,8 +166,6 @@ def read_kept(path: Path, form: type[T]) -> T:
 
     Raises SceneError if the file does not match that type.
     """
-    from pydantic import TypeAdapter
-
     try:
         return TypeAdapter(form).validate_python(read_json(path, LARGEST_ROW))
     except ValueError as error:  # pydantic's messages have several lines
@@ -200,58 +173,15 @@ def read_kept(path: Path, form: type[T]) -> T:
         raise SceneError(str(path), "", None, f"is damaged, remove it: {reason}") from None
 
 
-def fields_of(result: xr.Dataset) -> Fields:
-    """Return a result as plain arrays."""
-    variables = {
-        str(name): (tuple(map(str, v.dims)), v.values, dict(v.attrs))
-        for name, v in result.variables.items()
-    }
-    return Fields(variables, {}, dict(result.attrs))
-
-
-def write_fields(path: Path, fields: Fields) -> Path:
-    """Write a result as NetCDF 3 by scipy, exactly as xarray would, without importing xarray."""
+def write_dataset(path: Path, result: xr.Dataset) -> Path:
+    """Write a result as NetCDF 3, whose integers have 32 bits."""
     refuse_foreign(path)
-
-    def save(temporary: Path) -> None:
-        with netcdf3(temporary, "w") as file:
-            _write_attributes(file, fields.attributes)
-            for name, (dimensions, values, attributes) in {
-                **fields.coords,
-                **fields.variables,
-            }.items():
-                located = attributes | _located(name, dimensions)
-                _write_variable(file, name, dimensions, values, located)
-
-    return write(path, save)
+    texts = {k: v.astype(str) for k, v in result.variables.items() if v.dtype == object}
+    large = {k: float(v) for k, v in result.attrs.items() if _is_long(v)}
+    found = result.assign(texts).assign_attrs(large)
+    plain = {k: {"_FillValue": None} for k, v in found.variables.items() if v.dtype.kind == "f"}
+    return write(path, lambda file: found.to_netcdf(file, engine="scipy", encoding=plain))
 
 
-def _located(name: str, dimensions: tuple) -> dict[str, str]:
-    """Return the attribute that gives readers the positions of a variable's receivers, if its
-    dimensions do not (CF conventions, 5)."""
-    known = [names for receivers, names in RECEIVERS.items() if receivers in dimensions]
-    beside = [one for names in known if len(names) > 1 for one in names]
-    return {"coordinates": " ".join(beside)} if beside and name not in beside else {}
-
-
-def _write_variable(file, name: str, dimensions: tuple, values: np.ndarray, attributes: dict):
-    if values.dtype.kind == "U":  # the format holds characters only, in a dimension of their own
-        encoded = np.char.encode(values, "utf-8")
-        values = encoded.view("S1").reshape(*values.shape, encoded.dtype.itemsize)
-        dimensions = (*dimensions, f"string{encoded.dtype.itemsize}")
-        attributes = {**attributes, "_Encoding": "utf-8"}
-    for dimension, length in zip(dimensions, values.shape, strict=True):
-        if dimension not in file.dimensions:
-            file.createDimension(dimension, length)
-    variable = file.createVariable(name, values.dtype, dimensions)
-    variable[:] = values
-    _write_attributes(variable, attributes)
-
-
-def _write_attributes(target, attributes: dict) -> None:
-    for key, value in attributes.items():
-        # A bare Python number would be stored in single precision; the format knows no int64.
-        number = isinstance(value, int | float | np.number)
-        whole = isinstance(value, int | np.integer) and abs(int(value)) < 2**31
-        kind = np.int32 if whole else np.float64
-        setattr(target, key, np.array(value, dtype=kind) if number else value.encode())
+def _is_long(value: object) -> bool:
+    return isinstance(value, int | np.integer) and abs(int(value)) >= 2**31

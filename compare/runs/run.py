@@ -6,14 +6,16 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
+import xarray as xr
+
 from cases.errors import SceneError, StoppedError
-from compare.engines import Progress, solve_fields, solver
+from compare.engines import Progress, solve, solver
 from compare.experiments.cost import timings
 from compare.runs.checkpoint.resume import Keeping, Watch, result_of, watch
 from compare.runs.jobs import Job
-from compare.runs.output import fields_of, write_fields
+from compare.runs.output import write_dataset
 from compare.runs.processes import ALONE, Processes
-from results.dataset import Fields, imbalance, open_ledger
+from results.dataset import energy_residual, open_ledger
 
 
 class Done(NamedTuple):
@@ -105,9 +107,9 @@ def _made(
     return [] if done is None else [done]
 
 
-def _run(job: Job, watched: Watch, progress: Progress, processes: Processes) -> Fields:
+def _run(job: Job, watched: Watch, progress: Progress, processes: Processes) -> xr.Dataset:
     try:
-        return solve_fields(job.name, job.scene, progress, processes.comm, watched.keeper)
+        return solve(job.name, job.scene, progress, processes.comm, watched.keeper)
     except StoppedError as error:
         processes.by_first(partial(_keep, job, error))
         raise
@@ -120,7 +122,7 @@ def _keep(job: Job, error: StoppedError) -> None:
         return
     path = _stopped(job)
     try:
-        write_fields(path, result if isinstance(result, Fields) else fields_of(result))
+        write_dataset(path, result)
     except OSError as problem:
         error.args = (f"{error}; {path} cannot be written: {problem.strerror}",)
     else:
@@ -131,18 +133,18 @@ def _stopped(job: Job) -> Path:
     return job.path.with_suffix(".stopped.nc")
 
 
-def _written(job: Job, watched: Watch, result: Fields, vtx: bool) -> Done:
+def _written(job: Job, watched: Watch, result: xr.Dataset, vtx: bool) -> Done:
     """Write a result with its snapshots and remove the run's checkpoints."""
     signed = watched.signed(result)
-    write_fields(job.path, signed)
+    write_dataset(job.path, signed)
     if watched.keeper is not None and watched.keeper.done:
         _stopped(job).unlink(missing_ok=True)
     else:
-        timings.note(job.name, job.scene, result.attributes)
+        timings.note(job.name, job.scene, result.attrs)
     return _finished(job, watched, vtx, signed)
 
 
-def _finished(job: Job, watched: Watch, vtx: bool, result: Fields | None = None) -> Done:
+def _finished(job: Job, watched: Watch, vtx: bool, result: xr.Dataset | None = None) -> Done:
     """Write the snapshots of a result, by default that of an earlier command."""
     if result is None:
         result = result_of(job.path, watched.signature)
@@ -150,11 +152,11 @@ def _finished(job: Job, watched: Watch, vtx: bool, result: Fields | None = None)
             raise SceneError(str(job.path), "", None, "has changed since this command started")
     done = Done(
         job,
-        int(result.attributes.get("steps", 0)),
-        float(result.attributes.get("seconds_stepping", 0.0)),
+        int(result.attrs.get("steps", 0)),
+        float(result.attrs.get("seconds_stepping", 0.0)),
         *_residual(result),
-        json.loads(result.attributes.get("fragments", "null")),
-        result.attributes.get("static_out_of_balance"),
+        json.loads(result.attrs.get("fragments", "null")),
+        result.attrs.get("static_out_of_balance"),
         _write_snapshots(job, result, vtx),
     )
     watched.checkpoints.remove()
@@ -170,7 +172,7 @@ def _refuse_vtx(jobs: list[Job]) -> None:
     refuse_vtx()
 
 
-def _write_snapshots(job: Job, result: Fields, vtx: bool) -> list[Path]:
+def _write_snapshots(job: Job, result: xr.Dataset, vtx: bool) -> list[Path]:
     """Write a result's snapshots, if any, beside it; return the files to open."""
     if job.scene.record.fields is None:
         return []
@@ -184,10 +186,6 @@ def _write_snapshots(job: Job, result: Fields, vtx: bool) -> list[Path]:
     return [*files, write_vtx(job.path.with_suffix(".bp"), found)] if vtx else files
 
 
-def _residual(result: Fields) -> tuple[float | None, str]:
+def _residual(result: xr.Dataset) -> tuple[float | None, str]:
     """Return how far the energy ledger of a result is open, over the work, and its warning."""
-    if "energy" not in result.variables:
-        return None, ""
-    terms = {**result.variables, **result.coords}["term"][1].tolist()
-    energy = result.variables["energy"][1]
-    return imbalance(energy, terms), open_ledger(energy, terms, result.attributes)
+    return (energy_residual(result), open_ledger(result)) if "energy" in result else (None, "")

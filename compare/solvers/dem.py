@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from cases.schema.rock_mass import RockMass
     from cases.schema.scene import Scene
-    from results.dataset import Fields
 
 
 def run(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -> xr.Dataset:
@@ -32,15 +31,6 @@ def run(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -> xr.Da
 
     found = simulate(scene, progress, keeper, incident(scene))
     note_sides(found.attrs, scene)
-    return found
-
-
-def run_fields(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -> Fields:
-    """Return the result as plain arrays, without importing xarray."""
-    from dem import simulate_fields
-
-    found = simulate_fields(scene, progress, keeper, incident(scene))
-    note_sides(found.attributes, scene)
     return found
 
 
@@ -117,7 +107,6 @@ DEM = Solver(
     line=Line("#56b4e9", 2.2, 2, printed_width=1.5),
     applies=applies,
     run=run,
-    fields=run_fields,
     prepare=prepare,
     engine="dem",
     schemes=("leapfrog", "fourth-order"),

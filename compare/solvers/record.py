@@ -12,8 +12,6 @@ from cases.kinds import AnyScene
 if TYPE_CHECKING:
     import xarray as xr
 
-    from results.dataset import Fields
-
 
 OF_BLOCK_IN_PLANE = 3  # freedoms of a rigid block of a rock mass
 
@@ -169,7 +167,6 @@ class Solver:
     schemes : of time steps. per_block : whether a step's cost is counted in blocks, else in
         freedoms. cost : the settings of a run that decide what a step costs.
     shares : whether several processes can share a run.
-    fields : of the arguments of an engine's `run`, to plain arrays, where that saves imports.
     again : of (scene), to what takes its steps anew at each call, set up once, and returns their
         seconds; None where a run is set up in no time.
     libraries : the versions that decide the bits of a result, beside those of numpy and numba.
@@ -194,7 +191,6 @@ class Solver:
     per_block: bool = False
     cost: tuple[str, ...] = ()
     shares: bool = False
-    fields: Callable[..., Fields] | None = None
     again: Callable[[Any], Callable[[], float]] | None = None
     libraries: Callable[[], dict[str, str]] = dict
 

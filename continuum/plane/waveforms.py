@@ -5,18 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray as xr
 
 from continuum.waveforms import energy_terms, vectors
-from results.plane import plane_fields
+from results.plane import plane_dataset
 
 if TYPE_CHECKING:
     from continuum.run import Run
     from continuum.state import Samples
-    from results.dataset import Fields
 
 
 def quantities(run: Run, samples: Samples) -> dict[str, np.ndarray]:
-    """Return what was recorded by name, as `results.plane.plane_fields` takes it.
+    """Return what was recorded by name, as `results.plane.plane_dataset` takes it.
 
     Motion counts from the state at the start. Without joints nothing is known of them.
     """
@@ -33,13 +33,13 @@ def quantities(run: Run, samples: Samples) -> dict[str, np.ndarray]:
     return found
 
 
-def recorded(run: Run, samples: Samples, times: np.ndarray, about: dict[str, Any]) -> Fields:
+def recorded(run: Run, samples: Samples, times: np.ndarray, about: dict[str, Any]) -> xr.Dataset:
     """Return the result of a rock mass at these times, with attributes about its run."""
     terms, energy = energy_terms(run.model, samples.energy, run.communicator)
     if run.scene.excavated and run.scene.gravity is None:
         terms, energy = _given_off(terms, energy)
     name, found = f"continuum-{run.rock}", quantities(run, samples)
-    return plane_fields(run.scene, name, times, found, energy, terms, **about)
+    return plane_dataset(run.scene, name, times, found, energy, terms, **about)
 
 
 def _given_off(

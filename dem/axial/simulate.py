@@ -8,6 +8,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from cases.loads import with_load_itself
 from cases.material.calibrate import Properties, calibrate
@@ -25,7 +26,7 @@ from dem.static import since_prestress
 from numerics.divergence import guard, look
 from numerics.time_loop import Keeper
 from results.arrays import copied, size_of
-from results.dataset import Fields, fields
+from results.dataset import dataset
 
 if TYPE_CHECKING:
     from dem.snapshots import BlockFilm
@@ -61,9 +62,9 @@ def scheme_of(scene: Scene) -> Scheme:
     return Scheme(fourth_order.build, marcher, len(fourth_order.KICKS), False)
 
 
-def simulate_fields(
+def simulate(
     scene: Scene, progress: Callable[[float], None] | None = None, keeper: Keeper | None = None
-) -> Fields:
+) -> xr.Dataset:
     """Simulate a scene of axial motion, one degree of freedom per block."""
     began = perf_counter()
     scheme = scheme_of(scene)
@@ -79,11 +80,11 @@ def simulate_fields(
     film = _film(scene, marcher, model, state, time.stride, mean)
     compiled = perf_counter()
 
-    def result(count: int) -> Fields:
+    def result(count: int) -> xr.Dataset:
         stress, times = samples.stress[:, :count], time.times[:count]
         if scheme.takes_means:
             stress = with_load_itself(stress, scene, model.receivers.sections, times, time.dt)
-        found = fields(
+        found = dataset(
             scene,
             "dem",
             times,
@@ -121,8 +122,8 @@ def simulate_fields(
     return time_loop.followed(whole, result, progress, film, keeper)
 
 
-def _with_breaks(result: Fields, scene: Scene, state: State, time: Clock) -> Fields:
-    if state.broke is None or result.coords["time"][1].size < time.samples:
+def _with_breaks(result: xr.Dataset, scene: Scene, state: State, time: Clock) -> xr.Dataset:
+    if state.broke is None or result.sizes["time"] < time.samples:
         return result
     broke = state.broke
     times = np.where((broke >= 0) & (broke <= time.steps), time.dt * broke, np.nan)

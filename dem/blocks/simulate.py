@@ -7,6 +7,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from dem import time_loop
 from dem.blocks.leapfrog import PlaneSamples, march, samples_for
@@ -19,8 +20,7 @@ from numerics.divergence import SPEED, Guard, audit, guard
 from numerics.small_motion import Moved, farthest, matters, overlapping, refuse_large_motion
 from numerics.time_loop import Keeper
 from results.arrays import size_of
-from results.dataset import Fields
-from results.plane import plane_fields
+from results.plane import plane_dataset
 
 if TYPE_CHECKING:
     from cases.incident import IncidentField
@@ -30,12 +30,12 @@ if TYPE_CHECKING:
 MOST_OF_DRIVE = 2_000_000  # numbers: forces on held blocks in memory at a time
 
 
-def simulate_fields(
+def simulate(
     scene: RockMass,
     progress: Callable[[float], None] | None = None,
     keeper: Keeper | None = None,
     incident: IncidentField | None = None,
-) -> Fields:
+) -> xr.Dataset:
     """Simulate a rock mass in the plane, three degrees of freedom per block."""
     began = perf_counter()
     system = prepared(scene, incident)
@@ -48,8 +48,8 @@ def simulate_fields(
     film = _film(system, state)
     compiled = perf_counter()
 
-    def result(count: int) -> Fields:
-        found = plane_fields(
+    def result(count: int) -> xr.Dataset:
+        found = plane_dataset(
             scene,
             "dem",
             time.times[:count],

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from cases.partition.polygons import owner
 from dem.blocks.leapfrog import march, samples_for
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from cases.partition.blocks import Partition
     from dem.blocks.model import PlaneState
     from dem.blocks.system import PlaneSystem
-    from results.dataset import Fields
 
 
 class PlaneFilm(Film):
@@ -38,9 +38,9 @@ class PlaneFilm(Film):
 
         super().__init__(system.blocks.scene, len(self.partition.corners), shoot)
 
-    def developed(self, result: Fields) -> Fields:
+    def developed(self, result: xr.Dataset) -> xr.Dataset:
         """Return the run's result with its snapshots; displacement counts from the first."""
-        time = result.coords["time"][1][:: self.every]
+        time = result["time"].values[:: self.every]
         u, v = (np.stack(x) for x in zip(*self.shots[: len(time)], strict=True))
         cells, block = triangles(self.partition)
         moved, moving = (corner_motion(self.partition, x) for x in (u - u[0], v))

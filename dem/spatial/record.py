@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from cases.loads import with_load_itself
 from cases.material.calibrate import Properties
@@ -23,7 +24,6 @@ from dem.spatial.model import RowModel, RowSamples, RowState
 from dem.static import since_prestress
 from numerics.divergence import guard
 from results.arrays import copied
-from results.dataset import Fields
 
 
 def waveforms(scene: Scene, p: Properties, samples: RowSamples, time: Clock) -> dict[str, Any]:
@@ -99,7 +99,7 @@ def _all(count: int) -> Interpolation:
     return Interpolation(np.arange(count), np.arange(0), np.zeros(count))
 
 
-def with_breaks(result: Fields, p: Properties, model: RowModel, state: RowState) -> Fields:
+def with_breaks(result: xr.Dataset, p: Properties, model: RowModel, state: RowState) -> xr.Dataset:
     """Return a result with its fragments, where joints soften.
 
     A joint is broken when all its contact points are. Break times are not recorded.

@@ -7,6 +7,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate
@@ -33,7 +34,7 @@ from numerics.divergence import guard, look
 from numerics.small_motion import Moved, matters, refuse_large_motion
 from numerics.time_loop import Keeper
 from results.arrays import changed, size_of
-from results.dataset import Fields, fields
+from results.dataset import dataset
 
 if TYPE_CHECKING:
     from dem.snapshots import BlockFilm
@@ -66,9 +67,9 @@ def critical_step_of(scene: Scene, p: Properties) -> float:
     return critical_spatial_step(stiffest(scene, p), face, (ends.start, ends.end), turns)
 
 
-def simulate_fields(
+def simulate(
     scene: Scene, progress: Callable[[float], None] | None = None, keeper: Keeper | None = None
-) -> Fields:
+) -> xr.Dataset:
     """Simulate a scene of motion in space, three or six degrees of freedom per block."""
     began = perf_counter()
     p, model, time, critical = prepare(scene)
@@ -84,9 +85,9 @@ def simulate_fields(
     film = _film(scene, p, model, state, threads, time.dt)
     ready = perf_counter()
 
-    def result(count: int) -> Fields:
+    def result(count: int) -> xr.Dataset:
         taken = changed(samples, lambda wave: wave[..., :count])
-        found = fields(
+        found = dataset(
             scene,
             "dem",
             time.times[:count],

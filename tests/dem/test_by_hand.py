@@ -9,12 +9,11 @@ from math import sqrt
 
 import numpy as np
 import pytest
-import xarray as xr
 
 import dem
 from cases.schema.scene import Scene
 from cases.schema.tables import Motion
-from dem.spatial.simulate import simulate_fields
+from dem.spatial import simulate as row
 
 TERMS = ("kinetic", "elastic", "viscous", "boundary", "work")
 
@@ -48,7 +47,7 @@ def engine(request, monkeypatch, plain):
     motion = Motion(rotation=request.param)
 
     def simulate(scene):
-        found = xr.Dataset(*simulate_fields(scene.model_copy(update={"motion": motion})))
+        found = row.simulate(scene.model_copy(update={"motion": motion}))
         holds(found.energy.sel(term=found.term == "rotation"), 0.0)
         return found.sel(term=found.term != "rotation")
 

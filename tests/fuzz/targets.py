@@ -100,9 +100,9 @@ def _examine(one: Scene | RockMass) -> None:
     if steps * one.pillar.block_count <= TINY and (
         active_effects(one) == PLAIN and one.numerics.dem.scheme == "leapfrog" and one.record.energy
     ):
-        from dem import simulate_fields
+        from dem import simulate
 
-        simulate_fields(one)
+        simulate(one)
 
 
 def _examine_rock_mass(one: RockMass) -> None:

@@ -6,7 +6,6 @@ import xarray as xr
 
 from cases import SceneError
 from cases.sampling import sample_times
-from results.dataset import Fields
 from results.snapshots import (
     Film,
     Snapshots,
@@ -44,10 +43,10 @@ def assert_equal(one: Snapshots, other: Snapshots):
 def test_snapshots_come_back_from_a_result_and_from_its_file(found, stress, tmp_path):
     if not stress:
         found = found._replace(stress=None)
-    times = ("time", (("time",), np.arange(3.0), {}))
-    held = with_snapshots(Fields({}, dict([times]), {"engine": "dem"}), found)
+    run = xr.Dataset(coords={"time": np.arange(3.0)}, attrs={"engine": "dem"})
+    held = with_snapshots(run, found)
     assert_equal(snapshots_of(held), found)
-    xr.Dataset(*held).to_netcdf(tmp_path / "dem.nc", engine="scipy")
+    held.to_netcdf(tmp_path / "dem.nc", engine="scipy")
     with xr.open_dataset(tmp_path / "dem.nc", engine="scipy") as back:
         assert_equal(snapshots_of(back), found)
         assert back.field_displacement.dims == ("field_time", "node", "component")
@@ -57,7 +56,6 @@ def test_snapshots_come_back_from_a_result_and_from_its_file(found, stress, tmp_
 
 
 def test_a_result_without_snapshots_has_none():
-    assert snapshots_of(Fields({}, {}, {})) is None
     assert snapshots_of(xr.Dataset()) is None
 
 

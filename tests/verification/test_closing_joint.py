@@ -8,7 +8,6 @@ from math import pi
 
 import numpy as np
 import pytest
-import xarray as xr
 
 import continuum
 import dem
@@ -94,7 +93,7 @@ def jointed(scene):
 
 
 def in_space(scene):
-    return xr.Dataset(*row.simulate_fields(scene))
+    return row.simulate(scene)
 
 
 @pytest.mark.parametrize(

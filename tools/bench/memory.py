@@ -31,9 +31,9 @@ def peak() -> float:
 
 def one_run(blocks: int) -> None:
     """Run a row of so many blocks and print this process's peak."""
-    from dem import simulate_fields
+    from dem import simulate
 
-    simulate_fields(changed(SLIDES, blocks))
+    simulate(changed(SLIDES, blocks))
     print(peak())
 
 

@@ -16,6 +16,7 @@ A harmonic wave in this rock has the modulus E (1 + i omega eta), hence attenuat
 """
 
 from math import pi
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -58,7 +59,7 @@ def solve(scene: Scene, n_terms: int = 500) -> xr.Dataset:
     w_rate = (f - w) / eta
     static = (length / p.bar_speed) ** 2 * (1 / 3 - x + x**2 / 2)
     rigid_velocity, rigid_displacement = rigid(load, times)
-    found = {
+    found: dict[str, Any] = {
         "stress": np.outer(1 - sections / length, f),
         "velocity": rigid_velocity + np.outer(static, w_rate),
         "displacement": rigid_displacement + np.outer(static, w),

@@ -15,6 +15,7 @@ Valid for shape "sine", free ends, no dashpots, no soft layers, every joint carr
 """
 
 from math import pi, sqrt
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -61,13 +62,13 @@ def solve(scene: Scene, n_terms: int = 2000) -> xr.Dataset:
     rigid_velocity, rigid_displacement = rigid(load, times)
     velocity += rigid_velocity / (p.density * length)
     displacement += rigid_displacement / (p.density * length)
-    found = {
+    found: dict[str, Any] = {
         "stress": stress + static_stress(scene),
         "velocity": velocity,
         "displacement": displacement,
     }
     errors = _left_out(found, images.solve(scene), scene.load.scale)
-    return dataset(scene, SOLVER.name, times, **found, errors=errors, terms=n_terms)
+    return dataset(scene, SOLVER.name, times, **found, errors=errors)
 
 
 def _left_out(found: dict, exact: xr.Dataset, scale: float) -> dict[str, np.ndarray]:

@@ -11,6 +11,7 @@ along the axis and prestress, if no tension-free joint would be pulled at rest.
 """
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -65,7 +66,7 @@ def solve(scene: Scene) -> xr.Dataset:
     )
     known = _known(model, own.states, other.states)
     bounds = errors([x[:, :known] for x in found], [x[:, :known] for x in twin])
-    until = {} if known == len(times) else {"known_until": float(times[known - 1])}
+    until: dict[str, Any] = {} if known == len(times) else {"known_until": float(times[known - 1])}
     return dataset(
         scene,
         SOLVER.name,

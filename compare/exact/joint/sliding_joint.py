@@ -148,7 +148,7 @@ def solve(scene: Scene) -> xr.Dataset:
         j, pressure = int(np.flatnonzero(_slips(p))[0]), static_stress(scene)
         rated = rate_state_joint.rate_joint(p, j, pressure, joint.compliance).scaled(enters)
 
-    def waveforms(parts: int) -> dict[str, np.ndarray]:
+    def waveforms(parts: int) -> dict[str, Any]:
         worn, tolerance = None, TOLERANCES[parts - 1]
         if rated is not None:
             rest = joint.y / p.shear_speed

@@ -38,7 +38,7 @@ from compare.exact.plane.rigid_motion import (
 from compare.exact.rock_mass.conditions import beyond_linear_rock
 from compare.exact.rock_mass.field import field_of
 from compare.solvers.record import BLOCKS, YES, Answer, Kind, Rock, Solver, Words, no, thin
-from results.plane import plane_fields
+from results.plane import plane_dataset
 
 MOST_BLOCKS = 1000
 IN_A_PERIOD = 400  #: samples of the field per period per period
@@ -95,7 +95,7 @@ def solve(scene: RockMass) -> xr.Dataset:
     names = ("displacement", "velocity")
     values = {name: x.swapaxes(1, 2) for name, x in zip(names, found, strict=True)}
     errors = {name: bound(*pair) for name, *pair in zip(names, found, twin, strict=True)}
-    return xr.Dataset(*plane_fields(scene, SOLVER.name, times, values, errors=errors))
+    return plane_dataset(scene, SOLVER.name, times, values, errors=errors)
 
 
 def _quiet(scene: RockMass, partition: Partition) -> Points:

@@ -36,7 +36,7 @@ from compare.exact.rock_mass.conditions import (
     reflecting_side,
 )
 from compare.solvers.record import BAR, YES, Answer, Form, Kind, Rock, Solver, Words, no, thin
-from results.plane import plane_fields
+from results.plane import plane_dataset
 
 
 @dataclass(frozen=True)
@@ -176,7 +176,7 @@ def solve(scene: RockMass) -> xr.Dataset:
         "displacement": moved.swapaxes(1, 2),
         "stress": prestress_of(scene) - stress.swapaxes(1, 2),
     }
-    return xr.Dataset(*plane_fields(scene, SOLVER.name, times, values))
+    return plane_dataset(scene, SOLVER.name, times, values)
 
 
 SOLVER = Solver(

@@ -20,7 +20,7 @@ from compare.exact.plane.line_force import motion
 from compare.exact.plane.waves import PlaneMotion
 from compare.exact.rock_mass.conditions import beyond_linear_rock, prestress_of
 from compare.solvers.record import JOINTED, YES, Answer, Kind, Rock, Solver, Words, no, thin
-from results.plane import plane_fields
+from results.plane import plane_dataset
 
 #: Pieces of a Ricker wavelet, each smooth enough for the points of one integral.
 PARTS = 8
@@ -71,7 +71,7 @@ def solve(scene: RockMass) -> xr.Dataset:
     errors = {name: getattr(found, f"{name}_error") for name in values}
     known = known_until(scene)
     until: dict[str, Any] = {"known_until": known} if known < times[-1] else {}
-    return xr.Dataset(*plane_fields(scene, SOLVER.name, times, values, errors=errors, **until))
+    return plane_dataset(scene, SOLVER.name, times, values, errors=errors, **until)
 
 
 def known_until(scene: RockMass) -> float:

@@ -23,7 +23,7 @@ from compare.exact.plane.waves import PlaneMotion
 from compare.exact.rock_mass.conditions import prestress_of
 from compare.exact.rock_mass.stack import JointStack, against, begun, stack_of
 from compare.solvers.record import YES, Answer, Kind, no
-from results.plane import plane_fields
+from results.plane import plane_dataset
 
 #: Causes of the engines' misfits against these waves.
 DISTANCES = {
@@ -102,7 +102,7 @@ def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Datase
         "gap": slipped[:, 0],
         "slip": slipped[:, 1],
     }
-    return xr.Dataset(*plane_fields(scene, name, times, values, errors=errors))
+    return plane_dataset(scene, name, times, values, errors=errors)
 
 
 def motion_at(

@@ -122,10 +122,10 @@ class Comparing(NamedTuple):
         """Write results if they are to be kept; return their files by name."""
         if not (self.keeps and self.writes):
             return {}
-        from compare.runs.output import fields_of, write_fields
+        from compare.runs.output import write_dataset
 
         return {
-            name: str(write_fields(folder / f"{name}.nc", fields_of(result)))
+            name: str(write_dataset(folder / f"{name}.nc", result))
             for name, result in results.items()
         }
 

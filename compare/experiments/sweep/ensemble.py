@@ -15,7 +15,7 @@ from cases.errors import SceneError
 from cases.kinds import AnyScene
 from compare.experiments.sweep.axis import MEMBER
 from compare.experiments.sweep.case import SweepCase, SweepOutcome
-from compare.runs.output import fields_of, write_fields
+from compare.runs.output import write_dataset
 from results.netcdf import load_netcdf
 
 PERCENTILES = (5, 25, 50, 75, 95)
@@ -101,7 +101,7 @@ def waveforms(out: Path, files: list[Path]) -> Path:
     coords["statistic"] = ("statistic", list(STATISTICS))
     about = {key: first.attrs[key] for key in ("engine", "model") if key in first.attrs}
     data = xr.Dataset(found, coords, {**about, "members": len(results)})
-    return write_fields(out, fields_of(data))
+    return write_dataset(out, data)
 
 
 def _is_wave(results: list[xr.Dataset], name: str) -> bool:

@@ -6,6 +6,8 @@ from pathlib import Path
 from time import monotonic
 from typing import Any, NamedTuple
 
+import xarray as xr
+
 from cases.errors import InterruptedRun, printable
 from cases.kinds import AnyScene
 from cases.sampling import sample_times
@@ -13,9 +15,8 @@ from compare.engines import ENGINES
 from compare.runs.checkpoint.files import Checkpoints
 from compare.runs.checkpoint.signals import Signals, exit_code, word
 from compare.runs.checkpoint.signature import Signature, signature
-from compare.runs.output import fields_of
 from compare.runs.processes import Processes
-from results.dataset import Fields
+from results.netcdf import load_netcdf
 
 
 class RunKeeper:
@@ -119,10 +120,9 @@ class Watch(NamedTuple):
     is_made: bool
     keeper: RunKeeper | None
 
-    def signed(self, result: Fields) -> Fields:
+    def signed(self, result: xr.Dataset) -> xr.Dataset:
         """Return a result with the signature of everything that determines its bits."""
-        about = {ATTRIBUTE: json.dumps(self.signature)}
-        return result._replace(attributes={**result.attributes, **about})
+        return result.assign_attrs({ATTRIBUTE: json.dumps(self.signature)})
 
 
 def watch(
@@ -144,16 +144,14 @@ def watch(
     return Watch(about, files, False, RunKeeper(scene, files, done, keeping.every, keeping.signals))
 
 
-def result_of(path: Path, about: Signature) -> Fields | None:
+def result_of(path: Path, about: Signature) -> xr.Dataset | None:
     """Return the result with this signature; None if there is none or it cannot be read."""
     if not path.is_file():
         return None
-    from results.netcdf import load_netcdf
-
     try:
-        found = fields_of(load_netcdf(path))
+        found = load_netcdf(path)
     except MemoryError as error:
         raise MemoryError(f"{path}: {error}") from None
     except Exception:  # any unreadable result is recomputed
         return None
-    return found if found.attributes.get(ATTRIBUTE) == json.dumps(about) else None
+    return found if found.attrs.get(ATTRIBUTE) == json.dumps(about) else None

@@ -280,7 +280,7 @@ def test_rigid_block_run_imports_neither_dolfinx_nor_matplotlib(tmp_path):
         "try: main()\n"
         "except SystemExit as end: assert end.code == 0, end.code\n"
         "heavy = {'dolfinx', 'matplotlib', 'petsc4py', 'gmsh', 'obspy', 'continuum', 'jinja2',\n"
-        "         'dem.spatial', 'shapely', 'xarray', 'pandas', 'cases.schema.plane',\n"
+        "         'dem.spatial', 'shapely', 'cases.schema.plane',\n"
         "         'cases.schema.rock_mass', 'cases.material.rigid_blocks'}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )

@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from cases.read import load_tables
 from compare.misfit.external import read_curves
 from compare.misfit.metrics import pairings, worst
 from compare.misfit.pairs import measure
 from compare.misfit.places import WORDS, Place, parsed, places_of
-from results.plane import plane_fields
+from results.plane import plane_dataset
 
 JOINT = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 TABLES = {
@@ -40,7 +39,7 @@ def scene(**changes):
 def result(mass, scale=1.0, still=0.0, **factors):
     """Return a result in which every component is the wave, times a factor of its quantity."""
     factor = {name: scale * factors.get(name, 1.0) for name in ("velocity", "traction", "slip")}
-    fields = plane_fields(
+    fields = plane_dataset(
         mass,
         "dem",
         TIME,
@@ -51,7 +50,7 @@ def result(mass, scale=1.0, still=0.0, **factors):
         },
         errors={"velocity": np.array([[1e-3, 2e-3], [3e-3, 4e-3]])},
     )
-    return xr.Dataset(*fields)
+    return fields
 
 
 @pytest.mark.parametrize(("text", "place", "words"), PLACES)
@@ -107,7 +106,7 @@ def test_quantities_of_one_unit_are_judged_together():
     mass, loud = scene(), np.broadcast_to(WAVE[:, None], (2, 101, 2))
     quantities = {"displacement": loud, "slip": 1e-3 * WAVE[None]}
     one, other = (
-        xr.Dataset(*plane_fields(mass, "dem", TIME, {**quantities, "slip": slip}))
+        plane_dataset(mass, "dem", TIME, {**quantities, "slip": slip})
         for slip in (2e-3 * WAVE[None], quantities["slip"])
     )
     faint = {p.place.quantity: p.faint for p in pairings(one, other)}
