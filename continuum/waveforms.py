@@ -14,7 +14,7 @@ from results.dataset import ALL_TERMS
 
 
 def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, Any]:
-    """Return the recorded fields at the scene's receivers, as `results.dataset.fields` takes them.
+    """Return the recorded fields at the scene's receivers, as `results.dataset.dataset` takes them.
 
     Components absent in two dimensions are zero.
     """

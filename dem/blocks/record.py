@@ -30,7 +30,7 @@ COMPONENTS = ((0, 0), (1, 1), (0, 1))
 def quantities(
     system: PlaneSystem, receivers: BlockReceivers, samples: PlaneSamples, count: int
 ) -> dict[str, np.ndarray]:
-    """Return the first `count` samples of a run by name, as `results.plane.plane_fields` takes
+    """Return the first `count` samples of a run by name, as `results.plane.plane_dataset` takes
     them. Displacement, gap and slip count from the first sample; gap and slip are those of the
     joint itself, without the strain of the rock that its contact stands for."""
     found: dict[str, np.ndarray] = {}

@@ -27,7 +27,7 @@ from results.arrays import copied
 
 
 def waveforms(scene: Scene, p: Properties, samples: RowSamples, time: Clock) -> dict[str, Any]:
-    """Return the recorded fields at the scene's receivers, as `results.dataset.fields` takes
+    """Return the recorded fields at the scene's receivers, as `results.dataset.dataset` takes
     them."""
     sections, points = receivers(scene, p)
     force, velocity = between(samples.force, sections), between(samples.velocity, points)
