@@ -1,317 +1,226 @@
-"""`jointwave explain`: a scene before any run, its effects, critical steps and exact solutions."""
+"""`jointwave explain`: a scene before any run, as facts for --json and as paragraphs."""
 
-from __future__ import annotations
-
+from collections.abc import Callable
 from itertools import pairwise
 from math import isfinite
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
-import numpy as np
-
-from cases.effects import Effect, effects
+from cases.effects import effects
 from cases.errors import SceneError
 from cases.kinds import AnyScene
-from cases.material.calibrate import Properties, calibrate
+from cases.material.block_summary import block_summary
+from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
 from cases.size import spoken
-from compare.cli.engine_facts import (
-    Speeds,
-    lever_words,
-    levers_of,
-    speed_facts,
-    speed_words,
-    speeds_of,
-)
-from compare.cli.terminal import print_json, say, show_table
+from compare.cli.terminal import say, show_table
 from compare.engines import ENGINES, solver
 from compare.experiments.cost import timings
 from compare.experiments.cost.step_cost import nanoseconds, remembered_whole, whole
-from compare.misfit.ranking import Reference, applicable, reference_of
-from compare.readings.entering_wave import EnteringWave, entering_waves
-from compare.solvers.record import Answer, Prepared
-
-if TYPE_CHECKING:
-    from cases.partition.blocks import Partition
-    from cases.schema.rock_mass import RockMass
+from compare.misfit.ranking import applicable, reference_of
+from compare.readings.entering_wave import entering_waves
+from compare.solvers.properties import least_lever, spans, speeds
+from compare.solvers.record import Prepared
 
 ROUND_OFF = 1e-6  # of a stiffness that is fitted
 
-
-class Explanation(NamedTuple):
-    """Everything known about a scene before a run.
-
-    properties : of a pillar. blocks : of a rock mass, see `partition_facts`. runs : of each engine
-    that applies, with its step; failures : why one that applies could not run. references : what
-    each engine is held against; None where nothing checks it independently. speeds : of its waves
-    in each engine, m/s. levers : of contact points, `engine_facts.levers_of`. block_step,
-    with_everything : what a step of one rigid block of a pillar costs here, of this scene and with
-    every effect, ns; None where it was never measured. entering : the plane waves that its loads
-    and waves send into the rock.
-    """
-
-    scene: AnyScene
-    properties: Properties | None
-    blocks: dict[str, Any] | None
-    effects: list[Effect]
-    runs: dict[str, Prepared]
-    failures: dict[str, str]
-    answers: dict[str, Answer]
-    references: dict[str, Reference | None]
-    speeds: dict[str, Speeds]
-    levers: dict[str, float]
-    block_step: float | None
-    with_everything: float | None
-    entering: list[EnteringWave]
+Facts = dict[str, Any]
 
 
-def explanation(scene: AnyScene, measured: bool = False) -> Explanation:
-    """Return what a scene calls for, what is left out, and what can solve it.
+def explanation(scene: AnyScene, measured: bool = False) -> Facts:
+    """Return the effects of a scene, its steps, and what can solve it, SI.
 
-    measured : step some blocks to say what they cost, which may compile kernels for a minute; else
-    the cost is what such a scene's steps took here before.
+    measured : time a step of a pillar's rigid blocks, which may compile kernels for a minute; else
+    its cost is that of earlier runs here. Raises SceneError where no engine that applies can run.
     """
     answers = applicable(scene)
     able = [name for name, answer in answers.items() if answer]
     engines = [name for name in ENGINES if name in able]
-    references = {name: reference_of(name, able, scene) for name in engines}
-    if isinstance(scene, Scene):
-        properties, blocks, cost = calibrate(scene), None, _cost(scene, measured)
-    else:
-        properties, blocks, cost = None, partition_facts(scene), (None, None)
     runs, failures = _prepared(scene, engines)
-    of_engines = speeds_of(scene, list(runs)), levers_of(scene, list(runs))
-    about = effects(scene), runs, failures, answers, references, *of_engines
-    return Explanation(scene, properties, blocks, *about, *cost, entering_waves(scene))
+    levers = {name: least_lever(scene, ENGINES[name].rock) for name in runs}
+    references = {name: reference_of(name, able, scene) for name in engines}
+    return {
+        "title": scene.title,
+        "variant": scene.name,
+        **(_pillar(scene) if isinstance(scene, Scene) else block_summary(scene)),
+        **_cost(scene, measured),
+        "speeds": {name: speeds(scene, ENGINES[name].rock) for name in runs},
+        "levers": {name: lever for name, lever in levers.items() if lever is not None},
+        "enters": [wave._asdict() for wave in entering_waves(scene)],
+        "effects": {e.name: {"active": e.active, "why": e.reason} for e in effects(scene)},
+        "steps": [
+            {"engine": name, "critical": r.critical, "dt": r.dt, "steps": r.steps, "bytes": r.bytes}
+            for name, r in runs.items()
+        ],
+        "cannot_run": failures,
+        "solutions": {k: {"applies": a.yes, "why_not": a.reason} for k, a in answers.items()},
+        "references": {name: r._asdict() if r else None for name, r in references.items()},
+    }
 
 
 def _prepared(scene: AnyScene, engines: list[str]) -> tuple[dict[str, Prepared], dict[str, str]]:
     """Return the runs of engines before their first step, and why others cannot run; raises
     SceneError of the first where none can."""
-    runs, failures, errors = {}, {}, []
+    runs: dict[str, Prepared] = {}
+    errors: dict[str, SceneError] = {}
     for name in engines:
         try:
             runs[name] = solver(name).prepare(scene)
         except SceneError as error:
-            failures[name] = str(error)
-            errors.append(error)
+            errors[name] = error
     if errors and not runs:
-        raise errors[0]
-    return runs, failures
+        raise next(iter(errors.values()))
+    return runs, {name: str(error) for name, error in errors.items()}
 
 
-def _cost(scene: Scene, measured: bool) -> tuple[float | None, float | None]:
-    count = scene.block_count
-    if not measured:
-        return timings.block_step(scene), remembered_whole(count)
-    own = nanoseconds(scene)
-    timings.note_block_step(scene, own)
-    return own, whole(count)
-
-
-def show_explanation(found: Explanation, as_json: bool) -> None:
-    """Print what a scene calls for, its steps, and what can solve it."""
-    if as_json:
-        print_json(_explanation_facts(found))
-        return
-    say(f"{found.scene.title} {found.scene.name}".rstrip(), "bold")
-    if found.properties is not None:
-        _show_properties(found.properties)
-    if found.blocks is not None:
-        show_partition(found.blocks)
-    for line in speed_words(found.scene, found.speeds):
-        say(line)
-    if found.levers:
-        say(lever_words(found.levers))
-    for one in found.entering:
-        say(_entering_words(one))
-    effects = [[e.name, "yes" if e.active else "no", e.reason] for e in found.effects]
-    show_table(["effect", "computed", "because"], effects)
-    steps = [
-        [
-            name,
-            f"{r.critical:.4g}",
-            f"{r.dt:.4g}",
-            f"{r.dt / r.critical:.3g}",
-            f"{r.steps:,}",
-            spoken(r.bytes),
-        ]
-        for name, r in found.runs.items()
+def _pillar(scene: Scene) -> Facts:
+    """Return the rock of a pillar, and of each of its segments."""
+    p = calibrate(scene)
+    segments = [
+        {
+            "from": start,
+            "to": stop,
+            "blocks": one.block_count,
+            "block": one.spacing,
+            "equivalent_modulus": one.modulus,
+            "poisson": one.poisson,
+            "bar_speed": one.bar_speed,
+            "impedance": one.impedance,
+            "joint_stiffness": one.regular_stiffness,
+            "has_joints": len(p.each) == 1 or isfinite(one.regular_own_stiffness),
+        }
+        for (start, stop), one in zip(spans(p), p.each, strict=True)
     ]
-    show_table(["engine", "critical step, s", "step, s", "fraction", "steps", "memory"], steps)
-    for name, reason in found.failures.items():
-        say(f"{name} cannot run: {reason}")
-    if found.properties is not None:
-        say(_cost_sentence(found.block_step, found.with_everything))
-    answers = [[k, "yes" if a else "no", a.reason] for k, a in found.answers.items()]
-    show_table(["solution", "applies", "why not"], answers)
-    for engine, reference in found.references.items():
-        if reference is None:
-            say(f"{engine} is not checked independently: no other solution resolves more")
-        else:
-            say(f"reference of {engine}: {reference.name} ({reference.reason})")
+    whole = {"blocks": p.block_count, "bar_speed": p.bar_speed, "equivalent_modulus": p.modulus}
+    return whole | {"poisson": p.poisson, "segments": segments}
 
 
-def _show_properties(p: Properties) -> None:
-    if len(p.each) == 1:
-        say(_rock_words(p))
-        return
-    ends = p.contact_y[np.cumsum([0, *(one.block_count for one in p.each)])].tolist()
-    for (start, stop), one in zip(pairwise(ends), p.each, strict=True):
-        joints = "" if isfinite(one.regular_own_stiffness) else ", without joints"
-        say(f"{start:g} to {stop:g} m: {_rock_words(one)}{joints}")
+def _cost(scene: AnyScene, measured: bool) -> Facts:
+    """Return what a step of one rigid block of a pillar costs here, of this scene and with every
+    effect, ns; None where it was never measured."""
+    own: float | None = None
+    everything: float | None = None
+    if isinstance(scene, Scene) and measured:
+        own, everything = nanoseconds(scene), whole(scene.block_count)
+        timings.note_block_step(scene, own)
+    elif isinstance(scene, Scene):
+        own, everything = timings.block_step(scene), remembered_whole(scene.block_count)
+    return {"nanoseconds_per_block_step": own, "nanoseconds_with_everything": everything}
+
+
+def show_explanation(found: Facts) -> None:
+    """Print the facts of a scene in words."""
+    say(f"{found['title']} {found['variant']}".rstrip(), "bold")
+    rock = _show_segments if "segments" in found else _show_blocks
+    paragraphs: list[Callable[[Facts], None]] = [rock, _show_waves, _show_steps, _show_solutions]
+    for show in paragraphs:
+        show(found)
+
+
+def _show_segments(found: Facts) -> None:
+    segments = found["segments"]
+    for one in segments:
+        where = f"{one['from']:g} to {one['to']:g} m: " if len(segments) > 1 else ""
+        joints = "" if one["has_joints"] else ", without joints"
+        say(
+            f"{where}{one['blocks']} blocks of {one['block']:g} m; "
+            f"E_eq {one['equivalent_modulus']:.4g} Pa, Poisson {one['poisson']:.4g}, "
+            f"bar speed {one['bar_speed']:.5g} m/s, K'_n {one['joint_stiffness']:.4g} Pa/m{joints}"
+        )
     passed = [
-        f"{2 * b.impedance / (a.impedance + b.impedance):.4g} at {y:g} m"
-        for (a, b), y in zip(pairwise(p.each), ends[1:-1], strict=True)
-        if a.impedance != b.impedance
+        f"{2 * b['impedance'] / (a['impedance'] + b['impedance']):.4g} at {b['from']:g} m"
+        for a, b in pairwise(segments)
+        if a["impedance"] != b["impedance"]
     ]
     if passed:
         say(f"long-wave stress transmission 2 Z2 / (Z1 + Z2): {', '.join(passed)}")
 
 
-def _rock_words(p: Properties) -> str:
-    return (
-        f"{p.block_count} blocks of {p.spacing:g} m; E_eq {p.modulus:.4g} Pa, Poisson "
-        f"{p.poisson:.4g}, bar speed {p.bar_speed:.5g} m/s, K'_n {p.regular_stiffness:.4g} Pa/m"
-    )
-
-
-def _entering_words(one: EnteringWave) -> str:
-    length = "" if one.length is None else f", a pulse of {one.length:.4g} m"
-    return (
-        f"{one.source}: {one.stress:.4g} Pa and {one.velocity:.4g} m/s enter the rock{length}, "
-        f"{one.energy:.4g} J/m2"
-    )
-
-
-def _cost_sentence(own: float | None, everything: float | None) -> str:
-    if own is None:
-        return "the time per step of a rigid block is known after a run, or by --measure"
-    said = f"a step of a rigid block takes {own:.2g} ns here"
-    if everything is None:
-        return said
-    return f"{said}, {100 * own / everything:.2g} % of the {everything:.2g} ns with every effect"
-
-
-def _explanation_facts(found: Explanation) -> dict[str, Any]:
-    p = found.properties
-    pillar = (
-        {}
-        if p is None
-        else {
-            "blocks": p.block_count,
-            "bar_speed": p.bar_speed,
-            "equivalent_modulus": p.modulus,
-            "poisson": p.poisson,
-        }
-    )
-    return {
-        "title": found.scene.title,
-        "variant": found.scene.name,
-        **pillar,
-        **(found.blocks or {}),
-        "enters": [one._asdict() for one in found.entering],
-        "effects": {e.name: {"active": e.active, "why": e.reason} for e in found.effects},
-        "steps": [
-            {"engine": name, "critical": r.critical, "dt": r.dt, "steps": r.steps}
-            | {"bytes": r.bytes}
-            for name, r in found.runs.items()
-        ],
-        "cannot_run": found.failures,
-        "speeds": speed_facts(found.speeds),
-        "levers": found.levers,
-        "nanoseconds_per_block_step": found.block_step,
-        "nanoseconds_with_everything": found.with_everything,
-        "references": {k: r._asdict() if r else None for k, r in found.references.items()},
-        "solutions": {k: {"applies": a.yes, "why_not": a.reason} for k, a in found.answers.items()},
-    }
-
-
-def partition_facts(scene: RockMass) -> dict[str, Any]:
-    """Cut a rock mass into blocks and return what they are, SI."""
-    from cases.partition.lattice import further_sets
-    from cases.partition.scene import partition_bytes, partition_of
-
-    found, further = partition_of(scene), further_sets(scene)
-    per_set = {name: _of_set(found, k) for k, name in enumerate(found.joint_sets)}
-    sides = np.bincount(found.boundary.side, minlength=len(found.sides))
-    return {
-        "blocks": found.count,
-        "rigid_blocks": partition_of(scene, further).count if further else found.count,
-        "area": float(found.area.sum()),
-        "smallest": _block(found, int(np.argmin(found.area))),
-        "largest": _block(found, int(np.argmax(found.area))),
-        "regions": _regions(scene, found),
-        "joint_sets": per_set,
-        "cuts_through_rock": _of_set(found, -1),
-        "boundary": {name: int(n) for name, n in zip(found.sides, sides, strict=True) if n},
-        "bytes": found.nbytes,
-        "bytes_at_most": partition_bytes(scene),
-        "rigid_blocks_lack": _lack(scene),
-    }
-
-
-def _regions(scene: RockMass, found: Partition) -> dict[str, Any]:
-    """Return what each region is, with what is left as "rock"; empty where there is none."""
-    from cases.material.rock import elastic_rock
-    from cases.partition.regions import rocks_of
-    from cases.schema.region import REST
-
-    facts = {}
-    names = [*(one.name for one in scene.regions), REST]
-    for k, (name, rock) in enumerate(zip(names, rocks_of(scene), strict=True)):
-        own, elastic = found.region % len(names) == k, elastic_rock(rock)
-        facts[name] = {
-            "blocks": int(own.sum()),
-            "area": float(found.area[own].sum()),
-            "p_speed": float(elastic.p_speed),
-            "s_speed": float(elastic.s_speed),
-        }
-    return facts if scene.regions else {}
-
-
-def _lack(scene: RockMass) -> float | None:
-    """Return the part of the intact rock's stiffness that rigid blocks cannot have; None where
-    there are no rigid blocks."""
-    from cases.material.rigid_blocks import rigid_joints
-    from cases.partition.lattice import further_sets
-
-    try:
-        return rigid_joints(scene, further_sets(scene)).left_over
-    except SceneError:
-        return None
-
-
-def show_partition(facts: dict[str, Any]) -> None:
-    """Print the blocks of a rock mass."""
-    say(f"{facts['blocks']:,} blocks, {facts['area']:.6g} m2 in total")
-    if facts["rigid_blocks"] != facts["blocks"]:
-        say(f"{facts['rigid_blocks']:,} rigid blocks: numerics.dem.block subdivides the rock")
+def _show_blocks(found: Facts) -> None:
+    say(f"{found['blocks']:,} blocks, {found['area']:.6g} m2 in total")
+    if found["rigid_blocks"] != found["blocks"]:
+        say(f"{found['rigid_blocks']:,} rigid blocks: numerics.dem.block subdivides the rock")
     for word in ("smallest", "largest"):
-        one = facts[word]
-        x, y = one["centroid"]
-        say(f"{word} block: {one['area']:.4g} m2, at [{x:.4g}, {y:.4g}]")
-    for name, one in facts["regions"].items():
-        speeds = f"waves of {one['p_speed']:.4g} and {one['s_speed']:.4g} m/s"
-        say(f"region {name}: {one['blocks']:,} blocks, {one['area']:.6g} m2, {speeds}")
-    cuts = facts["cuts_through_rock"]
-    sets = facts["joint_sets"] | ({"(no joint)": cuts} if cuts["contacts"] else {})
+        x, y = found[word]["centroid"]
+        say(f"{word} block: {found[word]['area']:.4g} m2, at [{x:.4g}, {y:.4g}]")
+    for name, one in found["regions"].items():
+        waves = f"waves of {one['p_speed']:.4g} and {one['s_speed']:.4g} m/s"
+        say(f"region {name}: {one['blocks']:,} blocks, {one['area']:.6g} m2, {waves}")
+    cuts = found["cuts_through_rock"]
+    sets = found["joint_sets"] | ({"(no joint)": cuts} if cuts["contacts"] else {})
     rows = [[name, f"{one['contacts']:,}", f"{one['length']:.6g}"] for name, one in sets.items()]
     show_table(["joint set", "contacts", "length, m"], rows)
-    show_table(["side", "edges"], [[name, f"{n:,}"] for name, n in facts["boundary"].items()])
-    at_most = spoken(facts["bytes_at_most"])
-    if (lack := facts["rigid_blocks_lack"]) is not None:
+    show_table(["side", "edges"], [[name, f"{n:,}"] for name, n in found["boundary"].items()])
+    if (lack := found["rigid_blocks_lack"]) is not None:
         share, why = "0", "their joints represent all of it"
         if lack > ROUND_OFF:
             share = f"{float(f'{100 * lack:.2g}'):g}"
             why = "only their joints deform, and joints of few directions have no Poisson effect"
         say(f"rigid blocks cannot represent {share} % of the intact rock's stiffness: {why}")
-    say(f"memory of the blocks: {spoken(facts['bytes'])}, at most {at_most} during subdivision")
+    size, most = spoken(found["bytes"]), spoken(found["bytes_at_most"])
+    say(f"memory of the blocks: {size}, at most {most} during subdivision")
 
 
-def _of_set(found: Partition, index: int) -> dict[str, Any]:
-    own = found.contacts.joint_set == index
-    return {"contacts": int(own.sum()), "length": float(found.contacts.length[own].sum())}
+def _show_waves(found: Facts) -> None:
+    """Print the speeds of waves, where joints bear when they open, and the waves that enter."""
+    fast, where = ("bar", "") if "segments" in found else ("P", " in the rock of no region")
+    where = where if found.get("regions") else ""
+    for engine, own in found["speeds"].items():
+        each = (f"{k}: {fast} {_speed(p)}, S {_speed(s)}" for k, (p, s) in own.items())
+        say(f"waves in {engine}{where}, m/s: {'; '.join(each)}")
+    if found["levers"]:
+        each = (f"{engine} {value:.3g}" for engine, value in found["levers"].items())
+        say(f"a joint's face that opens bears at this part of its half width: {', '.join(each)}")
+    for one in found["enters"]:
+        length = "" if one["length"] is None else f", a pulse of {one['length']:.4g} m"
+        wave = f"{one['stress']:.4g} Pa and {one['velocity']:.4g} m/s enter the rock{length}"
+        say(f"{one['source']}: {wave}, {one['energy']:.4g} J/m2")
 
 
-def _block(found: Partition, one: int) -> dict[str, Any]:
-    return {"area": float(found.area[one]), "centroid": found.centroid[one].tolist()}
+def _speed(speed: float) -> str:
+    return f"{speed:.4g}" if isfinite(speed) else "none (rigid)"
+
+
+def _show_steps(found: Facts) -> None:
+    """Print the effects, and the steps of each engine with their cost."""
+    rows = [[k, "yes" if e["active"] else "no", e["why"]] for k, e in found["effects"].items()]
+    show_table(["effect", "computed", "because"], rows)
+    steps = [
+        [
+            one["engine"],
+            f"{one['critical']:.4g}",
+            f"{one['dt']:.4g}",
+            f"{one['dt'] / one['critical']:.3g}",
+            f"{one['steps']:,}",
+            spoken(one["bytes"]),
+        ]
+        for one in found["steps"]
+    ]
+    show_table(["engine", "critical step, s", "step, s", "fraction", "steps", "memory"], steps)
+    for name, reason in found["cannot_run"].items():
+        say(f"{name} cannot run: {reason}")
+    if "segments" in found:
+        _show_cost(found["nanoseconds_per_block_step"], found["nanoseconds_with_everything"])
+
+
+def _show_cost(own: float | None, everything: float | None) -> None:
+    if own is None:
+        say("the time per step of a rigid block is known after a run, or by --measure")
+        return
+    share = (
+        f", {100 * own / everything:.2g} % of the {everything:.2g} ns with every effect"
+        if everything
+        else ""
+    )
+    say(f"a step of a rigid block takes {own:.2g} ns here{share}")
+
+
+def _show_solutions(found: Facts) -> None:
+    """Print which solutions apply, and the reference of each engine."""
+    answers = found["solutions"].items()
+    rows = [[name, "yes" if a["applies"] else "no", a["why_not"]] for name, a in answers]
+    show_table(["solution", "applies", "why not"], rows)
+    for engine, reference in found["references"].items():
+        if reference is None:
+            say(f"{engine} is not checked independently: no other solution resolves more")
+        else:
+            say(f"reference of {engine}: {reference['name']} ({reference['reason']})")

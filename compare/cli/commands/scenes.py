@@ -130,7 +130,8 @@ def explain(
 ) -> None:
     """Print the effects of a scene, its critical steps, the exact solutions that apply, and the
     reference; for a rock mass also its blocks."""
+    from compare.cli import terminal
     from compare.cli.explain import explanation, show_explanation
 
     for one in load(scene, changes, variant or "", strict):
-        show_explanation(explanation(one, measured), as_json)
+        (terminal.print_json if as_json else show_explanation)(explanation(one, measured))
