@@ -485,7 +485,7 @@ def test_a_full_disk_is_named_with_the_file(tmp_path):
     figure.subplots().plot([0, 1])
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     table = pd.DataFrame({"a": range(3)})
-    for size, suffix in ((1, "csv"), (1000, "pdf")):
+    for size, suffix in ((1, "csv"), (1000, "svg")):
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
         try:
             with pytest.raises(OSError, match="File too large") as error:

@@ -1,16 +1,14 @@
-"""One figure: for print, for the screen, and as numbers."""
+"""One figure and its numbers."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
 from hashlib import sha256
-from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from compare.figures.charts.chart import Chart
-from compare.figures.charts.interactive import plot
 from compare.figures.charts.static import draw
 
 
@@ -20,9 +18,8 @@ class SceneFigure:
 
     name : stem of its files, unique on the page ("fig-03-spectra"). title : a heading. caption :
     contents and method in one or two sentences. drawing : draws it for print.
-    table : the drawn data, tidy; columns carry their units, no index. plotting : returns the
-    interactive figure; None if there is only a static one. folded : whether it is in a section of
-    the page that is closed at first.
+    table : the drawn data, tidy; columns carry their units, no index. folded : whether it is in a
+    section of the page that is closed at first.
     """
 
     name: str
@@ -30,18 +27,12 @@ class SceneFigure:
     caption: str
     drawing: Callable[[], Figure]
     table: pd.DataFrame
-    plotting: Callable[[], dict[str, Any]] | None = None
     folded: bool = False
 
     @cached_property
-    def static(self) -> Figure:
-        """The figure for print."""
+    def figure(self) -> Figure:
+        """The figure, drawn."""
         return self.drawing()
-
-    @cached_property
-    def plot(self) -> dict[str, Any] | None:
-        """The interactive figure, {"data": [...], "layout": {...}}, as plain values."""
-        return self.plotting() if self.plotting else None
 
     @cached_property
     def numbers(self) -> str:
@@ -53,6 +44,5 @@ class SceneFigure:
 def chart_figure(
     name: str, title: str, caption: str, chart: Chart, table: pd.DataFrame, folded: bool = False
 ) -> SceneFigure:
-    """Return the figure of a chart, for print and for the screen."""
-    drawing, plotting = partial(draw, name, chart), partial(plot, chart)
-    return SceneFigure(name, title, caption, drawing, table, plotting, folded)
+    """Return the figure of a chart."""
+    return SceneFigure(name, title, caption, partial(draw, name, chart), table, folded)

@@ -86,7 +86,7 @@ def _short(x: float) -> str:
     return "< 0.001" if 0 < x < 1e-5 else f"{100 * x:.2g}"
 
 
-PACKAGES = ("scipy", "xarray", "obspy", "matplotlib", "plotly")
+PACKAGES = ("scipy", "xarray", "obspy", "matplotlib")
 
 
 def versions(scenes: Iterable[list[Comparison]]) -> dict[str, str]:

@@ -1,17 +1,16 @@
-"""The page's HTML: one file that holds its figures, their files and the script of its charts."""
+"""The page's HTML: one file that holds its figures and their files."""
 
 import base64
 import gzip
-import json
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import numpy as np
 from jinja2 import Environment, PackageLoader
 from markupsafe import Markup, escape
 
 from compare.experiments.summary import Summary
+from compare.figures.export import Drawn
 from compare.figures.snapshots import SnapshotsSection
 from compare.figures.style import style
 from compare.report.findings import Finding
@@ -55,12 +54,6 @@ class Page:
     snapshots: SnapshotsSection | None = None
 
     @property
-    def is_interactive(self) -> bool:
-        """Whether any figure of the scenes can be zoomed."""
-        every = [*self.sections, *(self.rock_masses.sections if self.rock_masses else ())]
-        return any(s.drawn and s.drawn.plot for one in every for s in one.figures)
-
-    @property
     def failed(self) -> list[tuple[Section, Finding]]:
         """The findings that do not hold, and where they stand."""
         return [(s, f) for s in self.sections for f in s.findings if not f.holds]
@@ -77,11 +70,10 @@ def render(page: Page, out: Path) -> str:
     environment = Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
     environment.globals |= {
         "held_file": held_file,
-        "held_plot": held_plot,
+        "picture": picture,
         "place": lambda file: file.relative_to(out).as_posix(),
         "source": lambda name: Markup(loader.get_source(environment, name)[0]),
         "colour": lambda name: style(name).colour,
-        "charts": charts,
         "licences": licences,
     }
     environment.filters |= {
@@ -106,47 +98,18 @@ def held_file(file: Path) -> Markup:
     return Markup(f'<script type="text/plain" id="held-{escape(file.name)}">{text}</script>')
 
 
-def held_plot(plot: str) -> str:
-    """Return a figure for plotly.js as the page holds it: its JSON, a new line, its numbers' bytes.
-
-    The bits of single-precision numbers [n] as integers, each less the one before modulo 2^32, the
-    lowest bytes of all first: of smooth curves a third less than base64 within JSON. `bdata` is
-    their first byte and n.
-    """
-    parts: list[bytes] = []
-
-    def take(found: dict[str, Any]) -> dict[str, Any]:
-        if "bdata" in found:
-            bits = np.frombuffer(base64.b64decode(found["bdata"]), "<u4")
-            steps = np.diff(bits, prepend=np.uint32(0)).astype("<u4")
-            found["bdata"] = [sum(map(len, parts)), bits.size]
-            parts.append(steps.view("u1").reshape(-1, 4).T.tobytes())
-        return found
-
-    text = json.dumps(json.loads(plot, object_hook=take), separators=(",", ":"))
-    return held(text.encode() + b"\n" + b"".join(parts))
+def picture(drawn: Drawn) -> str:
+    """Return the address of a drawing as the page holds it: ids within it are its own."""
+    content = base64.b64encode(drawn.file("svg").read_bytes()).decode("ascii")
+    return f"data:image/svg+xml;base64,{content}"
 
 
-def charts() -> str:
-    """Return plotly.js, which draws the interactive figures, as the page holds it."""
-    from plotly.offline import get_plotlyjs
-
-    return held(get_plotlyjs())
-
-
-def licences(interactive: bool) -> dict[str, str]:
-    """Return the licence texts of what the page holds of others: the letters of its figures, and
-    plotly.js where it is `interactive`."""
-    from importlib.metadata import files
-
+def licences() -> dict[str, str]:
+    """Return the licence texts of what the page holds of others: the letters of its figures."""
     import matplotlib
 
     fonts = Path(matplotlib.get_data_path(), "fonts", "ttf", "LICENSE_DEJAVU")
-    found = {"DejaVu, the font of figures": fonts.read_text(encoding="utf-8")}
-    for file in files("plotly") or ():
-        if interactive and file.name == "LICENSE.txt" and ".dist-info" in str(file):
-            found["plotly.js, for interactive figures"] = file.read_text()
-    return found
+    return {"DejaVu, the font of figures": fonts.read_text(encoding="utf-8")}
 
 
 def unbroken(text: str) -> str:

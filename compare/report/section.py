@@ -130,7 +130,7 @@ def make_section(
 def draw(folder: Path, picture: SceneFigure) -> Drawn:
     """Write a picture's files: those that the page offers."""
     p = picture
-    return save(p.static, folder, p.name, p.title, p.table, p.plot, png=False)
+    return save(p.figure, folder, p.name, p.title, p.table, png=False)
 
 
 def begin(

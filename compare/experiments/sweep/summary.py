@@ -171,7 +171,7 @@ def _drawn(waves: list[Path], done: pd.DataFrame, axes: list[str], out: Path) ->
     from compare.figures.export import save
 
     found = [
-        save(one.static, folder, one.name, one.title, one.table)
+        save(one.figure, folder, one.name, one.title, one.table)
         for folder, one in pictures(waves, done, axes, out)
     ]
     return [one.file(kind) for one in found for kind in ("csv", "svg", "pdf", "png")]

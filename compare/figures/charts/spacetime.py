@@ -6,13 +6,10 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from cases.schema.scene import Scene
-from compare.figures.charts import interactive
-from compare.figures.charts.chart import Subplot
 from compare.figures.charts.spacetime_data import Diagram, Diagrams
 from compare.figures.export import blank
 from compare.figures.figure import SceneFigure
@@ -23,10 +20,7 @@ LEFT, RIGHT, BETWEEN = 0.6, 0.15, 0.3  # inches beside the diagrams, and between
 TOP, BOTTOM = 0.58, 0.82  # inches above and below them: headings, times and colours
 KEY, THICK = 0.26, 0.06  # inches: position and height of the colour bar
 COLOURS = 96  # of an image in print
-TIMES = 120  # of an image on the page
 FINER = 2  # rows of the image per interval of places
-BITS = 8  # of the mantissa of its values: an error of 2e-3
-STOPS = 17  # of a colour scale on the page
 LAYER: dict[str, Any] = {"color": "#111111", "linewidth": 1.1, "linestyle": (0, (4, 3))}
 NAMED: dict[str, Any] = {
     "xycoords": ("axes fraction", "data"),
@@ -50,7 +44,6 @@ def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneF
         _caption(scene, variant, shown),
         partial(_figure, scene, shown),
         shown.table(),
-        partial(_plot, scene, shown),
         shown.exact,
     )
 
@@ -120,67 +113,3 @@ def evenly(y: np.ndarray, values: np.ndarray) -> np.ndarray:
     interval between places."""
     places = np.linspace(y[0], y[-1], FINER * (len(y) - 1) + 1)
     return np.stack([np.interp(places, y, column) for column in values.T], axis=1)
-
-
-def _plot(scene: Scene, shown: Diagrams) -> dict[str, Any]:
-    subplots = [Subplot(d.heading, "y (m)", [], 2.0, share="y") for d in shown.diagrams]
-    layout = interactive.layout(subplots, {"title": {"text": "time (ms)"}})
-    layout["margin"]["r"] = 62
-    rows = range(len(subplots))
-    layout["shapes"] = [_layer(layer.y, i) for layer in scene.soft_layers for i in rows]
-    domains = [layout[interactive.axis_key(i)]["domain"] for i in rows]
-    traces = [
-        _trace(i, diagram, shown, domain)
-        for i, (diagram, domain) in enumerate(zip(shown.diagrams, domains, strict=True))
-    ]
-    return {"data": traces, "layout": layout}
-
-
-def _trace(i: int, diagram: Diagram, shown: Diagrams, domain: list[float]) -> dict[str, Any]:
-    kept = interactive.thinned(len(shown.time), TIMES)
-    stops = np.linspace(0, 1, STOPS)
-    colours = map(to_hex, matplotlib.colormaps[diagram.colours](stops))
-    place = f"{diagram.unit.name} at y = %{{y:.4~g}} m, %{{x:.2f}} ms"
-    return {
-        "type": "heatmap",
-        "name": diagram.name,
-        **interactive.places("x", 1e3 * shown.time[kept]),
-        **interactive.places("y", shown.y),
-        "z": interactive.packed(diagram.values[:, kept], BITS),
-        "yaxis": interactive.axis_of(i),
-        "zsmooth": "best",
-        "zmin": -diagram.limit,
-        "zmax": diagram.limit,
-        "colorscale": [list(stop) for stop in zip(stops.tolist(), colours, strict=True)],
-        "colorbar": _key(domain),
-        "hovertemplate": f"%{{z:.4~g}} {place}<extra>{diagram.name}</extra>",
-    }
-
-
-def _key(domain: list[float]) -> dict[str, Any]:
-    """Return a diagram's colour bar, of the same height, to its right."""
-    return {
-        "x": 1.01,
-        "xpad": 2,
-        "y": sum(domain) / 2,
-        "ypad": 0,
-        "len": domain[1] - domain[0],
-        "thickness": 10,
-        "outlinewidth": 0,
-        "nticks": interactive.TICKS,
-        "tickfont": {"size": 11},
-    }
-
-
-def _layer(y: float, row: int) -> dict[str, Any]:
-    """Return the line of a soft layer through a diagram."""
-    return {
-        "type": "line",
-        "xref": "paper",
-        "yref": interactive.axis_of(row),
-        "x0": 0,
-        "x1": 1,
-        "y0": y,
-        "y1": y,
-        "line": {"color": "#333333", "width": 1, "dash": "4px,3px"},
-    }

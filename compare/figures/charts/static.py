@@ -109,7 +109,7 @@ def _draw(ax: Axes, subplot: Subplot, name: str, is_log: bool) -> None:
         ax.axhline(level, color="#bbbbbb", linewidth=0.6, zorder=1)
     for line in subplot.lines:
         (drawn,) = ax.plot(line.x, line.y, **line.style.of_line(line.marker))
-        drawn.set_gid(f"{name}-{line.part}" if line.part else None)
+        drawn.set_gid(line.part or None)
     for mark in subplot.marks:
         _add_mark(ax, mark)
     ax.margins(x=0)

@@ -95,7 +95,7 @@ def test_a_broken_scene_is_no_message(tmp_path, text, complete):
 
 #: What validates scenes, computes and draws; `typer` may bring the last two by itself.
 HEAVY = {"cases.schema", "cases.read", "numpy", "scipy", "numba", "xarray", "pandas", "matplotlib"}
-HEAVY |= {"shapely", "obspy", "plotly", "dolfinx", "dem", "continuum", "rich", "pydantic"}
+HEAVY |= {"shapely", "obspy", "dolfinx", "dem", "continuum", "rich", "pydantic"}
 IMPORTED = """
 import sys, typer
 before = set(sys.modules)

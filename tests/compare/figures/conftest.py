@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from compare.engines import applies, solve
-from compare.figures.charts import interactive
 from compare.misfit.pairs import Comparison
 
 
@@ -20,19 +19,6 @@ def compared():
         ]
 
     return comparisons
-
-
-@pytest.fixture
-def values():
-    """Return a function that gives a trace's numbers along x or y as plotly.js draws them."""
-
-    def numbers(trace, axis):
-        if axis in trace:
-            return interactive.unpacked(trace[axis])
-        count = interactive.unpacked(trace["y" if axis == "x" else "x"]).shape[0]
-        return trace[f"{axis}0"] + trace[f"d{axis}"] * np.arange(count)
-
-    return numbers
 
 
 @pytest.fixture

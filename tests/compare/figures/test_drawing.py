@@ -164,7 +164,7 @@ def test_labels_move_apart_as_far_as_they_must():
 )
 def test_words_lie_over_nothing_else(pillar, collisions, changes):
     """Neither over each other nor over arrows, layers and the marks of receivers."""
-    picture = scene_figure("fig", [Comparison(pillar(**changes))]).static
+    picture = scene_figure("fig", [Comparison(pillar(**changes))]).figure
     assert collisions(picture) == []
     renderer = picture.canvas.get_renderer()
     ax = picture.axes[0]
@@ -199,12 +199,12 @@ def test_variants_that_look_alike_share_a_drawing(pillar, ink):
         pillar(soft_layers=LAYERS).model_copy(update={"name": "c"}),
     ]
     picture = scene_figure("fig", [Comparison(scene) for scene in scenes])
-    assert [text.get_text() for text in picture.static.texts] == ["(a)  a, b", "(b)  c"]
+    assert [text.get_text() for text in picture.figure.texts] == ["(a)  a, b", "(b)  c"]
     parts = Counter(zip(picture.table["variant"], picture.table["part"], strict=True))
     assert parts["a, b", "block"] == parts["c", "block"] == 100
     assert parts["c", "soft layer"] == 2 and parts["a, b", "soft layer"] == 0
     assert parts["c", "joint"] == 99 and parts["c", "receiver"] == 1 and parts["c", "end"] == 2
-    assert ink(picture.static) > 0.01
+    assert ink(picture.figure) > 0.01
 
 
 @pytest.mark.parametrize(
@@ -222,9 +222,9 @@ def test_variants_that_look_alike_share_a_drawing(pillar, ink):
 def test_shipped_scenes_are_drawn_within_the_figure(name, ink):
     scenes = cases.load(find(name))
     picture = scene_figure("fig", [Comparison(scene) for scene in scenes])
-    assert 0.005 < ink(picture.static) < 0.3
-    strips = [ax for ax in picture.static.axes if ax.get_xlim() == (0.0, WIDTH)]
-    renderer = picture.static.canvas.get_renderer()
+    assert 0.005 < ink(picture.figure) < 0.3
+    strips = [ax for ax in picture.figure.axes if ax.get_xlim() == (0.0, WIDTH)]
+    renderer = picture.figure.canvas.get_renderer()
     for ax in strips:
         frame_box = ax.get_window_extent(renderer)
         for text in ax.texts:

@@ -65,10 +65,10 @@ def test_the_map_of_a_pillar_lies_along_its_axis(compared, pillar, ink):
     assert peaks[middle] == pytest.approx(1e6 / p.impedance, rel=0.02)
     assert peaks[corners[:, 0, 0].argmax()] == pytest.approx(2e6 / p.impedance, rel=0.02)
     (picture,) = peak_velocities("pillar", found)
-    assert picture.table.columns[1] == "y (m)" and ink(picture.static) > 0.05
+    assert picture.table.columns[1] == "y (m)" and ink(picture.figure) > 0.05
 
 
 def test_the_picture_has_its_numbers(comparison, ink):
     (found,) = peak_velocities("wave", [comparison])
     assert found.table["peak velocity (m/s)"].max() == pytest.approx(0.2, rel=0.05)
-    assert ink(found.static) > 0.05
+    assert ink(found.figure) > 0.05

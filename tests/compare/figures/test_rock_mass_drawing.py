@@ -55,7 +55,7 @@ def length(segments):
 def test_every_joint_is_drawn_in_the_colour_of_its_set(drawing):
     """Five rows of 10 m less 2 m each of the three that the tunnel takes or runs along; four cross
     joints of 6 m less 2 m each of the two along its faces."""
-    figure = drawing().static
+    figure = drawing().figure
     assert length(lines(figure, rock_mass.SETS[0])) == pytest.approx(50 - 3 * 2)
     assert length(lines(figure, rock_mass.SETS[1])) == pytest.approx(24 - 2 * 2)
     (legend,) = (ax.get_legend() for ax in figure.axes if ax.get_legend())
@@ -65,13 +65,13 @@ def test_every_joint_is_drawn_in_the_colour_of_its_set(drawing):
 
 
 def test_sides_and_the_opening_are_drawn(drawing):
-    assert length(lines(drawing().static, INK)) == pytest.approx(2 * (10 + 6) + 2 * (2 + 2))
+    assert length(lines(drawing().figure, INK)) == pytest.approx(2 * (10 + 6) + 2 * (2 + 2))
 
 
 def test_a_wave_enters_along_its_travel(drawing):
     """Its arrow ends where the line through the middle of the domain, (5, 3), meets the bottom or
     the left side: 0.01 of the smaller size, 6 m, before (5 - 3 x 0.6/0.8, 0)."""
-    arrows = [p for p in drawing().static.axes[0].patches if isinstance(p, FancyArrowPatch)]
+    arrows = [p for p in drawing().figure.axes[0].patches if isinstance(p, FancyArrowPatch)]
     tail, tip = (np.array(point) for point in arrows[0]._posA_posB)
     along = (tip - tail) / np.hypot(*(tip - tail))
     np.testing.assert_allclose(along, [0.6, 0.8])
@@ -93,7 +93,7 @@ def test_a_wave_enters_along_its_travel(drawing):
 )
 def test_a_load_pushes_on_the_rock(drawing, load, towards):
     """Arrows of a pressure end on the wall and point into the rock, that of a force at it."""
-    figure = drawing(waves=[], loads=[load | PULSE]).static
+    figure = drawing(waves=[], loads=[load | PULSE]).figure
     arrows = [p._posA_posB for p in figure.axes[0].patches if isinstance(p, FancyArrowPatch)]
     tail, tip = (np.array([one[k] for one in arrows]) for k in (0, 1))
     assert ((tip - tail) * towards(tip)).sum(axis=1).min() > 0
@@ -131,5 +131,5 @@ def test_variants_that_look_alike_share_a_drawing():
 def test_nothing_lies_over_anything(drawing, collisions):
     gravity = {"gravity": {}, "prestress": {"xx": 1e6, "yy": 3e6}}
     for changes in ({}, gravity):
-        found = collisions(drawing(**changes).static)
+        found = collisions(drawing(**changes).figure)
         assert not [one for one in found if "axes" not in one.lower()], found

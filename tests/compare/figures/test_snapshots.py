@@ -74,7 +74,8 @@ def test_everything_lies_inside_its_strip(row):
 
 
 def test_the_svg_holds_a_group_for_each_instant(row, tmp_path):
-    svg = save(draw_snapshots("row", row), tmp_path, "row", "A row").svg
+    drawn = save(draw_snapshots("row", row), tmp_path, "row", "A row")
+    svg = drawn.file("svg").read_text(encoding="utf-8")
     assert 'id="row-0"' in svg and 'id="row-1"' in svg
     assert "compression positive" in svg
     assert "<image" not in svg

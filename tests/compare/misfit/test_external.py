@@ -348,7 +348,7 @@ def test_curves_are_in_table_figure_and_files(scene, tmp_path):
     assert panel.given[two].max() == pytest.approx(1.1 * stress.max())
     assert [c for c in curve_table([found]) if c.startswith(one)]
     lines = {line.get_gid(): line for line in draw("fig", by_solutions([found])).axes[0].lines}
-    np.testing.assert_allclose(lines["fig-0-0-given-1"].get_ydata(), 1.1e-6 * stress, rtol=1e-12)
+    np.testing.assert_allclose(lines["0-0-given-1"].get_ydata(), 1.1e-6 * stress, rtol=1e-12)
     write_comparisons([found], tmp_path / "out")
     assert one in (tmp_path / "out" / "comparison-misfits.csv").read_text()
     assert two in (tmp_path / "out" / "comparison-alignment.csv").read_text()

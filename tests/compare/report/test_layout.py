@@ -41,11 +41,6 @@ def _shown(browser, page):
         contexts.append(context)
         opened = context.new_page()
         opened.goto(page.as_uri())
-        for figure in opened.locator("figure[data-plot]").all():
-            if not figure.is_visible():  # in a fold
-                continue
-            figure.scroll_into_view_if_needed()
-            figure.locator(".chart .main-svg").first.wait_for(timeout=60_000)
         return opened
 
     yield show
@@ -55,8 +50,8 @@ def _shown(browser, page):
 
 @pytest.fixture
 def shown(_shown):
-    """Return a function that gives the page in a window of a size, every chart drawn, at its top
-    and with every fold closed."""
+    """Return a function that gives the page in a window of a size, at its top and with every fold
+    closed."""
 
     def show(size):
         opened = _shown(size)

@@ -43,7 +43,8 @@ def test_every_row_is_in_the_table_and_the_missing_one_says_why(rows, tmp_path):
     assert section.failed == ["Gone (spheres): missing, no apt here"]
     assert "unnamed machine" in section.about
     assert peers.read(tmp_path / "peers.csv").shape == rows.shape
-    assert "Code: points" in section.figure.svg and "Gone" not in section.figure.svg
+    svg = section.figure.file("svg").read_text(encoding="utf-8")
+    assert "Code: points" in svg and "Gone" not in svg
 
 
 def test_machine_is_named(rows, tmp_path):

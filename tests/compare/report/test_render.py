@@ -1,23 +1,18 @@
 """The page from synthetic parts: its text for failures, missing parts, and odd characters."""
 
-import base64
-import gzip
-import json
 import re
 from concurrent.futures import Executor, Future
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 import pytest
 
 from compare.experiments.summary import Summary
-from compare.figures.charts import interactive
 from compare.figures.export import Drawn
 from compare.figures.figure import SceneFigure
 from compare.report.findings import Finding
 from compare.report.overview import Overview
-from compare.report.render import Page, RockMasses, held_plot, licences, render
+from compare.report.render import Page, RockMasses, render
 from compare.report.section import PAPER, SceneRequest, Section, Shown, begin, finish
 from compare.report.tables import Table
 
@@ -27,10 +22,10 @@ def figure(tmp_path):
     """Return a function that gives a figure and writes its files."""
 
     def make(name):
-        for kind in ("pdf", "csv", "nc"):
+        for kind in ("svg", "pdf", "csv", "nc"):
             (tmp_path / f"{name}.{kind}").write_text("x")
         (tmp_path / f"{name}-map.csv").write_text("x")
-        return Drawn(name, "A figure", tmp_path, "<svg></svg>")
+        return Drawn(name, "A figure", tmp_path)
 
     return make
 
@@ -72,21 +67,6 @@ def done(result):
     future = Future()
     future.set_result(result)
     return future
-
-
-def test_numbers_of_a_chart_are_held_by_their_steps_and_come_back():
-    """Read as page.js reads them: first byte, n; of all steps the lowest bytes first."""
-    values = [np.array([1.0, -2.5, np.nan, 0.0, 3e9]), np.sin(np.arange(800) / 40)]
-    traces = [{"y": interactive.packed(one)} for one in values]
-    plot = json.dumps({"data": traces})
-    text = held_plot(plot)
-    head, _, numbers = gzip.decompress(base64.b64decode(text)).partition(b"\n")
-    for one, trace in zip(json.loads(head)["data"], traces, strict=True):
-        start, n = one["y"]["bdata"]
-        steps = np.frombuffer(numbers[start : start + 4 * n], "u1").reshape(4, n).T.copy()
-        bits = np.cumsum(steps.view("<u4").ravel(), dtype="<u4")
-        assert base64.b64encode(bits.tobytes()).decode() == trace["y"]["bdata"]
-    assert len(text) < 0.8 * len(base64.b64encode(gzip.compress(plot.encode())))
 
 
 def test_rock_masses_stand_with_their_scenes_and_studies(page, section, figure):
@@ -156,16 +136,8 @@ def test_hard_cases_stand_with_their_margins_and_what_failed(page, figure):
     assert "<td" in html.split('id="stability"')[1]
 
 
-def test_a_page_without_charts_does_not_carry_what_draws_them(page, section):
-    still = page(sections=[section([])])
-    assert len(still) < 100_000 and 'id="held-charts"' not in still
-
-
 def test_a_page_holds_the_licences_of_what_it_holds_of_others(page, section):
     assert "Bitstream Vera" in page(sections=[section([])])
-    texts = licences(interactive=True)
-    assert "Permission is hereby granted" in texts["plotly.js, for interactive figures"]
-    assert len(texts) == 2 and len(licences(interactive=False)) == 1
 
 
 def test_a_file_that_is_not_there_is_an_error_not_a_dead_link(page, section, figure):
