@@ -34,6 +34,13 @@ def times(x: float) -> str:
     return f"{x:.0f}×" if x >= 9.95 else f"{x:.1f}×"
 
 
+def table_cell(value: Any, column: str) -> str:
+    """Return a cell of a table as text; numbers under a heading with "%" are in percent."""
+    if "%" in column and isinstance(value, float):
+        return percent(value / 100)
+    return cell(value)
+
+
 def cell(value: Any) -> str:
     """Return a value of a table: whole numbers and text as they are, others to four digits."""
     if isinstance(value, float):

@@ -19,12 +19,11 @@ from cases.files import read_text
 from compare.experiments.study.diagram import draw as draw_study
 from compare.experiments.study.findings import assured
 from compare.experiments.study.study import Curve, Study
-from compare.experiments.summary import Summary
 from compare.figures.export import save
-from compare.report.tables import Table
 from compare.runs.output import write_csv
 from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from compare.solvers.dem import DEM
+from compare.studies.summary import Summary, text_table
 from compare.text import percent
 
 PLACE = Path("out/peers/points.csv")  # where `make bench-peers` writes
@@ -110,14 +109,14 @@ def write_section(folder: Path, found: pd.DataFrame, name: str = NAME) -> Summar
     )
 
 
-def table(found: pd.DataFrame) -> Table:
+def table(found: pd.DataFrame) -> pd.DataFrame:
     """Return every run, those of a curve under what it solves; a missing peer says why."""
-    groups: dict[str, list[list[str]]] = {}
+    rows = []
     for row in found.to_dict("records"):
         undone = [f"{row['state']}: {row['message']}", *[""] * (len(HEADER) - 1)]
         cells = _cells(row) if row["state"] == "done" else undone
-        groups.setdefault(_label(row), []).append(cells)
-    return Table(HEADER, groups)
+        rows.append((_label(row), cells))
+    return text_table(HEADER, rows)
 
 
 def _cells(row: dict) -> list[str]:

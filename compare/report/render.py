@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
+import pandas as pd
 from jinja2 import Environment, PackageLoader
 from markupsafe import Markup, escape
 
-from compare.experiments.summary import Summary
 from compare.figures.export import Drawn
 from compare.figures.snapshots import SnapshotsSection
 from compare.figures.style import style
@@ -17,7 +17,8 @@ from compare.report.findings import Finding
 from compare.report.overview import Overview
 from compare.report.section import Section
 from compare.report.tables import Table
-from compare.text import in_seconds, mean_and_worst, percent, times
+from compare.studies.summary import Summary
+from compare.text import in_seconds, mean_and_worst, percent, table_cell, times
 
 
 class RockMasses(NamedTuple):
@@ -82,8 +83,20 @@ def render(page: Page, out: Path) -> str:
         "peak": mean_and_worst,
         "seconds": in_seconds,
         "times": times,
+        "grouped": grouped,
     }
     return environment.get_template("report.html").render(page=page)
+
+
+def grouped(table: Table | pd.DataFrame) -> Table:
+    """Return a table with its rows in groups of text."""
+    if isinstance(table, Table):
+        return table
+    groups: dict[str, list[list[str]]] = {}
+    for (heading, *labels), *values in table.itertuples(name=None):
+        cells = [table_cell(x, name) for x, name in zip(values, table.columns, strict=True)]
+        groups.setdefault(heading, []).append([*map(str, labels), *cells])
+    return Table([*table.index.names[1:], *table.columns], groups)
 
 
 def held(content: str | bytes) -> str:

@@ -24,7 +24,6 @@ from compare.experiments.study.summary import REPORTED
 from compare.experiments.study.summary import reported as reported_studies
 from compare.experiments.study.summary import run as run_study
 from compare.experiments.study.summary import summarise as summarise_study
-from compare.experiments.summary import Summary
 from compare.figures.snapshots import SnapshotsSection, make_snapshots
 from compare.report import peers, tables
 from compare.report.findings.pillar import mostly_dispersion
@@ -35,6 +34,7 @@ from compare.report.section import SceneRequest
 from compare.runs.output import write_text
 from compare.runs.workers import Workers
 from compare.studies.store import alone, on_executor
+from compare.studies.summary import Summary
 
 FREE_PILLAR = "fig-03"  # the scene that says what the paper's own comparison is made of
 #: How much of the paper's page each part takes, %, where kernels are compiled.

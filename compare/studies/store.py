@@ -6,6 +6,7 @@ including the program. An interrupted study thus resumes, and a changed one star
 
 import hashlib
 import json
+import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -154,7 +155,7 @@ def _parallel(
     def calls() -> Iterator[Any]:
         for name, point in list(points.items()):
             begun.append(name)
-            yield delayed(_named)(name, work, point)
+            yield delayed(_named)(name, work, point, Path.cwd())
 
     run = Parallel(
         count, return_as="generator_unordered", pre_dispatch=count, batch_size=1, max_nbytes=None
@@ -162,13 +163,15 @@ def _parallel(
     yield from run(calls())
 
 
-def _named(name: str, work: Callable[[P], T], point: P) -> tuple[str, T]:
+def _named(name: str, work: Callable[[P], T], point: P, folder: Path) -> tuple[str, T]:
+    os.chdir(folder)  # processes outlive a call, and remember the folder of the first one
     return name, work(point)
 
 
 def _isolated(work: Callable[[P], T], point: P) -> T | None:
     try:
-        return Parallel(2, max_nbytes=None)([delayed(work)(point)])[0]  # 1 would be this process
+        ((_, result),) = _parallel(2, work, {"": point}, [])  # 1 would be this process
+        return result
     except BrokenProcessPool:
         return None
 

@@ -16,8 +16,8 @@ from job import Job
 
 import cases
 from cases.schema.scene import Scene
+from compare.cli.study_view import show
 from compare.experiments.cost.scenes import PILLAR
-from compare.experiments.summary import show
 from compare.report.peers import write_section
 
 

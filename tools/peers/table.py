@@ -6,7 +6,7 @@ import platform
 import pandas as pd
 
 from compare.experiments.cost.timings import processor
-from compare.experiments.summary import cell
+from compare.studies.summary import cell
 
 #: The columns that all studies share, then those of the peers.
 COLUMNS = (

@@ -48,9 +48,9 @@ def effects(
     For a pillar, or a rock mass that rigid blocks can represent. Without a scene: every variant of
     every shipped pillar. Slow; finished scenes are saved in DIR and not run again.
     """
+    from compare.cli.study_view import run_and_show
     from compare.experiments.ablation import runner
     from compare.experiments.ablation.summary import summarise
-    from compare.experiments.summary import run_and_show
 
     wanted = _cases(scene, changes, variant, strict)
     if dry:
@@ -118,7 +118,7 @@ def study(
 
         show_parts(parts_of_study(name, out), as_json)
         return
-    from compare.experiments.summary import run_and_show
+    from compare.cli.study_view import run_and_show
 
     folder = out / Path(name).stem
     work: Callable[[Any, Any], Any]

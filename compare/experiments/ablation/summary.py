@@ -7,10 +7,9 @@ import pandas as pd
 
 from compare.experiments.ablation.ablation import Ablation, EffectCost
 from compare.experiments.ablation.diagram import draw
-from compare.experiments.summary import Summary, number
 from compare.figures.export import save
-from compare.report.tables import Table
 from compare.runs.output import write_csv
+from compare.studies.summary import Summary, number, text_table
 from compare.text import percent
 
 NAME = "effects"
@@ -42,7 +41,6 @@ def summarise(folder: Path, found: list[Ablation]) -> Summary:
         figure,
         about="; ".join(a.label for a in found),
         timed=True,
-        has_text=True,
     )
 
 
@@ -67,18 +65,19 @@ def write_table(folder: Path, found: list[Ablation]) -> Path:
     return write_csv(folder / f"{NAME}.csv", pd.DataFrame(rows).rename(columns=named), 6)
 
 
-def table(found: list[Ablation]) -> Table:
+def table(found: list[Ablation]) -> pd.DataFrame:
     """Return all numbers, the effects of each scene below the cost of its own set, highest first.
 
     The last column exists if any effect cannot be left out.
     """
     stays = any(e.reason for a in found for e in a.effects)
     columns = len(COLUMNS) if stays else len(COLUMNS) - 1
-    groups = {
-        f"{i}. {_heading(a)}": [_cells(e)[:columns] for e in sorted(a.effects, key=_dearest)]
+    rows = [
+        (f"{i}. {_heading(a)}", _cells(e)[:columns])
         for i, a in enumerate(found, start=1)
-    }
-    return Table(COLUMNS[:columns], groups)
+        for e in sorted(a.effects, key=_dearest)
+    ]
+    return text_table(COLUMNS[:columns], rows)
 
 
 def _heading(a: Ablation) -> str:

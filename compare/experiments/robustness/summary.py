@@ -15,12 +15,11 @@ from compare.experiments.robustness.criteria.energies import Drift, drift
 from compare.experiments.robustness.linear_cases import MILLION
 from compare.experiments.robustness.map import StabilityMap, boundary
 from compare.experiments.robustness.run import FAILED, HELD, NONE, CaseRow, run, run_maps
-from compare.experiments.summary import Summary, frame, grouped, number, write_tables
 from compare.figures.export import blank, save
 from compare.figures.style import style
-from compare.report.tables import Table
 from compare.studies import store
 from compare.studies.store import Pool, Store
+from compare.studies.summary import Summary, frame, number, text_table, write_tables
 
 LIGHT = "#eceff2"  # of unstable cells
 LONG = {stepper.name: stepper for stepper in (LEAPFROG, JOINTED, EQUIVALENT)}
@@ -126,7 +125,6 @@ def make_study(
         {"rows": rows, "sentences": said, "files": list(map(str, files))},
         figure,
         about=NOTE,
-        has_text=True,
     )
 
 
@@ -141,9 +139,9 @@ def _drift(name: str) -> Drift:
     return drift(CaseTrial(MILLION, LONG[name]), 1_000_000)
 
 
-def table(rows: list[CaseRow]) -> Table:
+def table(rows: list[CaseRow]) -> pd.DataFrame:
     """Return the rows under headings of case and criterion."""
-    return Table(COLUMNS, grouped((f"{row.case}: {row.criterion}", _cells(row)) for row in rows))
+    return text_table(COLUMNS, ((f"{row.case}: {row.criterion}", _cells(row)) for row in rows))
 
 
 def _cells(row: CaseRow) -> list[str]:

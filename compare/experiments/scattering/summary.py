@@ -13,11 +13,10 @@ from compare.engines import Progress, solver
 from compare.exact.plane.waves import KINDS
 from compare.experiments.cost.timings import machine
 from compare.experiments.scattering.points import AT, COUNTS, JointsRow, closed_form, run, scene_of
-from compare.experiments.summary import Summary, frame, grouped, number, write_tables
 from compare.figures.export import blank, save
 from compare.figures.style import style
-from compare.report.tables import Table
 from compare.studies.store import Pool
+from compare.studies.summary import Summary, frame, number, text_table, write_tables
 from compare.text import percent
 
 WAVES = {"R_p": ("o", "-"), "R_s": ("s", "--"), "T_p": ("^", "-."), "T_s": ("v", ":")}
@@ -137,7 +136,7 @@ def make_study(
     return Summary(
         name,
         title,
-        Table([first, *COLUMNS], grouped(cells)),
+        text_table([first, *COLUMNS], cells),
         said,
         failures(rows),
         files,

@@ -9,10 +9,9 @@ from compare.experiments.study.diagram import write_diagram
 from compare.experiments.study.findings import digits_per_second, judged, orders, sentences
 from compare.experiments.study.measure import PointRow, measure
 from compare.experiments.study.study import Study, StudyPoint, load
-from compare.experiments.summary import Summary, frame, grouped, number, write_tables
-from compare.report.tables import Table
 from compare.studies import store
 from compare.studies.store import Pool, Store, alone
+from compare.studies.summary import Summary, frame, number, text_table, write_tables
 
 #: The studies of the report, in its order.
 REPORTED = ("free-pillar", "convergence", "uniform-chain", "one-joint")
@@ -43,7 +42,7 @@ def summarise(folder: Path, name: str, study: Study, rows: list[PointRow]) -> Su
     return Summary(
         name,
         study.title,
-        Table(COLUMNS, grouped((row.curve, cells(row)) for row in rows)),
+        text_table(COLUMNS, ((row.curve, cells(row)) for row in rows)),
         sentences(study, rows) + in_words,
         [
             f"{', '.join(filter(None, [r.curve, _settings(r)]))}: {r.message}"

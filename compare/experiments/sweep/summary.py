@@ -12,9 +12,9 @@ import xarray as xr
 
 from cases.errors import SceneError
 from compare.cli.options import warn
+from compare.cli.study_view import run_and_show
 from compare.engines import Progress
 from compare.experiments.cost import dry_run
-from compare.experiments.summary import Summary, cell, grouped, number, run_and_show, write_tables
 from compare.experiments.sweep import runner
 from compare.experiments.sweep.axis import MEMBER
 from compare.experiments.sweep.case import SweepOutcome, Work
@@ -28,8 +28,8 @@ from compare.experiments.sweep.ensemble import (
 from compare.experiments.sweep.runner import Sweep
 from compare.misfit.metrics import Distance
 from compare.misfit.places import Place
-from compare.report.tables import Table
 from compare.studies.store import Pool
+from compare.studies.summary import Summary, cell, number, text_table, write_tables
 
 NAME = "sweep"
 #: The numbers of a run, of a receiver of it, and of a pair of solutions at a receiver.
@@ -116,11 +116,11 @@ def summarise(asked: Sweep, found: list[SweepOutcome]) -> Summary:
         numbers = (number(float(row[name]), form, "-") for name, _, form in columns)
         return [_point(row, axes), *([_place(row)] * len(where)), *numbers]
 
-    groups = grouped((_heading(row, not where), cells(row)) for row in shown.to_dict("records"))
+    found_rows = [(_heading(row, not where), cells(row)) for row in shown.to_dict("records")]
     summary = Summary(
         NAME,
         asked.scene,
-        Table([", ".join(axes), *where, *(head for _, head, _ in columns)], groups),
+        text_table([", ".join(axes), *where, *(head for _, head, _ in columns)], found_rows),
         [],
         [f"{_point(r, axes)} {r['variant']}: {r['message']}" for r in failed.to_dict("records")],
         files,
@@ -154,7 +154,7 @@ def with_statistics(
     header = [*([", ".join(rest)] if rest else []), *STATISTICS, "members"]
     return summary._replace(
         name=ENSEMBLE,
-        table=Table(header, grouped((_heading(row, True), cells(row)) for row in shown)),
+        table=text_table(header, ((_heading(row, True), cells(row)) for row in shown)),
         facts=summary.facts
         | {
             "statistics": json.loads(rows.to_json(orient="records")),

@@ -7,7 +7,6 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from compare.experiments.summary import Summary
 from compare.figures.export import Drawn
 from compare.figures.figure import SceneFigure
 from compare.report.findings import Finding
@@ -15,6 +14,9 @@ from compare.report.overview import Overview
 from compare.report.render import Page, RockMasses, render
 from compare.report.section import PAPER, SceneRequest, Section, Shown, begin, finish
 from compare.report.tables import Table
+from compare.studies.summary import Summary, text_table
+
+EMPTY = text_table(["point"], [])
 
 
 @pytest.fixture
@@ -71,7 +73,7 @@ def done(result):
 
 def test_rock_masses_stand_with_their_scenes_and_studies(page, section, figure):
     """Also in the contents; without them nothing of them is on the page."""
-    table = Table(["angle", "off"], {"rigid blocks: P wave": [["30", "1.0e-02"]]})
+    table = text_table(["angle", "off"], [("rigid blocks: P wave", ["30", "1.0e-02"])])
     parts = figure("oblique-joint"), "A note.", "Off: from the closed form."
     study = Summary(
         "oblique-joint", "At one joint", table, ["Off by 1 %."], ["dem: no"], [], {}, *parts
@@ -91,7 +93,7 @@ def test_rock_masses_stand_with_their_scenes_and_studies(page, section, figure):
 
 def test_a_study_has_a_place_beside_a_scene_of_its_name(page, section, figure):
     """The contents lead to each of them."""
-    study = Summary("fig-05", "Work", Table([], {}), [], [], [], {}, figure("work"), timed=True)
+    study = Summary("fig-05", "Work", EMPTY, [], [], [], {}, figure("work"), timed=True)
     html = page(sections=[section([])], studies=[study])
     places = re.findall(r'\bid="([^"]+)"', html)
     assert len(set(places)) == len(places)
@@ -119,14 +121,14 @@ def test_text_of_scenes_is_escaped(page, section):
 
 
 def test_without_a_table_of_other_codes_one_line_says_how_to_get_it(page, figure):
-    study = Summary("s", "S", Table([], {}), [], [], [], {}, figure("s"), timed=True)
+    study = Summary("s", "S", EMPTY, [], [], [], {}, figure("s"), timed=True)
     html = page(studies=[study], peers_file="a.csv")
     assert "run <code>make bench-peers</code>, then <code>jointwave report" in html
     assert "--peers a.csv</code>" in html
 
 
 def test_hard_cases_stand_with_their_margins_and_what_failed(page, figure):
-    table = Table(["engine", "value", "bound", "margin", ""], {"step": [["dem", "1", "2"]]})
+    table = text_table(["engine", "value", "bound"], [("step", ["dem", "1", "2"])])
     said, failed = ["3 of 4 rows hold."], ["step, dem: 3 above 2"]
     drawn = figure("stability")
     found = Summary("stability", "Hard cases", table, said, failed, [], {}, drawn, about="A note.")

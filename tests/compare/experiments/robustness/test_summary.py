@@ -21,8 +21,9 @@ def rows():
 def test_table_has_every_row_with_its_margin_or_reason(rows):
     """Under a heading of case and criterion; a failed row says so."""
     found = summary.table(rows)
-    ((heading, lines),) = found.groups.items()
-    assert heading.startswith(CASES[0].name) and len(lines) == len(rows)
+    lines = found.to_numpy().tolist()
+    assert all(heading.startswith(CASES[0].name) for heading, _ in found.index)
+    assert len(lines) == len(rows)
     assert lines[0][-1] == "failed: because" and f"{rows[1].margin:.3g}" in lines[1]
     assert any("does not apply" in line[-1] for line in lines)
     assert len(summary.failures(rows)) == 1 and "3 of 4 rows pass" in summary.sentences(rows, [])[0]

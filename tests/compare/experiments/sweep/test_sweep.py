@@ -116,11 +116,11 @@ def test_the_worst_of_many_waveforms_is_shown():
     case = SweepCase({"key": 3}, Path(), None)
     asked = Sweep("scene", {"key": [3]}, [case], None)
     found = summarise(asked, [SweepOutcome("done", "", rows)])
-    assert found.table.header[:3] == ["key", "of", "misfit"] and "worst" in found.legend
-    assert found.table.groups["dem ~ lattice"][0][:3] == ["3", "stress 12 at [1, 2] m", "12.000%"]
+    assert found.table.index.tolist() == [("dem ~ lattice", "3")] and "worst" in found.legend
+    assert found.table.iloc[0, :2].tolist() == ["stress 12 at [1, 2] m", "12.000%"]
     assert len(found.facts["rows"]) == 13
     few = summarise(asked, [SweepOutcome("done", "", rows[:12])])
-    assert len(few.table.groups) == 12 and few.legend == ""
+    assert len(few.table) == 12 and few.legend == ""
 
 
 def test_curves_of_others_are_swept_too(command, tmp_path):

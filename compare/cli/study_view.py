@@ -1,0 +1,71 @@
+"""Studies on the terminal: their progress, and their summary."""
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+
+import pandas as pd
+
+from compare.cli.terminal import print_json, progress, say, show_numbers, show_table
+from compare.engines import Progress
+from compare.runs.checkpoint.lock import locked
+from compare.runs.processes import started
+from compare.studies.store import Pool, on_pool, plain
+from compare.studies.summary import Summary
+from compare.text import table_cell
+
+LONGEST = 40  # characters of a cell that is not wrapped
+
+
+def run_and_show(
+    label: str,
+    out: Path | None,
+    workers: int,
+    work: Callable[[Pool | None, Progress], Summary],
+    as_json: bool,
+) -> None:
+    """Show the summary returned by `work(pool, progress)`; of several MPI processes only the first
+    does.
+
+    label : of the progress bar. out : a folder, locked meanwhile; None writes nothing.
+    """
+    processes = started()
+    with ExitStack() as held, progress(label) as advance:
+        if out is not None:
+            processes.by_first(lambda: held.enter_context(locked(out)))
+        found = on_pool(processes, workers, lambda pool: work(pool, advance))
+    if found is not None:
+        show(found, as_json)
+
+
+def show(found: Summary, as_json: bool) -> None:
+    """Print a summary: its table, its sentences and its files; or its facts."""
+    if as_json:
+        print_json(plain(found.facts))
+        return
+    _show(found.table)
+    for line in filter(None, [found.legend, *found.sentences]):
+        say(line)
+    for line in found.failed:
+        say(f"failed: {line}", "red")
+    if found.note:
+        say(found.note)
+    if found.files:
+        say(f"written: {', '.join(map(str, found.files))}")
+
+
+def _show(table: pd.DataFrame) -> None:
+    """Print a table under its headings; with sentences in its cells each group is a table whose
+    cells are wrapped."""
+    groups: dict[str, list[list[str]]] = {}
+    for (heading, *labels), *values in table.itertuples(name=None):
+        cells = [table_cell(x, name) for x, name in zip(values, table.columns, strict=True)]
+        groups.setdefault(heading, []).append([*map(str, labels), *cells])
+    header = [*map(str, table.index.names[1:]), *map(str, table.columns)]
+    lengths = (len(cell) for rows in groups.values() for row in rows for cell in row[1:])
+    if max(lengths, default=0) <= LONGEST:
+        show_numbers(header, groups)
+        return
+    for heading, rows in groups.items():
+        say(heading, "bold")
+        show_table(header, rows)

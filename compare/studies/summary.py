@@ -1,0 +1,71 @@
+"""The summary of a study, the same for the terminal, the page and JSON; the files of its table."""
+
+import json
+from collections.abc import Iterable, Sequence
+from math import isfinite
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pandas as pd
+import xarray as xr
+
+from compare.figures.export import Drawn
+from compare.runs.output import write_csv, write_dataset
+
+
+class Summary(NamedTuple):
+    """A study's summary for display.
+
+    name : of its files, and of its section of the page. table : its numbers in display units, with
+    a heading of groups and the label of a row as the levels of its index. sentences : its findings.
+    failed : a line for each row that failed. facts : machine-readable. note : about all of it.
+    legend : of the table. about : for the caption of the figure: its contents, the quantity of its
+    misfits, or its scenes. timed : whether it has seconds.
+    """
+
+    name: str
+    title: str
+    table: pd.DataFrame
+    sentences: Sequence[str]
+    failed: Sequence[str]
+    files: Sequence[Path]
+    facts: Any
+    figure: Drawn | None = None
+    note: str = ""
+    legend: str = ""
+    about: str = ""
+    timed: bool = False
+
+
+def text_table(columns: Sequence[str], rows: Iterable[tuple[str, Sequence[Any]]]) -> pd.DataFrame:
+    """Return rows of cells, each under a heading, as the table of a summary; the first cell of a
+    row is its label."""
+    found = list(rows)
+    labels = [[heading for heading, _ in found], [cells[0] for _, cells in found]]
+    index = pd.MultiIndex.from_arrays(labels, names=["", columns[0]])
+    return pd.DataFrame([list(cells[1:]) for _, cells in found], index, list(columns[1:]))
+
+
+def frame(rows: Sequence[Any], form: type) -> pd.DataFrame:
+    """Return rows of a NamedTuple as a table, SI."""
+    return pd.DataFrame([map(cell, row) for row in rows], columns=list(form._fields))  # type: ignore[attr-defined]
+
+
+def cell(value: Any) -> Any:
+    """Return a value for a file's table: lists and dictionaries as JSON."""
+    return json.dumps(value, default=str) if isinstance(value, list | dict) else value
+
+
+def write_tables(
+    folder: Path, name: str, table: pd.DataFrame, data: xr.Dataset | None = None
+) -> list[Path]:
+    """Write NAME.csv and, for a dataset, NAME.nc into a folder; return the files."""
+    files = [write_csv(folder / f"{name}.csv", table)]
+    if data is not None:
+        files.append(write_dataset(folder / f"{name}.nc", data))
+    return files
+
+
+def number(value: float, form: str, missing: str = "") -> str:
+    """Return a number as text; `missing` if it is not finite."""
+    return format(value, form) if isfinite(value) else missing
