@@ -8,26 +8,17 @@ from typing import Any
 import typer
 
 from cases.errors import InterruptedRun, SceneError, UnstableError, printable
-from compare.cli.commands import animation, experiments, installation, scenes, solutions
-from compare.cli.commands import fit as fitting
+from compare.cli.commands import animation, experiments, fit, installation, scenes, solutions
 from compare.cli.options import app
-from compare.cli.start import SHOWN, fault
+from compare.cli.start import SHOWN, drop_output, fault
 from compare.runs.checkpoint.signals import Ended, exit_code, watched
 from compare.runs.processes import Processes, started
 
-COMMANDS = (
-    scenes,
-    solutions,
-    fitting,
-    experiments,
-    animation,
-    installation,
-)  # their import puts them into the app
+#: Their import puts the commands into the app.
+COMMANDS = (scenes, solutions, fit, experiments, animation, installation)
 
 # Older typer raises click's own errors and newer typer its copy of them: ask the class itself.
-UsageError: type[Exception] = next(
-    c for c in typer.BadParameter.__mro__ if c.__name__ == "ClickException"
-)
+UsageError: Any = next(c for c in typer.BadParameter.__mro__ if c.__name__ == "ClickException")
 
 MOST_LISTED = 100  # mistakes of a file
 LONGEST = 1500  # characters of a message; an argument or a path in it may be of any length
@@ -45,55 +36,43 @@ def main() -> None:
         signals.patient = not processes.is_first  # the first decides for all
         code = app(standalone_mode=False)
         sys.stdout.flush()
-    except SceneError as error:
-        processes.fail("\n".join(_listed([_line(str(one)) for one in error.each])), 2)
-    except InterruptedRun as error:
-        _fail(processes, str(error), error.code)
-    except UnstableError as error:
-        _fail(processes, str(error), 3)
-    except UsageError as error:
-        _fail(processes, _usage(error), 2)
-    except Ended as end:
-        _fail(processes, str(end), exit_code(end.number))
     except BrokenPipeError:  # the reader has seen enough
-        _drop_output()
+        drop_output(sys.stdout)
         sys.exit(1)
-    except OSError as error:
-        if error.filename is None:
-            _drop_output()
-        _fail(processes, f"{error.filename or 'output'}: {error.strerror or error}", 2)
-    except UnicodeEncodeError as error:  # of a file's name: all else is UTF-8, or escaped
-        allowed = f"cannot be encoded in the locale's {error.encoding}; set PYTHONUTF8=1"
-        _fail(processes, f"{error.object!a}: {allowed}", 2)
-    except MemoryError as error:
-        _fail(processes, f"not enough memory: {error}", 2)
-    except Exception as error:
-        if processes.comm is None:
+    except (Exception, Ended) as error:
+        lines, code = _told(error)
+        if code == 1 and processes.comm is None:
             raise
-        if os.environ.get(SHOWN):
+        if code == 1 and os.environ.get(SHOWN):
             traceback.print_exc(file=processes.stderr)
-        _fail(processes, fault(error), 1)
-    else:
-        sys.exit(code if isinstance(code, int) else 0)
+        processes.fail("\n".join(f"jointwave: {line}" for line in map(_line, lines)), code)
+    sys.exit(code if isinstance(code, int) else 0)
 
 
-def _drop_output() -> None:
-    """Let what cannot be written to standard output go: flushing at exit must not complain."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _usage(error: Any) -> str:
-    return error.format_message().replace("Value error, ", "")
-
-
-def _fail(processes: Processes, message: str, code: int) -> None:
-    processes.fail(f"jointwave: {_line(message)}", code)
-
-
-def _listed(lines: list[str]) -> list[str]:
-    more = len(lines) - MOST_LISTED
-    lines = [*lines[:MOST_LISTED], f"and {more:,} more"] if more > 0 else lines
-    return [f"jointwave: {line}" for line in lines]
+def _told(error: Any) -> tuple[list[str], int]:
+    """Return what is said of an error, and the exit code; 1 for a fault of the program itself."""
+    match error:
+        case SceneError():
+            lines, more = [str(one) for one in error.each], len(error.each) - MOST_LISTED
+            return [*lines[:MOST_LISTED], *([f"and {more:,} more"] if more > 0 else [])], 2
+        case InterruptedRun():
+            return [str(error)], error.code
+        case UnstableError():
+            return [str(error)], 3
+        case Ended():
+            return [str(error)], exit_code(error.number)
+        case OSError():
+            if error.filename is None:
+                drop_output(sys.stdout)
+            return [f"{error.filename or 'output'}: {error.strerror or error}"], 2
+        case UnicodeEncodeError():  # of a file's name: all else is UTF-8, or escaped
+            allowed = f"cannot be encoded in the locale's {error.encoding}; set PYTHONUTF8=1"
+            return [f"{error.object!a}: {allowed}"], 2
+        case MemoryError():
+            return [f"not enough memory: {error}"], 2
+    if isinstance(error, UsageError):
+        return [error.format_message().replace("Value error, ", "")], 2
+    return [fault(error)], 1
 
 
 def _line(message: str) -> str:

@@ -6,6 +6,7 @@ import traceback
 from contextlib import suppress
 from io import TextIOWrapper
 from pathlib import Path
+from typing import TextIO
 
 SHOWN = "JOINTWAVE_TRACEBACK"  # in the environment: whether a fault of the program is traced back
 
@@ -74,4 +75,9 @@ def _flush() -> None:
             stream.flush()
         except (OSError, ValueError):
             with suppress(OSError, ValueError):
-                os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+                drop_output(stream)
+
+
+def drop_output(stream: TextIO) -> None:
+    """Let what cannot be written to a stream go: flushing at exit must not complain."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

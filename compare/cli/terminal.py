@@ -14,6 +14,14 @@ from time import monotonic
 from typing import Any
 
 from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from rich.table import Table
 from rich.text import Text
 
@@ -21,7 +29,7 @@ from cases.errors import SceneError, printable
 from cases.files import is_number
 
 EVERY = "JOINTWAVE_PROGRESS"  # in the environment: s from one line to the next, 0 for none
-WIDEST = 220  # a pipe has no width to respect: a machine or a log gets whole lines
+WIDEST, UNFOLDED = 220, 10_000  # of a pipe, which has no width, and of a table of numbers
 
 
 @contextmanager
@@ -37,17 +45,15 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
 
 @contextmanager
 def _bar(label: str) -> Iterator[Callable[[float], None]]:
-    from rich import progress as rich
-
     columns = (
-        rich.TextColumn("{task.description}", markup=False),
-        rich.BarColumn(),
-        rich.TaskProgressColumn(),
-        rich.TimeElapsedColumn(),
-        rich.TextColumn("left"),
-        rich.TimeRemainingColumn(),
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
     )
-    with rich.Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(printable(label), total=1.0)
         yield lambda fraction: bar.update(task, completed=fraction)
 
@@ -106,10 +112,7 @@ def show_numbers(columns: list[str], groups: dict[str, list[list[str]]]) -> None
         table.add_row(Text(printable(heading), style="bold"))
         for row in rows:
             table.add_row(*map(printable, row))
-    console = _console()
-    wide = console.options.update_width(WIDEST)
-    console.width = max(console.width, console.measure(table, options=wide).maximum)
-    console.print(table, crop=False)
+    _console(UNFOLDED).print(table, crop=False)
 
 
 def print_json(value: Any) -> None:
@@ -119,7 +122,9 @@ def print_json(value: Any) -> None:
     print(text.replace("\x7f", "\\u007f"))
 
 
-def _console() -> Console:
+def _console(width: int | None = None) -> Console:
     plain: dict[str, Any] = {"markup": False, "highlight": False, "emoji": False}
     console = Console(**plain)
-    return console if console.is_terminal else Console(width=WIDEST, **plain)
+    if width or not console.is_terminal:
+        console.width = width or WIDEST
+    return console
