@@ -1,4 +1,4 @@
-"""The terminal: progress, tables that stay readable, or JSON.
+"""The terminal: progress, tables that stay readable, or JSON; rich is imported where it is used.
 
 Titles and names come from others: no text gets here that is not `printable`.
 """
@@ -12,18 +12,6 @@ from itertools import zip_longest
 from threading import TIMEOUT_MAX, Event, Thread
 from time import monotonic
 from typing import Any
-
-from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    Progress,
-    TaskProgressColumn,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
-from rich.table import Table
-from rich.text import Text
 
 from cases.errors import SceneError, printable
 from cases.files import is_number
@@ -39,21 +27,23 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
     On a terminal a bar, with the time that it took and the time that is left, cleared at the end;
     elsewhere a line every half minute, or as many seconds as `EVERY` says; 0: none.
     """
-    with _bar(label) if Console(stderr=True).is_terminal else _lines(label) as advance:
+    with _bar(label) if _console(stderr=True).is_terminal else _lines(label) as advance:
         yield advance
 
 
 @contextmanager
 def _bar(label: str) -> Iterator[Callable[[float], None]]:
+    from rich import progress as rich
+
     columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        TaskProgressColumn(),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        rich.TextColumn("{task.description}", markup=False),
+        rich.BarColumn(),
+        rich.TaskProgressColumn(),
+        rich.TimeElapsedColumn(),
+        rich.TextColumn("left"),
+        rich.TimeRemainingColumn(),
     )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with rich.Progress(*columns, console=_console(stderr=True), transient=True) as bar:
         task = bar.add_task(printable(label), total=1.0)
         yield lambda fraction: bar.update(task, completed=fraction)
 
@@ -92,6 +82,8 @@ def say_warnings(lines: Iterable[str]) -> None:
 
 def show_table(columns: list[str], rows: list[list[str]], styles: Sequence[str] = ()) -> None:
     """Print a table of text, folded to the terminal's width; `styles` are those of the rows."""
+    from rich.table import Table
+
     table = Table(box=None, pad_edge=False)
     for column in columns:
         table.add_column(printable(column), overflow="fold")
@@ -105,6 +97,9 @@ def show_numbers(columns: list[str], groups: dict[str, list[list[str]]]) -> None
 
     A terminal that is too narrow wraps whole lines, which can still be read and copied.
     """
+    from rich.table import Table
+    from rich.text import Text
+
     table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
     for i, column in enumerate(columns):
         table.add_column(printable(column), no_wrap=True, justify="right" if i else "left")
@@ -122,9 +117,10 @@ def print_json(value: Any) -> None:
     print(text.replace("\x7f", "\\u007f"))
 
 
-def _console(width: int | None = None) -> Console:
-    plain: dict[str, Any] = {"markup": False, "highlight": False, "emoji": False}
-    console = Console(**plain)
+def _console(width: int | None = None, stderr: bool = False) -> Any:
+    from rich.console import Console
+
+    console = Console(markup=False, highlight=False, emoji=False, stderr=stderr)
     if width or not console.is_terminal:
         console.width = width or WIDEST
     return console
