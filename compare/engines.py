@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -11,7 +11,7 @@ from cases.errors import SceneError
 from cases.kinds import AnyScene
 from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from compare.solvers.dem import DEM
-from compare.solvers.record import Answer, Solver, no
+from compare.solvers.record import HEADINGS, Answer, Solver, no
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -68,6 +68,21 @@ def solver(name: str) -> Solver:
 def solvers() -> list[Solver]:
     """Return all records, engines first."""
     return [solver(name) for name in names()]
+
+
+def by_model() -> dict[str, list[str]]:
+    """Return all names by the heading of their model, in the order of legends."""
+    found: dict[str, list[str]] = {heading: [] for heading in HEADINGS}
+    for one in solvers():
+        found[one.words.heading].append(one.name)
+    return found
+
+
+def in_order(found: Iterable[str]) -> list[str]:
+    """Return names in the order of legends, unknown ones last."""
+    wanted = set(found)
+    known = [name for of_model in by_model().values() for name in of_model if name in wanted]
+    return known + sorted(wanted - set(known))
 
 
 def selection() -> dict[str, dict[str | None, str]]:

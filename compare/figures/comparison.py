@@ -2,10 +2,9 @@
 
 from pathlib import Path
 
-from compare.figures.charts.static import draw
-from compare.figures.charts.waveforms import by_solutions
+from compare.figures.charts.waveforms import draw_solutions
 from compare.figures.export import save
-from compare.figures.subplots import curve_table
+from compare.figures.panels import curve_table
 from compare.figures.tables import alignment_frame, distance_frame, reading_frame
 from compare.misfit.pairs import Comparison
 from compare.runs.output import write_csv
@@ -19,7 +18,7 @@ def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
     comparison-readings.csv and comparison-alignment.csv."""
     folder = Path(out)
     curves = curve_table(comparisons).reset_index()
-    save(draw(NAME, by_solutions(comparisons)), folder, NAME, comparisons[0].scene.title, curves)
+    save(draw_solutions(comparisons), folder, NAME, comparisons[0].scene.title, curves)
     write_csv(folder / f"{NAME}-misfits.csv", distance_frame(comparisons))
     for name, table in (
         ("readings", reading_frame(comparisons)),

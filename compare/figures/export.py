@@ -14,7 +14,7 @@ from pandas import DataFrame
 from compare.figures.style import RC, WIDTH
 from compare.runs.output import write, write_csv
 
-DOTS = 160  # per inch of the PNG
+DOTS = 160  # per inch of the PNG, and of images in the SVG and the PDF
 DIGITS = 6  # of the numbers behind a figure
 
 
@@ -26,14 +26,12 @@ def blank(
     rc: dict[Any, Any] = RC,
     dpi: float | None = None,
 ) -> Iterator[Figure]:
-    """Yield an empty figure, sizes in inches; it is laid out by constraints afterwards, unless the
+    """Yield an empty figure, sizes in inches; matplotlib lays it out by constraints, unless the
     drawing lays it out itself."""
     with matplotlib.rc_context(rc):
-        figure = Figure(figsize=(width, height), dpi=dpi)
+        figure = Figure((width, height), dpi=dpi, layout=None if laid_out else "constrained")
         FigureCanvasAgg(figure)
         yield figure
-        if not laid_out:
-            figure.set_layout_engine("constrained")
 
 
 class Drawn(NamedTuple):
@@ -69,8 +67,9 @@ def save(
     if table is not None:
         write_csv(drawn.file("csv"), table, DIGITS)
     with matplotlib.rc_context(RC | {"svg.hashsalt": name}):
-        write_drawing(drawn.file("svg"), figure, metadata={"Title": title, "Date": None})
-        write_drawing(drawn.file("pdf"), figure, metadata={"Title": title, "CreationDate": None})
+        for kind, dated in (("svg", "Date"), ("pdf", "CreationDate")):
+            about = {"Title": title, dated: None}
+            write_drawing(drawn.file(kind), figure, dpi=DOTS, metadata=about)
         if png:
             write_drawing(drawn.file("png"), figure, dpi=DOTS)
     return drawn

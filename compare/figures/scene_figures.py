@@ -9,13 +9,12 @@ from compare.engines import ENGINES, applies, names, solve
 from compare.figures.charts.energy import energy
 from compare.figures.charts.peak_velocities import peak_velocities
 from compare.figures.charts.propagation import propagation
-from compare.figures.charts.spacetime import space_time
-from compare.figures.charts.spacetime_data import diagrams_of
+from compare.figures.charts.spacetime import diagrams_of, space_time
 from compare.figures.charts.spectra import spectra
 from compare.figures.charts.waveforms import waveforms
 from compare.figures.drawing.scene import scene_figure
 from compare.figures.figure import SceneFigure
-from compare.figures.subplots import variant_names
+from compare.figures.panels import variant_names
 from compare.misfit.pairs import Comparison
 from compare.misfit.ranking import own_exact
 

@@ -5,11 +5,9 @@ exact solutions are thin, dark and dashed over them. Hues are those of Okabe & I
 all kinds of colour blindness.
 """
 
-from functools import cache
 from typing import Any, NamedTuple
 
-from compare.engines import names, solver, solvers
-from compare.solvers.record import HEADINGS, Line
+from compare.engines import names, solver
 
 WIDTH = 11.0  # inches of every figure; the page shows it at the width of its column
 
@@ -35,29 +33,6 @@ class Style(NamedTuple):
 
 
 PERIOD = 18.0  # of the dash patterns, in line widths
-
-
-def _slot(first: float, last: float) -> tuple[float, tuple[float, float]]:
-    """Return a dash that fills only this part of each period.
-
-    Every solution has its own part: where all of them coincide, their dashes alternate.
-    """
-    return (PERIOD - first, (last - first, PERIOD - (last - first)))
-
-
-@cache
-def families() -> dict[str, dict[str, Style]]:
-    """Return the styles by model, as the legend groups them: heading, engines, exact solutions."""
-    found: dict[str, dict[str, Style]] = {heading: {} for heading in HEADINGS}
-    for one in solvers():
-        found[one.words.heading][one.name] = _style(one.line)
-    return found
-
-
-def _style(line: Line) -> Style:
-    dashes = _slot(*line.slot) if line.slot else "-"
-    return Style(line.colour, line.width, dashes, line.order)
-
 
 #: Styles of external curves, in order of files: black and grey, which no solution has, drawn
 #: between engines and exact solutions.
@@ -94,33 +69,35 @@ RC: dict[Any, Any] = {
     "font.size": 9.0,
     "axes.titlesize": 9.0,
     "axes.titlelocation": "left",
-    "axes.titley": 1.0,  # no numbers above; searching for them takes a tenth of the drawing time
     "axes.linewidth": 0.7,
     "axes.spines.top": False,
     "axes.spines.right": False,
+    "axes.xmargin": 0.0,
     "xtick.major.width": 0.7,
     "ytick.major.width": 0.7,
+    "legend.frameon": False,
     "svg.fonttype": "none",
-    "pdf.fonttype": 3,  # outlines: embedding TrueType takes longer than all drawing
-    "path.simplify": True,
-    "path.simplify_threshold": 0.5,  # points: half of the thinnest line
+    "path.simplify_threshold": 0.5,  # pixels: half of the thinnest line
 }
 
 
 def style(name: str) -> Style:
-    """Return the style of an engine or exact solution; grey for one without a style."""
-    if name in names():
-        return _style(solver(name).line)
-    return Style("#777777", 1.1, _slot(0, 9), 3)
+    """Return the style of an engine or exact solution; grey for one without a style.
+
+    Every exact solution fills its own part of each period of dashes: where all of them coincide,
+    their dashes alternate.
+    """
+    if name not in names():
+        return Style("#777777", 1.1, (PERIOD, (9, PERIOD - 9)), 3)
+    line = solver(name).line
+    if not line.slot:
+        return Style(line.colour, line.width, "-", line.order)
+    first, last = line.slot
+    dashes = (PERIOD - first, (last - first, PERIOD - (last - first)))
+    return Style(line.colour, line.width, dashes, line.order)
 
 
 def given_style(k: int, samples: int) -> tuple[Style, str]:
     """Return the style and the marker of the k-th external file with this many samples."""
     marker = MARKERS[k % len(MARKERS)] if samples <= MOST_MARKS else ""
     return GIVEN[k % len(GIVEN)], marker
-
-
-def in_order(drawn: set[str]) -> list[str]:
-    """Return names in the order of the legend, those without a style last."""
-    known = [name for family in families().values() for name in family if name in drawn]
-    return known + sorted(drawn - set(known))

@@ -7,7 +7,7 @@ import pandas as pd
 import xarray as xr
 
 from cases.records import Column
-from compare.figures.subplots import variant_names
+from compare.figures.panels import variant_names
 from compare.misfit.differences import peak_ratios
 from compare.misfit.pairs import Comparison, Row
 from compare.misfit.places import Place

@@ -1,31 +1,35 @@
 """Drawn numbers, in a multiple of the unit suited to their size."""
 
-from math import ceil, log10
 from typing import NamedTuple
 
-import numpy as np
+from compare.misfit.weight import QUANTITIES
+from results.labels import label
 
 MULTIPLES = {"G": 1e9, "M": 1e6, "k": 1e3, "": 1.0, "m": 1e-3, "µ": 1e-6, "n": 1e-9}
-FINE = 300  # least ratio of the largest number to the last drawn decimal
+
+#: SI units of the quantities of waveforms.
+UNITS = {name: label(name)["units"] for name in QUANTITIES}
 
 
 class Unit(NamedTuple):
-    """A multiple of an SI unit ("kPa"), its size in SI units, and the decimals of an image."""
+    """A multiple of an SI unit ("kPa") and its size in SI units."""
 
     name: str
     size: float
-    decimals: int
 
-    def drawn(self, values: np.ndarray) -> np.ndarray:
-        """Return SI values in this unit, rounded to the resolution of an image."""
-        return np.round(np.asarray(values) / self.size, self.decimals) + 0.0
+
+#: Units of waveforms on the page, by SI unit: the same for all scenes.
+DRAWN = {
+    "Pa": Unit("MPa", 1e6),
+    "m/s": Unit("m/s", 1.0),
+    "m": Unit("mm", 1e-3),
+    "rad": Unit("mrad", 1e-3),
+}
 
 
 def unit_for(si: str, largest: float) -> Unit:
     """Return the multiple of a unit that brings `largest` between 1 and 1000, or the unit itself
     if there is none."""
     sizes = {prefix + si: size for prefix, size in MULTIPLES.items()}
-    suits = [name for name, size in sizes.items() if 1 <= largest / size < 1000]
-    name = suits[0] if suits else si
-    number = largest / sizes[name]
-    return Unit(name, sizes[name], ceil(log10(FINE / number)) if number > 0 else 0)
+    suits = (Unit(name, size) for name, size in sizes.items() if 1 <= largest / size < 1000)
+    return next(suits, Unit(si, 1.0))

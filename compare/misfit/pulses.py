@@ -11,8 +11,7 @@ import xarray as xr
 
 from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
-from compare.engines import ENGINES
-from compare.figures.style import in_order
+from compare.engines import ENGINES, in_order
 from compare.misfit.pairs import Comparison
 
 
@@ -20,7 +19,7 @@ def waveforms(comparison: Comparison, quantity: str, index: int) -> dict[str, pd
     """Return each engine's waveform at the index-th receiver of a quantity, along y."""
     return {
         name: _along_axis(comparison.results[name], quantity, index)
-        for name in in_order(set(comparison.results))
+        for name in in_order(comparison.results)
         if name in ENGINES
     }
 

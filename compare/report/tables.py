@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import xarray as xr
 
-from compare.figures.subplots import variant_names
+from compare.figures.panels import variant_names
 from compare.misfit.differences import STRESS, VELOCITY
 from compare.misfit.pairs import Comparison, Pair, Row, meaning, pairs
 from compare.misfit.places import Place

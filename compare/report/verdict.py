@@ -6,7 +6,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from compare.engines import ENGINES
-from compare.figures.subplots import variant_names
+from compare.figures.panels import variant_names
 from compare.misfit.differences import (
     STRESS,
     VELOCITY,

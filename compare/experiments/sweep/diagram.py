@@ -20,13 +20,14 @@ from matplotlib.figure import Figure
 
 from cases.errors import SceneError
 from cases.files import read_text
+from compare.engines import in_order
 from compare.experiments.ablation.diagram import COLOURS
 from compare.experiments.sweep.axis import MEMBER
 from compare.experiments.sweep.ensemble import ENSEMBLE
 from compare.figures.export import blank
 from compare.figures.figure import SceneFigure
-from compare.figures.style import RC, WIDTH, in_order, style
-from compare.figures.subplots import UNITS
+from compare.figures.style import RC, WIDTH, style
+from compare.figures.units import UNITS
 from compare.misfit.places import Place, places_of
 from compare.scenes import find
 from results.netcdf import load_netcdf
@@ -110,7 +111,7 @@ def bands(results: dict[str, xr.Dataset], width: float = WIDTH, rc: dict[Any, An
     with blank(0.5 + TALL * rows, width, rc=rc) as figure:
         grid = figure.subplots(rows, columns, squeeze=False, sharex=True).ravel()
         for ax, place in zip(grid, places, strict=False):
-            for name in in_order(set(results)):
+            for name in in_order(results):
                 _draw_band(ax, results[name], name, place)
             ax.set_title(place.heading)
             ax.set_ylabel(UNITS[place.quantity])
@@ -119,7 +120,7 @@ def bands(results: dict[str, xr.Dataset], width: float = WIDTH, rc: dict[Any, An
         for ax in grid[len(places) - columns : len(places)]:
             ax.set_xlabel("time (ms)")
             ax.tick_params(labelbottom=True)
-        _legend(figure, in_order(set(results)))
+        _legend(figure, in_order(results))
     return figure
 
 

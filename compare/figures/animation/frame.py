@@ -21,10 +21,10 @@ from compare.figures.animation.snapshots import SceneSnapshots
 from compare.figures.animation.surface import Wave
 from compare.figures.animation.view_settings import ViewSettings, caption
 from compare.figures.export import blank
+from compare.figures.panels import Panel, panels
 from compare.figures.print.layout import wrapped
 from compare.figures.style import FIELD, RC, UNSIGNED, style
-from compare.figures.subplots import UNITS, Panel, panels
-from compare.figures.units import unit_for
+from compare.figures.units import UNITS, unit_for
 from compare.misfit.pairs import Comparison
 from results.snapshots import Snapshots
 

@@ -10,7 +10,7 @@ from cases.errors import SceneError
 from cases.kinds import AnyScene, checked
 from cases.schema.tables import Time
 from compare.engines import ENGINES, Progress, applies, solve
-from compare.figures.subplots import UNITS
+from compare.figures.units import UNITS
 from compare.solvers.dem import DEM
 from results.snapshots import Snapshots, snapshots_of
 

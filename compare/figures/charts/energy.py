@@ -1,28 +1,32 @@
 """The energy ledger over time: the load's work, its stored and dissipated parts, the residual."""
 
-from typing import Any, NamedTuple
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from compare.engines import ENGINES
-from compare.figures.charts.chart import Chart, ChartLine, Entry, Subplot
-from compare.figures.figure import SceneFigure, chart_figure
-from compare.figures.style import TERMS, Style, in_order, style
-from compare.figures.subplots import variant_names
+from compare.engines import ENGINES, in_order
+from compare.figures.charts.axes import Legend, chart, entry, set_heading, share
+from compare.figures.figure import SceneFigure
+from compare.figures.panels import variant_names
+from compare.figures.style import TERMS, Style, style
 from compare.figures.units import Unit, unit_for
 from compare.misfit.pairs import Comparison
 
 MOST = 480  # samples of a curve, and of the table
 LEAST = 1e-17  # lower limit of a drawn residual: below round-off
+RESIDUAL = "residual (of the largest work)"
 
 
 class Ledger(NamedTuple):
     """The ledger of one engine's run of one variant, since its first sample.
 
-    time : [n], s. terms : [n] by name, J, including work. residual : [n], the sum of all others
-    minus the work, over the largest work or, without work, the largest term.
+    time : [n], s. terms : [n] by name, J (J/m of a rock mass), including work. residual : [n], the
+    sum of all others minus the work, over the largest work or, without work, the largest term.
     """
 
     variant: str
@@ -32,10 +36,9 @@ class Ledger(NamedTuple):
     residual: np.ndarray
 
     @property
-    def missing(self) -> np.ndarray:
-        """The size of the residual, NaN where it is zero: its axis is logarithmic."""
-        size = np.abs(self.residual)
-        return np.where(size > LEAST, size, np.nan)
+    def drawn(self) -> dict[str, np.ndarray]:
+        """The terms that are not zero throughout, in the order of the legend."""
+        return {t: self.terms[t] for t in TERMS if t in self.terms and self.terms[t].any()}
 
 
 def ledgers_of(comparisons: list[Comparison]) -> list[Ledger]:
@@ -43,7 +46,7 @@ def ledgers_of(comparisons: list[Comparison]) -> list[Ledger]:
     return [
         _ledger(variant, engine, comparison.results[engine])
         for comparison, variant in zip(comparisons, variant_names(comparisons), strict=True)
-        for engine in in_order(set(comparison.results))
+        for engine in in_order(comparison.results)
         if "energy" in comparison.results[engine]
     ]
 
@@ -59,44 +62,15 @@ def _ledger(variant: str, engine: str, result: xr.Dataset) -> Ledger:
     return Ledger(variant, engine, result.time.values[kept], terms, residual[kept])
 
 
-def table(ledgers: list[Ledger]) -> pd.DataFrame:
-    """Return a row per variant, engine and sample; terms missing in a run are empty."""
-    return pd.concat(
-        pd.DataFrame(
-            {
-                "variant": ledger.variant,
-                "engine": ledger.engine,
-                "time (s)": ledger.time,
-                **{f"{term} (J)": values for term, values in ledger.terms.items()},
-                "residual (of the largest work)": ledger.residual,
-            }
-        )
-        for ledger in ledgers
-    ).reset_index(drop=True)
-
-
-def drawn_terms(ledgers: list[Ledger]) -> list[str]:
-    """Return the terms that are not zero throughout, in the order of the legend."""
-    return [t for t in TERMS if any(t in x.terms and x.terms[t].any() for x in ledgers)]
-
-
 def energy(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     """Return the figure of all ledgers; empty if no engine recorded one."""
     ledgers = ledgers_of(comparisons)
-    if not any(x.any() for ledger in ledgers for x in ledger.terms.values()):
+    largest = max((np.abs(x).max() for one in ledgers for x in one.terms.values()), default=0.0)
+    if not largest:
         return []
-    plane = comparisons[0].scene.kind == "rock mass"
-    unit = unit_for(
-        "J/m" if plane else "J",
-        max(np.abs(x).max() for ledger in ledgers for x in ledger.terms.values()),
-    )
-    variants = list(dict.fromkeys(ledger.variant for ledger in ledgers))
-    entries = [Entry(term, term, _of_term("dem", term)) for term in drawn_terms(ledgers)]
-    engines = in_order({ledger.engine for ledger in ledgers})
-    entries += [Entry(engine, engine, _of_engine(engine)) for engine in engines]
-    cells = [_cell(v, [x for x in ledgers if x.variant == v], unit) for v in variants]
-    title, chart = "Energy over time", Chart([cells], "time (ms)", {"": entries})
-    return [chart_figure(f"{name}-energy", title, _caption(ledgers), chart, table(ledgers))]
+    unit = unit_for("J/m" if comparisons[0].scene.kind == "rock mass" else "J", largest)
+    title, draw = "Energy over time", partial(_draw, ledgers, unit)
+    return [SceneFigure(f"{name}-energy", title, _caption(ledgers), draw, _table(ledgers))]
 
 
 def _caption(ledgers: list[Ledger]) -> str:
@@ -110,45 +84,47 @@ def _caption(ledgers: list[Ledger]) -> str:
     )
 
 
+def _table(ledgers: list[Ledger]) -> pd.DataFrame:
+    """Return a row per variant, engine and sample; terms missing in a run are empty."""
+    parts = []
+    for one in ledgers:
+        about = {"variant": one.variant, "engine": one.engine, "time (s)": one.time}
+        terms = {f"{term} (J)": values for term, values in one.terms.items()}
+        parts.append(pd.DataFrame({**about, **terms, RESIDUAL: one.residual}))
+    return pd.concat(parts, ignore_index=True)
+
+
+def _draw(ledgers: list[Ledger], unit: Unit) -> Figure:
+    variants = list(dict.fromkeys(one.variant for one in ledgers))
+    terms = [t for t in TERMS if any(t in one.drawn for one in ledgers)]
+    entries = [entry(term, _of_term("dem", term)) for term in terms]
+    entries += [entry(name, _of_engine(name)) for name in in_order(x.engine for x in ledgers)]
+    legend = Legend(entries, min(6, len(entries)))
+    with chart(legend, 1, len(variants), [2.2, 0.8], "time (ms)") as (figure, axes):
+        for row in axes[0]:
+            share(row)
+        axes[0, 0, 0].set_ylabel(f"energy ({unit.name})")
+        for variant, (upper, lower) in zip(variants, axes[0].T, strict=True):
+            set_heading(upper, variant)
+            set_heading(lower, "residual over the largest work", small=True)
+            for one in (x for x in ledgers if x.variant == variant):
+                _draw_ledger(upper, lower, one, unit)
+    return figure
+
+
+def _draw_ledger(upper: Axes, lower: Axes, one: Ledger, unit: Unit) -> None:
+    for term, values in one.drawn.items():
+        upper.plot(1e3 * one.time, values / unit.size, **_of_term(one.engine, term).of_line())
+    size = np.abs(one.residual)
+    drawn = np.where(size > LEAST, size, np.nan)  # the axis is logarithmic
+    lower.semilogy(1e3 * one.time, drawn, **_of_engine(one.engine).of_line())
+
+
 def _of_term(engine: str, term: str) -> Style:
-    return Style(TERMS[term], 2.0 if term == "work" else 1.4, _dashes(engine), 1)
-
-
-def _dashes(engine: str) -> Any:
-    """Return the dashes of an engine; dashes distinguish engines, colours terms."""
-    dashes = ENGINES[engine].line.ledger
-    return (0, dashes) if dashes else "-"
+    """Return the style of a term: colours distinguish terms, dashes engines."""
+    return Style(TERMS[term], 2.0 if term == "work" else 1.4, _of_engine(engine).dashes, 1)
 
 
 def _of_engine(engine: str) -> Style:
-    return style(engine)._replace(width=1.6, dashes=_dashes(engine))
-
-
-def _cell(variant: str, ledgers: list[Ledger], unit: Unit) -> list[Subplot]:
-    at = "at %{x:.2f} ms<extra>"
-    terms = [
-        ChartLine(
-            term,
-            _of_term(one.engine, term),
-            1e3 * one.time,
-            one.terms[term] / unit.size,
-            f"{term} %{{y:.4~g}} {unit.name} {at}{one.engine}</extra>",
-        )
-        for one in ledgers
-        for term in drawn_terms([one])
-    ]
-    missing = [
-        ChartLine(
-            one.engine,
-            _of_engine(one.engine),
-            1e3 * one.time,
-            one.missing,
-            f"%{{y:.2g}} residual {at}{one.engine}</extra>",
-        )
-        for one in ledgers
-    ]
-    label, heading = f"energy ({unit.name})", "residual over the largest work"
-    return [
-        Subplot(variant, label, terms, 2.2, share="terms"),
-        Subplot(heading, "", missing, 0.8, share="missing", is_log=True, is_minor=True),
-    ]
+    dashes = ENGINES[engine].line.ledger
+    return style(engine)._replace(width=1.6, dashes=(0, dashes) if dashes else "-")

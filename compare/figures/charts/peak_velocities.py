@@ -1,7 +1,5 @@
 """Maps of the peak particle velocity, for every engine with snapshots of its whole field."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np
@@ -13,10 +11,11 @@ from matplotlib.figure import Figure
 
 from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
+from compare.engines import in_order
 from compare.figures.export import blank
 from compare.figures.figure import SceneFigure
-from compare.figures.style import UNSIGNED, in_order
-from compare.figures.subplots import variant_names
+from compare.figures.panels import variant_names
+from compare.figures.style import UNSIGNED
 from compare.misfit.pairs import Comparison
 from compare.readings import peak_velocity_map
 from results.snapshots import snapshots_of
@@ -52,7 +51,7 @@ def cells_of(comparison: Comparison) -> dict[str, tuple[np.ndarray, np.ndarray]]
     """Return the drawn corners [cells, n, 2] (m) and the peak velocity [cells] (m/s) of every
     engine with snapshots."""
     found: dict[str, tuple[np.ndarray, np.ndarray]] = {}
-    for engine in in_order(set(comparison.results)):
+    for engine in in_order(comparison.results):
         result = comparison.results[engine]
         shots = snapshots_of(result)
         if shots is not None:

@@ -5,14 +5,19 @@ speed that of the f-k spectrum of all of them (`compare.readings`), with the the
 pillar (`dispersion_theory`).
 """
 
+from functools import partial
+
 import numpy as np
 import pandas as pd
+import xarray as xr
+from matplotlib.figure import Figure
 
 from cases.schema.scene import Scene
-from compare.figures.charts.chart import Chart, ChartLine, Entry, Subplot, solutions_legend
-from compare.figures.figure import SceneFigure, chart_figure
-from compare.figures.style import in_order, style
-from compare.figures.subplots import variant_names
+from compare.engines import in_order
+from compare.figures.charts.axes import chart, entry, set_heading, solutions_legend
+from compare.figures.figure import SceneFigure
+from compare.figures.panels import variant_names
+from compare.figures.style import Style, style
 from compare.misfit.pairs import Comparison
 from compare.readings import (
     dispersion,
@@ -47,28 +52,17 @@ def propagation(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     rows = {variant: curves for variant, one in named if (curves := curves_of(one))}
     if not rows:
         return []
-    legend = solutions_legend(comparisons, given=False)
-    theory = dict.fromkeys(k for row in rows.values() for k in row if k.endswith("theory"))
-    if theory:
-        legend["Theory"] = [Entry(k, k, _style(k)) for k in theory]
-    chart = Chart(
-        [
-            [[_subplot(variant, curves, what, f"{i}-{j}")] for j, what in enumerate(NAMES)]
-            for i, (variant, curves) in enumerate(rows.items())
-        ],
-        "frequency (Hz)",
-        legend,
-        is_lettered=True,
+    title, draw = (
+        "Transfer, dispersion and loss along the receivers",
+        partial(_draw, rows, comparisons),
     )
-    title = "Transfer, dispersion and loss along the receivers"
-    found = chart_figure(f"{name}-propagation", title, CAPTION, chart, table(rows), folded=True)
-    return [found]
+    return [SceneFigure(f"{name}-propagation", title, CAPTION, draw, table(rows), folded=True)]
 
 
 def curves_of(comparison: Comparison) -> Curves:
     """Return the curves of one variant; empty if fewer than LEAST receivers have a motion."""
     found: Curves = {}
-    for solution in in_order(set(comparison.results)):
+    for solution in in_order(comparison.results):
         result = comparison.results[solution]
         if "velocity" not in result or len(result["velocity"]) < LEAST:
             continue
@@ -90,7 +84,7 @@ def curves_of(comparison: Comparison) -> Curves:
     return found
 
 
-def _measured(result, heard: np.ndarray) -> dict[str, pd.Series]:
+def _measured(result: xr.Dataset, heard: np.ndarray) -> dict[str, pd.Series]:
     """Return one result's curves at the frequencies above the threshold (bool array `heard`)."""
     transfer, both = abs(transfer_function(result)), dispersion(result).phase_speed
     loss = 1 / quality_factor(result).quality
@@ -115,22 +109,20 @@ def table(rows: dict[str, Curves]) -> pd.DataFrame:
     return pd.DataFrame(columns).rename_axis("frequency (Hz)").reset_index()
 
 
-def _style(name: str):
+def _draw(rows: dict[str, Curves], comparisons: list[Comparison]) -> Figure:
+    theory = dict.fromkeys(k for row in rows.values() for k in row if k.endswith("theory"))
+    legend = solutions_legend(comparisons, {"Theory": [entry(k, _style(k)) for k in theory]})
+    with chart(legend, len(rows), len(NAMES), [2.1], "frequency (Hz)") as (figure, axes):
+        for row, (variant, found) in zip(axes[:, 0], rows.items(), strict=True):
+            for ax, what in zip(row, NAMES, strict=True):
+                set_heading(ax, variant)
+                ax.set_ylabel(what)
+                for name, curves in found.items():
+                    if what in curves:
+                        ax.plot(curves[what], **_style(name).of_line())
+    return figure
+
+
+def _style(name: str) -> Style:
     rock, _, theory = name.partition(", ")
     return style(THEORY[rock] if theory else name)
-
-
-def _subplot(variant: str, row: Curves, what: str, place: str) -> Subplot:
-    lines = [
-        ChartLine(
-            name,
-            _style(name),
-            curves[what].index.values,
-            curves[what].values,
-            f"%{{y:.4g}} at %{{x:.4~g}} Hz<extra>{name}</extra>",
-            f"{place}-{name}",
-        )
-        for name, curves in row.items()
-        if what in curves
-    ]
-    return Subplot(variant, what, lines)

@@ -1,34 +1,136 @@
-"""Space-time diagrams: y along the pillar over time, the motion as colour."""
+"""Space-time diagrams: y along the pillar over time, the motion as colour, by an engine, and the
+differences between engines or from exact solutions.
+"""
 
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
-import matplotlib
 import numpy as np
+import pandas as pd
+import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from cases.schema.scene import Scene
-from compare.figures.charts.spacetime_data import Diagram, Diagrams
+from compare.engines import ENGINES, in_order
 from compare.figures.export import blank
 from compare.figures.figure import SceneFigure
-from compare.figures.style import WIDTH
+from compare.figures.panels import FORCES, MOTION, ROTATION, axis_of, loudest
+from compare.figures.style import DIFFERENCE, FIELD
+from compare.figures.units import UNITS, Unit, unit_for
+from compare.misfit.metrics import motion
+from compare.misfit.pairs import pairs
+from compare.misfit.ranking import own_exact
 
-HEIGHT = 3.1  # inches
-LEFT, RIGHT, BETWEEN = 0.6, 0.15, 0.3  # inches beside the diagrams, and between two of them
-TOP, BOTTOM = 0.58, 0.82  # inches above and below them: headings, times and colours
-KEY, THICK = 0.26, 0.06  # inches: position and height of the colour bar
-COLOURS = 96  # of an image in print
-FINER = 2  # rows of the image per interval of places
+LEAST = 1e-9  # SI: smaller values count as no motion
+HEIGHT = 3.2  # inches
 LAYER: dict[str, Any] = {"color": "#111111", "linewidth": 1.1, "linestyle": (0, (4, 3))}
-NAMED: dict[str, Any] = {
-    "xycoords": ("axes fraction", "data"),
-    "xytext": (0, 2),
-    "textcoords": "offset points",
-    "ha": "right",
-    "fontsize": 7,
-}
+
+
+class Quantity(NamedTuple):
+    """The quantity drawn: a variable of the results, and its component (None: its only one)."""
+
+    variable: str
+    component: int | None
+
+    @property
+    def words(self) -> str:
+        """Variable and component: "shear x"."""
+        return f"{self.variable} {axis_of(*self)}".rstrip()
+
+    def of(self, result: xr.Dataset) -> np.ndarray:
+        """Return the motion [places, times] of a result, SI."""
+        values = motion(result, self.variable)
+        return values.reshape(*values.shape[:2], -1)[..., self.component or 0]
+
+
+class Diagram(NamedTuple):
+    """One diagram: its name, its values [places, times] in `unit`, the colours and the meaning of
+    their ends; `share` : the largest difference over the largest value, else None.
+    """
+
+    name: str
+    values: np.ndarray
+    unit: Unit
+    colours: str
+    limit: float
+    share: float | None = None
+
+    @property
+    def heading(self) -> str:
+        """Name and unit, and in the last line the range, or the size of a difference."""
+        if self.share is None:
+            inner = self.values[1:-1]  # the ends' stress is that of the load
+            least, most = (f"{x + 0.0:.4g}".replace("-", "−") for x in (inner.min(), inner.max()))
+            return f"{self.name}\n({self.unit.name})\nbetween the ends {least} to {most}"
+        one, other = self.name.split(" − ")
+        share = f"at most {100 * self.share:.2g} % of the largest"
+        return f"{one}\n− {other} ({self.unit.name})\n{share}"
+
+
+class Diagrams(NamedTuple):
+    """The diagrams of one figure of a variant over time [n] (s) and y [m] (m).
+
+    exact : whether they are the differences of engines from the exact solutions of their models.
+    """
+
+    exact: bool
+    quantity: Quantity
+    time: np.ndarray
+    y: np.ndarray
+    diagrams: list[Diagram]
+
+    def table(self) -> pd.DataFrame:
+        """Return every drawn value: a row per place and time."""
+        y, time = np.meshgrid(self.y, self.time, indexing="ij")
+        columns = {f"{d.name} ({d.unit.name})": d.values.ravel() for d in self.diagrams}
+        return pd.DataFrame({"y (m)": y.ravel(), "time (s)": time.ravel(), **columns})
+
+
+def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
+    """Return the diagrams of the first engine and of the differences between engines, then those of
+    the differences from the exact solution of each engine's own model.
+
+    Empty without motion. fields : of one variant, by name, as returned by `along_pillar`.
+    """
+    engines = [name for name in in_order(fields) if name in ENGINES]
+    if not engines:
+        return []
+    first = fields[engines[0]]
+    quantity = Quantity(*loudest(first, (FORCES, MOTION, ROTATION), least=LEAST))
+    values = {name: quantity.of(result) for name, result in fields.items()}
+    if not any(v.any() for v in values.values()):
+        return []
+    between = [p for p in pairs() if {p.one, p.other} <= set(engines)]
+    shown = [_diagram(engines[0], values[engines[0]], quantity)]
+    shown += [_difference(p.one, p.other, values, quantity) for p in between]
+    own = {engine: own_exact(engine, fields, scene) for engine in engines}
+    errors = [_difference(e, other, values, quantity) for e, other in own.items() if other]
+    places = first[first[quantity.variable].dims[0]].values
+    return [
+        Diagrams(exact, quantity, first.time.values, places, found)
+        for exact, found in ((False, shown), (True, errors))
+        if found
+    ]
+
+
+def _difference(one: str, other: str, values: dict[str, np.ndarray], quantity: Quantity) -> Diagram:
+    found = values[one] - values[other]
+    scale = float(np.abs(values[other]).max())
+    share = float(np.abs(found).max()) / scale if scale else 0.0
+    return _diagram(f"{one} − {other}", found, quantity, share)
+
+
+def _diagram(
+    name: str, values: np.ndarray, quantity: Quantity, share: float | None = None
+) -> Diagram:
+    """Return the diagram of SI values; share : for a difference."""
+    largest = float(np.abs(values).max())
+    unit = unit_for(UNITS[quantity.variable], largest)
+    colours = FIELD if share is None else DIFFERENCE
+    return Diagram(name, values / unit.size, unit, colours, largest / unit.size, share)
 
 
 def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneFigure:
@@ -38,14 +140,8 @@ def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneF
     """
     words = f"{shown.quantity.words} along the pillar over time, {variant}"
     title = f"Numerical error of {words}" if shown.exact else f"{words[0].upper()}{words[1:]}"
-    return SceneFigure(
-        name,
-        title,
-        _caption(scene, variant, shown),
-        partial(_figure, scene, shown),
-        shown.table(),
-        shown.exact,
-    )
+    caption, draw = _caption(scene, variant, shown), partial(_draw, scene, shown)
+    return SceneFigure(name, title, caption, draw, shown.table(), shown.exact)
 
 
 def _caption(scene: Scene, variant: str, shown: Diagrams) -> str:
@@ -61,55 +157,33 @@ def _caption(scene: Scene, variant: str, shown: Diagrams) -> str:
     )
 
 
-def _figure(scene: Scene, shown: Diagrams) -> Figure:
-    with blank(HEIGHT, laid_out=True) as figure:
-        columns = max(len(shown.diagrams), 2)
-        across = (WIDTH - LEFT - RIGHT - BETWEEN * (columns - 1)) / columns
-        axes: list[Axes] = []
-        for i, diagram in enumerate(shown.diagrams):
-            left = LEFT + i * (across + BETWEEN)
-            place, key = (
-                (left / WIDTH, low / HEIGHT, across / WIDTH, high / HEIGHT)
-                for low, high in ((BOTTOM, HEIGHT - BOTTOM - TOP), (KEY, THICK))
-            )
-            axes.append(figure.add_axes(place, sharex=axes[0] if i else None))
-            _draw(axes[i], figure.add_axes(key), diagram, shown, scene)
-            axes[i].tick_params(labelleft=i == 0)
-        for layer in scene.soft_layers:
-            axes[0].annotate("soft layer", (0.99, layer.y), **NAMED)
+def _draw(scene: Scene, shown: Diagrams) -> Figure:
+    columns = max(len(shown.diagrams), 2)
+    with blank(HEIGHT) as figure:
+        axes = figure.subplots(1, columns, sharex=True, sharey=True, squeeze=False)[0]
+        for ax, diagram in zip(axes, shown.diagrams, strict=False):
+            mesh = _draw_diagram(ax, diagram, shown)
+            ticks = MaxNLocator(4, symmetric=True)  # few, so that long numbers do not overlap
+            figure.colorbar(mesh, ax=ax, location="bottom", aspect=40, ticks=ticks)
+            for layer in scene.soft_layers:
+                ax.axhline(layer.y, **LAYER)
+        for ax in axes[len(shown.diagrams) :]:
+            ax.set_visible(False)
         axes[0].set_ylabel("y (m)")
     return figure
 
 
-def _draw(ax: Axes, key: Axes, diagram: Diagram, shown: Diagrams, scene: Scene) -> None:
-    time, y = 1e3 * shown.time[[0, -1]], shown.y[[0, -1]]
-    values = evenly(shown.y, diagram.values)
-    rows, columns = values.shape
-    # An image's extent is that of its pixels' edges: its points are half a pixel inside.
-    x_edge, y_edge = np.ptp(time) / (columns - 1) / 2, np.ptp(y) / (rows - 1) / 2
-    image = ax.imshow(
-        values,
-        # A palette, without interpolated points: files are 20 times smaller.
-        cmap=matplotlib.colormaps[diagram.colours].resampled(COLOURS),
-        interpolation="none",
+def _draw_diagram(ax: Axes, diagram: Diagram, shown: Diagrams) -> QuadMesh:
+    mesh = ax.pcolormesh(
+        1e3 * shown.time,
+        shown.y,
+        diagram.values,
         vmin=-diagram.limit,
         vmax=diagram.limit,
-        extent=(time[0] - x_edge, time[1] + x_edge, y[0] - y_edge, y[1] + y_edge),
-        origin="lower",
-        aspect="auto",
+        cmap=diagram.colours,
+        shading="gouraud",
+        rasterized=True,
     )
-    ax.set(xlim=time, ylim=y)
-    for layer in scene.soft_layers:
-        ax.axhline(layer.y, **LAYER)
-    ax.set_title(diagram.heading, pad=4)
-    ax.set_xlabel("time (ms)")
-    bar = key.figure.colorbar(image, cax=key, orientation="horizontal")
-    bar.outline.set_linewidth(0.5)
-    bar.set_ticks(MaxNLocator(4, symmetric=True))  # few, so that long numbers do not overlap
-
-
-def evenly(y: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return values [place, time] at equally spaced places, as images require: `FINER` rows per
-    interval between places."""
-    places = np.linspace(y[0], y[-1], FINER * (len(y) - 1) + 1)
-    return np.stack([np.interp(places, y, column) for column in values.T], axis=1)
+    ax.set(xlim=1e3 * shown.time[[0, -1]], ylim=shown.y[[0, -1]], xlabel="time (ms)")
+    ax.set_title(diagram.heading)
+    return mesh

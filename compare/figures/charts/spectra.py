@@ -1,20 +1,26 @@
 """Amplitude spectra of the waveforms, with the characteristic frequencies of the scene."""
 
+from functools import partial
 from math import cos, isfinite, pi, sin
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
+from scipy.optimize import brentq
 
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
-from compare.figures.charts.chart import Chart, ChartLine, Mark, Subplot, solutions_legend
-from compare.figures.figure import SceneFigure, chart_figure
-from compare.figures.overlays import UNITS as DRAWN_IN
+from compare.figures.charts.axes import GREY, chart, set_heading, share, solutions_legend
+from compare.figures.figure import SceneFigure
+from compare.figures.panels import Panel, in_page, panels
 from compare.figures.style import style
-from compare.figures.subplots import UNITS, Panel, in_page, panels
+from compare.figures.units import DRAWN, UNITS, Unit
 from compare.misfit.pairs import Comparison
 
+HEIGHT = 2.1  # inches
 DECADES = 5  # drawn below the largest amplitude
 NEAR = 1.25  # ratio of two marks below which their names are on opposite sides
 
@@ -89,7 +95,6 @@ def band_edge(impedance: float, stiffness: float, crossing: float) -> float:
     Rock Mech. Min. Sci. 37, 2000); divided by 2 cos(theta/2), which vanishes at the band's other
     edge, this is cos(theta/2) = sin(theta/2) / (2 kappa).
     """
-    from scipy.optimize import brentq
 
     def bloch(theta: float) -> float:
         return cos(theta / 2) - sin(theta / 2) * theta * impedance / (2 * stiffness * crossing)
@@ -134,29 +139,18 @@ class Spectra(NamedTuple):
     curves: dict[str, pd.Series]
 
     @property
-    def heading(self) -> str:
-        """Receiver and variant."""
-        return f"{self.panel.heading}, {self.panel.variant}"
-
-    @property
-    def unit(self) -> str:
-        """The drawn unit."""
-        return f"{DRAWN_IN[self.panel.quantity][1]}/Hz"
-
-    @property
-    def factor(self) -> float:
-        """Factor from SI to the drawn unit."""
-        return DRAWN_IN[self.panel.quantity][0]
+    def unit(self) -> Unit:
+        """The drawn unit of the waveform."""
+        return DRAWN[UNITS[self.panel.quantity]]
 
     @property
     def peak(self) -> float:
-        """The largest amplitude, in the drawn unit."""
-        return self.factor * max(float(curve.max()) for curve in self.curves.values())
+        """The largest amplitude, SI."""
+        return max(float(curve.max()) for curve in self.curves.values())
 
     def amplitude(self, frequency: float) -> float:
-        """Return the largest of all curves at a frequency (Hz), in the drawn unit."""
-        at = [np.interp(frequency, curve.index, curve.values) for curve in self.curves.values()]
-        return self.factor * float(max(at))
+        """Return the largest of all curves at a frequency (Hz), SI."""
+        return max(float(np.interp(frequency, c.index, c.values)) for c in self.curves.values())
 
 
 def spectra_of(panel: Panel) -> Spectra:
@@ -177,23 +171,14 @@ def _drawn(waveform: pd.Series, marks: list[Frequency]) -> pd.Series:
 
 
 def spectra(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
-    """Return the figure of all spectra, None without motion."""
+    """Return the figure of all spectra; empty without motion."""
     grid = [[spectra_of(panel) for panel in row] for row in in_page(panels(comparisons))]
     found = [s for row in grid for s in row]
     if not any(curve.any() for s in found for curve in s.curves.values()):
         return []
-    peaks = {s.unit: max(t.peak for t in found if t.unit == s.unit) or 1.0 for s in found}
-    chart = Chart(
-        [
-            [[_subplot(s, peaks[s.unit], f"{i}-{j}")] for j, s in enumerate(row)]
-            for i, row in enumerate(grid)
-        ],
-        "frequency (Hz)",
-        solutions_legend(comparisons, given=False),
-        is_log=True,
-    )
-    title, caption = "Amplitude spectra", _caption(found)
-    return [chart_figure(f"{name}-spectra", title, caption, chart, _table(found), folded=True)]
+    draw = partial(_draw, grid, comparisons)
+    title, caption, table = "Amplitude spectra", _caption(found), _table(found)
+    return [SceneFigure(f"{name}-spectra", title, caption, draw, table, folded=True)]
 
 
 def _caption(found: list[Spectra]) -> str:
@@ -214,42 +199,50 @@ def _table(found: list[Spectra]) -> pd.DataFrame:
     return pd.DataFrame(columns).rename_axis("frequency (Hz)").reset_index()
 
 
-def _subplot(one: Spectra, peak: float, place: str) -> Subplot:
-    """Return the axes of one receiver's spectra; peak : the largest of all in its unit."""
-    limits = 10.0**-DECADES * peak, 2 * peak
-    lines = [
-        ChartLine(
-            name,
-            style(name),
-            curve.index.values,
-            one.factor * curve.values,
-            f"%{{y:.3g}} {one.unit} at %{{x:.4~g}} Hz<extra>{name}</extra>",
-            f"{place}-{name}",
-        )
-        for name, curve in one.curves.items()
-    ]
-    return Subplot(
-        one.heading,
-        one.unit,
-        lines,
-        share=one.unit,
-        is_log=True,
-        limits=limits,
-        marks=tuple(_marks(one, limits)),
-    )
+def _draw(grid: list[list[Spectra]], comparisons: list[Comparison]) -> Figure:
+    legend, columns = solutions_legend(comparisons, {}), max(map(len, grid))
+    with chart(legend, len(grid), columns, [HEIGHT], "frequency (Hz)") as (figure, axes):
+        of_unit: dict[Unit, list[tuple[Axes, Spectra]]] = {}
+        for row, spectra in zip(axes[:, 0], grid, strict=True):
+            for ax, one in zip(row, spectra, strict=False):
+                of_unit.setdefault(one.unit, []).append((ax, one))
+        for unit, drawn in of_unit.items():
+            share(ax for ax, _ in drawn)
+            peak = max(one.peak for _, one in drawn) or 1.0
+            limits = 10.0**-DECADES * peak / unit.size, 2 * peak / unit.size
+            for ax, one in drawn:
+                _draw_spectra(ax, one)
+                ax.set_ylim(*limits)
+                _draw_marks(ax, one, limits)
+    return figure
 
 
-def _marks(one: Spectra, limits: tuple[float, float]) -> list[Mark]:
-    """Return the marks; a name is to the left if the next mark is near, and at the top where the
+def _draw_spectra(ax: Axes, one: Spectra) -> None:
+    set_heading(ax, f"{one.panel.heading}, {one.panel.variant}")
+    ax.set_ylabel(f"{one.unit.name}/Hz")
+    for name, curve in one.curves.items():
+        ax.loglog(curve.index, curve / one.unit.size, **style(name).of_line())
+    ax.yaxis.set_minor_locator(NullLocator())
+
+
+def _draw_marks(ax: Axes, one: Spectra, limits: tuple[float, float]) -> None:
+    """Draw the marks; a name is to the left if the next mark is near, and at the top where the
     curves are low."""
     following = [mark.frequency for mark in one.marks[1:]] + [np.inf]
-    low = limits[0] ** 0.25 * limits[1] ** 0.75
-    return [
-        Mark(
-            mark.frequency,
+    middle = limits[0] ** 0.25 * limits[1] ** 0.75
+    for mark, after in zip(one.marks, following, strict=True):
+        is_left = after < NEAR * mark.frequency
+        is_high = one.amplitude(mark.frequency) / one.unit.size < middle
+        ax.axvline(mark.frequency, color=GREY, linewidth=0.8, linestyle=":", zorder=1)
+        ax.annotate(
             mark.name,
-            after < NEAR * mark.frequency,
-            one.amplitude(mark.frequency) < low,
+            (mark.frequency, 0.97 if is_high else 0.03),
+            (-2 if is_left else 2, 0),
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+            rotation=90,
+            ha="right" if is_left else "left",
+            va="top" if is_high else "bottom",
+            fontsize=7,
+            color=GREY,
         )
-        for mark, after in zip(one.marks, following, strict=False)
-    ]

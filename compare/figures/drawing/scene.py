@@ -21,7 +21,7 @@ from compare.figures.drawing.pulses import draw_pulse, law_words
 from compare.figures.drawing.symbols import EDGE, INK, ROCK, SOFT
 from compare.figures.export import blank
 from compare.figures.figure import SceneFigure
-from compare.figures.subplots import variant_names
+from compare.figures.panels import variant_names
 from compare.misfit.pairs import Comparison
 
 MOST = 4  # drawings per scene

@@ -9,9 +9,10 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from cases.errors import SceneError
-from compare.engines import names, solver
+from compare.engines import in_order, names, solver
 from compare.figures import fonts
 from compare.figures.export import blank
+from compare.figures.panels import Panel, panels
 from compare.figures.print.layout import (
     MM,
     Appearance,
@@ -22,9 +23,7 @@ from compare.figures.print.layout import (
     cells,
     set_titles,
 )
-from compare.figures.style import in_order
-from compare.figures.subplots import UNITS, Panel, panels
-from compare.figures.units import Unit, unit_for
+from compare.figures.units import UNITS, Unit, unit_for
 from compare.misfit.pairs import Comparison
 
 MEASURED = 200  # dots per inch for measuring text
@@ -207,7 +206,7 @@ def _label_times(
 
 def _entries(found: list[Comparison], appearance: Appearance, words: Words) -> list[Line2D]:
     """Return the legend's entries: solutions in their order, then external files."""
-    names = in_order({name for comparison in found for name in comparison.results})
+    names = in_order(name for comparison in found for name in comparison.results)
     entries = [Line2D([], [], label=words.solution(n), **appearance.of_line(n)) for n in names]
     given = enumerate(found[0].besides)
     return entries + [

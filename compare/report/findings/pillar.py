@@ -6,7 +6,7 @@ import pandas as pd
 from cases.loads import load_history
 from compare.exact.bar import equivalent_bar, jointed_bar
 from compare.exact.blocks import lattice
-from compare.figures.subplots import variant_names
+from compare.figures.panels import variant_names
 from compare.misfit import pulses
 from compare.misfit.metrics import mean_period, misfit, relative_l2
 from compare.misfit.pairs import Comparison

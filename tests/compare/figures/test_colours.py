@@ -8,9 +8,8 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from compare.engines import ENGINES, names
-from compare.figures.charts.spacetime_data import DIFFERENCE, FIELD
-from compare.figures.overlays import variant_styles
-from compare.figures.style import TERMS, style
+from compare.figures.charts.overlays import variant_styles
+from compare.figures.style import DIFFERENCE, FIELD, TERMS, style
 
 #: Of linear RGB, at full severity; normal sight first.
 SIGHTS = {

@@ -9,9 +9,7 @@ from matplotlib.text import Text
 
 import cases
 from compare.engines import applies, solve
-from compare.figures.charts.static import draw
-from compare.figures.charts.waveforms import by_solutions, by_variants
-from compare.figures.overlays import (
+from compare.figures.charts.overlays import (
     MOST,
     REFERENCE,
     by_solution,
@@ -19,7 +17,8 @@ from compare.figures.overlays import (
     changed_key,
     variant_styles,
 )
-from compare.figures.subplots import panels
+from compare.figures.charts.waveforms import draw_solutions, draw_variants
+from compare.figures.panels import panels
 from compare.misfit.pairs import Comparison
 from compare.misfit.ranking import finest
 
@@ -75,8 +74,8 @@ def test_variants_of_one_key_share_a_pair_of_axes_an_engine(pillar, key):
         assert [t.name for t in waves] == ["a", "b"] and engine in overlay.heading
         for trace, comparison in zip(waves, found, strict=True):
             np.testing.assert_array_equal(trace.curve, comparison.results[engine].stress.values[0])
-    assert all(t.residual.abs().max() == 0 for t in jointed.residuals)
-    assert "at most" in bar.residual_heading and bar.reference == "jointed-bar"
+    assert all(r.abs().max() == 0 for r in jointed.residuals.values())
+    assert bar.residuals and bar.reference == "jointed-bar"
 
 
 def test_variants_that_differ_twice_or_record_something_else_do_not(pillar):
@@ -98,24 +97,24 @@ def test_a_residual_is_a_solution_less_the_reference_on_a_scale_of_its_own(pilla
     overlay = by_solution(panel)
     known = found.results["jointed-bar"].stress.values[0]
     sizes = []
-    for trace in overlay.residuals:
-        expected = found.results[trace.name].stress.values[0] - known
-        np.testing.assert_array_equal(trace.residual, expected)
+    for name, residual in overlay.residuals.items():
+        expected = found.results[name].stress.values[0] - known
+        np.testing.assert_array_equal(residual, expected)
         sizes.append(np.abs(expected).max())
-    assert {t.name for t in overlay.traces} - {t.name for t in overlay.residuals} == {"jointed-bar"}
+    assert {t.part for t in overlay.traces} - set(overlay.residuals) == {"jointed-bar"}
     share = 100 * max(sizes) / np.abs(known).max()
-    assert 1 < share < 50 and f"at most {share:.2g}\u00a0% of the peak" in overlay.residual_heading
-    lower = draw("fig", by_solutions([found])).axes[1]
+    lower = draw_solutions([found]).axes[1]
     low, high = lower.get_ylim()
     reach = max(np.abs(line.get_ydata()).max() for line in lower.lines)
     assert reach > 0.35 * (high - low)
-    assert overlay.residual_heading == lower.get_title(loc="left")
+    heading = lower.get_title(loc="left")
+    assert 1 < share < 50 and f"at most {share:.2g}\u00a0% of the peak" in heading
 
 
 def test_a_lone_solution_has_no_residual(pillar):
     (found,) = solved(pillar(**SHORT), by=("lattice",))
     found.results.pop("dem")
-    assert len(draw("fig", by_solutions([found])).axes) == 1
+    assert len(draw_solutions([found]).axes) == 1
 
 
 @pytest.mark.parametrize("count", range(2, MOST + 1))
@@ -129,7 +128,7 @@ def test_every_variant_is_seen_where_all_coincide(count):
 def test_headings_of_a_figure_do_not_meet(pillar):
     """Above panels and residuals, three engines beside each other."""
     found = solved(pillar(**SHORT), pillar(**SHORT, joints__damping_ratio=0.1))
-    figure = draw("fig", by_variants(by_variant(found)))
+    figure = draw_variants(by_variant(found))
     figure.canvas.draw()
     titles = {ax.get_title(loc="left") for ax in figure.axes}
     boxes = [t.get_window_extent() for t in figure.findobj(Text) if t.get_text() in titles - {""}]

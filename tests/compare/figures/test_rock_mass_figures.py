@@ -3,8 +3,8 @@
 import pytest
 
 from cases.read import load_tables
+from compare.figures.panels import curve_table, panels
 from compare.figures.scene_figures import figures_of
-from compare.figures.subplots import curve_table, panels
 from compare.figures.tables import distance_frame
 from compare.misfit.pairs import measure
 from compare.report.tables import misfit_table

@@ -16,7 +16,7 @@ from compare.figures.charts.spectra import (
     spectrum,
     tapered,
 )
-from compare.figures.subplots import panels
+from compare.figures.panels import panels
 
 LAYER = {"y": 20.0, "spacing_stiffness": 4.375e8}
 

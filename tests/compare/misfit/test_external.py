@@ -11,11 +11,10 @@ import dem
 from cases.errors import SceneError
 from cases.schema.tables import Prestress
 from compare.exact.blocks import lattice, spatial_lattice
-from compare.figures.charts.static import draw
-from compare.figures.charts.waveforms import by_solutions
+from compare.figures.charts.waveforms import draw_solutions
 from compare.figures.comparison import write_comparisons
 from compare.figures.export import DIGITS, write_csv
-from compare.figures.subplots import curve_table, panels
+from compare.figures.panels import curve_table, panels
 from compare.misfit import pairs
 from compare.misfit.alignment import distance_at, distances, lay_beside
 from compare.misfit.external import read_curves
@@ -347,7 +346,7 @@ def test_curves_are_in_table_figure_and_files(scene, tmp_path):
     ((panel,),) = panels([found])
     assert panel.given[two].max() == pytest.approx(1.1 * stress.max())
     assert [c for c in curve_table([found]) if c.startswith(one)]
-    lines = {line.get_gid(): line for line in draw("fig", by_solutions([found])).axes[0].lines}
+    lines = {line.get_gid(): line for line in draw_solutions([found]).axes[0].lines}
     np.testing.assert_allclose(lines["0-0-given-1"].get_ydata(), 1.1e-6 * stress, rtol=1e-12)
     write_comparisons([found], tmp_path / "out")
     assert one in (tmp_path / "out" / "comparison-misfits.csv").read_text()

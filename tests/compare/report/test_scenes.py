@@ -6,7 +6,7 @@ import pytest
 
 import cases
 from cases.errors import SceneError
-from compare.figures.subplots import curve_table, variant_names
+from compare.figures.panels import curve_table, variant_names
 from compare.misfit.pairs import Comparison
 from compare.report.report import build
 from compare.report.scenes import ROCK_MASSES, Solved, _key, asked_for

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from compare.exact.blocks import lattice, spatial_lattice
-from compare.figures.charts.static import draw
-from compare.figures.charts.waveforms import by_solutions
-from compare.figures.subplots import curve_table, panels
+from compare.figures.charts.waveforms import draw_solutions
+from compare.figures.panels import curve_table, panels
 from compare.misfit.pairs import Comparison
 
 RECORD = {"record__stress": [5.0], "record__velocity": [5.25], "time__duration": 0.01}
@@ -43,7 +42,7 @@ def test_variants_of_different_motion_share_a_figure_and_a_table(pillar):
         comparison(pillar, load__direction=[1.0, 0.0, 0.0]),
         comparison(pillar, record__velocity=[5.25, 9.75], **TWIST),
     ]
-    labels = [ax.get_ylabel() for ax in draw("fig", by_solutions(found)).axes]
+    labels = [ax.get_ylabel() for ax in draw_solutions(found).axes]
     assert [label for label in labels if label] == [
         "stress (MPa)",
         "velocity (m/s)",
@@ -78,7 +77,7 @@ def test_the_static_state_is_taken_from_a_waveform_and_said(pillar):
     (moving, _), (stressed, _) = panels(found)
     assert (moving.at_rest, stressed.at_rest) == (0.0, pytest.approx(2e6))
     np.testing.assert_allclose(stressed.curves["lattice"], moving.curves["lattice"], atol=1e-3)
-    upper = draw("fig", by_solutions(found[1:])).axes[0]
+    upper = draw_solutions(found[1:]).axes[0]
     assert upper.get_ylabel() == "stress (MPa)\nless 2 at rest"
     assert np.abs(upper.lines[1].get_ydata()).max() < 1.1
     column = curve_table(found[1:]).iloc[:, 0]

@@ -11,16 +11,13 @@ import xarray as xr
 
 from cases.kinds import AnyScene
 from cases.schema.scene import Scene
-from compare.figures.style import in_order
+from compare.engines import in_order
+from compare.figures.units import UNITS
 from compare.misfit.metrics import motion
 from compare.misfit.pairs import Comparison
 from compare.misfit.places import Place, places_of, recorded
 from compare.misfit.ranking import finest
-from compare.misfit.weight import FAINT, QUANTITIES
-from results.labels import label
-
-#: SI units of the quantities of waveforms.
-UNITS = {name: label(name)["units"] for name in QUANTITIES}
+from compare.misfit.weight import FAINT
 
 FORCES, MOTION, ROTATION = ("stress", "shear"), ("velocity",), ("rotation",)
 #: Quantities of panels at the receivers of a pillar, by their key of [record]: the first group that
@@ -96,7 +93,7 @@ class Panel(NamedTuple):
     @property
     def _names(self) -> list[str]:
         results = self.comparison.results
-        return [name for name in in_order(set(results)) if self.quantity in results[name]]
+        return [name for name in in_order(results) if self.quantity in results[name]]
 
     def _waveform(self, name: str, moving: bool) -> pd.Series:
         result = self.comparison.results[name]
@@ -132,7 +129,7 @@ def _moving(comparison: Comparison, quantity: str, receiver: int) -> list[tuple[
     """Return the components of a quantity that are not faint compared with the largest at a
     receiver, from the first solution that has it, with their names; the first without motion."""
     results = comparison.results
-    result = next((results[n] for n in in_order(set(results)) if quantity in results[n]), None)
+    result = next((results[n] for n in in_order(results) if quantity in results[n]), None)
     if result is None:
         return []
     peaks = np.abs(motion(result, quantity)[receiver]).max(axis=0)
@@ -142,21 +139,8 @@ def _moving(comparison: Comparison, quantity: str, receiver: int) -> list[tuple[
 
 
 def in_page(rows: list[list[Panel]]) -> list[list[Panel]]:
-    """Return the panels of variants arranged for a page's width: at most two side by side.
-
-    Variants down and receivers across; for more than two receivers the other way round, or in
-    sequence; in a rock mass each variant begins a row.
-    """
-    if max(map(len, rows)) <= 2:
-        return rows
-    every = [panel for row in rows for panel in row]
-    if len(every[0].place.at) > 1 or any(len(row) != len(rows[0]) for row in rows):
-        return [row[i : i + 2] for row in rows for i in range(0, len(row), 2)]
-    if len(rows) == 1:
-        return [[panel] for panel in every]
-    if len(rows) == 2:
-        return [list(column) for column in zip(*rows, strict=True)]
-    return [every[i : i + 2] for i in range(0, len(every), 2)]
+    """Return the panels of variants in rows of at most two; each variant begins a row."""
+    return [row[i : i + 2] for row in rows for i in range(0, len(row), 2)]
 
 
 def _panel(
@@ -167,7 +151,7 @@ def _panel(
     at: tuple[float, ...],
 ) -> Panel:
     """Return the panel of the quantity and component with the largest peak at a receiver."""
-    first = comparison.results[in_order(set(comparison.results))[0]]
+    first = comparison.results[in_order(comparison.results)[0]]
     quantity, component = loudest(first, groups, receiver)
     place = Place(quantity, axis_of(quantity, component), at)
     return Panel(comparison, name, place, receiver, component)
