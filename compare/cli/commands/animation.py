@@ -1,7 +1,10 @@
 """Commands that show the wave: as an animation, and in three dimensions."""
 
+import os
+import sys
+from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -15,10 +18,6 @@ from compare.cli.options import (
     app,
     load,
 )
-
-if TYPE_CHECKING:
-    from compare.figures.animation.snapshots import SceneSnapshots
-    from compare.figures.animation.view_settings import ViewSettings
 
 ScaleOption = Annotated[
     float | None,
@@ -52,53 +51,22 @@ def animate(
     _require_positive("--seconds", seconds)
     from compare.cli import terminal
     from compare.figures.animation import video
+    from compare.figures.animation.frame import Frame
+    from compare.figures.animation.settings import settings_for
 
     (one,) = load(scene, changes, variant, strict)
     path = out or Path(f"{_name(scene, one)}.mp4")
     video.refuse(path, frames)
-    from compare.figures.animation.frame import Frame, PlaneFrame
-
-    simulated, settings = _simulate(one, frames, scale)
+    simulated = _simulate(one, frames)
+    settings = settings_for(simulated.scene, simulated.found, scale)
     with terminal.progress("pictures") as advance:
-        kind = Frame if one.kind == "pillar" else PlaneFrame
-        frame = kind(simulated, settings, video.DOTS[path.suffix])
-        video.write_video(path, frame.image, frames, seconds, advance)
-    _show(path, simulated, settings.scale, as_json)
-
-
-def _simulate(
-    scene: "AnyScene", count: int, scale: float | None
-) -> tuple["SceneSnapshots", "ViewSettings"]:
-    from compare.cli import terminal
-    from compare.figures.animation.snapshots import take
-    from compare.figures.animation.view_settings import settings_for
-
-    with terminal.progress("both engines") as advance:
-        simulated = take(scene, count, advance)
-    return simulated, settings_for(simulated.scene, simulated.found, scale)
-
-
-def _require_positive(key: str, value: float | None) -> None:
-    if value is not None and not 0 < value < float("inf"):
-        raise SceneError(key, "", None, f"must be a positive number, not {value:g}")
-
-
-def _name(scene: str, one: "AnyScene") -> str:
-    """Return what a scene's files are called where the user does not say."""
-    return "-".join([Path(scene).stem, *one.name.split()])
-
-
-def _show(path: Path, shown: "SceneSnapshots", scale: float, as_json: bool) -> None:
-    from compare.cli.terminal import print_json, say
-
-    engines, reasons = list(shown.found), shown.reasons
-    if as_json:
-        facts = {"file": str(path), "engines": engines, "not_shown": reasons, "scale": scale}
-        print_json(facts)
+        frame = Frame(simulated, settings, video.DOTS[path.suffix])
+        video.write_video(path, frame.figure, frame.show, frames, seconds, advance)
+    if not as_json:
+        _say(path, simulated, settings.scale)
         return
-    say(f"{path}: {' and '.join(engines)}, displacements × {scale:,g}")
-    for name, reason in reasons.items():
-        say(f"{name} is not shown: {reason}")
+    facts = {"file": str(path), "engines": list(simulated.found)}
+    terminal.print_json(facts | {"not_shown": simulated.reasons, "scale": settings.scale})
 
 
 @app.command()
@@ -118,47 +86,82 @@ def view(
     """Show a scene by both engines, displaced and coloured by the wave.
 
     Pillars are shown in three dimensions, rock masses in their plane, coloured by displacement
-    magnitude. Opens a window with a slider over time; with --out, or without a display, writes an
-    image at the time T. Needs PyVista.
+    magnitude. Opens a window of PyVista with a slider over time; with --out, or without a display
+    or PyVista, writes an image at the time T.
     """
     _require_positive("--scale", scale)
-    _require_pyvista()
-    from compare.figures.animation.offscreen import has_display
-
     (one,) = load(scene, changes, variant, strict)
     at = one.time.duration / 2 if time is None else time
     if not 0 < at <= one.time.duration:
         allowed = f"must be greater than 0 and at most time.duration = {one.time.duration:g} s"
         raise SceneError("--time", "", None, f"{allowed}, not {at:g}")
-    if out is None and has_display():
-        _open(one, at, scale)
+    if out is None and _has_display() and find_spec("pyvista") is not None:
+        _open_window(one, at, scale)
     else:
         _write_picture(out or Path(f"{_name(scene, one)}.png"), one, at, scale)
 
 
-def _require_pyvista() -> None:
-    from importlib.util import find_spec
+def _open_window(scene: AnyScene, time: float, scale: float | None) -> None:
+    from compare.figures.animation.frame import colours_of
+    from compare.figures.animation.polygons import polygons_of
+    from compare.figures.animation.rendered import open_window
+    from compare.figures.animation.settings import DISPLACEMENT, settings_for
 
-    if find_spec("pyvista") is None:
-        raise SceneError("view", "", None, "needs PyVista: pip install 'jointwave[view]'")
+    simulated = _simulate(scene, FRAMES)
+    settings = settings_for(simulated.scene, simulated.found, scale, DISPLACEMENT)
+    bodies = {n: polygons_of(s, scene, settings) for n, s in simulated.found.items()}
+    i = round(time / scene.time.duration * (FRAMES - 1))
+    colours = colours_of(list(bodies.values()), settings)
+    open_window(bodies, colours, settings.quantity.label, simulated.time, i)
 
 
-def _open(scene: "AnyScene", time: float, scale: float | None) -> None:
-    from compare.figures.animation.view3d import View3D
-
-    window = View3D(*_simulate(scene, FRAMES, scale), window=True)
-    window.add_slider(round(time / scene.time.duration * (FRAMES - 1)))
-    window.open()
-
-
-def _write_picture(path: Path, scene: "AnyScene", time: float, scale: float | None) -> None:
-    from compare.figures.animation.offscreen import draw
+def _write_picture(path: Path, scene: AnyScene, time: float, scale: float | None) -> None:
+    from compare.figures.animation.frame import Frame
+    from compare.figures.animation.settings import DISPLACEMENT, settings_for
     from compare.figures.animation.snapshots import until
-    from compare.runs.output import refuse_foreign, write
+    from compare.figures.export import write_drawing
+    from compare.runs.output import refuse_foreign
 
     if path.suffix != ".png":
         raise SceneError("--out", str(path), None, "must end in .png")
     refuse_foreign(path, (b"\x89PNG",))
-    simulated, settings = _simulate(until(scene, time), 2, scale)
-    write(path, lambda new: draw(new, simulated, settings, 1))
-    _show(path, simulated, settings.scale, False)
+    simulated = _simulate(until(scene, time), 2)
+    settings = settings_for(simulated.scene, simulated.found, scale, DISPLACEMENT)
+    frame = Frame(simulated, settings, in_space=True)
+    frame.show(1)
+    write_drawing(path, frame.figure)
+    _say(path, simulated, settings.scale)
+
+
+def _simulate(scene: AnyScene, count: int) -> Any:
+    """Return this many snapshots of a scene by both engines."""
+    from compare.cli import terminal
+    from compare.figures.animation.snapshots import take
+
+    with terminal.progress("both engines") as advance:
+        return take(scene, count, advance)
+
+
+def _require_positive(key: str, value: float | None) -> None:
+    if value is not None and not 0 < value < float("inf"):
+        raise SceneError(key, "", None, f"must be a positive number, not {value:g}")
+
+
+def _name(scene: str, one: AnyScene) -> str:
+    """Return what a scene's files are called where the user does not say."""
+    return "-".join([Path(scene).stem, *one.name.split()])
+
+
+def _has_display() -> bool:
+    """Return whether a window can be opened."""
+    if not sys.platform.startswith("linux"):
+        return True
+    return any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY"))
+
+
+def _say(path: Path, shown: Any, scale: float) -> None:
+    from compare.cli.terminal import say
+
+    say(f"{path}: {' and '.join(shown.found)}, displacements × {scale:,g}")
+    for name, reason in shown.reasons.items():
+        say(f"{name} is not shown: {reason}")

@@ -1,1 +1,1 @@
-"""Animations and three-dimensional views of the pillars."""
+"""Films and views of the bodies of a scene."""

@@ -1,10 +1,15 @@
-"""Sequences of frames as MP4 or GIF, by the ffmpeg of imageio-ffmpeg."""
+"""Films as MP4 or GIF, by the ffmpeg of imageio-ffmpeg."""
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable
+from errno import EIO
 from pathlib import Path
+from subprocess import CalledProcessError
 from typing import Any
 
-import numpy as np
+import matplotlib
+from imageio_ffmpeg import get_ffmpeg_exe
+from matplotlib.animation import FFMpegWriter
+from matplotlib.figure import Figure
 
 from cases.errors import SceneError
 from compare.engines import Progress
@@ -16,28 +21,9 @@ BEGINS = {
     ".gif": (b"GIF87a", b"GIF89a"),
 }
 DOTS = {".mp4": 100, ".gif": 75}  # pixels per inch; sizes are even, as H.264 with 4:2:0 needs
-
-#: Options of ffmpeg. Every player supports H.264 in 4:2:0; its index comes first, so that it plays
-#: before it is fully loaded; a GIF has one palette, computed from all frames.
-ENCODING: dict[str, dict[str, Any]] = {
-    ".mp4": {
-        "codec": "libx264",
-        "pix_fmt_out": "yuv420p",
-        "output_params": ["-crf", "20", "-movflags", "+faststart"],
-    },
-    ".gif": {
-        "codec": "gif",
-        "pix_fmt_out": "pal8",
-        "output_params": [
-            "-filter_complex",
-            "split[a][b];[a]palettegen=reserve_transparent=0[p];[b][p]paletteuse=dither=none",
-        ],
-    },
-}
-
-MOST_OF_A_GIF = 400  # frames, 2.3 MB each
-
-Image = Callable[[int], np.ndarray]
+#: Every player shows H.264 in 4:2:0; its index comes first, so that it plays while it loads.
+ENCODING = {".mp4": ["-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart"], ".gif": []}
+MOST_OF_A_GIF = 400  # frames, 2.3 MB each: one palette is made of all
 
 
 def refuse(path: Path, count: int = 0) -> None:
@@ -51,41 +37,32 @@ def refuse(path: Path, count: int = 0) -> None:
 
 
 def write_video(
-    path: Path, picture: Image, count: int, seconds: float, progress: Progress | None = None
+    path: Path,
+    figure: Figure,
+    show: Callable[[int], object],
+    count: int,
+    seconds: float,
+    progress: Progress | None = None,
 ) -> Path:
-    """Write `count` frames, uint8 arrays [height, width, 4], lasting `seconds` in total.
+    """Write `count` frames of a figure, lasting `seconds` in total; the suffix selects the format.
 
-    The suffix selects the format: .mp4 is H.264, of even sizes; .gif repeats endlessly.
+    show : of (frame), changes the figure to it.
     """
     refuse(path, count)
+    codec = "libx264" if path.suffix == ".mp4" else "gif"
 
     def save(new: Path) -> None:
-        writer = _writer(new, picture(0).shape, count / seconds)
-        try:
+        rate: Any = count / seconds  # ffmpeg takes fractions
+        writer = FFMpegWriter(rate, codec=codec, extra_args=ENCODING[path.suffix])
+        with writer.saving(figure, str(new), figure.dpi):
             for i in range(count):
-                writer.send(picture(i))
+                show(i)
+                writer.grab_frame()
                 if progress is not None:
                     progress((i + 1) / count)
-        finally:
-            writer.close()
 
-    return write(path, save)
-
-
-def _writer(path: Path, shape: tuple[int, ...], rate: float) -> Generator[None, np.ndarray, None]:
-    """Return a generator that writes each frame sent to it, `rate` per second."""
-    from imageio_ffmpeg import write_frames
-
-    height, width, _ = shape
-    writer = write_frames(
-        str(path),
-        (width, height),
-        fps=rate,
-        pix_fmt_in="rgba",
-        quality=None,
-        macro_block_size=2,
-        ffmpeg_log_level="error",
-        **ENCODING[path.suffix],
-    )
-    writer.send(None)
-    return writer
+    with matplotlib.rc_context({"animation.ffmpeg_path": get_ffmpeg_exe()}):
+        try:
+            return write(path, save)
+        except CalledProcessError as error:
+            raise OSError(EIO, f"ffmpeg ended with code {error.returncode}", str(path)) from None

@@ -4,6 +4,7 @@ from math import floor, log10
 from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from cases.effects import is_spatial
 from cases.kinds import AnyScene
@@ -14,9 +15,10 @@ from results.snapshots import Snapshots
 #: Limits of drawn displacements: approach of two neighbours over the block's thickness; motion of a
 #: node along and across, over the pillar's length; rotation of a corner over half the largest side.
 CLOSER, FARTHER, ASIDE, TURNED = 0.8, 0.1, 0.04, 0.35
-THIN, THIN_IN_SPACE = 0.045, 0.03  # smallest legible ratio of the pillar's height to its length
+THIN = 0.045  # smallest legible ratio of the pillar's height to its length
 FARTHEST = 0.04  # largest displacement as drawn, relative to the size of a rock mass
 SILENT = 0.1  # axial stress over that of a plane wave of this motion: below it no axial wave
+ROUND = [factor * 10.0**power for power in range(-12, 19) for factor in (1, 2, 5)]
 
 
 class Quantity(NamedTuple):
@@ -37,13 +39,14 @@ class Quantity(NamedTuple):
 STRESS = Quantity("axial stress", "MPa", 1e-6, "compression positive")
 VELOCITY = Quantity("velocity across", "m/s", 1.0, "upwards positive")
 DISPLACEMENT = Quantity("displacement magnitude", "mm", 1e3, "")
+SPEED = Quantity("particle speed", "m/s", 1.0, "")
 
 
 class ViewSettings(NamedTuple):
     """Settings for drawing a scene.
 
     up : unit vector [3], upward direction of the picture; y is to the right, x for a rock mass.
-    scale : of the displacements. stretch : of the upward direction. quantity : shown by the
+    scale : of the displacements. stretch : of the pillar's thickness. quantity : shown by the
     colours.
     """
 
@@ -68,23 +71,31 @@ def caption(scene: AnyScene, settings: ViewSettings) -> str:
 
 
 def settings_for(
-    scene: AnyScene, found: dict[str, Snapshots], scale: float | None = None
+    scene: AnyScene,
+    found: dict[str, Snapshots],
+    scale: float | None = None,
+    of_mass: Quantity = SPEED,
 ) -> ViewSettings:
-    """Return the view settings for snapshots by engine; `scale` (of displacements) overrides ours.
+    """Return the view settings for snapshots by engine.
 
+    scale : of displacements, instead of ours. of_mass : the quantity shown in a rock mass.
     A row of blocks is viewed normal to the plane in which it is driven, so that its motion along
     and across its axis lies in the plane of the picture, as does a rock mass.
     """
     if not isinstance(scene, Scene):
-        return ViewSettings(np.array([0.0, 1.0, 0.0]), scale or scale_of(found), 1.0, DISPLACEMENT)
-    thin = THIN_IN_SPACE if is_spatial(scene) else THIN
-    ratio = scene.pillar.side / scene.pillar.length
-    wanted = max(1.0, thin / ratio)
-    stretch = next(f * d for d in 10.0 ** np.arange(12) for f in (1, 2, 5) if f * d >= wanted)
-    if scale is None:
-        largest = min(_largest_scale(scene, s, float(stretch)) for s in found.values())
-        scale = max(1.0, round_down(largest))
-    return ViewSettings(_upwards(scene), scale, float(stretch), _quantity(scene, found))
+        up, stretch, quantity = np.array([0.0, 1.0, 0.0]), 1.0, of_mass
+        largest = [
+            FARTHEST * np.ptp(s.points, axis=0).max() / np.linalg.norm(s.displacement, axis=2).max()
+            for s in found.values()
+            if s.displacement.any()
+        ]
+    else:
+        up, quantity = _upwards(scene), _quantity(scene, found)
+        wanted = THIN * scene.pillar.length / scene.pillar.side
+        stretch = next(one for one in ROUND if one >= max(1.0, wanted * (1 - 1e-12)))
+        largest = [_largest_scale(scene, s, stretch) for s in found.values()]
+    chosen = scale or max(1.0, round_down(min(largest, default=1.0)))
+    return ViewSettings(up, chosen, stretch, quantity)
 
 
 def _upwards(scene: Scene) -> np.ndarray:
@@ -110,40 +121,23 @@ def round_down(value: float) -> float:
     return power * max(k for k in (1, 2, 5) if k * power <= value * (1 + 1e-12))
 
 
-def scale_of(found: dict[str, Snapshots]) -> float:
-    """Return the exaggeration of a rock mass's displacements that makes the largest visible; at
-    least 1."""
-    size = max(float(np.ptp(s.points, axis=0).max()) for s in found.values())
-    largest = max(float(np.linalg.norm(s.displacement, axis=2).max()) for s in found.values())
-    return max(1.0, round_down(FARTHEST * size / largest)) if largest else 1.0
-
-
 def _largest_scale(scene: Scene, s: Snapshots, stretch: float) -> float:
     """Return the largest exaggeration of displacements that keeps the pillar recognisable."""
     p, length = calibrate(scene), scene.pillar.length
-    centres, spread = _by_block(s)
+    owner = np.zeros(len(s.points), dtype=int)
+    owner[s.cells] = s.block[:, None]
+    share = csr_matrix((1 / np.bincount(owner)[owner], (owner, np.arange(len(owner)))))
+    centres = np.stack([share @ u for u in s.displacement])
     limits = [
         (-np.diff(centres[..., 1], axis=1), CLOSER * p.spacing),
         (np.abs(s.displacement[..., 1]), FARTHER * length),
         (np.abs(s.displacement[..., [0, 2]]), ASIDE * length / stretch),
-        (spread, TURNED * max(p.spacing, p.side) / 2),
+        (
+            np.linalg.norm(s.displacement - centres[:, owner], axis=2),
+            TURNED * max(p.spacing, p.side) / 2,
+        ),
     ]
     return min((bound / x.max() for x, bound in limits if x.size and x.max() > 0), default=np.inf)
-
-
-def _by_block(s: Snapshots) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean displacement of every block [snapshots, blocks, 3], and the distances of the
-    nodes from it [snapshots, nodes], m."""
-    owner = np.zeros(len(s.points), dtype=int)
-    owner[s.cells] = s.block[:, None]
-    count = np.bincount(owner)
-    order = np.argsort(owner, kind="stable")
-    starts = np.concatenate([[0], np.cumsum(count)[:-1]])
-    present = count > 0
-    sums = np.add.reduceat(s.displacement[:, order], starts[present], axis=1)
-    means = np.zeros((len(s.time), len(count), 3))
-    means[:, present] = sums / count[present][:, None]
-    return means, np.linalg.norm(s.displacement - means[:, owner], axis=2)
 
 
 def _quantity(scene: Scene, found: dict[str, Snapshots]) -> Quantity:

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import cases
+from compare.figures.animation.settings import STRESS, VELOCITY, round_down, settings_for
 from compare.figures.animation.snapshots import take
-from compare.figures.animation.view_settings import STRESS, VELOCITY, round_down, settings_for
 from compare.scenes import find
 
 IN_SPACE = {"load__direction": [1.0, 0.0, 0.0]}
