@@ -71,7 +71,7 @@ DOORS = {
         "compare/report/render.py",
         "compare/report/section.py",
     ),  # what has just been written or read
-    *("compare/report/peers.py", "compare/experiments/sweep/diagram.py"),  # of a text in memory
+    "compare/report/peers.py",  # of a text in memory
     "cases/records.py",  # the same
     "compare/cli/pytest_plugin.py",  # once its size is known
 }

@@ -6,12 +6,16 @@ from pathlib import Path
 
 import pandas as pd
 
+from compare.cli.options import warn
 from compare.cli.terminal import print_json, progress, say, show_numbers, show_table
 from compare.engines import Progress
+from compare.experiments.cost.dry_run import show_runs
 from compare.runs.checkpoint.lock import locked
 from compare.runs.processes import started
 from compare.studies.store import Pool, on_pool, plain
 from compare.studies.summary import Summary
+from compare.studies.sweep import Sweep, Work, run
+from compare.studies.sweep_table import summarise
 from compare.text import table_cell
 
 LONGEST = 40  # characters of a cell that is not wrapped
@@ -36,6 +40,25 @@ def run_and_show(
         found = on_pool(processes, workers, lambda pool: work(pool, advance))
     if found is not None:
         show(found, as_json)
+
+
+def sweep(
+    asked: Sweep, work: Work, workers: int, dry: bool, as_json: bool, strict: bool = False
+) -> None:
+    """Run every case of a sweep and show its table; dry : only print estimates.
+
+    strict : treat warnings as errors. Raises SceneError if all cases fail.
+    """
+    warn(asked.scenes, strict)
+    if dry:
+        runs, failing = asked.runs(work)
+        show_runs(runs, as_json, list(failing.items()))
+        return
+
+    def done(pool: Pool | None, advance: Progress) -> Summary:
+        return summarise(asked, run(asked, work, pool, advance))
+
+    run_and_show(f"{len(asked.cases)} points", asked.out, workers, done, as_json)
 
 
 def show(found: Summary, as_json: bool) -> None:

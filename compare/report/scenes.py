@@ -15,11 +15,11 @@ from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments.cost import timings
-from compare.experiments.sweep.diagram import ensemble_in
 from compare.figures.scene_figures import along_pillar, figures_of, recorded_along
 from compare.misfit.pairs import Comparison, compare
 from compare.report.section import PAPER, SceneRequest, Section, begin, finish, make_section
 from compare.scenes import find, load
+from compare.studies.ensemble import ensemble_in
 from results.dataset import scene_hash
 
 #: The shipped scenes of rock masses that the page shows beside the paper's figures.

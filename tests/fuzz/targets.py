@@ -181,7 +181,7 @@ def mesh(data: bytes, folder: Path) -> str:
 SOLVERS = (
     "compare.runs.run.execute",
     "compare.misfit.pairs.compare",
-    "compare.experiments.sweep.runner.run",
+    "compare.studies.sweep.run",
     "compare.experiments.ablation.runner.run",
     "compare.experiments.planner.planner.plan",
     "compare.experiments.study.summary.run",

@@ -94,9 +94,8 @@ def run(
 
     wanted = jobs.wanted([e.value for e in engine], model or [])
     if swept or members:
-        from compare.experiments.sweep.case import Running
-        from compare.experiments.sweep.runner import sweep_of
-        from compare.experiments.sweep.summary import sweep
+        from compare.cli.study_view import sweep
+        from compare.studies.sweep import Running, sweep_of
 
         asked_for = sweep_of(scene, changes, variant, swept, out, members)
         sweep(asked_for, Running(wanted, vtx), workers, dry, as_json, strict)

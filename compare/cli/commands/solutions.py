@@ -81,13 +81,12 @@ def compare(
     from compare.misfit.ranking import deciding
 
     if swept or members:
-        from compare.experiments.sweep.case import Comparing
-        from compare.experiments.sweep.runner import sweep_of
-        from compare.experiments.sweep.summary import sweep
+        from compare.cli.study_view import sweep
+        from compare.studies.sweep import Comparing, sweep_of
 
         asked = sweep_of(scene, changes, variant, swept, out, members)
         curves = _read_curves(given, asked.scenes, align, strict)
-        work = Comparing(spectral, curves, align, out is not None, bool(members))
+        work = Comparing(spectral, curves, align, out is not None, out is not None and members > 0)
         sweep(asked, work, workers, dry, as_json, strict)
         return
     scenes = load(scene, changes, variant, strict)

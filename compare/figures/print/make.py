@@ -16,7 +16,7 @@ from matplotlib.text import Text
 from cases.errors import SceneError
 from cases.kinds import AnyScene
 from compare.engines import EXACT, Progress, applies, names, solve
-from compare.figures import fonts
+from compare.figures import bands, fonts
 from compare.figures.export import write_drawing
 from compare.figures.print.draw import draw, families_of
 from compare.figures.print.layout import MM, STYLES
@@ -142,16 +142,16 @@ def make(
 def make_bands(folder: Path, engines: list[str], request: FigureRequest) -> Path:
     """Draw the bands of an ensemble from its folder and write the figure; engines : "dem",
     "continuum", "exact"; empty: all in the folder."""
-    from compare.experiments.sweep.diagram import WAVEFORMS, bands, statistics_in
-
     kind, appearance = request.format, STYLES[request.style]
     starts = tuple(one for name in engines for one in (EXACT if name == "exact" else [name]))
-    found = {k: v for k, v in statistics_in(folder).items() if not engines or k.startswith(starts)}
+    found = {
+        k: v for k, v in bands.statistics_in(folder).items() if not engines or k.startswith(starts)
+    }
     if not found:
         raise SceneError("--engine", ", ".join(engines), None, f"has no results in {folder}")
     width = appearance.widths[request.columns - 1] * MM
-    figure = bands(found, width, appearance.rc(families_of(request.language)))
-    return save(figure, request.out, kind, WAVEFORMS, appearance.dpi)
+    figure = bands.draw(found, width, appearance.rc(families_of(request.language)))
+    return save(figure, request.out, kind, bands.TITLE, appearance.dpi)
 
 
 def _solvers(scene: AnyScene, runs: list[tuple[str, str | None]]) -> list[str]:

@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cases.errors import SceneError
-from compare.experiments.common import combinations
-from compare.experiments.sweep.axis import axes
+from compare.studies.sweep_keys import axes
 
 KEY = "joints.damping_ratio"
 
@@ -98,10 +97,8 @@ def test_a_key_is_given_once():
         axes(["nothing"], [])
 
 
-def test_several_keys_make_all_combinations():
+def test_several_keys_make_few_points():
     found = axes(["a=1,2", "b=x,y,z"], ["c"])
     assert found == {"a": [1, 2], "b": ["x", "y", "z"]}
-    points = list(combinations(found))
-    assert len(points) == 6 and points[1] == {"a": 1, "b": "y"}
     with pytest.raises(SceneError, match=r"20,000 points; at most 10,000"):
         axes(["a=1:2:100", "b=1:2:200"], [])

@@ -1,1 +1,0 @@
-"""Sweeps: one scene run or compared at every value of some keys, each in a folder, as one table."""

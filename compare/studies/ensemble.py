@@ -1,0 +1,124 @@
+"""Ensembles: members of a scene that differ in the seed of their joints, and their statistics.
+
+Members 1, 2, ... have the scene's own seed, the next one, ...; in a rock mass those of each joint
+set. They are points of a sweep, whose key is `member`.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from functools import partial
+from math import inf, nan
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import xarray as xr
+
+from cases.errors import SceneError
+from cases.kinds import AnyScene
+from compare.figures import bands
+from compare.figures.export import save
+from compare.figures.figure import SceneFigure
+from compare.runs.output import write_csv, write_dataset
+from compare.scenes import find
+from results.netcdf import load_netcdf
+
+MEMBER = "member"  # the key
+PERCENTILES = (5, 25, 50, 75, 95)
+STATISTICS = ("mean", *(f"p{q}" for q in PERCENTILES))
+#: What identifies the numbers of a row, besides the swept keys.
+OF_ROW = ("variant", "engine", "one", "other", "quantity", "x", "y")
+CAPTION = "At every time the median of all members, and the 5th to the 95th percentile."
+
+
+def seeds(scene: AnyScene, number: int) -> dict[str, int]:
+    """Return the changes that turn a scene into its member `number`, from 1; raises SceneError if
+    its joints are not random."""
+    scatter = getattr(scene, "scatter", None)
+    found = {} if scatter is None else {"scatter.seed": scatter.seed}
+    for i, one in enumerate(getattr(scene, "joint_sets", [])):
+        if one.seed is not None:
+            found[f"joint_sets.{i}.seed"] = one.seed
+    if not found:
+        allowed = "needs random joints: [scatter] or joint_sets.*.scatter, with a seed"
+        raise SceneError(scene.where, "--ensemble", None, allowed)
+    return {key: seed + number - 1 for key, seed in found.items()}
+
+
+def statistics(done: pd.DataFrame, keys: list[str], numbers: list[str]) -> pd.DataFrame:
+    """Return mean and percentiles over the members of each number of the completed rows.
+
+    One row per number: the swept keys, its identification, `number`, STATISTICS, and `members`, the
+    number of members that have it.
+    """
+    same = [key for key in (*keys, *OF_ROW) if key in done and key != MEMBER]
+    long = done.melt([key for key in same], numbers, "number")
+    long = long.replace({"value": [inf, -inf]}, nan).dropna(subset="value")
+    groups = long.groupby([*same, "number"], sort=False)["value"]
+    found = groups.describe([q / 100 for q in PERCENTILES])
+    found = found.rename(columns={f"{q}%": f"p{q}" for q in PERCENTILES} | {"count": "members"})
+    return found[[*STATISTICS, "members"]].astype({"members": int}).reset_index()
+
+
+def write(out: Path, numbers: pd.DataFrame, members: Iterable[tuple[Path, Path]]) -> list[Path]:
+    """Write ensemble.csv, and mean and percentiles of every waveform, with their figure.
+
+    numbers : from `statistics`. members : results of members, each after the folder for the
+    statistics of all members at the same point.
+    """
+    results: dict[Path, list[Path]] = {}
+    for folder, file in members:
+        results.setdefault(folder / f"{file.stem}{bands.END}", []).append(file)
+    files = [write_csv(out / "ensemble.csv", numbers)]
+    files += [write_dataset(place, waveforms(given)) for place, given in results.items()]
+    for folder, one in _figures(results):
+        drawn = save(one.figure, folder, one.name, one.title, one.table)
+        files += [drawn.file("csv"), *drawn.drawings]
+    return files
+
+
+def waveforms(files: list[Path]) -> xr.Dataset:
+    """Return mean and percentiles over the members of every waveform, at the same times and
+    receivers in all, with `statistic` as their first dimension."""
+    results = [load_netcdf(file).drop_encoding() for file in files]
+    first = results[0]
+    same = [
+        name
+        for name, one in first.data_vars.items()
+        if "time" in one.dims
+        and one.size
+        and all(name in other and other[name].shape == one.shape for other in results)
+    ]
+    same_grid: dict[str, Any] = {"join": "override", "coords": "minimal", "compat": "override"}
+    members = xr.concat([one[same] for one in results], MEMBER, **same_grid)
+    quantiles = members.quantile([q / 100 for q in PERCENTILES], MEMBER, keep_attrs=True)
+    quantiles = quantiles.drop_vars("quantile").rename(quantile="statistic")
+    found = [members.mean(MEMBER, keep_attrs=True), quantiles]
+    about = {key: first.attrs[key] for key in ("engine", "model") if key in first.attrs}
+    both = xr.concat(found, "statistic").assign_coords(statistic=list(STATISTICS))
+    return both.transpose("statistic", ...).assign_attrs(about, members=len(results))
+
+
+def ensemble_in(out: Path) -> tuple[Path, list[SceneFigure]]:
+    """Return the scene's file and the figures, with unique names, of a folder written by
+    `--ensemble`; raises SceneError for any other folder."""
+    try:
+        scene = find(load_netcdf(out / "sweep.nc").attrs["scene"])
+    except (OSError, ValueError, KeyError):
+        allowed = "must be a folder that --ensemble has written"
+        raise SceneError("--ensemble", str(out), None, allowed) from None
+    figures = []
+    for k, (folder, one) in enumerate(_figures(sorted(out.rglob(f"*{bands.END}")))):
+        title = ", ".join([one.title, *folder.relative_to(out).parts])
+        figures.append(replace(one, name=f"{one.name}-{k}", title=title))
+    return scene, figures
+
+
+def _figures(files: Iterable[Path]) -> Iterator[tuple[Path, SceneFigure]]:
+    """Yield the folders of files of statistics, each with the figure of its bands."""
+    for folder in dict.fromkeys(file.parent for file in files):
+        found = bands.statistics_in(folder)
+        if bands.shown_places(found):
+            draw = partial(bands.draw, found)
+            table = bands.table(found)
+            yield folder, SceneFigure("ensemble-waveforms", bands.TITLE, CAPTION, draw, table)
