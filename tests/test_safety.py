@@ -37,7 +37,8 @@ SOURCES = [p for package in PACKAGES for p in sorted((ROOT / package).rglob("*.p
 #: Calls that make code of data, and modules that do.
 CALLS = {"eval", "exec", "compile", "__import__"}
 OWNED = {"os": {"system", "popen"}, "importlib": {"import_module"}, "builtins": CALLS}
-MODULES = {"pickle", "cPickle", "dill", "cloudpickle", "marshal", "shelve", "yaml", "joblib"}
+OWNED["joblib"] = {"load", "Memory"}  # of files, by pickle
+MODULES = {"pickle", "cPickle", "dill", "cloudpickle", "marshal", "shelve", "yaml"}
 
 SCENE = """
 title = "short"
@@ -105,6 +106,7 @@ def faults_of(tree):
         ("subprocess.run('ls', shell=True)", "shell or allow_pickle"),
         ("np.load(f, allow_pickle=True)", "shell or allow_pickle"),
         ("os.system('ls')", "system"),
+        ("joblib.load(file)", "load"),
         ("re.compile('x')", None),
     ],
 )
