@@ -53,7 +53,6 @@ PARTS = (
         words="a joint stiffens as it closes",
         drawn="closure at most {maximum_closure:g} m",
         sample={"maximum_closure": 1e-3},
-        hard={"maximum_closure": 1e-6},
         made={},
         along=False,
     ),
@@ -67,7 +66,6 @@ PARTS = (
         words="slip weakens a joint",
         drawn="dynamic friction {dynamic_friction_angle:g}°",
         sample={"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3},
-        hard={"dynamic_friction_angle": 5.0, "weakening_distance": 1e-4},
         made={"dynamic_friction": lambda law: tangent(law.dynamic_friction_angle)},
         wrong=_needs_friction("dynamic_friction_angle"),
     ),
@@ -78,7 +76,6 @@ PARTS = (
         words="a joint dilates as it slips",
         drawn="dilation {dilation_angle:g}°",
         sample={"dilation_angle": 5.0, "dilation_distance": 1e-2},
-        hard={"dilation_angle": 8.0, "dilation_distance": 1e-3},
         made={"dilation": lambda law: tangent(law.dilation_angle)},
         wrong=_lifts_too_far,
     ),
@@ -91,8 +88,6 @@ PARTS = (
         drawn="rate and state, a = {direct_effect:g}, b = {evolution_effect:g}",
         sample={"direct_effect": 0.01, "evolution_effect": 0.015}
         | {"critical_slip_distance": 1e-4, "reference_rate": 1e-6},
-        hard={"direct_effect": 0.01, "evolution_effect": 0.03}
-        | {"critical_slip_distance": 1e-6, "reference_rate": 1e-6},
         others=("initial_state",),
         made={
             "initial_state": lambda law: (
@@ -112,7 +107,6 @@ PARTS = (
         words="a joint has a tensile strength",
         drawn="tensile strength {tensile_strength:g} Pa",
         sample={"tensile_strength": 1e5, "fracture_energy": 100.0},
-        hard={},
         made={"critical_opening": lambda law: 2 * law.fracture_energy / law.tensile_strength},
         along=False,
         instead_of=("tension",),

@@ -17,7 +17,7 @@ class LawPart(NamedTuple):
     without : the parameters of `joints.law.Law` that it brings, at their values in a joint without
     it beside ones with it. made : how those follow from the keys that are no keys themselves.
     words : what a joint with it does. drawn : the same with values, for drawings.
-    sample, hard : keys at common values, and at such that loads of hard cases go far beyond.
+    sample : keys at common values.
     along : whether it acts in shear only. instead_of : keys that contradict it.
     wrong : returns which key contradicts others and what is allowed, None where none does.
     """
@@ -28,7 +28,6 @@ class LawPart(NamedTuple):
     words: str
     drawn: str
     sample: dict[str, float]
-    hard: dict[str, float]
     made: dict[str, Callable[[Any], float]]
     others: tuple[str, ...] = ()
     along: bool = True

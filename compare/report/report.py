@@ -17,7 +17,6 @@ from compare.engines import Progress
 from compare.experiments.ablation import runner as ablation_runs
 from compare.experiments.ablation.summary import summarise as summarise_ablation
 from compare.experiments.cost.timings import measured_on
-from compare.experiments.robustness.summary import make_study as make_hard_cases
 from compare.experiments.scattering import summary as scattering
 from compare.experiments.study.study import load as load_study
 from compare.experiments.study.summary import REPORTED
@@ -33,6 +32,7 @@ from compare.report.scenes import ROCK_MASSES, Pool, Solved, asked_for, solve
 from compare.report.section import SceneRequest
 from compare.runs.output import write_text
 from compare.runs.workers import Workers
+from compare.studies.hard_cases import make_study as make_hard_cases
 from compare.studies.store import alone, on_executor
 from compare.studies.summary import Summary
 
@@ -173,7 +173,7 @@ def _untimed(
         cases = ablation_runs.reported()
         effects = threads.submit(ablation_runs.prepared, cases, out / "effects", _shared(pool))
         tell = part("hard cases")
-        stability = make_hard_cases(out / "studies", _shared(pool), False, tell) if hard else None
+        stability = make_hard_cases(out / "studies", _shared(pool), tell) if hard else None
         tell(1.0)  # also where they are left out
         effects.result()
         return _Untimed(stability, joints.result(), others.result())

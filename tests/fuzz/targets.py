@@ -180,12 +180,12 @@ def mesh(data: bytes, folder: Path) -> str:
 #: What would solve something: a command that gets so far has read all that it was given.
 SOLVERS = (
     "compare.runs.run.execute",
-    "compare.runs.comparison.compare",
+    "compare.misfit.pairs.compare",
     "compare.studies.sweep.run",
     "compare.experiments.ablation.runner.run",
     "compare.experiments.planner.planner.plan",
     "compare.experiments.study.summary.run",
-    "compare.experiments.robustness.summary.make_study",
+    "compare.studies.hard_cases.make_study",
     "compare.report.report.build",
     "compare.figures.print.make.make",
     "compare.figures.animation.snapshots.take",

@@ -123,7 +123,7 @@ def study(
     folder = out / Path(name).stem
     work: Callable[[Any, Any], Any]
     if name == "stability":
-        from compare.experiments.robustness import summary as hard
+        from compare.studies import hard_cases as hard
 
         title, work = hard.TITLE, lambda pool, tell: hard.make_study(out, pool, progress=tell)
     elif name in ("oblique-joint", "parallel-joints"):

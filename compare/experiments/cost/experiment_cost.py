@@ -8,13 +8,12 @@ from compare.cli.terminal import print_json, say, show_table
 from compare.experiments.ablation import runner as ablation
 from compare.experiments.cost import timings
 from compare.experiments.cost.dry_run import UNKNOWN, in_words
-from compare.experiments.robustness import run as robustness
-from compare.experiments.robustness.summary import NAME as HARD_CASES
 from compare.experiments.scattering import points as scattering
 from compare.experiments.study import summary as studies
 from compare.experiments.study.measure import PointRow
 from compare.experiments.study.study import load
 from compare.experiments.study.summary import REPORTED
+from compare.studies import hard_cases
 from compare.studies.store import Store
 
 
@@ -38,8 +37,8 @@ def _part(part: str, store: Store, keys: Sequence[str], rate: str) -> CommandPar
 
 def parts_of_study(name: str, out: Path) -> list[CommandPart]:
     """Return the curves of a study, the rows of the hard cases or the waves at joints."""
-    if name == HARD_CASES:
-        return [_hard_cases(out, slow=True)]
+    if name == hard_cases.NAME:
+        return [_hard_cases(out)]
     if name in scattering.SOLVERS:
         return [_joints(name, out)]
     study, stem = load(name), Path(name).stem
@@ -57,10 +56,10 @@ def _joints(name: str, out: Path, brief: bool = False) -> CommandPart:
     return _part(name, done, keys, scattering.RATE)
 
 
-def _hard_cases(out: Path, slow: bool) -> CommandPart:
-    keys = [robustness.key(place) for place in robustness.places(slow)]
-    rows = Store[robustness.CaseRow](robustness.CaseRow, out / HARD_CASES)
-    return _part("hard cases", rows, keys, robustness.RATE)
+def _hard_cases(out: Path) -> CommandPart:
+    rows = Store[hard_cases.HardRow](hard_cases.HardRow, out / hard_cases.NAME)
+    keys = list(map(hard_cases.key, hard_cases.hard_cases()))
+    return _part("hard cases", rows, keys, hard_cases.RATE)
 
 
 def parts_of_effects(wanted: Sequence[ablation.Variant], out: Path) -> list[CommandPart]:
@@ -90,7 +89,7 @@ def parts_of_report(scenes: Sequence[str], out: Path) -> list[CommandPart]:
         first,
         *of_studies,
         *of_joints,
-        _hard_cases(out / "studies", slow=False),
+        _hard_cases(out / "studies"),
         _part("effects", ablation.ablations(out / "effects"), effects, ablation.RATE),
     ]
 

@@ -1,1 +1,0 @@
-"""The robustness suite: hard cases, each with a criterion from theory."""

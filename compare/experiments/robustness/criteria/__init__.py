@@ -1,1 +1,0 @@
-"""Criteria of the robustness suite."""

@@ -1,0 +1,165 @@
+"""Blocks and joints in the plane: thin ones, short contacts, contrasts, friction."""
+
+from math import hypot, inf, radians, tan
+
+import numpy as np
+import pytest
+
+from cases.loads import history_of, step_means
+from cases.material.contact_points import contact_points
+from cases.material.rigid_blocks import rigid_joints
+from cases.material.rigid_step import jump
+from cases.material.rock import elastic_rock
+from cases.partition.locate import block_at
+from cases.partition.scene import partition_of
+from compare.engines import solve
+from compare.exact.rock_mass.block_lattice import at_points, masses
+from compare.exact.schemes.leapfrog import modes, of_modes
+from compare.misfit.metrics import relative_l2
+from hard_runs import CUBES, EPS, ERROR, FIFTHS, REFEREE, ROUND_OFF, HardRun
+
+BRICKS, GRAZING, SLIDING = "hard/struck-bricks", "hard/grazing-wave", "hard/sliding-bricks"
+LAW = {"normal_stiffness": 2e10, "shear_stiffness": 8e9}
+BEDS = {"name": "bed", "dip": 0.0, "spacing": 1.0} | LAW
+#: The joints' points have exact second moments, so that two blocks of a set that is far stiffer
+#: are one block in bending too.
+SOFT = BEDS | {"point_rule": "gauss"}
+STIFF = {"name": "stiff", "dip": 90.0, "spacing": 2.0, "point_rule": "gauss"}
+STIFF |= {"normal_stiffness": 2e18, "shear_stiffness": 8e17}
+CONTRAST = {"domain.size": [4.0, 2.0], "joint_sets": [SOFT, STIFF], "rock.intact_modulus": 1e29}
+CORNER = [[0.0, 0.0], [0.5, 0.0], [1.0, 0.999], [1.5, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]
+HELD = {
+    "domain": {"outline": CORNER, "least_width": 1e-4, "least_angle": 0.01},
+    "joint_sets": [{"name": "cross", "dip": 90.0, "spacing": 1.0} | LAW],
+}
+VARIANTS = (
+    "",
+    "contacts a thousandth as long as their blocks",
+    "blocks a thousandth as thin as their neighbours",
+    "blocks that end in a point of one degree",
+)
+BODIES = {name or "bricks": ({}, name) for name in VARIANTS}
+BODIES |= {"a block held by one corner": (HELD, ""), "a contrast of 1e8": (CONTRAST, "")}
+
+
+@pytest.mark.parametrize(("changes", "variant"), BODIES.values(), ids=BODIES)
+def test_free_blocks_move_as_leapfrog_in_closed_form(changes, variant):
+    """The modes are singular vectors of the roots of all contacts' stiffnesses, from the partition
+    and the joints' laws alone. Leapfrog errs by round-off, some eps a step."""
+    run = HardRun("dem", "leapfrog", changes, BRICKS, variant)
+    partition = partition_of(run.scene)
+    steps = np.rint(run.result["time"].values / run.dt).astype(int)
+    (load,) = run.scene.loads
+    force = step_means(history_of(load, load.amplitude), run.dt, int(steps[-1]) + 1)
+    own = modes(masses(run.scene, partition), root_of(run.scene, partition))
+    u = of_modes(own, unit_force(run.scene, partition), force, steps, run.dt)
+    exact = at_points(run.scene, partition, u.T).swapaxes(1, 2)
+    assert relative_l2(run.result["displacement"].values, exact) <= ROUND_OFF * run.steps
+
+
+def root_of(scene, partition):
+    """Return R [2 p, 3 N] of K = R^T R: sqrt(k) times the opening and the slip of every point."""
+    contacts, joints = partition.contacts, rigid_joints(scene, [])
+    points = contact_points(partition, contacts, scene.joint_sets)
+    normal, own = contacts.normal[points.contact], contacts.joint_set[points.contact]
+    along = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
+    found = np.zeros((2, len(own), partition.count, 3))
+    each = np.arange(len(own))
+    for row, axis, k in zip(found, (normal, along), (joints.normal, joints.shear), strict=True):
+        weight = np.sqrt(k[own] * points.length)[:, None]
+        for side, sign in ((0, -1), (1, 1)):
+            block = contacts.blocks[points.contact, side]
+            row[each, block] = sign * weight * jump(axis, points.arm[:, side])
+    return found.reshape(2 * len(own), -1)
+
+
+def unit_force(scene, partition):
+    """Return the forces on all degrees of freedom [3 N] per unit of the load."""
+    (load,) = scene.loads
+    at = np.array([load.at])
+    (block,) = block_at(partition, at)
+    found = np.zeros((partition.count, 3))
+    found[block] = jump(np.array([load.direction]), at - partition.centroid[block])[0]
+    return found.ravel()
+
+
+def test_waves_through_blocks_at_grazing_incidence_are_those_of_the_lattice():
+    """Exactly in time, to the phase error of the steps."""
+    run = HardRun("dem", "leapfrog", {}, GRAZING, "blocks, at 88 degrees")
+    exact = solve("block-lattice", run.scene)
+    found = relative_l2(run.result["velocity"].values, exact["velocity"].values)
+    assert found <= run.phase_error() + REFEREE
+
+
+@pytest.mark.parametrize(
+    "variant", ["", "at 88 degrees", "two joints a hundredth of a metre apart"]
+)
+def test_plane_waves_at_parallel_joints_are_the_exact_ones(variant):
+    """The exact field enters at all sides, so a wave is wrong by the phase that it loses on its way
+    through the domain: t = diagonal / b with S waves' speed b, in steps C (omega dt)^2 omega t, in
+    elements of size h (omega h / b)^4 omega t / 2880 (`element_error`). Between nodes a quadratic
+    is off by |u'''| h^3 / (72 sqrt 3), 1 / 125 of (omega h / b)^3 u."""
+    run = HardRun("continuum-jointed", "explicit", {}, GRAZING, variant)
+    name = "oblique-joint" if len(run.scene.joint_sets) == 1 else "parallel-joints"
+    exact, b = solve(name, run.scene), float(elastic_rock(run.scene.rock).s_speed)
+    way = run.peak * hypot(*np.ptp(run.scene.domain.corners, axis=0)) / b
+    in_element = run.peak * run.scene.numerics.continuum.size / b
+    bound = ERROR["explicit"] * (run.peak * run.dt) ** 2 * CUBES * way + REFEREE
+    bound += in_element**4 / 2880 * FIFTHS * way + in_element**3 / 125 * CUBES
+    for quantity in ("velocity", "displacement", "traction"):
+        found = relative_l2(run.result[quantity].values, exact[quantity].values)
+        assert found <= bound, quantity
+
+
+@pytest.mark.parametrize(
+    ("engine", "scheme", "changes"),
+    [
+        ("dem", "leapfrog", {}),
+        pytest.param(
+            "continuum-jointed",
+            "implicit",
+            {"rock.intact_modulus": 5e10, "numerics.continuum.size": 1.0},
+            marks=pytest.mark.slow,
+        ),
+    ],
+)
+def test_blocks_on_a_far_stiffer_set_are_one_block(engine, scheme, changes):
+    """The scene without that set, at the same step. A set of compliance delta over that of what
+    lies between (joints of rigid blocks, confined rock over its spacing) lowers a frequency by at
+    most delta / 2 of it in the mean over stresses, here taken four times for their concentration:
+    2 delta omega t of phase, and delta at once. Solving with a stiffness 1 / delta as large as the
+    rock's, implicit steps add eps / delta; others an eps a step."""
+    run = HardRun(engine, scheme, CONTRAST | changes, BRICKS)
+    alone = {"joint_sets": [SOFT]}
+    between = LAW["normal_stiffness"]
+    if engine == "dem":
+        plain = run.engine.prepare(run.read(**alone))
+        alone["step"] = run.dt / plain.critical * (1 + 1e-12)
+    else:
+        rock = elastic_rock(run.scene.rock)
+        between = float(rock.p_impedance * rock.p_speed) / STIFF["spacing"]
+    other = run.run(**alone)
+    assert run.dt == pytest.approx(other.attrs["dt"], rel=1e-9)
+    delta = between / STIFF["normal_stiffness"]
+    bound = delta * (1 + 2 * run.peak * run.duration)
+    bound += EPS / delta if scheme == "implicit" else ROUND_OFF * run.steps
+    found = relative_l2(run.result["displacement"].values, other["displacement"].values)
+    assert found <= bound
+
+
+@pytest.mark.parametrize(
+    ("engine", "scheme"), [("dem", "leapfrog"), ("continuum-jointed", "explicit")]
+)
+def test_no_joint_carries_more_shear_than_friction(engine, scheme):
+    """No more than c + sigma_n tan(phi) where it is closed, to round-off. What is recorded is a
+    mean over points of a joint, and the bound is linear in the stress, so it holds of the mean.
+    Joints must slide, and stay closed, for the test to say anything."""
+    run = HardRun(engine, scheme, {}, SLIDING)
+    law = run.scene.joint_sets[0]
+    normal, shear = np.moveaxis(run.result["traction"].values, -1, 0)
+    last = run.result["energy"].isel(time=-1)
+    assert float(last.sel(term="friction") / last.sel(term="work")) > 0.01
+    assert normal.min() >= 0
+    strength = (law.cohesion or 0.0) + normal * tan(radians(law.friction_angle))
+    above = float((np.abs(shear) - strength).max() / np.abs(normal).max())
+    assert -inf < above <= 10 * EPS

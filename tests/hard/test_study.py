@@ -1,0 +1,96 @@
+"""The study of hard cases: every row holds or says why it does not apply; its table and map."""
+
+from math import nan
+
+import numpy as np
+import pytest
+
+from compare.engines import ENGINES, solve
+from compare.studies import hard_cases, hard_map
+from compare.studies.hard_cases import NONE, STABLE, HardRow
+from compare.studies.hard_map import boundary, columns, computed, maps_of
+from hard_runs import CROSSED
+from numerics.critical_step import critical_step_of_modes
+
+CASES = hard_cases.hard_cases()
+#: Laws whose kernels take long to compile.
+LAWS = ("slip weakens", "stiffen", "dilate", "rate of slip")
+
+
+def rows():
+    for case in CASES:
+        slow = any(word in case.variant for word in LAWS) or (case.engine, case.scheme) in CROSSED
+        name = f"{case.title}, {case.engine} {case.scheme}"
+        yield pytest.param(case, id=name, marks=[pytest.mark.slow] if slow else [])
+
+
+@pytest.mark.parametrize("case", list(rows()))
+def test_row_holds_or_says_why_not(case):
+    """The run ends as it should, within the bounds on energy and misfit."""
+    row = hard_cases.row_of(case)
+    assert row.holds, row
+    assert row.ended == case.state or (row.ended == NONE and len(row.message) > 10)
+
+
+def test_every_case_is_run_by_some_engine_and_has_a_name_of_its_own():
+    names = [(case.title, case.engine, case.scheme) for case in CASES]
+    assert len(set(names)) == len(names) and len({case.title for case in CASES}) > 25
+    states = {case.state for case in CASES}
+    assert states == {STABLE, "refused", "stopped"}
+
+
+def test_row_that_is_out_of_bounds_does_not_hold():
+    """Nor one that ends otherwise than it should, or whose value is nan."""
+    row = HardRow("a case", "dem", "leapfrog", STABLE, STABLE, misfit=1e-3, misfit_bound=2e-3)
+    assert row.holds and row.margin == 2
+    assert not row._replace(misfit=3e-3).holds and not row._replace(misfit=nan).holds
+    assert not row._replace(ended="stopped").holds and row._replace(ended=NONE).holds
+
+
+def test_dissipated_energy_that_comes_back_is_seen(pillar):
+    """A viscous term that falls by a millionth of the work breaks the second law."""
+    result = solve("dem", pillar(joints__damping_ratio=0.1))
+    assert hard_cases.largest_fall(result) < 1e-12
+    work = float(np.abs(result.energy.sel(term="work")).max())
+    viscous = result.energy.values[list(result.term.values).index("viscous")]
+    viscous[-1] = viscous[:-1].max() - 1e-6 * work
+    assert hard_cases.largest_fall(result) == pytest.approx(1e-6, rel=0.1)
+
+
+@pytest.fixture(scope="module")
+def maps():
+    """Return a coarse map of every engine."""
+    return maps_of([computed(one) for one in columns(cells=8)])
+
+
+def test_no_cell_is_wrong_beyond_one_of_the_line(maps):
+    """Both stable and unstable cells are many, and all but those on the line are as theory says;
+    those of another limit are not."""
+    assert [one.engine for one in maps] == list(ENGINES)
+    for found in maps:
+        assert 0.2 < found.stable.mean() < 0.8
+        assert not found.far.any()
+        assert found._replace(stable=~found.stable).far.sum() > 20
+
+
+def test_line_is_the_critical_step_of_one_mode():
+    """x = omega dt / 2 and zeta = eta omega / 2 of the closed form that the engines use."""
+    omega, ratio = 3000.0, np.array([0.0, 0.01, 1.0, 10.0])
+    steps = [critical_step_of_modes(omega, 2 * z / omega) for z in ratio]
+    assert boundary(ratio) == pytest.approx(np.array(steps) * omega / 2, rel=1e-14)
+
+
+def test_files_table_and_sentences_tell_of_every_row(tmp_path, monkeypatch):
+    """Of the short pillar alone and coarse maps; a row that fails says so."""
+    few = [case for case in CASES if case.title == "short-pillar"]
+    monkeypatch.setattr(hard_cases, "hard_cases", lambda: few)
+    monkeypatch.setattr(hard_cases, "columns", lambda: hard_map.columns(("dem",), 5))
+    found = hard_cases.make_study(tmp_path)
+    assert (tmp_path / "stability.csv").read_text().count("\n") == len(few) + 1
+    assert (tmp_path / "stability-map.csv").read_text().count("\n") == 25 + 1
+    svg = (tmp_path / "stability.svg").read_text()
+    assert all(f"stability-{part}-0" in svg for part in ("map", "line"))
+    assert f"{len(few)} of {len(few)} rows hold" in found.sentences[0] and not found.failed
+    assert len(found.table.loc["short-pillar"]) == len(found.table) == len(few)
+    wrong = hard_cases.table([hard_cases.row_of(few[0])._replace(ended="stopped", message="why")])
+    assert wrong.iloc[0, -1] == "failed: why"
