@@ -247,8 +247,7 @@ def figure(
     columns : of the page, 1 or 2. style : "journal" or "screen".
     language : "en" or "zh". Raises SceneError where it would be taller than a page.
     """
-    from compare.figures.print.draw import draw
-    from compare.figures.print.layout import STYLES
+    from compare.figures.publication import STYLES, draw
 
     return draw(list(comparisons), STYLES[style], columns, language)
 

@@ -1,80 +1,89 @@
-"""Fonts for Chinese labels: an installed one that has the characters.
+"""Fonts of figures: DejaVu Sans, which comes with matplotlib, and an installed one for Chinese."""
 
-matplotlib reads only the first face of a font collection; for Noto and WenQuanYi that is a
-sans-serif face with all characters of the labels.
-"""
-
+from contextlib import suppress
 from functools import cache
+from pathlib import Path
 
 from matplotlib import font_manager
+from matplotlib.figure import Figure
 from matplotlib.ft2font import FT2Font
+from matplotlib.text import Text
 
-LATIN = "DejaVu Sans"  # comes with matplotlib
+from cases.errors import SceneError
 
-#: In order of preference: TrueType outlines can be embedded in every format unchanged.
+LATIN = "DejaVu Sans"
+
+#: Fonts with Chinese characters, in order of preference: those with TrueType outlines, which can
+#: be embedded in every format, come first.
 CHINESE = (
     "WenQuanYi Micro Hei",
     "WenQuanYi Zen Hei",
+    "Microsoft YaHei",
+    "SimHei",
+    "Heiti SC",
+    "Droid Sans Fallback",
     "Noto Sans CJK SC",
     "Noto Sans CJK JP",
     "Source Han Sans SC",
-    "Source Han Sans CN",
     "Noto Sans SC",
-    "Microsoft YaHei",
-    "SimHei",
     "PingFang SC",
-    "Heiti SC",
-    "Droid Sans Fallback",
 )
 HINT = "apt install fonts-wqy-microhei (or fonts-noto-cjk, for SVG and PNG)"
-NEEDED = "应力时间刚性块体"  # characters that a font for Chinese has
-
-
-def families() -> list[str]:
-    """Return the font families of text: Latin letters, then Chinese ones if installed."""
-    chinese = chinese_font()
-    return [LATIN] if chinese is None else [LATIN, chinese.name]
 
 
 @cache
-def chinese_font() -> font_manager.FontEntry | None:
-    """Return the font for Chinese labels; None if none is installed."""
-    _look_again()
-    installed: dict[str, font_manager.FontEntry] = {}
-    for entry in font_manager.fontManager.ttflist:
-        if entry.name in CHINESE and entry.weight in (400, "normal", "regular"):
-            installed.setdefault(entry.name, entry)
-    known = (installed[name] for name in CHINESE if name in installed)
-    return next((entry for entry in known if not missing(entry.fname, NEEDED)), None)
+def families() -> list[str]:
+    """Return the font families of text: Latin letters, then Chinese ones if installed."""
+    manager = font_manager.fontManager
+    for path in set(font_manager.findSystemFonts()) - {entry.fname for entry in manager.ttflist}:
+        with suppress(RuntimeError, OSError):  # matplotlib cannot read every font
+            manager.addfont(path)  # installed after matplotlib built its list
+    installed = set(manager.get_font_names())
+    return [LATIN, *(name for name in CHINESE if name in installed)][:2]
 
 
-def _look_again() -> None:
-    """Add fonts installed after matplotlib built its list of them."""
-    known = {entry.fname for entry in font_manager.fontManager.ttflist}
-    for path in font_manager.findSystemFonts():
-        if path not in known and any(part in path.lower() for part in ("cjk", "wqy", "han", "hei")):
-            font_manager.fontManager.addfont(path)
+def families_of(language: str) -> list[str]:
+    """Return the font families of a language; raises SceneError if none is installed."""
+    found = families()
+    if language == "zh" and len(found) == 1:
+        allowed = f"needs a font with Chinese characters: {HINT}"
+        raise SceneError("--language", "zh", None, allowed)
+    return found
 
 
-def file_of(family: str) -> str:
-    """Return the file of the regular face of an installed family."""
+def missing(text: str) -> set[str]:
+    """Return the characters of a text for which no font of ours has a glyph."""
+    known = {letter for family in families() for letter in FT2Font(_file(family)).get_charmap()}
+    return {letter for letter in text if not letter.isspace() and ord(letter) not in known}
+
+
+def refuse_unknown_letters(texts: list[str]) -> None:
+    """Raise SceneError if no font has a letter of the users' names."""
+    if found := missing("".join(texts)):
+        letters = " ".join(sorted(found)[:8])
+        raise SceneError("figure", "", None, f"no font here has {letters}; {HINT}")
+
+
+def refuse_postscript(figure: Figure) -> None:
+    """Raise SceneError if a figure has Chinese characters and their font has PostScript outlines,
+    which a PDF cannot embed as TrueType."""
+    text = "".join(part.get_text() for part in figure.findobj(Text))
+    latin = FT2Font(_file(LATIN)).get_charmap()
+    is_latin = all(letter.isspace() or ord(letter) in latin for letter in text)
+    if not is_latin and is_postscript(_file(family := families()[-1])):
+        allowed = (
+            f"cannot embed {family}, whose outlines are PostScript: write .svg or .png, or "
+            "apt install fonts-wqy-microhei"
+        )
+        raise SceneError("figure", "", None, allowed)
+
+
+def is_postscript(file: str) -> bool:
+    """Return whether a font, or the first of a collection, has PostScript outlines."""
+    content = Path(file).read_bytes()
+    start = int.from_bytes(content[12:16], "big") if content[:4] == b"ttcf" else 0
+    return content[start : start + 4] == b"OTTO"
+
+
+def _file(family: str) -> str:
     return str(font_manager.findfont(family, fallback_to_default=False))
-
-
-def number_of(family: str) -> int:
-    """Return the index of a family's face in its file: matplotlib may know only the first."""
-    return int(getattr(font_manager.findfont(family, fallback_to_default=False), "face_index", 0))
-
-
-def is_true_type(family: str) -> bool:
-    """Return whether a family's outlines are TrueType's, not PostScript's."""
-    from fontTools.ttLib import TTFont
-
-    with TTFont(file_of(family), fontNumber=number_of(family), lazy=True) as font:
-        return "glyf" in font
-
-
-def missing(file: str, text: str) -> set[str]:
-    """Return the characters of a text for which a font file has no glyph."""
-    glyphs = FT2Font(file).get_charmap()
-    return {letter for letter in text if not letter.isspace() and ord(letter) not in glyphs}

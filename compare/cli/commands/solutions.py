@@ -137,14 +137,14 @@ def figure(
 ) -> None:
     """Draw the waveforms of a scene as a figure for a paper.
 
-    A panel for each variant and receiver, 90 or 190 mm wide, in type of 7.5 and 8 points. PDF
-    and SVG embed their fonts. Each solution has its usual colour, and dashes that distinguish it
-    in greyscale. Without --engine, all solvers that apply are drawn.
+    A panel for each variant and receiver, 90 or 190 mm wide, in type of 7.5 and 8 points. Files
+    need no installed fonts. Each solution has its usual colour, and dashes that distinguish it in
+    greyscale. Without --engine, all solvers that apply are drawn.
 
     In place of a scene, a folder that --ensemble has written: median and bands of its waveforms.
     """
     from compare.cli import terminal
-    from compare.figures.print.make import FigureRequest, make, make_bands
+    from compare.figures.publication import FigureRequest, make, make_bands
     from compare.runs import jobs
 
     request = FigureRequest(style, columns, kind, language, out)

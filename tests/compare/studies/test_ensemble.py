@@ -99,7 +99,7 @@ def test_misfits_and_waveforms_of_a_comparison(command, tmp_path):
     assert (tmp_path / "ensemble-waveforms.png").read_bytes().startswith(b"\x89PNG")
     command("figure", tmp_path, "--engine", "dem", "--out", tmp_path / "bands.svg")
     drawn = (tmp_path / "bands.svg").read_text()
-    assert "dem" in drawn and "lattice" not in drawn and "@font-face" in drawn
+    assert "dem" in drawn and "lattice" not in drawn
     (asked,) = asked_for([SCENE], [tmp_path])
     (one,) = asked.besides
     assert one.name == "ensemble-waveforms-0" and list(one.table) == list(bands)
