@@ -14,7 +14,7 @@ import numpy as np
 
 from joints.closure import closure_stiffness
 from joints.dilation import lift, riding_stiffness
-from joints.formula import flags, formula
+from joints.formula import formula
 from joints.normal import normal_traction
 from joints.shear import UNLIMITED, cohesion_left, shear_return, shear_strength
 from joints.slide import after_slide
@@ -72,7 +72,6 @@ IN_MOTION = [
 ]
 
 
-@flags
 class Parts(NamedTuple):
     """Which parts the law has: constants of a compiled kernel.
 

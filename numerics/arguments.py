@@ -54,7 +54,9 @@ class Packed:
     """
 
     def __init__(self, *values: Any, distinct: bool = False):
-        members, words = _packed(values, distinct)
+        count = _arrays(values)
+        scopes = ((k, count) for k in range(count)) if distinct else None
+        members, words = _packed(values, scopes)
         self._numba_type_ = packed_type(members)
         self.values, self._words = values, np.array(words, dtype=np.int64)  # alive as long as this
         self.address = self._words.ctypes.data
@@ -64,9 +66,9 @@ packed_type = cache(PackedType)  # types take numba longer to make than all else
 
 
 @cache
-def pointer_to(dtype: str, ndim: int, distinct: bool) -> Pointer:
+def pointer_to(dtype: str, ndim: int, scope: tuple[int, int] | None) -> Pointer:
     """Return the type of a pointer to such an array."""
-    return Pointer(from_dtype(np.dtype(dtype)), ndim, distinct)
+    return Pointer(from_dtype(np.dtype(dtype)), ndim, scope)
 
 
 @cache
@@ -75,8 +77,16 @@ def tuple_of(members: tuple, kind: type) -> types.BaseTuple:
     return types.BaseTuple.from_types(members, None if kind is tuple else kind)
 
 
-def _packed(values: tuple, distinct: bool) -> tuple[tuple, list[int]]:
-    """Return the types of values and their words."""
+def _arrays(values: tuple) -> int:
+    """Return how many arrays there are among values, those in tuples included."""
+    return sum(
+        _arrays(value) if isinstance(value, tuple) else isinstance(value, np.ndarray)
+        for value in values
+    )
+
+
+def _packed(values: tuple, scopes: Iterator | None) -> tuple[tuple, list[int]]:
+    """Return the types of values and their words; arrays take their scopes in turn."""
     members: list[types.Type] = []
     words: list[int] = []
     for value in values:
@@ -85,10 +95,12 @@ def _packed(values: tuple, distinct: bool) -> tuple[tuple, list[int]]:
         elif isinstance(value, np.ndarray):
             if not value.flags.c_contiguous:
                 raise TypeError("kernels require contiguous arrays")
-            members.append(pointer_to(value.dtype.char, value.ndim, distinct))
+            members.append(
+                pointer_to(value.dtype.char, value.ndim, next(scopes) if scopes else None)
+            )
             words += value.ctypes.data, *value.shape
         elif isinstance(value, tuple):
-            within, more = _packed(value, distinct)
+            within, more = _packed(value, scopes)
             members.append(tuple_of(within, type(value)))
             words += more
         elif isinstance(value, float):

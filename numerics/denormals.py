@@ -12,6 +12,8 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from joints.formula import formula
+
 MACHINE = platform.machine().lower()
 X86 = MACHINE in ("x86_64", "amd64")
 ARM = MACHINE in ("aarch64", "arm64")
@@ -46,8 +48,7 @@ def _write(builder, value):
 
 
 @intrinsic
-def flush_tiny(typing):
-    """Flush denormals to zero in this thread from now on; return the setting for `restore_tiny`."""
+def _flush(typing):
 
     def generate(context, builder, signature, arguments):
         if not X86 and not ARM:
@@ -60,8 +61,7 @@ def flush_tiny(typing):
 
 
 @intrinsic
-def restore_tiny(typing, old):
-    """Restore this thread's handling of denormals before `flush_tiny`."""
+def _restore(typing, old):
 
     def generate(context, builder, signature, arguments):
         if X86:
@@ -71,3 +71,17 @@ def restore_tiny(typing, old):
         return context.get_dummy_value()
 
     return types.none(types.int64), generate
+
+
+# An intrinsic has another name in every process: a kernel that closed over one would never be found
+# in the cache.
+@formula
+def flush_tiny():
+    """Flush denormals to zero in this thread from now on; return the setting for `restore_tiny`."""
+    return _flush()
+
+
+@formula
+def restore_tiny(old):
+    """Restore this thread's handling of denormals before `flush_tiny`."""
+    _restore(old)

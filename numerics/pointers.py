@@ -25,15 +25,13 @@ from numba.extending import lower_builtin, models, register_model
 class Pointer(types.Type):
     """The type of a pointer to a contiguous array of so many dimensions.
 
-    distinct : for `joints.formula`, whether it overlaps no other that a formula is given.
+    scope : its number among arrays that do not overlap, and their count; None where it may overlap
+    any other. Loops over arrays that do not overlap are vectorised without a check of it.
     """
 
-    get_item: Any  # how items are read and written
-    set_item: Any
-
-    def __init__(self, dtype: Any, ndim: int, distinct: bool):
-        self.dtype, self.ndim, self.distinct = dtype, ndim, distinct
-        super().__init__(f"pointer({dtype}, {ndim}, {distinct})")
+    def __init__(self, dtype: Any, ndim: int, scope: tuple[int, int] | None):
+        self.dtype, self.ndim, self.scope = dtype, ndim, scope
+        super().__init__(f"pointer({dtype}, {ndim}, {scope})")
 
 
 @register_model(Pointer)
@@ -84,7 +82,7 @@ def _index_types(kind: Pointer, index: Any) -> Any:
     """Return the types of an index and of the item."""
     if isinstance(index, types.Integer):
         rest = kind.ndim - 1
-        return types.intp, Pointer(kind.dtype, rest, kind.distinct) if rest else kind.dtype
+        return types.intp, Pointer(kind.dtype, rest, kind.scope) if rest else kind.dtype
     if isinstance(index, types.BaseTuple) and len(index) == kind.ndim:
         return types.UniTuple(types.intp, kind.ndim), kind.dtype
     return None, None
@@ -136,7 +134,7 @@ def get_item(context, builder, sig, args):
     pointer, index = args
     place = _place(builder, sig.args[0], pointer, _indices(builder, index))
     if not isinstance(sig.return_type, Pointer):
-        return builder.load(place)
+        return _in_scope(builder, sig.args[0], builder.load(place))
     row = cgutils.create_struct_proxy(sig.return_type)(context, builder)
     row.data = place
     for k, length in enumerate(_lengths(builder, sig.args[0], pointer)[1:]):
@@ -148,7 +146,17 @@ def get_item(context, builder, sig, args):
 def set_item(context, builder, sig, args):
     """Set a number."""
     pointer, index, value = args
-    builder.store(value, _place(builder, sig.args[0], pointer, _indices(builder, index)))
+    place = _place(builder, sig.args[0], pointer, _indices(builder, index))
+    _in_scope(builder, sig.args[0], builder.store(value, place))
 
 
-Pointer.get_item, Pointer.set_item = staticmethod(get_item), staticmethod(set_item)
+def _in_scope(builder, kind, access):
+    """Return a load or store that LLVM knows to touch no other array of the same scopes."""
+    if kind.scope is not None:
+        own, count = kind.scope
+        domain = builder.module.add_metadata(["packed arrays"])
+        scopes = [builder.module.add_metadata([str(k), domain]) for k in range(count)]
+        others = scopes[:own] + scopes[own + 1 :]
+        access.set_metadata("alias.scope", builder.module.add_metadata([scopes[own]]))
+        access.set_metadata("noalias", builder.module.add_metadata(others))
+    return access

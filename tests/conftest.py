@@ -20,13 +20,10 @@ from threading import current_thread, main_thread
 import numba
 import pytest
 from hypothesis import settings
-from numba.core.registry import cpu_target
-from numba.core.sigutils import normalize_signature
 
 import cases
 from cases.errors import InterruptedRun
 from compare.runs.garbage import collect_rarely
-from joints.formula import KNOWN, shortcuts
 from numerics import jit
 from results.arrays import copied, fill
 
@@ -206,32 +203,23 @@ def _resident():
     return getrusage(RUSAGE_SELF).ru_maxrss * 1024
 
 
-def _in_a_child(compiling, lock):
+def _in_a_child(kernel, types):
     """Compile a kernel in a child process where this one has become large, and load it from the
     cache: numba never frees what it compiles with, several MB a kernel."""
-    kernel = compiling.__self__
-
-    def compiled(signature):
-        target, types = cpu_target.target_context, normalize_signature(signature)[0]
-        large = _resident() > LARGE
-        alone = current_thread() is main_thread()  # a child would keep the locks of another thread
-        if large and alone and kernel._cache.load_overload(types, target) is None:
-            with shortcuts():
-                target.refresh()  # once, not in every child
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", DeprecationWarning)  # of threads, which only wait
-                child = os.fork()
-            if child == 0:
-                with suppress(BaseException):
-                    compiling(signature)
-                os._exit(0)
-            os.waitpid(child, 0)
-        return compiling(signature)
-
-    return IN_ONE_PROCESS(compiled, lock)
+    alone = current_thread() is main_thread()  # a child would keep the locks of another thread
+    if alone and _resident() > LARGE:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # of threads, which only wait
+            child = os.fork()
+        if child == 0:
+            with suppress(BaseException):
+                COMPILE_FOR(kernel, types)
+            os._exit(0)
+        os.waitpid(child, 0)
+    COMPILE_FOR(kernel, types)
 
 
-IN_ONE_PROCESS, jit._in_one_process = jit._in_one_process, _in_a_child
+COMPILE_FOR, jit.compile_for = jit.compile_for, _in_a_child
 
 
 class Keeper:
@@ -283,24 +271,20 @@ def without_warnings():
 
 @pytest.fixture(scope="module")
 def instructions():
-    """Return a function that counts one kind of instruction in a kernel for given arguments, as
-    runs and other tests compile it.
-
-    unrolled : whether the copies that unrolling makes of an instruction count, whose names only
-    end differently. Skips with a numba that leaves flags to its optimiser.
-    """
-    if numba.version_info.short not in KNOWN:
-        pytest.skip("this numba leaves flags to its optimiser")
+    """Return a function that counts one kind of instruction in a kernel for given arguments, once
+    it is optimised. Copies that unrolling makes, whose names only end differently, count once."""
     texts = {}
 
-    def count(kernel, arguments, kind, unrolled=True):
+    def count(kernel, arguments, kind):
         types = tuple(map(numba.typeof, arguments))
-        if (kernel, types) not in texts:
-            kernel(*arguments)
-            library = kernel.overloads[types].library  # compiled here, or read from the cache
-            texts[kernel, types] = str(library._get_module_for_linking())
-        found = re.findall(rf"(%\.?\w+)[.\w]* = {kind} ", texts[kernel, types])
-        return len(found if unrolled else set(found))
+        key = kernel, types, numba.config.LOOP_VECTORIZE
+        if key not in texts:
+            options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "nogil": True}
+            compiled = numba.njit(error_model="numpy", **options)(kernel.__wrapped__)
+            compiled.compile(types)
+            texts[key] = compiled.inspect_llvm(types)
+        found = re.findall(rf"(%\.?\w+)[.\w]* = {kind} ", texts[key])
+        return len(set(found))
 
     return count
 

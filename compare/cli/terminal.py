@@ -4,6 +4,7 @@ Titles and names come from others: no text gets here that is not `printable`.
 """
 
 import json
+import logging
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -27,8 +28,27 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
     On a terminal a bar, with the time that it took and the time that is left, cleared at the end;
     elsewhere a line every half minute, or as many seconds as `EVERY` says; 0: none.
     """
-    with _bar(label) if _console(stderr=True).is_terminal else _lines(label) as advance:
+    shown = _bar(label) if _console(stderr=True).is_terminal else _lines(label)
+    with shown as advance, _log_shown():
         yield advance
+
+
+@contextmanager
+def _log_shown() -> Iterator[None]:
+    """Show what the engines log, such as that kernels are being compiled, on standard error."""
+    if os.environ.get(EVERY) == "0":
+        yield
+        return
+    log, handler = logging.getLogger("jointwave"), logging.StreamHandler(sys.stderr)
+    handler.setFormatter(logging.Formatter("jointwave: %(message)s"))
+    before = log.level
+    log.addHandler(handler)
+    log.setLevel(logging.INFO)
+    try:
+        yield
+    finally:
+        log.setLevel(before)
+        log.removeHandler(handler)
 
 
 @contextmanager

@@ -17,7 +17,7 @@ from joints.formula import formula
 from numerics.arguments import unpacked
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.divergence import EVERY, SPEED
-from numerics.jit import jitted_for
+from numerics.jit import jitted
 
 
 @cache
@@ -217,7 +217,7 @@ def leapfrog_for(parts, directions, shared=False):
         restore_tiny(flushing)
         return failed
 
-    @jitted_for(parts, directions, shared)
+    @jitted
     def leapfrog(given, link, first, last, stride, dt):
         return steps(first, last, stride, dt, *unpacked(given), link)
 

@@ -20,7 +20,7 @@ from continuum.state import State
 from joints.formula import formula
 from numerics.arguments import Packed, unpacked
 from numerics.denormals import flush_tiny, restore_tiny
-from numerics.jit import jitted_for
+from numerics.jit import jitted
 
 
 class Matrices(NamedTuple):
@@ -240,7 +240,7 @@ def forces_for(parts, directions):
         restore_tiny(flushing)
         return found
 
-    @jitted_for(parts, directions)
+    @jitted
     def forces(given, pressure):
         return trial(pressure, *unpacked(given))
 

@@ -14,7 +14,7 @@ from continuum.space.tractions import joint_energy
 from continuum.state import STATES, Samples, State
 from joints.formula import formula
 from numerics.arguments import Packed, unpacked
-from numerics.jit import jitted_for
+from numerics.jit import jitted
 
 
 def recorder(
@@ -89,7 +89,7 @@ def sample_for(parts, directions):
             if springs is not None:
                 energy[STATES, s] -= elastic
 
-    @jitted_for(parts, directions)
+    @jitted
     def sample(given, s):
         take(s, *unpacked(given))
 

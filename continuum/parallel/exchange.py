@@ -12,7 +12,8 @@ import numpy as np
 from mpi4py import MPI
 from numba import types
 
-from numerics.jit import inlined, jitted
+from joints.formula import formula
+from numerics.jit import jitted
 
 TAG = 0x4A57  # of all messages between two processes, which arrive in the order of sending
 
@@ -118,7 +119,7 @@ def add_shares(link, values):
     return failed or receive(link, values)
 
 
-@inlined
+@formula
 def send(link, values):
     """Start sending a process's shares of values to all processes that share them."""
     for k in range(link.source.size):
@@ -126,7 +127,7 @@ def send(link, values):
     return start_all(link.calls, link.requests.ctypes)
 
 
-@inlined
+@formula
 def receive(link, values):
     """Add the contributions received from other processes.
 

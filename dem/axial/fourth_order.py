@@ -43,7 +43,7 @@ from joints.law import law_of
 from numerics.arguments import Packed, unpacked
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.divergence import EVERY, SPEED, Guard, guard, out_of_bounds
-from numerics.jit import jitted_for
+from numerics.jit import jitted
 from numerics.sums import total_of
 
 XI, LAMBDA, CHI = 0.1786178958448091, -0.2123418310626054, -0.06626458266981849
@@ -235,7 +235,7 @@ def loop_for(effects):
                 due = due + every if due + every < last else last
         restore_tiny(tiny)
 
-    @jitted_for(effects)
+    @jitted
     def loop(given, first, last, s, stride):
         steps(*unpacked(given), first, last, s, stride)
 

@@ -24,7 +24,7 @@ from joints.softening import strength_left
 from numerics.arguments import Packed, unpacked
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.divergence import ENERGY, EVERY, SPEED, Guard, gains_energy, guard, out_of_bounds
-from numerics.jit import jitted_for
+from numerics.jit import jitted
 from numerics.sums import total_of
 
 UNGUARDED = guard(0.0)  # placeholder of a loop without a monitor
@@ -252,7 +252,7 @@ def loop_for(effects):
                 due = due + every if due + every < last else last
         restore_tiny(tiny)
 
-    @jitted_for(effects)
+    @jitted
     def loop(given, first, last, s, stride):
         steps(*unpacked(given), first, last, s, stride)
 

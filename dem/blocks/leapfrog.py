@@ -21,7 +21,7 @@ from numerics.arguments import Packed, unpacked
 from numerics.atomic import give_way, peek, post
 from numerics.cache_lines import zeros
 from numerics.denormals import flush_tiny, restore_tiny
-from numerics.jit import jitted_for
+from numerics.jit import jitted
 from results.plane import TERMS
 
 
@@ -148,7 +148,7 @@ def loop_for(form: PlaneForm) -> Callable:
     step = step_for(form)
     ledger = form.ledger
 
-    @jitted_for(form)
+    @jitted
     def loop(given, thread, first, last, stride, keep):
         """Take this thread's share of the steps first .. last - 1, in turn with the others.
 

@@ -16,12 +16,12 @@ import numpy as np
 from dem.spatial.layout import AFTER, BUFFER, CARRY, FRICTION, KINETIC, LANES, LEDGER, TERMS, Form
 from dem.spatial.leapfrog import step_for
 from dem.spatial.model import Buffers, RowModel, RowSamples, RowState
-from joints.formula import apart
+from joints.formula import formula
 from numerics.arguments import Packed, unpacked
 from numerics.atomic import give_way, peek, post
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.divergence import ENERGY, EVERY, gains_energy, note
-from numerics.jit import jitted_for
+from numerics.jit import jitted
 
 PLACES = tuple(TERMS.values())
 RUN = 16  # diagonals of tiles between two checks of the others' progress
@@ -33,7 +33,7 @@ def march_for(form: Form) -> Callable:
     step = step_for(form)
     ledger = form.ledger
 
-    @apart
+    @formula
     def diagonals(
         constants, counts, table, points, drive, ends, places, motion, history, end_states,
         force, speed, displacement, buffer, ledgers, thread, begin, end, n, steps, limit, found,
@@ -108,7 +108,7 @@ def march_for(form: Form) -> Callable:
             post(progress, threads, band + 1)
         restore_tiny(tiny)
 
-    return jitted_for(form)(march)
+    return jitted(march)
 
 
 def marcher(

@@ -212,7 +212,7 @@ def plain(monkeypatch):
 
     def python_for(*effects, **shared):
         kernel = kernel_for(*effects, **shared)
-        return getattr(kernel, "py_func", kernel)
+        return getattr(kernel, "__wrapped__", kernel)
 
     monkeypatch.setattr(march, "leapfrog_for", python_for)
     for function in (multiply, multiply_stencils, add_transposed):

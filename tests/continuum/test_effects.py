@@ -229,7 +229,7 @@ def in_trials(short, ready, instructions):
         now, tangents = copied(at.state), empty_tangents(at.model)
         given = arguments_of_trials(at.model, matrices, now, at.state, tangents, None, 1.0, 0.0)
         kernel = forces_for(joints.parts, joints.directions)
-        return instructions(kernel, (given, 0.0), kind, unrolled=False)
+        return instructions(kernel, (given, 0.0), kind)
 
     return counted
 

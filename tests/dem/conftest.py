@@ -28,7 +28,7 @@ def plain(monkeypatch):
     def in_python(kernel_for):
         def python_for(form):
             kernel = kernel_for(form)
-            return getattr(kernel, "py_func", kernel)
+            return getattr(kernel, "__wrapped__", kernel)
 
         return python_for
 

@@ -6,9 +6,7 @@ from itertools import product
 import numba
 import numpy as np
 import pytest
-from numba.core import event
 
-from joints.formula import KNOWN, kernel_options, shortcuts
 from joints.law import History, Law, law_of, parts_of, table_of, traction
 from joints.tangent import Tangent, tangent
 
@@ -40,7 +38,7 @@ LAWS = {
 
 def compiled(function):
     """Return a function as kernels are compiled."""
-    return numba.njit(error_model="numpy", no_cfunc_wrapper=True, **kernel_options)(function)
+    return numba.njit(error_model="numpy", no_cfunc_wrapper=True)(function)
 
 
 def kernel_of(parts):
@@ -87,8 +85,7 @@ def test_kernel_is_python_and_is_vectorised(name, varied):
     table, parts, (motion, memory) = table_of(one), parts_of(one), points()
     force, slope, after = np.zeros((3, N)), np.zeros((8, N)), memory.copy()
     kernel = kernel_of(parts)
-    with shortcuts():
-        kernel(table, motion, after, force, slope, 1e3)
+    kernel(table, motion, after, force, slope, 1e3)
     for i in range(N):
         law = law_of(table, i if varied else 0)
         gap, rate, dx, dz, vx, vz = motion[:, i]
@@ -117,8 +114,7 @@ def counts(one, kinds, formula="traction"):
             law, h = law_of(table, 0), History(opening, ex, ex, cohesion, 0.0)
             return tangent(law, parts, gap, rate, (dx, dx), (vx, vx), DT, h, 1e3)
 
-    with shortcuts():
-        point(table, 1e-6, 0.1, 1e-6, 0.1, 0.0, 0.0, 0.0)
+    point(table, 1e-6, 0.1, 1e-6, 0.1, 0.0, 0.0, 0.0)
     text = "\n".join(point.inspect_llvm().values())
     return [len(re.findall(rf"= {kind} ", text)) for kind in kinds]
 
@@ -144,46 +140,3 @@ def test_absent_parts_leave_no_instruction_in_the_tangent():
     bare = law_of(table_of(Law(9e9)), 0), parts_of(Law(9e9))
     found = tangent(*bare, 1e-6, 0.1, (0.0, 0.0), (0.0, 0.0), DT, History(), 1e5)
     assert found == Tangent(-9e9)
-
-
-flagged = pytest.mark.skipif(
-    numba.version_info.short not in KNOWN, reason="this numba leaves flags to its optimiser"
-)
-
-
-@flagged
-@pytest.mark.parametrize("closes", [False, True])
-def test_what_a_law_lacks_is_not_compiled(closes):
-    """Not typed either, which takes most of a first run: of the formulas of closure, those of a
-    law that closes alone."""
-    compiled = set()
-
-    class Seen(event.Listener):
-        def on_start(self, one):
-            compiled.add(one.data["dispatcher"].py_func.__name__)
-
-        def on_end(self, one):
-            pass
-
-    law = LAWS["closure" if closes else "elastic"]
-    parts = parts_of(law)
-
-    @numba.njit(error_model="numpy")
-    def pressed(table):
-        return traction(law_of(table, 0), parts, -1e-4, 0.0, (0.0, 0.0), (0.0, 0.0), DT, HISTORY)
-
-    # Single precision: no other test has compiled the formulas for it.
-    table = table_of(law).astype(np.float32)
-    with event.install_listener("numba:compile", Seen()):
-        found = pressed(table)[0]
-    assert found == pytest.approx(traction(law, parts, -1e-4, 0, (0, 0), (0, 0), DT, HISTORY)[0])
-    assert {"normal_traction", "shear_return"} <= compiled
-    assert ("closure_traction" in compiled) == closes and "strength_left" not in compiled
-
-
-@flagged
-def test_parts_are_no_arguments_of_a_kernel():
-    """numba would take two of them for one type, and the second call would have the first's law."""
-    called = numba.njit(lambda parts: parts.dashpots)
-    with pytest.raises(TypeError, match="can't unbox"):
-        called(parts_of(ELASTIC))

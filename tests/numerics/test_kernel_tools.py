@@ -19,7 +19,8 @@ def halve(x, out):
 @jitted
 def halve_flushed(x, out):
     old = flush_tiny()
-    halve(x, out)
+    for i in range(x.size):
+        out[i] = x[i] * 0.5
     restore_tiny(old)
 
 

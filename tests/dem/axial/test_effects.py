@@ -1,7 +1,5 @@
 """Paying only for what a scene calls for, proved without a clock."""
 
-from functools import cache
-
 import numba
 import numpy as np
 import pytest
@@ -13,10 +11,7 @@ from dem.axial.leapfrog import arguments, loop_for, march, marcher
 from dem.axial.model import build, build_model
 from dem.axial.samples import buffers
 from dem.axial.state import state_at_rest
-from joints.formula import kernel_options, shortcuts
 from joints.law import Law, Parts
-from numerics.divergence import out_of_bounds
-from numerics.jit import jitted
 from results.arrays import copied
 
 COMPRESSION = {"load": {"shape": "step", "amplitude": 1e6}, "time__duration": 0.03}
@@ -108,7 +103,7 @@ def test_absent_effects_leave_no_array(pillar):
     law = dict.fromkeys(Law._fields, 0.0)
     law["normal_stiffness"] = calibrate(pillar()).regular_stiffness
     assert model.laws.tolist() == [[value] for value in law.values()]
-    assert model.base.size == 0
+    assert model.base.size == 0 and model.blocks is None
     present = {name for name, array in state._asdict().items() if array is not None}
     assert present == {"u", "v", "force", "start", "end"}
     assert state.start.tolist() == state.end.tolist() == [0.0, 0.0]
@@ -135,11 +130,6 @@ ADDED = {
     "dashpots": ("fmul", {"joints__damping_ratio": 0.02}),
     "no tension": ("fcmp", {"joints__tension": False}),
     "softening": ("fdiv", SOFTENING),
-    "segments": ("getelementptr", {"segments": [{"y": [10.0, 20.0], "density": 2600.0}]}),
-    "joints that differ": (
-        "getelementptr",
-        {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4e8}]},
-    ),
     "held start": ("fdiv", {"ends__start": "matched"}),
     "held end": ("fdiv", {"ends__end": "quiet"}),
     "mass damping": ("fmul", {"damping__mass_proportional": 10.0}),
@@ -149,24 +139,16 @@ ADDED = {
 }
 
 
-@cache
-def scalar(kernel):
-    """Return a kernel to be compiled afresh."""
-    return numba.njit(error_model="numpy", no_cfunc_wrapper=True, **kernel_options)(kernel.py_func)
-
-
 @pytest.fixture
 def counted(pillar, instructions, monkeypatch):
-    """Return a function that counts one kind of instruction in the time loop of a chain, each once:
-    a loop over several blocks at once has copies of them for those that are left over."""
+    """Return a function that counts one kind of instruction in the time loop of a chain."""
     monkeypatch.setattr(numba.config, "LOOP_VECTORIZE", 0)
 
-    def count(kind, unrolled=True, **changes):
+    def count(kind, **changes):
         model, state, _, _ = build(pillar(**{"record__energy": False, **changes}))
         loop = loop_for(model.effects._replace(ledger=state.work is not None))
         given = arguments(model, state, buffers(model, state, 1), None)
-        with shortcuts():
-            return instructions(scalar(loop), (given, 0, 1, 0, 1), kind, unrolled)
+        return instructions(loop, (given, 0, 1, 0, 1), kind)
 
     return count
 
@@ -200,16 +182,24 @@ def test_a_shaken_base_adds_instructions(counted):
     assert counted("fdiv", **still) < counted("fdiv", **(still | SHAKEN))
 
 
-def test_a_plain_loop_compares_speeds_and_divides_stresses_alone(counted, instructions):
-    """No comparison but those of the divergence monitor, no quotient but that of a recorded
-    stress."""
+def test_a_plain_loop_divides_stresses_alone(counted):
+    assert counted("fdiv") == 1
 
-    @jitted
-    def beyond(v, limit):
-        return out_of_bounds(v, limit)
 
-    assert counted("fcmp") == instructions(scalar(beyond), (np.zeros(3), 1.0), "fcmp")
-    assert counted("fdiv", unrolled=False) == 1
+@pytest.mark.parametrize(
+    "nothing",
+    [
+        {"joints__tension": True},
+        {"damping__local": 0.0, "damping__mass_proportional": 0.0},
+        {"ends__end": "free"},
+    ],
+    ids=lambda keys: " ".join(keys),
+)
+def test_a_key_that_calls_for_nothing_is_not_compiled(counted, pillar, nothing):
+    """The loop is that of a chain without the key, to the last instruction."""
+    assert build(pillar(**nothing))[0].effects == build(pillar())[0].effects
+    for kind in ("fadd", "fmul", "fdiv", "fcmp", "load", "call", "phi"):
+        assert counted(kind, **nothing) == counted(kind)
 
 
 def test_every_effect_is_a_flag(pillar):

@@ -1,6 +1,5 @@
 """Paying only for what a scene calls for, proved without a clock."""
 
-import numba
 import numpy as np
 import pytest
 
@@ -133,15 +132,6 @@ def test_absent_effects_leave_no_instruction(row, at_rest, instructions):
     assert min(slip[:3]) > 0 and slip[3] > elastic[3]
     assert elastic[4] > 0 and min(slip[4:]) > 0
     assert count(motion__rotation="none", load__at=[0.0, 0.0])[3] < elastic[3]
-
-
-def test_kernels_of_different_effects_are_told_apart_in_the_cache(row, at_rest):
-    """One function of one signature: its effects are part of the key."""
-    keys, codegen = set(), numba.core.registry.cpu_target.target_context.codegen()
-    for ends in ({}, {"end": "fixed"}, {"start": "quiet", "end": "fixed"}):
-        form = at_rest(row(ends=ends)).model.form
-        keys.add(march_for(form)._cache._index_key((), codegen))
-    assert len(keys) == 3
 
 
 @pytest.mark.parametrize("blocks", [64, 65, 129])
