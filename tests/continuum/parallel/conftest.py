@@ -7,28 +7,12 @@ import sys
 
 import pytest
 
-#: Runs commands in turn in the same processes; after each, the first says how it has ended. One
-#: process compiles a kernel, while the others wait for what it leaves in the cache.
+#: Runs commands in turn in the same processes; after each, the first says how it has ended.
 IN_TURN = """
-import fcntl, json, sys
+import json, sys
 from mpi4py import MPI
-from numba.core.dispatcher import Dispatcher
 from compare.cli import program
 
-compile_here, depth, lock = Dispatcher.compile, [], open(sys.argv[2], "w")
-
-def compile_in_turn(kernel, signature):
-    if not depth:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-    depth.append(kernel)
-    try:
-        return compile_here(kernel, signature)
-    finally:
-        depth.pop()
-        if not depth:
-            fcntl.flock(lock, fcntl.LOCK_UN)
-
-Dispatcher.compile = compile_in_turn
 ours = sys.stdout, sys.stderr
 for arguments in json.loads(sys.argv[1]):
     sys.stdout, sys.stderr = ours
@@ -64,7 +48,7 @@ def under_mpi(mpiexec):
 
 
 @pytest.fixture(scope="session")
-def in_turn(under_mpi, without_warnings, tmp_path_factory):
+def in_turn(under_mpi, without_warnings):
     """Return a function that runs commands one after the other in the same `count` processes.
 
     It gives for each its exit code, its output and the lines of its errors.
@@ -72,8 +56,7 @@ def in_turn(under_mpi, without_warnings, tmp_path_factory):
 
     def run(count, *commands):
         asked = json.dumps([[*map(str, arguments)] for arguments in commands])
-        lock = tmp_path_factory.mktemp("compiling") / "lock"
-        done = under_mpi(count, "-c", IN_TURN, asked, lock)
+        done = under_mpi(count, "-c", IN_TURN, asked)
         assert "Traceback" not in done.stderr
         *out, rest = re.split(r"^ended (\d+)\n", done.stdout, flags=re.MULTILINE)
         *said, _ = re.split(r"^ended \d+\n", done.stderr, flags=re.MULTILINE)
