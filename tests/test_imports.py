@@ -1,0 +1,113 @@
+"""What the code takes from libraries: their public sides, and nothing of theirs is replaced."""
+
+import ast
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+from importlinter.cli import EXIT_STATUS_SUCCESS, lint_imports
+
+ROOT = Path(__file__).parent.parent
+PACKAGES = "cases", "results", "numerics", "joints", "dem", "continuum", "compare", "jointwave"
+FILES = sorted(str(p.relative_to(ROOT)) for name in PACKAGES for p in (ROOT / name).rglob("*.py"))
+PRIVATE = ("numba.core", "numba._", "numba.np", "llvmlite")
+
+#: One intrinsic that flushes denormals, and what kernels of the present engines rest on. This list
+#: may only shrink.
+COMPILER_INSIDE = {
+    "numerics/denormals.py",
+    "numerics/arguments.py",
+    "numerics/pointers.py",
+    "numerics/atomic.py",
+    "continuum/space/simd.py",
+    "continuum/parallel/exchange.py",
+}
+#: Settings that a library documents as such.
+SETTINGS = {"numba.config.CACHE_DIR"}
+MOST_ARGUMENTS = 12
+#: Kernels of the present engines. This list may only shrink.
+LONG_KERNELS = {
+    ("joints/slide.py", "after_slide"),
+    ("dem/spatial/leapfrog.py", "step"),
+    ("dem/spatial/march.py", "diagonals"),
+    ("dem/axial/leapfrog.py", "steps"),
+    ("dem/axial/fourth_order.py", "steps"),
+    ("dem/blocks/tile.py", "step"),
+    ("continuum/explicit/leapfrog.py", "add_work"),
+    ("continuum/explicit/leapfrog.py", "steps"),
+    ("continuum/implicit/record.py", "take"),
+    ("continuum/implicit/balance.py", "trial"),
+    ("continuum/space/tractions.py", "joint_loads"),
+    ("continuum/space/tractions.py", "joint_tangents"),
+}
+
+
+@cache
+def nodes(file):
+    """Return the nodes of a file's syntax tree."""
+    return list(ast.walk(ast.parse((ROOT / file).read_text())))
+
+
+def imported(file):
+    """Yield the full name of each imported thing, and the name that it has in the file."""
+    for node in nodes(file):
+        if isinstance(node, ast.Import):
+            for one in node.names:
+                yield one.name, one.asname or one.name.split(".")[0]
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            for one in node.names:
+                yield f"{node.module}.{one.name}", one.asname or one.name
+
+
+def test_the_inside_of_the_compiler_is_imported_by_few():
+    """A file that no longer imports it leaves the list."""
+    found = {file for file in FILES if any(name.startswith(PRIVATE) for name, _ in imported(file))}
+    assert found == COMPILER_INSIDE
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_no_attribute_of_a_library_is_replaced(package):
+    for file in FILES:
+        if file.startswith(f"{package}/"):
+            assert set(replaced(file)) <= SETTINGS, file
+
+
+def replaced(file):
+    """Yield the dotted names of what a file assigns to in libraries."""
+    ours = {*PACKAGES, *sys.stdlib_module_names}
+    foreign = {own for name, own in imported(file) if name.split(".")[0] not in ours}
+    for node in nodes(file):
+        if isinstance(node, ast.Attribute) and not isinstance(node.ctx, ast.Load):
+            name = node
+        elif isinstance(node, ast.Call) and ast.unparse(node.func) in ("setattr", "delattr"):
+            name = node.args[0]
+        else:
+            continue
+        if root(name) in foreign:
+            yield ast.unparse(name)
+
+
+def root(node):
+    """Return the name that a dotted name begins with, None for anything else."""
+    while isinstance(node, ast.Attribute):
+        node = node.value
+    return node.id if isinstance(node, ast.Name) else None
+
+
+def test_functions_have_few_arguments():
+    """Those of commands are options, which users write by name."""
+    found = set()
+    for file in FILES:
+        for node in nodes(file):
+            if isinstance(node, ast.FunctionDef) and "/cli/commands/" not in file:
+                given = node.args
+                if len(given.posonlyargs + given.args + given.kwonlyargs) > MOST_ARGUMENTS:
+                    found.add((file, node.name))
+    assert found == LONG_KERNELS
+
+
+def test_imports_follow_the_layers(monkeypatch):
+    """Engines never import each other, exact solutions neither engine, nothing imports compare."""
+    monkeypatch.chdir(ROOT)
+    assert lint_imports(no_cache=True) == EXIT_STATUS_SUCCESS
