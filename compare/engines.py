@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
 from cases.kinds import AnyScene
+from cases.size import refuse_beyond_memory, waveform_bytes
 from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from compare.solvers.dem import DEM
 from compare.solvers.record import HEADINGS, Answer, Solver, no
@@ -115,8 +116,6 @@ def solve(
     Raises SceneError where it does not apply or the name is unknown, UnstableError where a run
     goes unstable.
     """
-    from cases.size import refuse_beyond_memory, waveform_bytes
-
     one = solver(name)
     answer = applies(name, scene)
     if not answer:

@@ -158,9 +158,9 @@ def compare(
 
     curves : of others, as `read_curves` returns them; align : whether their clocks are moved.
     """
-    from compare.misfit import pairs
+    from compare.runs import comparison
 
-    return pairs.compare(scene, progress, curves=curves, align=align)
+    return comparison.compare(scene, progress, curves=curves, align=align)
 
 
 def deconvolve(scene: AnyScene, surface: DataArray, water_level: float = 1e-3) -> DataArray:

@@ -1,25 +1,20 @@
-"""All solutions that apply to a scene, and the distances between them, pair by pair."""
+"""The distances between the solutions of a scene, pair by pair."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
-from time import perf_counter
 from typing import Any, NamedTuple
 
 import xarray as xr
 
-from cases.errors import SceneError
 from cases.kinds import AnyScene
-from compare.engines import Progress, solve, solver, solvers
-from compare.experiments.cost import timings
-from compare.misfit.alignment import Beside, distances, lay_beside
-from compare.misfit.external import Curves
+from compare.engines import solver, solvers
+from compare.misfit.alignment import Beside, distances
 from compare.misfit.metrics import Distance, distance, pairings
 from compare.misfit.places import Place, places_of
-from compare.misfit.ranking import applicable, kind_of
-from compare.solvers.record import Answer, Kind
+from compare.misfit.ranking import kind_of
+from compare.solvers.record import Kind
 
 
 class Pair(NamedTuple):
@@ -99,50 +94,6 @@ class Comparison:
     reasons: dict[str, str] = field(default_factory=dict)
     rows: list[Row] = field(default_factory=list)
     besides: list[Beside] = field(default_factory=list)
-
-
-def compare(
-    scene: AnyScene,
-    progress: Progress | None = None,
-    spectral: bool = False,
-    curves: Sequence[Curves] = (),
-    align: bool = False,
-) -> Comparison:
-    """Solve a scene by all solutions that apply and measure every pair.
-
-    `progress` is called with the finished fraction; `spectral` adds envelope and phase misfits;
-    external `curves` are compared with every solution, their clocks shifted onto it by `align`.
-    """
-    comparison = solved(scene, applicable(scene), progress)
-    comparison.rows = measure(comparison.results, spectral, scene)
-    for one in (curve for curve in curves if curve.holds_for(scene)):
-        beside = lay_beside(one, scene, comparison.results, align)
-        comparison.besides.append(beside)
-        comparison.rows += measure_curves(beside, comparison.results, spectral)
-    return comparison
-
-
-def solved(
-    scene: AnyScene, answers: Mapping[str, Answer], progress: Progress | None = None
-) -> Comparison:
-    """Solve a scene by the solutions that apply, without measuring any pair.
-
-    answers : whether each requested solution applies, by name. Raises SceneError if none does.
-    """
-    comparison = Comparison(scene)
-    if not any(answers.values()):
-        why = "; ".join(f"{name}: {answer.reason}" for name, answer in answers.items())
-        raise SceneError(scene.where, "", None, f"nothing solves it: {why}")
-    for i, (name, answer) in enumerate(answers.items()):
-        if answer:
-            began = perf_counter()
-            comparison.results[name] = solve(name, scene)
-            timings.note(name, scene, comparison.results[name].attrs, perf_counter() - began)
-        else:
-            comparison.reasons[name] = answer.reason
-        if progress:
-            progress((i + 1) / len(answers))
-    return comparison
 
 
 def measure(

@@ -16,8 +16,9 @@ from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments.cost import timings
 from compare.figures.scene_figures import along_pillar, figures_of, recorded_along
-from compare.misfit.pairs import Comparison, compare
+from compare.misfit.pairs import Comparison
 from compare.report.section import PAPER, SceneRequest, Section, begin, finish, make_section
+from compare.runs.comparison import compare
 from compare.scenes import find, load
 from compare.studies.ensemble import ensemble_in
 from results.dataset import scene_hash

@@ -7,6 +7,7 @@ from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
+from cases.size import estimates
 from compare.solvers.incident import incident, note_sides
 from compare.solvers.record import (
     BAR,
@@ -74,8 +75,6 @@ def again(scene: Scene | RockMass, model: str) -> Callable[[], float]:
 
 def prepare(scene: Scene, model: str) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
-    from cases.size import estimates
-    from compare.runs.processes import started
     from continuum.run import discrete_and_steps
 
     with estimates() as parts:
@@ -86,7 +85,6 @@ def prepare(scene: Scene, model: str) -> Prepared:
         "dim": discrete.kinematics.dim,
         "cell": discrete.body.mesh.cell,
         "order": scene.numerics.continuum.order,
-        "processes": started().size,
     }
     time, freedoms, size = choice.time, discrete.body.degrees_of_freedom, sum(parts.values())
     return Prepared(choice.scheme, time.steps, time.dt, critical, freedoms, size, settings)

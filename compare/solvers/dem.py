@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from cases.size import estimates
 from compare.solvers.incident import incident, note_sides
 from compare.solvers.record import (
     BLOCKS,
@@ -38,7 +39,6 @@ def prepare(scene: Scene | RockMass) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
     from cases.effects import is_spatial
     from cases.schema.scene import Scene
-    from cases.size import estimates
 
     with estimates() as parts:
         if isinstance(scene, Scene):

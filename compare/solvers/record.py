@@ -8,6 +8,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cases.kinds import AnyScene
+from cases.size import waveform_bytes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -140,8 +141,6 @@ class Prepared(NamedTuple):
 
 def without_steps(scene: AnyScene) -> Prepared:
     """Return what is known of an exact solution before it is computed."""
-    from cases.size import waveform_bytes
-
     return Prepared("exact", 0, 0.0, 0.0, 0, waveform_bytes(scene), {})
 
 

@@ -22,9 +22,9 @@ from cases.kinds import AnyScene
 from cases.read import parse_override
 from compare.engines import Progress, applies, names
 from compare.figures.comparison import write_comparisons
-from compare.misfit import pairs
 from compare.misfit.external import Curves
 from compare.misfit.places import Place, places_of
+from compare.runs import comparison
 from compare.runs.jobs import plan
 from compare.runs.output import write_dataset
 from compare.runs.run import Done, execute
@@ -73,7 +73,7 @@ class Comparing(NamedTuple):
 
     def __call__(self, scene: AnyScene, folder: Path) -> Rows:
         """Return a row for each distance."""
-        found = pairs.compare(scene, None, self.spectral, self.curves, self.align)
+        found = comparison.compare(scene, None, self.spectral, self.curves, self.align)
         if self.writes:
             write_comparisons([found], folder / scene.name)
         for name, result in found.results.items() if self.keeps else ():

@@ -180,7 +180,7 @@ def mesh(data: bytes, folder: Path) -> str:
 #: What would solve something: a command that gets so far has read all that it was given.
 SOLVERS = (
     "compare.runs.run.execute",
-    "compare.misfit.pairs.compare",
+    "compare.runs.comparison.compare",
     "compare.studies.sweep.run",
     "compare.experiments.ablation.runner.run",
     "compare.experiments.planner.planner.plan",

@@ -77,8 +77,8 @@ def compare(
     --ensemble every member of a scene with random joints, with statistics of all.
     """
     from compare.cli import comparison_view, terminal
-    from compare.misfit import pairs
     from compare.misfit.ranking import deciding
+    from compare.runs import comparison
 
     if swept or members:
         from compare.cli.study_view import sweep
@@ -101,9 +101,9 @@ def compare(
     for one in scenes:
         with terminal.progress(one.name or one.title) as advance:
             if shows_all:
-                found.append(pairs.compare(one, advance, spectral, curves, align))
+                found.append(comparison.compare(one, advance, spectral, curves, align))
             else:
-                found.append(pairs.solved(one, deciding(one), advance))
+                found.append(comparison.solved(one, deciding(one), advance))
     if out is not None:
         from compare.figures.comparison import write_comparisons
 

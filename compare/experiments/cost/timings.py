@@ -20,6 +20,7 @@ from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from compare.engines import ENGINES
 from compare.runs.output import write_text
+from compare.runs.processes import started
 from compare.solvers.dem import DEM
 from numerics import jit
 from results.dataset import scene_hash
@@ -66,7 +67,7 @@ def stepping(
     """
     if name not in ENGINES:
         return _known().get(f"{name} {scene_hash(scene)}")
-    rate = _known().get(_key(name, scene, settings))
+    rate = _known().get(_key(name, scene, {"processes": started().size, **settings}))
     return None if rate is None else rate * steps * ENGINES[name].units(scene, freedoms)
 
 

@@ -14,7 +14,7 @@ from PIL import Image
 import jointwave
 from compare.cli import completion
 from compare.cli.program import main
-from compare.misfit.pairs import solved
+from compare.runs.comparison import solved
 from compare.solvers.record import no
 
 SCENE = """\

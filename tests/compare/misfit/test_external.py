@@ -15,11 +15,12 @@ from compare.figures.charts.waveforms import draw_solutions
 from compare.figures.comparison import write_comparisons
 from compare.figures.export import DIGITS, write_csv
 from compare.figures.panels import curve_table, panels
-from compare.misfit import pairs
 from compare.misfit.alignment import distance_at, distances, lay_beside
 from compare.misfit.external import read_curves
-from compare.misfit.pairs import Comparison, compare, measure_curves
+from compare.misfit.pairs import Comparison, measure_curves
 from compare.misfit.places import Place
+from compare.runs import comparison as runs
+from compare.runs.comparison import compare
 from compare.solvers.record import YES
 
 SCENE = "guo-li-2002/fig-03"
@@ -173,7 +174,7 @@ def test_one_solution_or_variant_of_our_own_table(which, solution, variant, plac
 
 def test_variants_of_our_own_table_stand_beside_their_own(table, monkeypatch):
     """Each variant is compared only with its own columns of the table."""
-    monkeypatch.setattr(pairs, "applicable", lambda scene: {"lattice": YES})
+    monkeypatch.setattr(runs, "applicable", lambda scene: {"lattice": YES})
     scenes, _, file = table
     curves = read_curves([f"{file}:lattice"], scenes)
     for scene in scenes:
