@@ -1,1 +1,1 @@
-"""The drawing of a scene: the pillar from the side, its section, its load."""
+"""Scenes drawn as in a textbook: the pillar from the side, the rock mass in its plane."""

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from cases.loads import history_of
 from cases.schema.joint import PARTS, JointLaw
 from cases.schema.pulse import Pulse
-from compare.figures.drawing.symbols import LOAD
+from compare.figures.drawing.sketch import LOAD
 from compare.figures.units import unit_for
 
 SAMPLES = 400

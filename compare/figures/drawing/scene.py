@@ -1,204 +1,105 @@
-"""The scene drawn as in a textbook: a pillar from the side, its section, its load over time; a rock
-mass in its plane."""
+"""The figure of a scene: a drawing for each appearance, its load over time and a legend."""
 
-from collections.abc import Callable
 from functools import partial
-from itertools import pairwise
+from types import ModuleType
 from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
+from matplotlib.ticker import MaxNLocator
 
 from cases.effects import is_spatial
-from cases.material.calibrate import calibrate
-from cases.material.face import face_points
 from cases.schema.scene import Scene
-from compare.figures.drawing import side, symbols
-from compare.figures.drawing.actions import HEIGHT, WIDTH
-from compare.figures.drawing.pulses import draw_pulse, law_words
-from compare.figures.drawing.symbols import EDGE, INK, ROCK, SOFT
+from compare.figures.drawing import pillar
+from compare.figures.drawing.pulses import draw_pulse
+from compare.figures.drawing.sketch import Sketch, draw, legend
 from compare.figures.export import blank
 from compare.figures.figure import SceneFigure
 from compare.figures.panels import variant_names
+from compare.figures.style import WIDTH
 from compare.misfit.pairs import Comparison
 
 MOST = 4  # drawings per scene
-GAP, LOAD_WIDTH = 0.45, 1.75  # inches of the gap before, and of the load over time
-HEADING = 0.22  # inches of a heading
 TITLE = "The scene"
-SEEN = (
-    "pillar", "soft_layers", "segments", "scatter", "load", "ends", "gravity", "prestress",
-    "record", "motion",
-)  # fmt: skip
-
-SIZE = 0.8  # inches of a side
-ACROSS, TALL = 1.5, 1.68  # inches of the drawing
-MIDDLE = 0.75, 0.87
+EDGE, DRAWING, BESIDE = 0.6, 5.6, 1.35  # inches across: the margin, drawing, and parts beside it
+GAP, TALLEST = 0.55, 6.0  # inches between parts, and of the tallest drawing
+HEAD, FOOT, LINE, PART = 0.3, 0.5, 0.19, 1.0  # inches up
 
 
 def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
     """Return the figure of a scene; variants with the same appearance share a drawing."""
+    drawing: ModuleType = pillar
     if not isinstance(comparisons[0].scene, Scene):
-        return _of_rock_mass(name, comparisons)
-    groups = _groups(comparisons, _appearance)
-    return SceneFigure(
-        f"{name}-scene",
-        TITLE,
-        _caption(groups),
-        partial(_figure, groups),
-        pd.concat([_table(scene, words) for words, scene in groups], ignore_index=True),
-    )
+        from compare.figures.drawing import rock_mass as drawing  # imports shapely
 
-
-def _of_rock_mass(name: str, comparisons: list[Comparison]) -> SceneFigure:
-    from compare.figures.drawing import rock_mass  # imports shapely, not needed for pillars
-
-    groups = [rock_mass.drawn(*one) for one in _groups(comparisons, rock_mass.appearance)]
-    return SceneFigure(
-        f"{name}-scene",
-        TITLE,
-        rock_mass.caption(groups[0].scene),
-        partial(rock_mass.figure_of, groups),
-        pd.concat([rock_mass.table(one) for one in groups], ignore_index=True),
-    )
-
-
-def _groups(
-    comparisons: list[Comparison], appearance: Callable[[Any], str]
-) -> list[tuple[str, Any]]:
-    """Return names of variants and their scene, one entry per appearance."""
-    seen: dict[str, tuple[list[str], Any]] = {}
+    groups: dict[str, tuple[list[str], Any]] = {}
     for words, comparison in zip(variant_names(comparisons), comparisons, strict=True):
-        scene = comparison.scene
-        seen.setdefault(appearance(scene), ([], scene))[0].append(words)
-    return [(", ".join(names), scene) for names, scene in list(seen.values())[:MOST]]
+        seen = drawing.appearance(comparison.scene)
+        groups.setdefault(seen, ([], comparison.scene))[0].append(words)
+    rows = {", ".join(names): scene for names, scene in list(groups.values())[:MOST]}
+    tables = [drawing.table(scene).assign(variant=words) for words, scene in rows.items()]
+    table = pd.concat(tables, ignore_index=True)
+    table.insert(0, "variant", table.pop("variant"))
+    words = drawing.caption(next(iter(rows.values())))
+    figure = partial(_figure, rows, drawing)
+    return SceneFigure(f"{name}-scene", TITLE, words, figure, table)
 
 
-def _appearance(scene: Scene) -> str:
-    return str([getattr(scene, key) for key in SEEN] + [scene.joints.contact_points])
-
-
-def _caption(groups: list[tuple[str, Scene]]) -> str:
-    scene = groups[0][1]
-    rock, joints = scene.rock, scene.joints
-    if rock.p_speed is not None:
-        speeds = f"waves of {rock.p_speed:g} and {rock.s_speed:g} m/s"
-    else:
-        speeds = f"a modulus of {calibrate(scene).modulus / 1e9:.3g} GPa"
-    words = law_words(joints) or "elastic"
-    count = len(scene.segments)
-    segments = f"; other rock in {count} segment{'s' * (count > 1)}" if count else ""
-    return (
-        f"From the scene file: rock mass of {rock.density:g} kg/m³ with {speeds}; "
-        f"joints: {words}{segments}. Triangles: sections whose stress is recorded; circles: points "
-        "whose velocity is."
-    )
-
-
-def _figure(groups: list[tuple[str, Scene]]) -> Figure:
-    heading = HEADING if len(groups) > 1 else 0.0
-    width = WIDTH + ACROSS + GAP + LOAD_WIDTH
-    height = len(groups) * (HEIGHT + heading)
-    with blank(height, width, laid_out=True) as figure:
-        above = None
-        for i, (words, scene) in enumerate(groups):
-            bottom = height - (i + 1) * (HEIGHT + heading)
-            _draw_row(figure, scene, above, bottom)
-            if heading:
-                text = f"({chr(97 + i)})  {words}"
-                figure.text(0.08 / width, (bottom + HEIGHT) / height, text, va="bottom")
-            above = scene
+def _figure(rows: dict[str, Any], drawing: ModuleType) -> Figure:
+    sketches = [drawing.sketch_of(scene) for scene in rows.values()]
+    heights = [_height(sketch) for sketch in sketches]
+    top = total = sum(heights)
+    with blank(total, WIDTH, True) as figure:
+        for k, (words, scene) in enumerate(rows.items()):
+            if len(rows) > 1:
+                heading = f"({chr(97 + k)})  {words}"
+                figure.text(0.08 / WIDTH, 1 - (total - top + 0.06) / total, heading, va="top")
+            _draw_row(figure, scene, sketches[k], top - HEAD)
+            top -= heights[k]
     return figure
 
 
-def _draw_row(figure: Figure, scene: Scene, above: Scene | None, bottom: float) -> None:
-    """Draw the pillar, and section and load where they differ from the scene above."""
+def _draw_row(figure: Figure, scene: Any, sketch: Sketch, top: float) -> None:
+    """Draw a scene and what belongs to it below a height, inches."""
     width, height = figure.get_size_inches()
 
-    def axes(left: float, across: float, low: float = 0.0, high: float = HEIGHT) -> Axes:
-        size = across / width, (high - low) / height
-        return figure.add_axes((left / width, (bottom + low) / height, *size))
+    def axes(left: float, across: float, up: float) -> Axes:
+        place = left / width, (top - up) / height, across / width, up / height
+        return figure.add_axes(place)
 
-    side.draw_strip(axes(0, WIDTH), scene)
-    if above is None or appearance(scene) != appearance(above):
-        draw_section(axes(WIDTH, ACROSS), scene)
-    if scene.load.amplitude and (above is None or _history(scene) != _history(above)):
-        left = WIDTH + ACROSS + GAP
-        draw_pulse(axes(left, LOAD_WIDTH - 0.18, 0.45, 1.4), scene.load, scene.time.duration)
-
-
-def _history(scene: Scene) -> dict[str, object]:
-    return scene.load.model_dump(exclude={"direction", "at", "arm"})
-
-
-def _table(scene: Scene, variant: str) -> pd.DataFrame:
-    pillar = scene.pillar
-    edges = side.block_edges(scene)
-    rows = [("block", a, b, "") for a, b in pairwise(edges)]
-    rows += [("joint", y, y, "") for y in edges[1:-1]]
-    rows += [
-        ("soft layer", x.y, x.y, f"thickness {x.thickness or 0:g} m") for x in scene.soft_layers
-    ]
-    rows += [("segment", x.y[0], x.y[1], x.name or "") for x in scene.segments]
-    rows += [
-        ("end", 0.0, 0.0, scene.ends.start),
-        ("end", pillar.length, pillar.length, scene.ends.end),
-    ]
-    rows += [("receiver", y, y, "stress") for y in scene.record.stress]
-    rows += [("receiver", y, y, "velocity") for y in scene.record.velocity]
-    table = pd.DataFrame(rows, columns=["part", "from y (m)", "to y (m)", "what"])
-    table.insert(0, "variant", variant)
-    return table
+    ax = axes(EDGE, DRAWING, _drawing_height(sketch))
+    draw(ax, sketch)
+    beside = EDGE + DRAWING + GAP
+    if isinstance(scene, Scene):
+        _mark_ends(ax, scene)
+        if is_spatial(scene):
+            beside += PART + GAP
+            pillar.draw_section(axes(beside - PART - 0.35, PART, PART), scene)
+    acting = next((pulse for pulse in scene.pulses if pulse.amplitude), None)
+    if acting is not None:
+        kind = getattr(acting, "kind", "load")
+        words = f"{kind} wave" if kind in ("P", "S") else kind
+        draw_pulse(axes(beside, BESIDE, PART), acting, scene.time.duration, words)
+        beside += BESIDE + 0.15
+    free = axes(beside, WIDTH - beside, PART)
+    free.set_axis_off()
+    free.legend(handles=legend(sketch), loc="upper left", frameon=False, fontsize=8, borderpad=0)
 
 
-def appearance(scene: Scene) -> tuple[object, ...]:
-    """Return everything that determines the drawing of a scene's section."""
-    joints = scene.joints.contact_points, scene.joints.point_rule
-    return (*joints, scene.pillar.side, scene.load.model_dump(), is_spatial(scene))
+def _drawing_height(sketch: Sketch) -> float:
+    return min(TALLEST, DRAWING * sketch.ratio)
 
 
-def draw_section(ax: Axes, scene: Scene) -> None:
-    """Draw the section viewed against y, x up and z to the right, in axes of ACROSS x TALL inches.
-
-    Contact points, one part each of the SVG's group `contacts`, are drawn only for spatial motion:
-    in axial motion all points of a face behave the same.
-    """
-    ax.set(xlim=(0, ACROSS), ylim=(0, TALL), aspect="equal")
-    ax.axis("off")
-    left, bottom = MIDDLE[0] - SIZE / 2, MIDDLE[1] - SIZE / 2
-    ax.add_patch(Rectangle((left, bottom), SIZE, SIZE, facecolor=ROCK, edgecolor=INK, linewidth=1))
-    if is_spatial(scene):
-        joints, side = scene.joints, scene.pillar.side
-        x, z, area = face_points(side, joints.contact_points, joints.point_rule)
-        places = [_at(scene, a, b) for a, b in zip(x.tolist(), z.tolist(), strict=True)]
-        across, up = zip(*places, strict=True)
-        points = ax.scatter(across, up, s=120 * area / side**2 + 4, color=EDGE, zorder=3)
-        points.set_gid("contacts")
-    _draw_load(ax, scene)
-    line = {"arrowstyle": "<->", "color": SOFT, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
-    ax.annotate("", (left, bottom - 0.14), (left + SIZE, bottom - 0.14), arrowprops=line)
-    top, right, middle = bottom + SIZE, left + SIZE, MIDDLE[0]
-    symbols.note(ax, middle, bottom - 0.2, f"{scene.pillar.side:g} m", va="top")
-    symbols.note(ax, middle, top + 0.1, "start face, seen along -y", va="bottom", color=SOFT)
-    symbols.note(ax, left - 0.06, top, "x", "right", "top", style="italic")
-    symbols.note(ax, right + 0.05, bottom, "z", "left", "bottom", style="italic")
+def _height(sketch: Sketch) -> float:
+    """Return the height of a row, inches."""
+    return HEAD + max(_drawing_height(sketch) + FOOT, PART + FOOT, LINE * len(legend(sketch)))
 
 
-def _at(scene: Scene, x: float, z: float) -> tuple[float, float]:
-    scale = SIZE / scene.pillar.side
-    return MIDDLE[0] + scale * z, MIDDLE[1] + scale * x
-
-
-def _draw_load(ax: Axes, scene: Scene) -> None:
-    load = scene.load
-    if not load.amplitude:
-        return
-    across, along, depth = load.direction
-    if load.arm is not None:
-        symbols.couple(ax, MIDDLE, 0.22)
-        return
-    at = MIDDLE if load.is_motion else _at(scene, *load.at)
-    # The tail, unless the force points at the reader: the tip.
-    symbols.along_or_across(ax, at, (depth, across), along, 0.5)
+def _mark_ends(ax: Axes, scene: Scene) -> None:
+    """Number the axis along the pillar only where it is."""
+    length, (low, high) = scene.pillar.length, ax.get_xlim()
+    ticks = MaxNLocator(max(1, round(10 * length / (high - low)))).tick_values(0, length)
+    ax.set_xticks([y for y in ticks if 0 <= y <= length * (1 + 1e-9)])
+    ax.set_yticks([])
+    ax.spines[["left", "bottom"]].set_visible(False)

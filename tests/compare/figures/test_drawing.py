@@ -4,181 +4,136 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.figure import Figure
-from matplotlib.patches import FancyArrowPatch, Rectangle
+from matplotlib.text import Annotation
 
 import cases
-from compare.figures.drawing.actions import THICK, WIDTH, placement
+from compare.figures.drawing.pillar import MOST, THIN, sketch_of
 from compare.figures.drawing.pulses import pulse_curve
-from compare.figures.drawing.scene import draw_section, scene_figure
-from compare.figures.drawing.side import MOST, _apart, draw_strip
+from compare.figures.drawing.scene import scene_figure
 from compare.misfit.pairs import Comparison
 from compare.scenes import find
 
-KEPT = (None, "blocks", "joints")  # groups whose parts no words stand near
 LAYERS = [
     {"y": 20.0, "spacing_stiffness": 4.375e8},
     {"y": 30.0, "cohesion": 5.0e4},
 ]
 
 
-def strip(scene) -> Axes:
-    """Return the drawing of a pillar from the side."""
-    ax = Figure().add_subplot()
-    draw_strip(ax, scene)
-    return ax
+def figure_of(scene):
+    return scene_figure("fig", [Comparison(scene)]).figure
 
 
-def section(scene) -> Axes:
-    """Return the drawing of its section."""
-    ax = Figure().add_subplot()
-    draw_section(ax, scene)
-    return ax
+def words(figure):
+    """Return the entries of the legend."""
+    (found,) = (ax.get_legend() for ax in figure.axes if ax.get_legend())
+    return [text.get_text() for text in found.texts]
 
 
-def parts(ax, name):
-    """Return the artists of a drawing whose group is NAME-i."""
-    return [a for a in ax.get_children() if (a.get_gid() or "").startswith(f"{name}-")]
+def arrows(figure):
+    """Return tail and tip of every arrow [n, 2, 2], m."""
+    found = [text for text in figure.axes[0].texts if isinstance(text, Annotation)]
+    return np.array([(one.xyann, one.xy) for one in found])
 
 
-def arrows(ax):
-    return [p for p in ax.patches if isinstance(p, FancyArrowPatch)]
-
-
-def words(ax):
-    return [text.get_text() for text in ax.texts]
+def notes(figure):
+    return [text.get_text() for text in figure.axes[0].texts if text.get_text()]
 
 
 def test_every_block_joint_layer_and_receiver_is_drawn_in_its_place(pillar):
-    scene = pillar(
-        soft_layers=LAYERS, record__stress=[10.0, 20.0, 47.5], record__velocity=[0.25, 19.75]
+    figure = figure_of(
+        pillar(
+            soft_layers=LAYERS, record__stress=[10.0, 20.0, 47.5], record__velocity=[0.25, 19.75]
+        )
     )
-    ax, place = strip(scene), placement(scene)
+    ax = figure.axes[0]
     (blocks,) = [c for c in ax.collections if isinstance(c, PolyCollection)]
-    (joints,) = [c for c in ax.collections if isinstance(c, LineCollection)]
-    assert len(blocks.get_paths()) == 100 and len(joints.get_segments()) == 99
+    joints, *layers = [c for c in ax.collections if isinstance(c, LineCollection)]
+    assert len(blocks.get_paths()) == 100
     at = [segment[0][0] for segment in joints.get_segments()]
-    np.testing.assert_allclose(at, [place.x(y) for y in np.arange(0.5, 50, 0.5)])
-    for name, key in (("stress", scene.record.stress), ("velocity", scene.record.velocity)):
-        found = [float(mark.get_xdata()[0]) for mark in parts(ax, name)]
-        np.testing.assert_allclose(found, [place.x(y) for y in key])
-    middles = [patch.get_xy()[:4, 0].mean() for patch in parts(ax, "layer")]
-    np.testing.assert_allclose(middles, [place.x(20.0), place.x(30.0)])
-    assert {"σ 47.5 m", "v 0.25 m", "layer, 875 MPa/m", "cohesion 50 kPa"} <= set(words(ax))
+    np.testing.assert_allclose(at, np.arange(0.5, 50, 0.5))
+    assert [lines.get_segments()[0][0][0] for lines in layers[:2]] == [20.0, 30.0]
+    assert [line.get_xdata().tolist() for line in ax.lines] == [[10.0, 20.0, 47.5], [0.25, 19.75]]
+    assert words(figure) == [
+        *("y = 20 m: layer, 875 MPa/m", "y = 30 m: cohesion 50 kPa", "free start", "free end"),
+        *("section: stress", "point: velocity"),
+    ]
 
 
 def test_a_pillar_of_very_many_blocks_is_one_piece_with_its_count(pillar):
     count = 2 * MOST
-    ax = strip(pillar(pillar__length=0.5 * count))
-    (blocks,) = [c for c in ax.collections if isinstance(c, PolyCollection)]
-    assert len(blocks.get_paths()) == 1
-    assert any(f"{count} blocks of 0.5 m" in text for text in words(ax))
+    sketch = sketch_of(pillar(pillar__length=0.5 * count))
+    assert len(sketch.blocks) == 1 and f"{count} blocks of 0.5 m" in sketch.labels[0]
+
+
+@pytest.mark.parametrize("end", ["free", "fixed", "quiet", "matched"])
+def test_ends_are_drawn_as_what_holds_them(pillar, end):
+    figure = figure_of(pillar(ends__end=end))
+    assert f"{end} end" in words(figure) and "free start" in words(figure)
+    line = figure.axes[0].collections[-1]
+    assert line.get_segments()[0][:, 0].tolist() == [50.0, 50.0]
+    assert (line.get_linewidth()[0] > 3) == (end == "fixed")
 
 
 @pytest.mark.parametrize(
-    ("end", "walls", "lines"), [("free", 0, 0), ("fixed", 1, 1), ("quiet", 1, 5), ("matched", 1, 6)]
-)
-def test_ends_are_drawn_as_what_holds_them(pillar, end, walls, lines):
-    """A dashpot has four lines, a spring one, and so has the face of a wall."""
-    held, free = strip(pillar(ends__end=end)), strip(pillar(ends__end="free"))
-    hatched = [p for p in held.patches if isinstance(p, Rectangle) and p.get_hatch()]
-    assert len(hatched) == walls
-    assert len(held.lines) - len(free.lines) == lines
-    assert f"{end} end" in words(held) and "free start" in words(held)
-
-
-@pytest.mark.parametrize(
-    ("changes", "count"),
+    ("changes", "count", "said"),
     [
-        ({}, 3),
-        ({"ends__start": "matched"}, 2),
-        ({"load__at": [0.1, 0.0]}, 1),
-        ({"load__direction": [1.0, 0.0, 0.0]}, 1),
-        ({"load__arm": 0.25}, 2),
-        ({"load__amplitude": 0.0}, 0),
-        ({"ends__start": "fixed", "load__quantity": "velocity", "load__amplitude": 1.0}, 1),
-        ({"prestress__normal": 5e5}, 5),
-        ({"gravity__direction": [0.0, 1.0, 0.0], "ends__end": "fixed"}, 4),
+        ({}, 3, []),
+        ({"load__at": [0.1, 0.0]}, 1, []),
+        ({"load__direction": [1.0, 0.0, 0.0]}, 1, []),
+        ({"load__direction": [0.0, 0.0, 1.0]}, 0, ["load along z"]),
+        ({"load__direction": [0.0, 0.8, 0.6]}, 3, ["load also along z"]),
+        ({"load__arm": 0.25}, 0, ["couple about y"]),
+        ({"load__amplitude": 0.0}, 0, []),
+        ({"ends__start": "fixed", "load__quantity": "velocity", "load__amplitude": 1.0}, 1, []),
+        ({"prestress__normal": 5e5}, 3, ["prestress 500 kPa"]),
+        ({"gravity__direction": [0.0, 1.0, 0.0], "ends__end": "fixed"}, 4, ["9.81 m/s²"]),
     ],
 )
-def test_what_acts_is_drawn_as_arrows(pillar, changes, count):
-    assert len(arrows(strip(pillar(**changes)))) == count
+def test_what_acts_is_drawn_as_arrows_or_said(pillar, changes, count, said):
+    figure = figure_of(pillar(**changes))
+    assert len(arrows(figure)) == count and notes(figure) == said
 
 
 @pytest.mark.parametrize("direction", [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [-0.6, 0.8, 0.0]])
 def test_arrows_point_along_the_load(pillar, direction):
-    for arrow in arrows(strip(pillar(load__direction=direction))):
-        (x0, y0), (x1, y1) = arrow._posA_posB
-        along = np.array([y1 - y0, x1 - x0]) / np.hypot(x1 - x0, y1 - y0)
-        np.testing.assert_allclose(along, direction[:2], atol=1e-12)
-
-
-@pytest.mark.parametrize(("normal", "inward"), [(5e5, True), (-5e5, False)])
-def test_prestress_points_inward_in_compression(pillar, normal, inward):
-    scene = pillar(prestress__normal=normal, load__amplitude=0.0)
-    middle = placement(scene).x(25.0)
-    for arrow in arrows(strip(scene)):
-        (x0, _), (x1, _) = arrow._posA_posB
-        assert (abs(x1 - middle) < abs(x0 - middle)) == inward
+    """As drawn: what is up is stretched."""
+    scene = pillar(load__direction=direction)
+    for tail, tip in arrows(figure_of(scene)):
+        along = (tip - tail) * [1.0, sketch_of(scene).stretch]
+        np.testing.assert_allclose(along / np.hypot(*along), direction[1::-1], atol=1e-12)
 
 
 @pytest.mark.parametrize(("n", "rule"), [(2, "midpoint"), (3, "gauss")])
 def test_contact_points_are_drawn_where_the_scene_moves_in_space(pillar, n, rule):
     joints = {"joints__contact_points": n, "joints__point_rule": rule}
-    ax = section(pillar(load__at=[0.1, 0.0], **joints))
-    (points,) = [c for c in ax.collections if c.get_gid() == "contacts"]
-    assert len(points.get_offsets()) == n * n
-    assert not section(pillar(**joints)).collections
+    scenes = pillar(load__at=[0.1, 0.0], **joints), pillar(**joints)
+    in_space, axial = (
+        [ax for ax in figure_of(scene).axes if ax.get_title("left") == "start face"]
+        for scene in scenes
+    )
+    assert len(in_space[0].collections[0].get_offsets()) == n * n and not axial
 
 
 def test_a_squat_pillar_is_true_to_scale_and_a_slender_one_says_by_how_much(pillar):
-    squat = pillar(pillar__length=4.0, pillar__side=2.0, record__stress=[2.0])
-    place = placement(squat)
-    assert place.thick == pytest.approx(place.scale * 2.0) and place.thick > THICK
-    assert not any("thickness ×" in text for text in words(strip(squat)))
-    slender = strip(pillar())
-    place = placement(pillar())
-    times = place.thick / (place.scale * 0.5)
-    assert times > 5 and any(f"thickness × {times:.2g}" in text for text in words(slender))
-
-
-def test_labels_move_apart_as_far_as_they_must():
-    """By the least shifts, and within the available width."""
-    wanted, widths = np.array([1.0, 1.1, 1.2, 5.0]), np.full(4, 0.5)
-    assert _apart(wanted, widths, 7.0) == pytest.approx([0.6, 1.1, 1.6, 5.0])
-    assert _apart(wanted, widths, 5.0) == pytest.approx([0.6, 1.1, 1.6, 4.75])
-    assert _apart(wanted - 1.0, widths, 7.0) == pytest.approx([0.25, 0.75, 1.25, 4.0])
+    squat = sketch_of(pillar(pillar__length=4.0, pillar__side=2.0, record__stress=[2.0]))
+    assert squat.stretch == 1 and "thickness ×" not in squat.labels[0]
+    slender = sketch_of(pillar())
+    across = slender.high[0] - slender.low[0]
+    assert slender.stretch * 0.5 == pytest.approx(THIN * across)
+    assert f"thickness × {slender.stretch:.2g}" in slender.labels[0]
 
 
 @pytest.mark.parametrize(
     "changes",
     [
         {"prestress__normal": 1e7, "record__stress": [10.0, 25.0], "soft_layers": LAYERS},
-        {"record__stress": [6.25 * i for i in range(9)], "prestress__normal": -1.5e6},
         {"gravity__direction": [-1.0, 0.0, 0.0], "ends__end": "fixed", "record__stress": [49.5]},
         {"pillar__length": 2.0, "pillar__side": 1.0, "record__stress": [1.0], "ends__end": "quiet"},
-        {"ends__end": "matched", "record__velocity": [19.75, 20.25], "prestress__normal": 5e5},
     ],
 )
 def test_words_lie_over_nothing_else(pillar, collisions, changes):
-    """Neither over each other nor over arrows, layers and the marks of receivers."""
-    picture = scene_figure("fig", [Comparison(pillar(**changes))]).figure
-    assert collisions(picture) == []
-    renderer = picture.canvas.get_renderer()
-    ax = picture.axes[0]
-    drawn = [*ax.patches, *(a for a in ax.get_children() if a.get_gid() not in KEPT)]
-    for text in ax.texts:
-        box = text.get_window_extent(renderer)
-        for artist in drawn:
-            assert not box.overlaps(artist.get_window_extent(renderer)), (text, artist)
-
-
-def test_no_labels_where_there_is_no_room_for_them(pillar):
-    ax = strip(pillar(record__stress=[float(y) for y in range(1, 50)]))
-    assert len(parts(ax, "stress")) == 49
-    assert not any(text.startswith("σ") for text in words(ax))
+    assert collisions(figure_of(pillar(**changes))) == []
 
 
 def test_load_is_drawn_from_its_history(pillar):
@@ -220,14 +175,10 @@ def test_variants_that_look_alike_share_a_drawing(pillar, ink):
     ],
 )
 def test_shipped_scenes_are_drawn_within_the_figure(name, ink):
-    scenes = cases.load(find(name))
-    picture = scene_figure("fig", [Comparison(scene) for scene in scenes])
-    assert 0.005 < ink(picture.figure) < 0.3
-    strips = [ax for ax in picture.figure.axes if ax.get_xlim() == (0.0, WIDTH)]
-    renderer = picture.figure.canvas.get_renderer()
-    for ax in strips:
-        frame_box = ax.get_window_extent(renderer)
-        for text in ax.texts:
-            box = text.get_window_extent(renderer)
-            assert box.x0 >= frame_box.x0 - 1 and box.x1 <= frame_box.x1 + 1, text.get_text()
-            assert box.y0 >= frame_box.y0 - 1 and box.y1 <= frame_box.y1 + 1, text.get_text()
+    picture = scene_figure("fig", [Comparison(scene) for scene in cases.load(find(name))]).figure
+    assert 0.005 < ink(picture) < 0.3
+    renderer = picture.canvas.get_renderer()
+    for ax in picture.axes:
+        box = ax.get_tightbbox(renderer)
+        assert box.x0 >= -1 and box.y0 >= -1
+        assert box.x1 <= picture.bbox.x1 + 1 and box.y1 <= picture.bbox.y1 + 1
