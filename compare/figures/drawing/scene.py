@@ -22,7 +22,7 @@ from compare.misfit.pairs import Comparison
 
 MOST = 4  # drawings per scene
 TITLE = "The scene"
-EDGE, DRAWING, BESIDE = 0.6, 5.6, 1.35  # inches across: the margin, drawing, and parts beside it
+EDGE, DRAWING, BESIDE = 0.6, 5.2, 1.25  # inches across: the margin, drawing, and parts beside it
 GAP, TALLEST = 0.55, 6.0  # inches between parts, and of the tallest drawing
 HEAD, FOOT, LINE, PART = 0.3, 0.5, 0.19, 1.0  # inches up
 
@@ -74,8 +74,8 @@ def _draw_row(figure: Figure, scene: Any, sketch: Sketch, top: float) -> None:
     if isinstance(scene, Scene):
         _mark_ends(ax, scene)
         if is_spatial(scene):
-            beside += PART + GAP
-            pillar.draw_section(axes(beside - PART - 0.35, PART, PART), scene)
+            pillar.draw_section(axes(beside + 0.15, PART, PART), scene)
+            beside += 0.2 + PART + GAP
     acting = next((pulse for pulse in scene.pulses if pulse.amplitude), None)
     if acting is not None:
         kind = getattr(acting, "kind", "load")
