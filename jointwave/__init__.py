@@ -38,7 +38,7 @@ if TYPE_CHECKING:
         transfer_function,
         wave_speed,
     )
-    from compare.report.verdict import Held
+    from compare.report.verdict import VariantScore
     from compare.studies.fit import Fit
 
 __all__ = [
@@ -187,13 +187,13 @@ def misfit(one: Dataset, other: Dataset) -> float:
     return metrics.misfit(one, other)
 
 
-def verdicts(comparison: Comparison) -> dict[str, Held]:
+def verdicts(comparison: Comparison) -> dict[str, VariantScore]:
     """Return the verdict on each engine of a comparison by name: `total`, its worst misfit from the
     reference `against`, `peaks`, the differences in PPV and peak stress, mean and worst over the
     receivers, and `own`, its numerical error; `facts` has all as plain numbers and words."""
-    from compare.report.verdict import ENGINES, held_to
+    from compare.report.verdict import ENGINES, score
 
-    return {name: held_to(name, comparison) for name in ENGINES if name in comparison.results}
+    return {name: score(name, comparison) for name in ENGINES if name in comparison.results}
 
 
 def read_curves(files: Sequence[str], scenes: Sequence[AnyScene]) -> list[Curves]:

@@ -69,8 +69,8 @@ DOORS = {
         "compare/cli/new.py",
     ),  # of the program
     *(
-        "compare/report/render.py",
-        "compare/report/section.py",
+        "compare/report/page.py",
+        "compare/report/scenes.py",
     ),  # what has just been written or read
     "compare/report/peers.py",  # of a text in memory
     "cases/records.py",  # the same

@@ -12,7 +12,7 @@ from compare.misfit.alignment import Beside
 from compare.misfit.differences import STRESS, VELOCITY
 from compare.misfit.metrics import Worst
 from compare.misfit.pairs import GIVEN, Comparison, Row
-from compare.report.verdict import Standing, held_to, standings
+from compare.report.verdict import EngineScore, engine_scores, score
 from compare.solvers.incident import side_error
 from compare.solvers.record import Kind
 from compare.text import cell, in_seconds, mean_and_worst, percent
@@ -50,7 +50,7 @@ def show_comparisons(
 
 def _show_answer(found: list[Comparison], every: bool) -> None:
     """Print at most ten lines: the engines by their worst variant, and what was given."""
-    stand, scene, several = standings(found), found[0].scene, len(found) > 1
+    stand, scene, several = engine_scores(found), found[0].scene, len(found) > 1
     count = f"({len(found)} variants, the worst of each engine)" if several else scene.name
     say(f"{scene.title} {count}".rstrip(), "bold")
     if stand:
@@ -66,7 +66,7 @@ def _show_answer(found: list[Comparison], every: bool) -> None:
         say(HINT, "dim")
 
 
-def _engine_cells(engine: str, one: Standing, found: list[Comparison]) -> list[str]:
+def _engine_cells(engine: str, one: EngineScore, found: list[Comparison]) -> list[str]:
     """Return an engine's line: that of its worst variant, and the most that any of them took."""
     worst = max(one.variants, key=lambda held: _rank(held.total))
     own = max((held.own for held in one.variants), key=_rank)
@@ -97,9 +97,9 @@ def in_percent(worst: Worst) -> str:
     return f"{below}{percent(worst.judged).removeprefix('< ' if below else '')} %"
 
 
-def _remarks(stand: dict[str, Standing], several: bool) -> Iterator[str]:
+def _remarks(stand: dict[str, EngineScore], several: bool) -> Iterator[str]:
     """Yield the references, engines not checked independently, and bounds that are exceeded."""
-    held = [one for standing in stand.values() for one in standing.variants]
+    held = [one for of_all in stand.values() for one in of_all.variants]
     said = list(dict.fromkeys(f"{one.against}: {one.reason}" for one in held if one.against))
     others = [e for e, one in stand.items() if {*one.meanings} - {Kind.NUMERICAL.words}]
     if said:
@@ -236,7 +236,7 @@ def _facts(comparison: Comparison, reads: bool) -> dict[str, Any]:
 
 
 def _engine_facts(engine: str, comparison: Comparison) -> dict[str, Any]:
-    held, about = held_to(engine, comparison), comparison.results[engine].attrs
+    held, about = score(engine, comparison), comparison.results[engine].attrs
     bounds = {"seconds_stepping": about["seconds_stepping"], "out_of_bounds": list(held.broken)}
     return held.facts | bounds
 

@@ -87,17 +87,21 @@ def show_report(found: "Report", as_json: bool) -> None:
     """Print the report's summary and where the page is."""
     page = found.page
     if as_json:
-        rows = [[kind, *row] for kind, rows in page.summary.groups.items() for row in rows]
-        columns = ["what", *page.summary.header]
+        summary = found.summary.reset_index()
+        columns, rows = ["what", *summary.columns[1:]], summary.values.tolist()
         print_json({"page": str(found.file), "columns": columns, "rows": rows})
         return
-    for engine, sentence in page.overview.lead.items():
+    for engine, sentence in page["overview"]["lead"].items():
         say(f"{engine} {sentence}")
-    if page.about:
-        say(f"\n{page.about.sentence}")
+    if page["about"]:
+        say(f"\n{page['about'].sentence}")
     say("\nLargest relative L2 misfit over the variants of each scene, in %:")
-    show_numbers(page.summary.header, page.summary.groups)
-    if page.claims:
-        holding = page.claims - len(page.failed)
-        say(f"{holding} of {page.claims} claims of the paper's figures hold.")
+    groups = {
+        kind: rows.droplevel(0).reset_index().values.tolist()
+        for kind, rows in found.summary.groupby(level=0, sort=False)
+    }
+    show_numbers(["pair", *found.summary.columns], groups)
+    if claims := page["claims"]:
+        holding = sum(claim.holds for _, claim in claims)
+        say(f"{holding} of {len(claims)} claims of the paper's figures hold.")
     say(f"report: {found.file}")

@@ -1,35 +1,29 @@
-"""The first screen: how far apart the engines are on every scene, what each costs; versions."""
+"""The first screen: how far apart the engines are on every scene, and what each costs."""
 
-import json
-import platform
-from collections.abc import Callable, Iterable
-from importlib.metadata import PackageNotFoundError, version
+from collections.abc import Callable, Sequence
 from math import isnan
 from time import perf_counter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from cases.kinds import AnyScene
 from compare.engines import ENGINES, stepping
-from compare.misfit.pairs import Comparison
-from compare.report.verdict import NOT_CHECKED, Standing
-from compare.text import in_seconds, times
+from compare.report.verdict import NOT_CHECKED, EngineScore
+from compare.text import in_seconds, mean_and_worst, times
+
+REPEATS = 5
+LONG = 0.5  # s: a run that has taken so long is not repeated
+ENOUGH = 0.1  # s: of repeats, their set-up included
 
 
 class RankedScene(NamedTuple):
-    """A scene's name on the page, its label and title, and where its engines stand.
-
-    seconds : of stepping the first variant, by engine.
-    """
+    """A scene on the first screen: its name on the page, what is written there, where its engines
+    stand, and the seconds of stepping its first variant, by engine."""
 
     name: str
-    label: str
+    heading: str
     title: str
-    standings: dict[str, Standing]
+    scores: dict[str, EngineScore]
     seconds: dict[str, float]
-
-    @property
-    def heading(self) -> str:
-        """Number or name, and the title."""
-        return f"{self.label.removeprefix('fig. ')} {self.title}"
 
     def ratio(self, engine: str) -> float:
         """Return an engine's seconds over those of the cheapest engine of the scene."""
@@ -37,36 +31,46 @@ class RankedScene(NamedTuple):
         return self.seconds[engine] / least if least > 0 else 1.0
 
 
-class Overview(NamedTuple):
-    """The scenes of the page."""
+def overview(scenes: Sequence[RankedScene]) -> dict[str, Any]:
+    """Return the engines, a sentence on each, and each scene's cells by engine."""
+    engines = [name for name in ENGINES if any(name in s.scores for s in scenes)]
+    return {
+        "engines": engines,
+        "lead": {e: _sentence(e, [s for s in scenes if e in s.scores]) for e in engines},
+        "rows": [(scene, {e: _cell(scene, e) for e in scene.scores}) for scene in scenes],
+    }
 
-    scenes: list[RankedScene]
 
-    @property
-    def engines(self) -> list[str]:
-        """Those that ran on any scene."""
-        return [name for name in ENGINES if any(name in s.standings for s in self.scenes)]
-
-    @property
-    def lead(self) -> dict[str, str]:
-        """By engine, how far it lies from the finest physics, and at what cost, in a sentence."""
-        return {
-            engine: _sentence(engine, [s for s in self.scenes if engine in s.standings])
-            for engine in self.engines
-        }
+def _cell(scene: RankedScene, engine: str) -> dict[str, Any]:
+    score = scene.scores[engine]
+    peaks = [f"{name}: {mean_and_worst(peak)} %" for name, peak in score.peaks.items()]
+    return {
+        "verdict": score.verdict,
+        "explanation": score.explanation,
+        "cost": times(scene.ratio(engine)),
+        "seconds": in_seconds(scene.seconds[engine]),
+        "total": score.total.judged,
+        "peaks": ", ".join(peaks),
+        "own": score.own.judged,
+    }
 
 
 def _sentence(engine: str, scenes: list[RankedScene]) -> str:
-    totals = [x for s in scenes if not isnan(x := s.standings[engine].total)]
-    own = [x for s in scenes if not isnan(x := s.standings[engine].own)]
-    held = any(s.standings[engine].finest for s in scenes)
-    alone = "not compared with finer physics" if held else NOT_CHECKED.word
-    far = f"{_span(_short, totals)} % from the finest physics" if totals else alone
+    """Return how far an engine lies from the finest physics, and at what cost."""
+    scores = [s.scores[engine] for s in scenes]
+    totals = [x for one in scores if not isnan(x := one.total.judged)]
+    own = [x for one in scores if not isnan(x := one.own.judged)]
+    if totals:
+        far = f"{_span(_short, totals)} % from the finest physics"
+    elif any(one.references for one in scores):
+        far = "not compared with finer physics"
+    else:
+        far = NOT_CHECKED.word
     error = f", own numerical error ≤ {_short(max(own))} %" if own else ""
-    open_ones = sum(bool(s.standings[engine].unchecked) for s in scenes)
-    unchecked = f", {NOT_CHECKED.word} on {open_ones} of {len(scenes)} scenes" if totals else ""
-    found = f"{far}{error}{unchecked * bool(open_ones)}; {_cost(engine, scenes)}"
-    return f"({ENGINES[engine].words.sentence}): {found}."
+    unchecked = sum(bool(one.unchecked) for one in scores)
+    if totals and unchecked:
+        error += f", {NOT_CHECKED.word} on {unchecked} of {len(scenes)} scenes"
+    return f"({ENGINES[engine].words.sentence}): {far}{error}; {_cost(engine, scenes)}."
 
 
 def _cost(engine: str, scenes: list[RankedScene]) -> str:
@@ -86,50 +90,20 @@ def _short(x: float) -> str:
     return "< 0.001" if 0 < x < 1e-5 else f"{100 * x:.2g}"
 
 
-PACKAGES = ("scipy", "xarray", "obspy", "matplotlib")
+def seconds_of_stepping(scene: AnyScene, known: dict[str, float]) -> dict[str, float]:
+    """Return the seconds of stepping of each engine: the least of a few repeats, while no other
+    process should be computing; of a run that has taken long, what it took.
 
-
-def versions(scenes: Iterable[list[Comparison]]) -> dict[str, str]:
-    """Return them by name."""
-    found = {"jointwave": _version("jointwave"), "Python": platform.python_version()}
-    for comparisons in scenes:
-        for result in comparisons[0].results.values():
-            found |= json.loads(result.attrs.get("versions", "{}"))
-    return found | {name: _version(name) for name in PACKAGES}
-
-
-def _version(package: str) -> str:
-    try:
-        return version(package)
-    except PackageNotFoundError:  # run from its folder, not installed
-        return "(not installed)"
-
-
-REPEATS = 5
-LONG = 0.5  # s: a run that has taken so long is not repeated
-ENOUGH = 0.1  # s: of repeats, their set-up included
-
-
-def seconds(comparison: Comparison) -> dict[str, float]:
-    """Return the seconds of stepping of each engine on a variant that it has solved.
-
-    The least of a few repeats, while no other process should be computing; of a run that has
-    taken long before, what it took then.
+    known : what each engine has taken.
     """
-    engines = [name for name in ENGINES if name in comparison.results]
-    return {name: _least(name, comparison) for name in engines}
+    return {engine: _least(engine, scene, taken) for engine, taken in known.items()}
 
 
-def _least(name: str, comparison: Comparison) -> float:
-    known = _stepping(comparison.results[name])
+def _least(engine: str, scene: AnyScene, known: float) -> float:
     if known > LONG:
         return known
     found: list[float] = []
-    began, repeat = perf_counter(), stepping(name, comparison.scene)
+    began, repeat = perf_counter(), stepping(engine, scene)
     while not found or (len(found) < REPEATS and perf_counter() - began < ENOUGH):
         found.append(repeat())
     return min(found)
-
-
-def _stepping(result) -> float:
-    return float(result.attrs["seconds_stepping"])

@@ -1,52 +1,92 @@
-"""The scenes of a report: which, by what name, and all of them solved and drawn in processes."""
+"""The scenes of a report: which, by what name, and each of them solved and drawn."""
 
-from __future__ import annotations
-
+import json
 import re
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor, Future, as_completed
-from dataclasses import dataclass, replace
+import shlex
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Any, NamedTuple
 
-import xarray as xr
+import pandas as pd
 
+import cases
 from cases.errors import SceneError
 from cases.kinds import AnyScene
-from cases.schema.scene import Scene
-from compare.engines import Progress
-from compare.experiments.cost import timings
-from compare.figures.scene_figures import along_pillar, figures_of, recorded_along
+from compare.engines import ENGINES
+from compare.figures.export import Drawn, save
+from compare.figures.figure import SceneFigure
+from compare.figures.scene_figures import along_pillar, figures_of
+from compare.figures.tables import distance_frame, reading_frame
 from compare.misfit.pairs import Comparison
-from compare.report.section import PAPER, SceneRequest, Section, begin, finish, make_section
+from compare.report import tables
+from compare.report.claims import claims_of
+from compare.report.claims.claim import Claim
+from compare.report.claims.pillar import mostly_dispersion
+from compare.report.verdict import EngineScore, engine_scores
 from compare.runs.comparison import compare
+from compare.runs.output import write_csv
 from compare.scenes import find, load
 from compare.studies.ensemble import ensemble_in
-from results.dataset import scene_hash
 
+PAPER = Path(cases.__file__).parent / "guo-li-2002"
+FREE_PILLAR = 3  # the figure that says what the paper's own comparison is made of
 #: The shipped scenes of rock masses that the page shows beside the paper's figures.
 ROCK_MASSES = ("rock-mass/one-joint",)
 RATE = "scene of the report"  # what the seconds of scenes are remembered by
-TAKEN = {"", "overview", "made", "said", "rock-masses"}  # what the page calls its own parts
-#: From which to which fraction of the progress scenes are solved, and drawn.
-SOLVED, DRAWN = (0.0, 0.5), (0.5, 1.0)
-Pool = Callable[[], Executor]
-Submit = Callable[[Executor], list[Future]]
+TAKEN = {"", "overview", "made", "rock-masses", "peers", "effects", "stability", "motion"}
 
 
-@dataclass
-class Solved:
-    """What the scenes have come to, by name and in the page's order."""
+class SceneRequest(NamedTuple):
+    """A scene of the report: its file, how its user calls it, its name on the page, and pictures
+    that are there already."""
 
-    comparisons: dict[str, list[Comparison]]
-    sections: list[Section]
+    file: Path
+    called: str
+    name: str
+    besides: tuple[SceneFigure, ...] = ()
 
-    def split(self, chosen: Callable[[Section], bool]) -> tuple[Solved, Solved]:
-        """Return what the chosen scenes have come to, and all others."""
-        return self._of(chosen), self._of(lambda section: not chosen(section))
+    @property
+    def number(self) -> int | None:
+        """Of the paper's figure that the scene is; None for any other scene."""
+        found = re.fullmatch(r"fig-(\d+)", self.file.stem)
+        return int(found[1]) if found and self.file.resolve().parent == PAPER.resolve() else None
 
-    def _of(self, chosen: Callable[[Section], bool]) -> Solved:
-        sections = [section for section in self.sections if chosen(section)]
-        return Solved({s.name: self.comparisons[s.name] for s in sections}, sections)
+    @property
+    def label(self) -> str:
+        """What a column or a link calls it."""
+        return f"fig. {self.number}" if self.number else self.name
+
+
+class Shown(NamedTuple):
+    """A picture as it stands on the page; folded : whether it stands in a fold. same_as : id and
+    words of a picture further up that has the same numbers."""
+
+    drawn: Drawn
+    caption: str
+    folded: bool
+    same_as: tuple[str, str] | None = None
+
+
+class SolvedScene(NamedTuple):
+    """A scene solved by all that applies.
+
+    section : what its section of the page shows. scores : where its engines stand. worst : misfits
+    by pair. scene : its first variant, and the seconds of stepping it by engine. versions : of the
+    packages that solved it. about : what its misfit is made of, of the paper's free pillar.
+    """
+
+    request: SceneRequest
+    title: str
+    figures: list[Shown]
+    claims: list[Claim]
+    section: dict[str, Any]
+    scores: dict[str, EngineScore]
+    worst: pd.Series
+    scene: AnyScene
+    seconds: dict[str, float]
+    versions: dict[str, str]
+    about: Claim | None
 
 
 def asked_for(scenes: Sequence[str], ensembles: Sequence[Path] = ()) -> list[SceneRequest]:
@@ -72,81 +112,81 @@ def asked_for(scenes: Sequence[str], ensembles: Sequence[Path] = ()) -> list[Sce
     return list(found.values())
 
 
-def solve(
+def solve(request: SceneRequest, folder: Path) -> SolvedScene:
+    """Solve a scene's variants by all that applies, and write its pictures and tables."""
+    comparisons = [compare(scene, None, True) for scene in load(request.file)]
+    first, scores = comparisons[0], engine_scores(comparisons)
+    versions: dict[str, str] = {}
+    for result in first.results.values():
+        versions |= json.loads(result.attrs.get("versions", "{}"))
+    return SolvedScene(
+        request,
+        first.scene.title,
+        _draw(request, comparisons, folder),
+        claims_of(request.number, comparisons),
+        _section(request, comparisons, scores, folder),
+        scores,
+        tables.worst_misfits(comparisons),
+        first.scene,
+        {
+            engine: float(first.results[engine].attrs["seconds_stepping"])
+            for engine in ENGINES
+            if engine in first.results
+        },
+        versions,
+        mostly_dispersion(first) if request.number == FREE_PILLAR else None,
+    )
+
+
+def _draw(request: SceneRequest, comparisons: list[Comparison], folder: Path) -> list[Shown]:
+    fields = [along_pillar(one.scene) for one in comparisons]
+    besides = [replace(one, name=f"{request.name}-{one.name}") for one in request.besides]
+    return [
+        Shown(save(p.figure, folder, p.name, p.title, p.table, png=False), p.caption, p.folded)
+        for p in (*figures_of(request.name, comparisons, fields), *besides)
+    ]
+
+
+def _section(
+    request: SceneRequest,
+    comparisons: list[Comparison],
+    scores: dict[str, EngineScore],
     folder: Path,
-    asked: list[SceneRequest],
-    progress: Progress | None,
-    pool: Pool,
-    besides: Submit = lambda executor: [],
-    begin_others: Callable[[], None] = lambda: None,
-) -> Solved:
-    """Solve and draw scenes by the processes of a pool; pictures and tables go to `folder`.
-
-    Each variant is solved once, however many scenes share it. `besides` submits what else is to be
-    done at the same time; `begin_others` is called once nothing is left to be submitted.
-    """
-    loaded = {one.name: load(one.file) for one in asked}
-    unique = {_key(scene): scene for variants in loaded.values() for scene in variants}
-    tell = _teller(progress)
-    with timings.timing(RATE, len(asked)), pool() as executor:
-        order = sorted(unique, key=lambda key: _rank(unique[key]))
-        wide = {_along(unique[key]): key for key in reversed(order)}
-        found = {key: executor.submit(_solved, unique[key], key in wide.values()) for key in order}
-        tell([*found.values(), *besides(executor)], SOLVED)
-        comparisons = {
-            name: [replace(found[_key(scene)].result()[0], scene=scene) for scene in variants]
-            for name, variants in loaded.items()
-        }
-        fields = {
-            name: [found[wide[_along(scene)]].result()[1] for scene in variants]
-            for name, variants in loaded.items()
-        }
-        pictures = (
-            (one, picture)
-            for one in asked
-            for picture in (
-                *figures_of(one.name, comparisons[one.name], fields[one.name]),
-                *(replace(b, name=f"{one.name}-{b.name}") for b in one.besides),
-            )
-        )
-        begun = begin(folder, pictures, executor)
-        begin_others()
-        tell([files for some in begun.values() for _, files in some if files], DRAWN)
-    sections = [make_section(folder, a, comparisons[a.name], finish(begun[a.name])) for a in asked]
-    return Solved(comparisons, sections)
+) -> dict[str, Any]:
+    """Return what the section shows beside pictures and claims; write its tables."""
+    scene, readings = comparisons[0].scene, reading_frame(comparisons)
+    found: dict[str, Any] = {
+        "heading": f"Figure {request.number}. {scene.title}" if request.number else scene.title,
+        "source": scene.source or "",
+        "command": shlex.join(["jointwave", "report", request.called, "--out", request.name]),
+        "verdicts": tables.verdict_table(scores),
+        "misfits": tables.misfit_table(comparisons),
+        "distances": tables.distance_table(comparisons),
+        "distances_file": write_csv(
+            folder / f"{request.name}-misfits.csv", distance_frame(comparisons)
+        ),
+        "runs": tables.run_table(comparisons),
+        "reasons": tables.reason_table(comparisons),
+        "toml": request.file.read_text(encoding="utf-8-sig"),
+    }
+    if len(readings):
+        file = write_csv(folder / f"{request.name}-readings.csv", readings)
+        found["readings"] = readings.set_index(["variant", "solution", "at"])
+        found["readings_file"] = file
+    return found
 
 
-def _solved(scene: AnyScene, along: bool) -> tuple[Comparison, dict[str, xr.Dataset]]:
-    """Return the solutions of a scene, and, if wanted, those all along its pillar."""
-    return compare(scene, None, True), along_pillar(scene) if along else {}
-
-
-def _teller(progress: Progress | None) -> Callable[[list[Future], tuple[float, float]], None]:
-    """Return what waits for futures, and tells the progress of them within a part of the whole."""
-
-    def wait(futures: list[Future], part: tuple[float, float]) -> None:
-        for done, future in enumerate(as_completed(futures), start=1):
-            future.result()
-            if progress:
-                progress(part[0] + (part[1] - part[0]) * done / len(futures))
-
-    return wait
-
-
-def _key(scene: AnyScene) -> str:
-    """Return what decides a scene's results: its hash without names and bounds."""
-    unnamed = scene.model_copy(update={"title": "", "source": None, "name": "", "expect": {}})
-    return scene_hash(unnamed)
-
-
-def _along(scene: AnyScene) -> str:
-    """Return what decides a scene's results all along its pillar."""
-    return _key(recorded_along(scene))
-
-
-def _rank(scene: AnyScene) -> tuple[bool, float]:
-    """Return the place of a scene in the order of cost, the dearest first: rock masses, and joints
-    that open; then the most damped, since dashpots shorten the step."""
-    if not isinstance(scene, Scene):
-        return False, 0.0
-    return scene.joints.tension is not False, -(scene.joints.damping_ratio or 0.0)
+def without_repeats(solved: Iterable[SolvedScene]) -> list[SolvedScene]:
+    """Return the scenes, of which a picture with the numbers of one further up is a link to it."""
+    seen: dict[bytes, tuple[str, str]] = {}
+    found = []
+    for one in solved:
+        figures = []
+        for shown in one.figures:
+            words = f"{one.request.label}: {shown.drawn.title}"
+            numbers = shown.drawn.file("csv").read_bytes()
+            first = seen.setdefault(numbers, (shown.drawn.name, words))
+            repeats = first[0] != shown.drawn.name
+            figures.append(shown._replace(same_as=first if repeats else None))
+        found.append(one._replace(figures=figures))
+    return found

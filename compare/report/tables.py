@@ -1,190 +1,146 @@
-"""The tables of the report, as plain text in rows."""
+"""The tables of a scene on the page: what a row is stands in the index, the outermost level as a
+heading over its rows; numbers in the columns, misfits in percent."""
 
-from collections.abc import Callable, Iterable
-from itertools import chain
-from math import isfinite
-from typing import NamedTuple
+from typing import Any
 
+import pandas as pd
 import xarray as xr
 
 from compare.figures.panels import variant_names
+from compare.figures.tables import rows_of
 from compare.misfit.differences import STRESS, VELOCITY
-from compare.misfit.pairs import Comparison, Pair, Row, meaning, pairs
+from compare.misfit.pairs import Comparison, Row, meaning
 from compare.misfit.places import Place
-from compare.report.verdict import Standing
-from compare.text import mean_and_worst, percent
+from compare.report.verdict import EngineScore
+from compare.text import mean_and_worst
 from results.dataset import energy_residual, open_ledger
 
 
-class Table(NamedTuple):
-    """Column names, and rows of cells in groups: a heading, then its rows."""
-
-    header: list[str]
-    groups: dict[str, list[list[str]]]
-
-
-def title(pair: Pair) -> str:
-    """Return a pair as scene files write it."""
-    return f"{pair.one} ~ {pair.other}"
-
-
-def verdict_table(standings: dict[str, Standing]) -> Table:
-    """Return the verdict on each engine, a row a variant, with what engineers read."""
-    header = ["variant", "worst misfit (%)", "at", "PPV (%)", "peak stress (%)"]
-    header += ["compared with", "which is a", "verdict"]
-    groups = {
-        engine: [
-            [
-                held.variant,
-                percent(held.total.judged),
-                held.total.where if held.against else "",
-                *(mean_and_worst(held.peaks.get(name)) for name in (VELOCITY, STRESS)),
-                held.against,
-                held.meaning,
-                f"{held.verdict.sign} {held.verdict.word}",
-            ]
-            for held in one.variants
-        ]
-        for engine, one in standings.items()
-    }
-    return Table(header, groups)
+def verdict_table(scores: dict[str, EngineScore]) -> pd.DataFrame:
+    """Return the verdict on each engine in each variant, with what engineers read."""
+    rows = [
+        {
+            "engine": engine,
+            "variant": one.variant,
+            "worst misfit (%)": 100 * one.total.judged,
+            "at": one.total.where if one.against else "",
+            **{f"{name} (%)": mean_and_worst(one.peaks.get(name)) for name in (VELOCITY, STRESS)},
+            "compared with": one.against,
+            "which is a": one.meaning,
+            "verdict": f"{one.verdict.sign} {one.verdict.word}",
+        }
+        for engine, score in scores.items()
+        for one in score.variants
+    ]
+    return _under(rows, "engine", "variant")
 
 
-def misfit_table(comparisons: list[Comparison]) -> Table:
-    """Return the relative L2 misfits in %: one row a pair, one column a variant and receiver.
+def _under(rows: list[dict[str, Any]], *index: str) -> pd.DataFrame:
+    return pd.DataFrame(rows).set_index(list(index)) if rows else pd.DataFrame()
+
+
+def misfit_table(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return the relative L2 misfits: a row a pair, a column a variant and receiver.
 
     Faint waveforms and displacements, which are velocities once more, are in `distance_table`.
     """
     shown = [
         (name, row)
-        for name, row in _rows(comparisons)
+        for name, row in rows_of(comparisons)
         if not (row.faint or row.place.quantity == "displacement")
     ]
     places = list(dict.fromkeys(row.place for _, row in shown))
-    cells: dict[Pair, dict[tuple, str]] = {}
+    several = len(places) > 1
+    cells: dict[tuple[str, str, str], dict[str, float]] = {}
     for name, row in shown:
-        cells.setdefault(row.pair, {})[name, row.place] = percent(row.distance.misfit)
-    columns = [(name, place) for name in variant_names(comparisons) for place in places]
-    header = ["pair", "cause of the difference"]
-    header += [
-        f"{name}, {_column(at, places)}" if len(places) > 1 else name for name, at in columns
-    ]
-
-    def lines(pair: Pair) -> list[list[str]]:
-        if pair not in cells:
-            return []
-        found = [cells[pair].get(column, "") for column in columns]
-        return [[title(pair), meaning(pair), *found]]
-
-    return Table(header, _by_kind(lines, comparisons))
+        label = f"{name}, {_receiver(row.place, places)}" if several else name
+        at = row.pair.kind, _pair(row), meaning(row.pair)
+        cells.setdefault(at, {})[f"{label} (%)"] = 100 * row.distance.misfit
+    names = ["kind", "pair", "cause of the difference"]
+    return pd.DataFrame(list(cells.values()), pd.MultiIndex.from_tuples(cells, names=names))
 
 
-def _column(place: Place, places: list[Place]) -> str:
+def _pair(row: Row) -> str:
+    return f"{row.pair.one} ~ {row.pair.other}"
+
+
+def _receiver(place: Place, places: list[Place]) -> str:
     """Return a receiver as it heads a column, with what is there where there is more than one."""
-    several = sum(one.at == place.at for one in places) > 1
-    return place.words if several and len(place.at) > 1 else place.receiver
+    shared = sum(one.at == place.at for one in places) > 1
+    return place.words if shared and len(place.at) > 1 else place.receiver
 
 
-def _rows(comparisons: list[Comparison]) -> list[tuple[str, Row]]:
-    """Return every distance with its variant."""
-    named = zip(variant_names(comparisons), comparisons, strict=True)
-    return [(name, row) for name, comparison in named for row in comparison.rows]
-
-
-def _by_kind(
-    lines: Callable[[Pair], list[list[str]]], comparisons: Iterable[Comparison]
-) -> dict[str, list[list[str]]]:
-    """Return the lines of all pairs by the meaning of their distance: first as the solvers' records
-    have it, then where a scene makes two models of them, and others' curves."""
-    measured = (row.pair for comparison in comparisons for row in comparison.rows)
-    groups: dict[str, list[list[str]]] = {}
-    for pair in dict.fromkeys((*pairs(), *measured)):
-        if found := lines(pair):
-            groups.setdefault(pair.kind, []).extend(found)
-    return groups
-
-
-def distance_table(comparisons: list[Comparison]) -> Table:
+def distance_table(comparisons: list[Comparison]) -> pd.DataFrame:
     """Return every distance of every pair at every receiver of every variant."""
-    rows = _rows(comparisons)
-
-    def lines(pair: Pair) -> list[list[str]]:
-        return [
-            [title(pair), name, row.place.words, *_distances(row)]
-            for name, row in rows
-            if row.pair == pair
-        ]
-
-    header = ["pair", "variant", "receiver", "relative L2 (%)", "peak ratio", "delay (ms)"]
-    header += ["period ratio", "envelope misfit (%)", "phase misfit (%)"]
-    return Table(header, _by_kind(lines, comparisons))
-
-
-def _distances(row: Row) -> list[str]:
-    d = row.distance
-    ratios = [
-        format(x, form) if isfinite(x) else "–"
-        for x, form in ((d.peak_ratio, ".4f"), (1e3 * d.delay, "+.3f"), (d.period_ratio, ".4f"))
+    rows = [
+        {
+            "kind": row.pair.kind,
+            "variant": name,
+            "pair": _pair(row),
+            "receiver": row.place.words,
+            "relative L2 (%)": 100 * row.distance.misfit,
+            "peak ratio": row.distance.peak_ratio,
+            "delay (ms)": 1e3 * row.distance.delay,
+            "period ratio": row.distance.period_ratio,
+            "envelope misfit (%)": _percentage(row.distance.envelope),
+            "phase misfit (%)": _percentage(row.distance.phase),
+        }
+        for name, row in rows_of(comparisons)
     ]
-    spectral = ["" if x is None else percent(x) for x in (d.envelope, d.phase)]
-    return [percent(d.misfit), *ratios, *spectral]
+    return _under(rows, "kind", "variant", "pair", "receiver")
 
 
-def run_table(comparisons: list[Comparison]) -> Table:
+def _percentage(ratio: float | None) -> float | None:
+    return None if ratio is None else 100 * ratio
+
+
+def run_table(comparisons: list[Comparison]) -> pd.DataFrame:
     """Return what each engine's run took, and how well its energy ledger closes."""
-    groups: dict[str, list[list[str]]] = {}
-    for variant, comparison in zip(variant_names(comparisons), comparisons, strict=True):
-        for name, result in comparison.results.items():
-            if "steps" in result.attrs:
-                groups.setdefault(name, []).append([variant, *_run_cells(result)])
-    header = ["variant", "degrees of freedom", "steps", "step (µs)", "of the critical step"]
-    return Table([*header, "stepping (s)", "energy residual"], groups)
-
-
-def _run_cells(result: xr.Dataset) -> list[str]:
-    about = result.attrs
-    return [
-        str(about["degrees_of_freedom"]),
-        str(about["steps"]),
-        f"{1e6 * about['dt']:.3g}",
-        f"{about['dt'] / about['critical_dt']:.3f}",
-        f"{about['seconds_stepping']:.3f}",
-        _energy_cell(result),
+    rows = [
+        {"engine": name, "variant": variant, **_run(result)}
+        for variant, one in zip(variant_names(comparisons), comparisons, strict=True)
+        for name, result in one.results.items()
+        if "steps" in result.attrs
     ]
+    return _under(rows, "engine", "variant")
 
 
-def _energy_cell(result: xr.Dataset) -> str:
-    if "energy" not in result:
-        return "not recorded"
-    return f"{energy_residual(result):.1e}{' (open)' if open_ledger(result) else ''}"
+def _run(result: xr.Dataset) -> dict[str, float | str]:
+    about, energy = result.attrs, "not recorded"
+    if "energy" in result:
+        energy = f"{energy_residual(result):.1e}{' (open)' * bool(open_ledger(result))}"
+    return {
+        "degrees of freedom": about["degrees_of_freedom"],
+        "steps": about["steps"],
+        "step (µs)": 1e6 * about["dt"],
+        "of the critical step": about["dt"] / about["critical_dt"],
+        "stepping (s)": float(about["seconds_stepping"]),
+        "energy residual": energy,
+    }
 
 
-def reason_table(comparisons: list[Comparison]) -> Table:
+def reason_table(comparisons: list[Comparison]) -> pd.DataFrame:
     """Return why the solutions that are not drawn do not apply."""
     found: dict[tuple[str, str], list[str]] = {}
     for variant, comparison in zip(variant_names(comparisons), comparisons, strict=True):
-        for name, reason in comparison.reasons.items():
-            found.setdefault((name, reason), []).append(variant)
-    rows = [
-        [name, "all" if len(variants) == len(comparisons) else "; ".join(variants), reason]
+        for reason in comparison.reasons.items():
+            found.setdefault(reason, []).append(variant)
+    return pd.DataFrame(
+        {
+            "solution": name,
+            "variants": "all" if len(variants) == len(comparisons) else "; ".join(variants),
+            "why it does not apply": reason,
+        }
         for (name, reason), variants in sorted(found.items())
+    )
+
+
+def worst_misfits(comparisons: list[Comparison]) -> pd.Series:
+    """Return by kind and pair the largest misfit over the variants, of the waveform that is
+    furthest off, as `[expect]` bounds it."""
+    rows = [
+        (row.pair.kind, _pair(row), 0.0 if row.faint else 100 * row.distance.misfit)
+        for _, row in rows_of(comparisons)
     ]
-    return Table(["solution", "variants", "why it does not apply"], {"": rows} if rows else {})
-
-
-def summary_table(figures: dict[str, list[Comparison]]) -> Table:
-    """Return the largest misfit in % of each pair over the variants of each figure.
-
-    Of the waveform that is furthest off, as `[expect]` bounds it.
-    """
-
-    def worst(pair: Pair, comparisons: list[Comparison]) -> str:
-        rows = [row for one in comparisons for row in one.rows if row.pair == pair]
-        found = (row.distance.misfit for row in rows if not row.faint)
-        return percent(max(found, default=0.0)) if rows else ""
-
-    def lines(pair: Pair) -> list[list[str]]:
-        cells = [worst(pair, comparisons) for comparisons in figures.values()]
-        return [[title(pair), *cells]] if any(cells) else []
-
-    return Table(["pair", *figures], _by_kind(lines, chain(*figures.values())))
+    table = pd.DataFrame(rows, columns=["kind", "pair", "misfit"])
+    return table.groupby(["kind", "pair"], sort=False)["misfit"].max()

@@ -1,6 +1,6 @@
-"""Verdict on an engine for a scene: its misfits, their cost, and one word."""
+"""Verdict on an engine for a scene: its misfits, and one word."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from math import isfinite, isnan, nan
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -37,19 +37,19 @@ VERDICTS = (
 NOT_CHECKED = Verdict("?", "not checked independently", "n")
 BROKEN = Verdict("✗", "out of bounds", "x")
 #: From the best to the worst: the worst variant decides.
-ORDER = (*(verdict for _, verdict in VERDICTS[:2]), NOT_CHECKED, *(v for _, v in VERDICTS[2:]))
+ORDER = (*(one for _, one in VERDICTS[:2]), NOT_CHECKED, *(one for _, one in VERDICTS[2:]), BROKEN)
 
 NOTHING = Worst(nan)
 STATIC = 0.01  # of the largest static stress: a difference of static states that is said
 
 
-class Held(NamedTuple):
+class VariantScore(NamedTuple):
     """One engine on one variant.
 
-    own : from the exact solution of the engine's own model. total : from the reference, `against`,
-    empty where nothing has checked it independently; `reason` says what the reference is, `meaning`
-    what their distance is. peaks : "PPV" and "peak stress" beside the reference's. static : of the
-    two static states.
+    own : misfit from the exact solution of the engine's own model. total : from the reference,
+    `against`, empty where nothing has checked it independently; `reason` says what the reference
+    is, `meaning` what their distance is. broken : pairs of [expect] beyond their bound. peaks :
+    "PPV" and "peak stress" beside the reference's. static : of the two static states.
     """
 
     variant: str
@@ -82,10 +82,9 @@ class Held(NamedTuple):
     @property
     def facts(self) -> dict[str, Any]:
         """All of it, machine-readable; None where there is none."""
-        named = {VELOCITY: "ppv", STRESS: "peak_stress"}
         peaks = {
-            f"{short}_{part}": getattr(self.peaks[name], part) if name in self.peaks else None
-            for name, short in named.items()
+            f"{short}_{part}": getattr(self.peaks.get(name), part, None)
+            for name, short in ((VELOCITY, "ppv"), (STRESS, "peak_stress"))
             for part in ("mean", "worst", "at")
         }
         return {
@@ -102,133 +101,119 @@ class Held(NamedTuple):
         }
 
 
-class Standing(NamedTuple):
+class EngineScore(NamedTuple):
     """One engine on all variants of a scene."""
 
-    variants: tuple[Held, ...]
+    variants: tuple[VariantScore, ...]
 
     @property
-    def own(self) -> float:
-        """Largest numerical error; nan where no variant has an exact solution of the model."""
-        return _largest(held.own for held in self.variants).judged
+    def own(self) -> Worst:
+        """The largest numerical error; nan where no variant has an exact solution of the model."""
+        return _largest(one.own for one in self.variants)
 
     @property
-    def total(self) -> float:
-        """Largest misfit from the references; nan where no variant has one."""
-        return _largest(held.total for held in self.variants).judged
+    def total(self) -> Worst:
+        """The largest misfit from the references; nan where no variant has one."""
+        return _largest(one.total for one in self.variants)
 
     @property
     def peaks(self) -> dict[str, PeakDifference]:
         """The largest differences of peaks by name."""
         found: dict[str, PeakDifference] = {}
         for name in (VELOCITY, STRESS):
-            if there := [held.peaks[name] for held in self.variants if name in held.peaks]:
+            there = [one.peaks[name] for one in self.variants if name in one.peaks]
+            if there:
                 found[name] = max(there, key=lambda peak: peak.worst)
         return found
 
     @property
-    def where(self) -> str:
-        """The receiver and quantity of the largest misfit."""
-        return _largest(held.total for held in self.variants).where
-
-    @property
-    def finest(self) -> tuple[str, ...]:
+    def references(self) -> tuple[str, ...]:
         """The references of the variants."""
-        return tuple(dict.fromkeys(held.against for held in self.variants if held.against))
+        return tuple(dict.fromkeys(one.against for one in self.variants if one.against))
 
     @property
     def meanings(self) -> tuple[str, ...]:
         """What the distances from the references are."""
-        return tuple(dict.fromkeys(held.meaning for held in self.variants if held.meaning))
+        return tuple(dict.fromkeys(one.meaning for one in self.variants if one.meaning))
 
     @property
     def static_words(self) -> str:
         """By how much the static states differ in the worst variant; "" if by less than 1 %."""
-        return max(self.variants, key=lambda held: held.static.misfit).static_words
+        return max(self.variants, key=lambda one: one.static.misfit).static_words
 
     @property
     def unchecked(self) -> tuple[str, ...]:
         """The variants that nothing has checked independently."""
-        return tuple(held.variant for held in self.variants if isnan(held.total.judged))
+        return tuple(one.variant for one in self.variants if isnan(one.total.judged))
 
     @property
     def broken(self) -> tuple[str, ...]:
         """Bounds of [expect] that are not met."""
-        return tuple(text for held in self.variants for text in held.broken)
-
-    @property
-    def explanation(self) -> str:
-        """What the engine is held against, where nothing checks it, and which bounds are broken."""
-        parts = [f"compared with {' and '.join(self.finest)}: {self.where}"] if self.finest else []
-        parts += [f"static state {self.static_words}"] if self.static_words else []
-        if self.unchecked:
-            named = [name for name in self.unchecked if name] if len(self.variants) > 1 else []
-            parts.append(": ".join([NOT_CHECKED.word, *([", ".join(named)] if named else [])]))
-        if self.broken:
-            parts.append(f"exceeds the scene's bound: {', '.join(self.broken)}")
-        return "; ".join(parts)
+        return tuple(pair for one in self.variants for pair in one.broken)
 
     @property
     def verdict(self) -> Verdict:
         """That of the worst variant."""
-        verdicts = [held.verdict for held in self.variants]
-        return BROKEN if BROKEN in verdicts else max(verdicts, key=ORDER.index)
+        return max((one.verdict for one in self.variants), key=ORDER.index)
+
+    @property
+    def explanation(self) -> str:
+        """The references, variants that nothing checks, and bounds that are not met."""
+        unchecked = self.unchecked if len(self.variants) > 1 else ()
+        found = {
+            f"compared with {' and '.join(self.references)}: {self.total.where}": self.references,
+            f"static state {self.static_words}": self.static_words,
+            f"{NOT_CHECKED.word}: {', '.join(filter(None, unchecked))}": self.unchecked,
+            f"exceeds the scene's bound: {', '.join(self.broken)}": self.broken,
+        }
+        return "; ".join(words.removesuffix(": ") for words, applies in found.items() if applies)
 
 
-def standings(comparisons: list[Comparison]) -> dict[str, Standing]:
+def engine_scores(comparisons: list[Comparison]) -> dict[str, EngineScore]:
     """Return where each engine stands that has run on some variant."""
-    found: dict[str, Standing] = {}
-    for engine in ENGINES:
-        held = [
-            held_to(engine, comparison, name)
-            for name, comparison in zip(variant_names(comparisons), comparisons, strict=True)
-            if engine in comparison.results
-        ]
-        if held:
-            found[engine] = Standing(tuple(held))
-    return found
+    named = list(zip(variant_names(comparisons), comparisons, strict=True))
+    found = {
+        engine: tuple(score(engine, one, name) for name, one in named if engine in one.results)
+        for engine in ENGINES
+    }
+    return {engine: EngineScore(variants) for engine, variants in found.items() if variants}
 
 
-def held_to(engine: str, comparison: Comparison, variant: str = "") -> Held:
-    """Return how far an engine is from what it is held against in one variant."""
-    names, scene = comparison.results, comparison.scene
-    reference = reference_of(engine, names, scene)
-    against, reason = reference or ("", "")
-    own = own_exact(engine, names, scene)
-    found = Held(
+def score(engine: str, comparison: Comparison, variant: str = "") -> VariantScore:
+    """Return how far an engine is from its reference, and from its own model, in one variant."""
+    results, scene = comparison.results, comparison.scene
+    against, reason = reference_of(engine, results, scene) or ("", "")
+    found = VariantScore(
         variant,
-        _apart(comparison, engine, own),
-        _apart(comparison, engine, against),
+        _misfit(comparison, engine, own_exact(engine, results, scene)),
+        _misfit(comparison, engine, against),
         against,
         reason,
         tuple(_broken(engine, comparison)),
     )
     if not against:
         return found
-    pair = names[engine], names[against]
     return found._replace(
         meaning=kind_of(engine, against, scene).words,
-        peaks=peak_differences(*pair),
-        static=static_difference(*pair),
+        peaks=peak_differences(results[engine], results[against]),
+        static=static_difference(results[engine], results[against]),
     )
 
 
-def _apart(comparison: Comparison, one: str, other: str | None) -> Worst:
+def _misfit(comparison: Comparison, one: str, other: str | None) -> Worst:
     """Return a misfit; nan where one of the two is not there, or the other stands still."""
     results = comparison.results
     found = worst(results[one], results[other]) if other in results else NOTHING
     return found if isfinite(found.judged) else NOTHING
 
 
-def _broken(engine: str, comparison: Comparison) -> list[str]:
-    """Return the pairs of [expect] that an engine is first in and that lie beyond their bound."""
-    found = []
+def _broken(engine: str, comparison: Comparison) -> Iterable[str]:
+    """Yield the pairs of [expect] that an engine is first in and that lie beyond their bound."""
     for pair, bound in comparison.scene.expect.items():
         one, other = pair.split(" ~ ")
-        if one == engine and _apart(comparison, one, other).misfit > bound:
-            found.append(pair)
-    return found
+        if one == engine and _misfit(comparison, one, other).misfit > bound:
+            yield pair
 
 
-def _largest(values) -> Worst:
+def _largest(values: Iterable[Worst]) -> Worst:
     return max((w for w in values if not isnan(w.judged)), key=lambda w: w.judged, default=NOTHING)

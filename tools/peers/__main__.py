@@ -16,9 +16,9 @@ from job import Job
 
 import cases
 from cases.schema.scene import Scene
-from compare.cli.study_view import show
 from compare.experiments.cost.scenes import PILLAR
-from compare.report.peers import write_section
+from compare.report.peers import sentences
+from compare.runs.output import write_csv
 
 
 class Peer(NamedTuple):
@@ -99,7 +99,9 @@ def main() -> None:
     rows = rows_of(*beside(jobs, scene, root), options.rounds, ours.references(scene, root))
     print(f"{scene.title}; {options.rounds} rounds; {about}")
     found = table.frame([row | {"machine": about} for row in (*rows, *missing)])
-    show(write_section(root, found, "points"), False)
+    print(f"written: {write_csv(root / 'points.csv', found)}")
+    for line in sentences(found[found.state == "done"]):
+        print(line)
 
 
 if __name__ == "__main__":

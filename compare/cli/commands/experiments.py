@@ -180,17 +180,13 @@ def report(
 
         show_parts(parts_of_report(scenes or (), out), as_json)
         return
-    from compare.runs.workers import Workers
+    from compare.report.report import build
 
     with (
         locked(out, out / "figures", out / "studies"),
         terminal.progress("report") as advance,
-        Workers(2, "compare.report.scenes") as executor,
     ):
-        from compare.report.report import build
-
-        about: dict[str, Any] = {"peers_table": peers, "ensembles": ensembles}
-        found = build(out, advance, scenes=scenes or (), executor=executor, **about)
+        found = build(out, advance, 2, scenes or (), peers, ensembles=ensembles)
     views.show_report(found, as_json)
 
 

@@ -10,7 +10,7 @@ from compare.cli.comparison_view import MOST_LINES, in_percent, show_comparisons
 from compare.misfit.alignment import Beside
 from compare.misfit.metrics import Worst
 from compare.misfit.pairs import Comparison, measure, measure_curves
-from compare.report.verdict import standings
+from compare.report.verdict import engine_scores
 
 
 @pytest.fixture
@@ -41,7 +41,7 @@ def test_the_answer_names_the_worst_of_each_engine_and_the_verdict_of_the_page(c
     found = [compared(**FAR | {"lattice": 0.029}), compared("soft", **FAR | {"dem": 0.08})]
     show_comparisons(found, False, False)
     lines = capsys.readouterr().out.splitlines()
-    stand = standings(found)
+    stand = engine_scores(found)
     assert lines[1].split()[0] == "engine" and len(lines) <= MOST_LINES
     for engine, line in zip(stand, lines[2:], strict=False):
         assert line.startswith(engine) and line.rstrip().endswith(stand[engine].verdict.word)

@@ -4,16 +4,16 @@ import io
 import re
 import shutil
 from itertools import pairwise
-from xml.etree import ElementTree
 
 import numpy as np
-import pandas as pd
 import pytest
 from PIL import Image
 
+from compare.report.report import build
+
 WIDE, NARROW = (1280, 800), (390, 844)
 TALL = (1280, 1400)  # every figure fits: for its picture the page is not laid out anew
-BOXES = ".scroll, .static, pre, nav"  # may scroll; whatever else is wider than its place is clipped
+BOXES = ".scroll, .picture, pre, nav"  # may scroll: else it is clipped
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +63,7 @@ def opened(show):
 
 @pytest.fixture(scope="module")
 def _page(show):
-    return show(permissions=["clipboard-read", "clipboard-write"])
+    return show()
 
 
 @pytest.fixture
@@ -122,7 +122,7 @@ def test_the_first_screen_answers_how_far_apart_and_at_what_cost(page, report):
     heads = table.locator("thead").inner_text().replace("\u00a0", " ")
     assert all(heads.count(word) == 3 for word in ("own %", "finest %", "cost", "verdict"))
     lead = page.locator("ul.lead").inner_text()
-    for engine in report.page.overview.engines:
+    for engine in report.page["overview"]["engines"]:
         assert engine in lead
     assert lead.count("from the finest physics") == 3 and "× the time of the cheapest" in lead
 
@@ -131,45 +131,6 @@ def test_a_verdict_is_never_a_colour_alone(whole):
     grades = whole.locator(".grade").all_inner_texts()
     assert len(grades) == 6
     assert all(re.fullmatch(r"[✓≈△▲✗?] [a-z ]+", text) for text in grades)
-
-
-@pytest.mark.slow
-def test_every_download_is_a_whole_file_of_its_kind(opened, report):
-    page = opened(accept_downloads=True)
-    unfold(page)
-    links = page.locator(".files a").all()
-    figures = page.locator("figure").count()
-    assert len(links) == 3 * figures > 3
-    for link in links:
-        page.wait_for_timeout(150)  # Chromium holds back who saves twenty files in a row at once
-        with page.expect_download() as waiting:
-            link.click()
-        name = link.get_attribute("download")
-        assert waiting.value.suggested_filename == name
-        content = waiting.value.path().read_bytes()
-        beside = report.file.parent / "figures" / name
-        CHECKS[name.rpartition(".")[2]](content, beside)
-    assert opened.complaints == []
-
-
-def _check_svg(content, beside):
-    tree = ElementTree.fromstring(content)
-    assert tree.tag == "{http://www.w3.org/2000/svg}svg"
-    there = ElementTree.parse(beside).getroot()
-    path = "{http://www.w3.org/2000/svg}path"
-    assert len(list(tree.iter(path))) == len(list(there.iter(path))) > 5
-
-
-def _check_pdf(content, beside):
-    assert content.startswith(b"%PDF") and content == beside.read_bytes()
-    assert b"/Type3" in content  # letters as embedded outlines
-
-
-def _check_csv(content, beside):
-    assert content == beside.read_bytes() and len(pd.read_csv(beside)) > 1
-
-
-CHECKS = {"svg": _check_svg, "pdf": _check_pdf, "csv": _check_csv}
 
 
 def test_no_figure_is_blank_on_screen(whole):
@@ -181,7 +142,6 @@ def test_the_page_prints_what_is_not_folded(page, printed, title):
     """Folds stay closed, and titles are whole; each scene takes at most three sides and a half."""
     sides, said = printed(page)
     assert 4 <= sides <= 11 and title.replace(" ", "") in said
-    page.evaluate("dispatchEvent(new Event('beforeprint'))")
     assert page.locator("details[open]").count() == 0 < page.locator("details").count()
 
 
@@ -194,7 +154,7 @@ def test_no_two_captions_show_the_same_picture_or_numbers(whole, report):
     for figure in page.locator("figure").all():
         name = figure.get_attribute("id").removesuffix("-figure")
         numbers = (report.file.parent / "figures" / f"{name}.csv").read_bytes()
-        picture = figure.locator(".static").screenshot()
+        picture = figure.locator(".picture").screenshot()
         assert spread(picture) > 8, name
         for seen in (picture, numbers):
             assert found.setdefault(seen, name) == name
@@ -232,12 +192,11 @@ def test_no_text_is_clipped_or_lies_over_another(
 
 
 def test_keys_reach_everything_and_are_seen_where_they_are(whole):
-    """Tab goes through every link, button and summary in turn, and out again."""
+    """Tab goes through every link and summary in turn, and out again."""
     page = whole
     page.evaluate("scrollTo(0, 0); document.activeElement.blur()")
     wanted = page.evaluate(
-        "[...document.querySelectorAll('a[href], button, summary')]"
-        ".filter(e => e.checkVisibility() && !e.disabled).length"
+        "[...document.querySelectorAll('a[href], summary')].filter(e => e.checkVisibility()).length"
     )
     step = """() => { const e = document.activeElement; e.dataset.reached = 1;
       return [e.tagName, e.className, getComputedStyle(e).outlineStyle] }"""
@@ -251,7 +210,7 @@ def test_keys_reach_everything_and_are_seen_where_they_are(whole):
         assert outline != "none", (tag, name)
         page.keyboard.press("Tab")
     missed = page.evaluate(
-        "[...document.querySelectorAll('a[href], button, summary')]"
+        "[...document.querySelectorAll('a[href], summary')]"
         ".filter(e => e.checkVisibility() && !e.dataset.reached).map(e => e.outerHTML.slice(0, 90))"
     )
     assert missed == []
@@ -262,23 +221,41 @@ def test_headings_follow_each_other_and_everything_has_a_name(whole):
     levels = page.evaluate("[...document.querySelectorAll('h1,h2,h3,h4')].map(h => +h.tagName[1])")
     assert levels[0] == 1 and levels.count(1) == 1
     assert all(b <= a + 1 for a, b in pairwise(levels))
-    unnamed = "e => e.filter(x => !(x.getAttribute('aria-label') || x.textContent.trim())).length"
-    assert page.locator("[role=img], [role=group], button, a").evaluate_all(unnamed) == 0
+    unnamed = "all => all.filter(e => !(e.ariaLabel || e.alt || e.textContent.trim())).length"
+    assert page.locator("img, [role=group], a").evaluate_all(unnamed) == 0
     ids = page.evaluate("[...document.querySelectorAll('[id]')].map(e => e.id)")
     assert len(ids) == len(set(ids))
 
 
-def test_the_command_of_a_scene_is_copied(page):
-    page.locator("#moving .copy").click()
-    page.locator("#moving .copy", has_text="Copied").wait_for()
-    copied = page.evaluate("navigator.clipboard.readText()")
-    assert re.fullmatch(r"jointwave report \S+/moving\.toml --out moving", copied)
+def test_files_stand_beside_the_page_and_it_needs_no_script(report):
+    """Every link of a figure leads to a file of its kind; nothing else is asked for."""
+    text = report.file.read_text(encoding="utf-8")
+    links = re.findall(r'<a href="(figures/[^"]+)" download', text)
+    kinds = {"svg": b"<?xml", "pdf": b"%PDF", "csv": b""}
+    assert len(links) > 3 * text.count("<figure") and "<script" not in text
+    for link in links:
+        content = (report.file.parent / link).read_bytes()
+        assert len(content) > 100 and content.startswith(kinds[link.rpartition(".")[2]])
+    inside = re.findall(r'href="#([^"]+)"', text)
+    ids = re.findall(r'\bid="([^"]+)"', text)
+    assert {*inside} <= {*ids} and len(ids) == len({*ids})
 
 
-def test_without_scripts_figures_stand_still_and_links_lead_to_files(opened, report):
-    page = opened(path=report.file, java_script_enabled=False)
-    for figure in page.locator("section > figure").all():
-        assert figure.locator(".static img").is_visible()
-    for link in page.locator("figure .files a").all():
-        assert (report.file.parent / link.get_attribute("href")).stat().st_size > 100
-    assert page.locator(".copy:visible").count() == 0
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [WIDE, NARROW], ids=["wide", "narrow"])
+def test_pages_of_many_receivers_and_variants_are_readable(
+    opened, once, own_scene, overlaps, printed, title, size
+):
+    names = [f"the same joints with dashpots of ratio {0.05 * i}" for i in range(1, 4)]
+    places = [2.5 * (i + 1) for i in range(8)]
+
+    def made(folder):
+        (own := folder / "own.toml").write_text(own_scene(names, stress=places))
+        return build(folder / "report", workers=1, scenes=[str(own)]).file
+
+    page = opened(size, once("page-8-4", made))
+    sides, said = printed(page)
+    assert sides < 35 and title.replace(" ", "") in said
+    unfold(page)
+    assert overlaps(page) == []
+    assert page.evaluate("document.documentElement.scrollWidth") == size[0]

@@ -1,7 +1,5 @@
 """The scenes of a report, and their names on the page."""
 
-from types import SimpleNamespace
-
 import pytest
 
 import cases
@@ -9,8 +7,7 @@ from cases.errors import SceneError
 from compare.figures.panels import curve_table, variant_names
 from compare.misfit.pairs import Comparison
 from compare.report.report import build
-from compare.report.scenes import ROCK_MASSES, Solved, _key, asked_for
-from compare.report.section import PAPER
+from compare.report.scenes import PAPER, ROCK_MASSES, asked_for
 
 
 def test_without_names_it_is_the_papers_figures_in_order():
@@ -22,13 +19,6 @@ def test_rock_masses_beside_the_paper_are_shipped_and_no_figures_of_it():
     found = asked_for(ROCK_MASSES)
     assert [one.label for one in found] == ["one-joint"]
     assert not {one.name for one in found} & {one.name for one in asked_for(())}
-
-
-def test_scenes_are_split_with_what_they_have_come_to():
-    named = [SimpleNamespace(name=name) for name in "abc"]
-    both = Solved({"a": [1], "b": [2], "c": [3]}, named).split(lambda one: one.name != "b")
-    assert [one.comparisons for one in both] == [{"a": [1], "c": [3]}, {"b": [2]}]
-    assert [one.sections for one in both] == [[named[0], named[2]], [named[1]]]
 
 
 def test_every_scene_has_a_name_of_its_own_that_is_fit_for_files(tmp_path):
@@ -53,14 +43,6 @@ def test_a_scene_that_is_not_there_is_said_before_anything_is_written(tmp_path):
     with pytest.raises(SceneError, match=r"none\.toml"):
         build(tmp_path / "page", scenes=["none.toml"])
     assert not (tmp_path / "page").exists()
-
-
-def test_what_scenes_share_is_solved_once():
-    """Fig. 3 at zeta = 0.02 and fig. 5 with its free end are one simulation."""
-    damped = cases.load_variant(PAPER / "fig-03.toml", "zeta 0.02")
-    free = cases.load_variant(PAPER / "fig-05.toml")
-    assert _key(damped) == _key(free)
-    assert _key(damped) != _key(cases.load_variant(PAPER / "fig-03.toml", "zeta 0.05"))
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """Figures 2, 3 and 6: one pulse in a pillar, its passages, its decay and its width."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pandas as pd
 
@@ -7,49 +9,51 @@ from cases.loads import load_history
 from compare.exact.bar import equivalent_bar, jointed_bar
 from compare.exact.blocks import lattice
 from compare.figures.panels import variant_names
-from compare.misfit import pulses
 from compare.misfit.metrics import mean_period, misfit, relative_l2
 from compare.misfit.pairs import Comparison
-from compare.report.findings.finding import Finding, falls, listed, percent, share
+from compare.report.claims import pulses
+from compare.report.claims.claim import Claim, Measured, falls, listed, share, shares
 from compare.solvers.dem import DEM
 
 
-def one_sine_cycle(comparisons: list[Comparison]) -> Finding:
+def one_sine_cycle(comparisons: list[Comparison]) -> Measured:
     """Fig. 2: the stress at the loaded end is one cycle of a sine."""
-    base, load = comparisons[0], comparisons[0].scene.load
+    base, scene = comparisons[0], comparisons[0].scene
     errors = {
-        name: relative_l2(w.values, load_history(base.scene).value(w.index.values))
+        name: relative_l2(w.values, load_history(scene).value(w.index.values))
         for name, w in pulses.waveforms(base, "stress", 0).items()
     }
-    return Finding(
-        "one sine cycle",
-        f"The load is one cycle of {load.amplitude / 1e6:g} MPa and "
-        f"{1e3 * pulses.period(base.scene):g} ms; relative L2 distance of the stress at "
-        f"y = {base.scene.record.stress[0]:g} m from it: {percent(errors, 3)}.",
+    return Measured(
+        f"The load is one cycle of {scene.load.amplitude / 1e6:g} MPa and "
+        f"{1e3 * pulses.period(scene):g} ms; relative L2 distance of the stress at "
+        f"y = {scene.record.stress[0]:g} m from it: {shares(errors, 3)}.",
         max(errors.values()) < 0.01,
     )
 
 
-def three_pulses(comparisons: list[Comparison]) -> Finding:
-    """Fig. 3: incident, first reflected (reversed) and second reflected pulse pass in turn."""
+def three_pulses(comparisons: list[Comparison]) -> Measured:
+    """Fig. 3: incident, first reflected (reversed) and second reflected pulse pass in turn, each
+    above a tenth of the largest stress."""
     scene, y = comparisons[0].scene, comparisons[0].scene.record.stress[0]
-    texts, holds = {}, True
-    for name, w in pulses.waveforms(comparisons[0], "stress", 0).items():
-        parts = [pulses.passage(w, scene, y, n) for n in range(3)]
-        signed = [pulses.first_swing(part) * pulses.peak(part) for part in parts]
-        texts[name] = ", ".join(f"{s / 1e6:+.3f}" for s in signed)
-        loud = min(map(abs, signed)) > 0.1 * pulses.peak(w)
-        holds = holds and loud and list(np.sign(signed)) == [1, -1, 1]
+    waves = pulses.waveforms(comparisons[0], "stress", 0)
+    signed = {
+        name: [pulses.first_swing(part) * pulses.peak(part) / 1e6 for part in parts]
+        for name, w in waves.items()
+        for parts in [[pulses.passage(w, scene, y, n) for n in range(3)]]
+    }
     due = ", ".join(f"{1e3 * t:.1f}" for t in pulses.arrivals(scene, y))
-    return Finding(
-        "incident, first and second reflected pulse",
+    return Measured(
         f"At y = {y:g} m they are due at {due} ms. Their peaks in MPa, signed by the first "
-        f"half-cycle, which a free end reverses, {variant_names(comparisons)[0]}: {listed(texts)}.",
-        holds,
+        f"half-cycle, which a free end reverses, {variant_names(comparisons)[0]}: "
+        f"{listed(signed, '+.3f')}.",
+        all(
+            min(np.multiply(signed[name], [1, -1, 1])) > 0.1 * pulses.peak(w) / 1e6
+            for name, w in waves.items()
+        ),
     )
 
 
-def passage_peaks(comparison: Comparison) -> dict[str, list[float]]:
+def _passage_peaks(comparison: Comparison) -> dict[str, list[float]]:
     """Return the peaks of the three passages at the first section, MPa, by engine."""
     scene, y = comparison.scene, comparison.scene.record.stress[0]
     return {
@@ -58,71 +62,70 @@ def passage_peaks(comparison: Comparison) -> dict[str, list[float]]:
     }
 
 
-def falls_with_distance(comparisons: list[Comparison]) -> Finding:
+def falls_with_distance(comparisons: list[Comparison]) -> Measured:
     """Fig. 3: each later passage of a damped pulse is lower."""
-    texts: list[str] = []
-    verdicts: list[bool] = []
-    for comparison, variant in zip(comparisons, variant_names(comparisons), strict=True):
-        if comparison.scene.joints.damping_ratio:
-            found = passage_peaks(comparison)
-            peaks = {name: ", ".join(f"{p:.3f}" for p in ps) for name, ps in found.items()}
-            texts.append(f"{variant}: {listed(peaks)}")
-            verdicts += map(falls, found.values())
-    return Finding(
-        "amplitude falls with distance",
+    found = {
+        variant: _passage_peaks(one)
+        for one, variant in zip(comparisons, variant_names(comparisons), strict=True)
+        if one.scene.joints.damping_ratio
+    }
+    texts = [f"{variant}: {listed(peaks, '.3f')}" for variant, peaks in found.items()]
+    return Measured(
         f"Peaks of the incident, first and second reflected pulse in MPa. {'. '.join(texts)}.",
-        bool(verdicts) and all(verdicts),
+        bool(found) and all(falls(peaks) for one in found.values() for peaks in one.values()),
     )
 
 
-def falls_with_damping(comparisons: list[Comparison]) -> Finding:
+def falls_with_damping(comparisons: list[Comparison]) -> Measured:
     """Fig. 3: at equal distance a pulse is lower the larger the damping ratio."""
     ordered = sorted(comparisons, key=lambda c: c.scene.joints.damping_ratio or 0.0)
     ratios = ", ".join(f"{c.scene.joints.damping_ratio or 0:g}" for c in ordered)
-    found = [passage_peaks(c) for c in ordered]
-    texts: dict[str, str] = {}
-    verdicts: list[bool] = []
-    for name in found[0]:
-        incident, first, second = zip(*(peaks[name] for peaks in found), strict=True)
-        texts[name] = ", ".join(f"{p:.3f}" for p in second)
-        verdicts += map(falls, (incident, first, second))
-    return Finding(
-        "amplitude falls with damping",
-        f"Peak of the second reflected pulse in MPa at ζ = {ratios}: {listed(texts)}. The incident "
-        "and the first reflected pulse are judged as well.",
-        len(ordered) > 1 and all(verdicts),
+    found = _over_variants(ordered, _passage_peaks)
+    second = {name: [peaks[2] for peaks in of_all] for name, of_all in found.items()}
+    return Measured(
+        f"Peak of the second reflected pulse in MPa at ζ = {ratios}: {listed(second, '.3f')}. The "
+        "incident and the first reflected pulse are judged as well.",
+        all(falls(passage) for of_all in found.values() for passage in zip(*of_all, strict=True)),
     )
 
 
-def broader(comparisons: list[Comparison]) -> Finding:
+def broader(comparisons: list[Comparison]) -> Measured:
     """Fig. 6: the larger the damping ratio, the longer the pulse's mean period."""
-    found = [
-        {n: mean_period(w.values, pulses.sampling(w)) for n, w in _first_passages(c).items()}
-        for c in comparisons
-    ]
-    return Finding(
-        "large damping: broader",
+    found = _over_variants(
+        comparisons,
+        lambda c: {
+            n: 1e3 * mean_period(w.values, pulses.sampling(w)) for n, w in _first_pass(c).items()
+        },
+    )
+    return Measured(
         f"Mean period of the pulse in ms, {', '.join(variant_names(comparisons))}: "
-        f"{listed({n: ', '.join(f'{1e3 * f[n]:.2f}' for f in found) for n in found[0]})}.",
-        len(found) > 1 and all(falls(-f[n] for f in found) for n in found[0]),
+        f"{listed(found, '.2f')}.",
+        all(falls(np.negative(periods)) for periods in found.values()),
     )
 
 
-def second_half_weaker(comparisons: list[Comparison]) -> Finding:
+def second_half_weaker(comparisons: list[Comparison]) -> Measured:
     """Fig. 6: the larger the damping ratio, the lower the second half-cycle beside the first."""
-    found = [
-        {n: pulses.second_over_first(w) for n, w in _first_passages(c).items()} for c in comparisons
-    ]
-    return Finding(
-        "large damping: second half-cycle weaker",
+    found = _over_variants(
+        comparisons,
+        lambda c: {n: pulses.second_over_first(w) for n, w in _first_pass(c).items()},
+    )
+    return Measured(
         f"Peak of the second half-cycle over that of the first, "
-        f"{', '.join(variant_names(comparisons))}: "
-        f"{listed({n: ', '.join(f'{f[n]:.3f}' for f in found) for n in found[0]})}.",
-        len(found) > 1 and all(falls(f[n] for f in found) for n in found[0]),
+        f"{', '.join(variant_names(comparisons))}: {listed(found, '.3f')}.",
+        all(falls(ratios) for ratios in found.values()),
     )
 
 
-def _first_passages(comparison: Comparison) -> dict[str, pd.Series]:
+def _over_variants(
+    comparisons: list[Comparison], measure: Callable[[Comparison], dict]
+) -> dict[str, list]:
+    """Return by engine what is measured in each variant."""
+    found = [measure(one) for one in comparisons]
+    return {name: [one[name] for one in found] for name in found[0]}
+
+
+def _first_pass(comparison: Comparison) -> dict[str, pd.Series]:
     scene = comparison.scene
     stop = pulses.arrivals(scene, scene.record.stress[0])[1] - pulses.period(scene)
     return {
@@ -131,7 +134,7 @@ def _first_passages(comparison: Comparison) -> dict[str, pd.Series]:
     }
 
 
-def mostly_dispersion(comparison: Comparison) -> Finding:
+def mostly_dispersion(comparison: Comparison) -> Claim:
     """Say what the rigid blocks' distance from the homogenised bar is made of.
 
     It holds when rock with its joints resolved explains more than half of it: the rigid blocks are
@@ -150,7 +153,7 @@ def mostly_dispersion(comparison: Comparison) -> Finding:
         if holds
         else "So the joints' own dispersion does not explain most of that distance."
     )
-    return Finding(
+    return Claim(
         "the distance to the homogenised series is mostly the joints' own dispersion",
         f"On the paper's free pillar (y = {scene.record.stress[0]:g} m, "
         f"0 to {1e3 * scene.time.duration:g} ms) the rigid blocks lie {share(total)} from the "

@@ -1,4 +1,4 @@
-"""Every finding both ways: it holds on the exact chain, and fails once its claim is made false."""
+"""Every claim both ways: it holds on the exact chain, and fails once its claim is made false."""
 
 import dataclasses
 
@@ -9,11 +9,11 @@ import cases
 from compare.engines import solve
 from compare.exact.blocks import lattice, no_tension
 from compare.misfit.pairs import Comparison
-from compare.report.findings import FINDINGS, joints, pillar, travel
-from compare.report.findings.pillar import mostly_dispersion
-from compare.report.section import PAPER as SCENES
+from compare.report.claims import CLAIMS, joints, pillar, travel
+from compare.report.claims.pillar import mostly_dispersion
+from compare.report.scenes import PAPER as SCENES
 
-CLAIMS = [(figure, find) for figure, finds in FINDINGS.items() for find in finds]
+ALL = [(figure, measure) for figure, claims in CLAIMS.items() for measure in claims.values()]
 
 #: Sections that show all of the claims, where the shipped scene has too few.
 SECTIONS = {4: {"record.stress": [10.0, 20.0, 30.0, 40.0, 47.5]}}
@@ -107,7 +107,7 @@ FALSE = {
     travel.reflection: every("stress", after(0.045, -1)),
     travel.superposition: every("stress", first_only),
     travel.quiet_end: end_as("quiet", "free"),
-    travel.what_the_quiet_end_leaves: end_as("quiet", "matched"),
+    travel.left_by_the_quiet_end: end_as("quiet", "matched"),
     travel.matched_end: end_as("matched", "quiet"),
     pillar.broader: swapped,
     pillar.second_half_weaker: swapped,
@@ -119,30 +119,34 @@ FALSE = {
 }
 
 
-@pytest.mark.parametrize(("figure", "find"), CLAIMS)
-def test_claim_holds_on_the_exact_chain(chains, figure, find):
-    finding = find(chains(figure))
-    assert finding.holds, finding.sentence
-    assert "dem" in finding.sentence
+@pytest.mark.parametrize(("figure", "measure"), ALL)
+def test_claim_holds_on_the_exact_chain(chains, figure, measure):
+    found = measure(chains(figure))
+    assert found.holds, found.sentence
+    assert "dem" in found.sentence
 
 
-@pytest.mark.parametrize(("figure", "find"), CLAIMS)
-def test_finding_sees_a_false_claim(chains, figure, find):
-    finding = find(FALSE[find](chains(figure)))
-    assert not finding.holds, finding.sentence
+@pytest.mark.parametrize(("figure", "measure"), ALL)
+def test_a_false_claim_does_not_hold(chains, figure, measure):
+    found = measure(FALSE[measure](chains(figure)))
+    assert not found.holds, found.sentence
+
+
+def test_the_paper_makes_nineteen_claims():
+    assert len(ALL) == 19
 
 
 def test_superposition_needs_a_section_where_pulses_meet():
     scene = cases.load_variant(SCENES / "fig-04.toml", "", {"record.stress": [10.0, 40.0]})
-    finding = travel.superposition([exact_chain(scene)])
-    assert not finding.holds
-    assert "6.75 m" in finding.sentence  # c T / 2 = 1350 m/s * 10 ms / 2
+    found = travel.superposition([exact_chain(scene)])
+    assert not found.holds
+    assert "6.75 m" in found.sentence  # c T / 2 = 1350 m/s * 10 ms / 2
 
 
 def test_theory_gives_what_the_quiet_end_leaves(chains):
     """tan(kh/4) of a harmonic is 5.8 % at the default period."""
-    finding = travel.what_the_quiet_end_leaves(chains(5))
-    assert "5.8 % at the load's period" in finding.sentence
+    found = travel.left_by_the_quiet_end(chains(5))
+    assert "5.8 % at the load's period" in found.sentence
 
 
 @pytest.fixture(scope="module")
@@ -156,14 +160,14 @@ def free_pillar():
 
 def test_overview_gives_the_known_distances(free_pillar):
     """17.9 % from the homogenised bar, 4.0 % from the bar with 99 joints."""
-    finding = mostly_dispersion(free_pillar)
-    assert finding.holds
+    found = mostly_dispersion(free_pillar)
+    assert found.holds
     for number in ("lie 17.9 % from", "cost 4.0 %", "99 joints"):
-        assert number in finding.sentence
+        assert number in found.sentence
 
 
 def test_overview_says_so_when_joints_explain_nothing(free_pillar):
     results = free_pillar.results | {"jointed-bar": free_pillar.results["equivalent-bar"]}
-    finding = mostly_dispersion(dataclasses.replace(free_pillar, results=results))
-    assert not finding.holds
-    assert "does not explain" in finding.sentence
+    found = mostly_dispersion(dataclasses.replace(free_pillar, results=results))
+    assert not found.holds
+    assert "does not explain" in found.sentence

@@ -8,9 +8,9 @@ import xarray as xr
 
 from compare.misfit.metrics import Worst
 from compare.misfit.pairs import Comparison
-from compare.report.overview import Overview, RankedScene
-from compare.report.verdict import NOT_CHECKED, Held, Standing, standings
-from compare.text import in_seconds, times
+from compare.report.overview import RankedScene, overview
+from compare.report.verdict import NOT_CHECKED, EngineScore, VariantScore, engine_scores
+from compare.text import in_seconds
 
 
 @pytest.fixture
@@ -32,37 +32,41 @@ def compared(pillar):
 
 
 def test_an_engine_is_held_to_its_own_model_and_to_the_finest(compared):
-    found = standings([compared(dem=0.03, lattice=0.029, continuum_jointed=1e-4, jointed_bar=0.0)])
-    assert found["dem"].total == pytest.approx(0.03)
-    assert found["dem"].own == pytest.approx(0.001 / 1.029)
-    assert found["dem"].finest == ("jointed-bar",)
+    found = engine_scores(
+        [compared(dem=0.03, lattice=0.029, continuum_jointed=1e-4, jointed_bar=0.0)]
+    )
+    assert found["dem"].total.judged == pytest.approx(0.03)
+    assert found["dem"].own.judged == pytest.approx(0.001 / 1.029)
+    assert found["dem"].references == ("jointed-bar",)
     assert found["dem"].verdict.word == "close"
     assert found["continuum-jointed"].verdict.word == "agrees"
     assert "continuum-equivalent" not in found
 
 
 def test_the_largest_misfit_of_the_variants_counts(compared):
-    found = standings([compared(dem=x, jointed_bar=0.0) for x in (0.3, 0.01, 0.06)])
-    assert found["dem"].total == pytest.approx(0.3) and found["dem"].verdict.word == "far off"
-    assert np.isnan(found["dem"].own)
+    found = engine_scores([compared(dem=x, jointed_bar=0.0) for x in (0.3, 0.01, 0.06)])
+    assert found["dem"].total.judged == pytest.approx(0.3)
+    assert found["dem"].verdict.word == "far off"
+    assert np.isnan(found["dem"].own.judged)
 
 
 def test_without_an_exact_solution_the_resolved_joints_are_the_finest(compared):
-    found = standings([compared(dem=0.1, continuum_jointed=0.0, lattice=0.1)])
-    assert found["dem"].finest == ("continuum-jointed",)
+    found = engine_scores([compared(dem=0.1, continuum_jointed=0.0, lattice=0.1)])
+    assert found["dem"].references == ("continuum-jointed",)
     assert found["dem"].verdict.word == "differs"
-    assert found["continuum-jointed"].finest == () and np.isnan(found["continuum-jointed"].total)
+    jointed = found["continuum-jointed"]
+    assert jointed.references == () and np.isnan(jointed.total.judged)
     assert found["continuum-jointed"].verdict == NOT_CHECKED
 
 
 def test_one_variant_that_nothing_checks_takes_the_tick_from_all(compared):
     checked = compared(continuum_jointed=1e-4, jointed_bar=0.0)
     alone = compared(continuum_jointed=0.0, dem=0.1)
-    found = standings([checked, alone])["continuum-jointed"]
-    assert [held.verdict.word for held in found.variants] == ["agrees", NOT_CHECKED.word]
+    found = engine_scores([checked, alone])["continuum-jointed"]
+    assert [one.verdict.word for one in found.variants] == ["agrees", NOT_CHECKED.word]
     assert found.verdict == NOT_CHECKED and len(found.unchecked) == 1
     worse = compared(continuum_jointed=0.5, jointed_bar=0.0)
-    assert standings([worse, alone])["continuum-jointed"].verdict.word == "far off"
+    assert engine_scores([worse, alone])["continuum-jointed"].verdict.word == "far off"
 
 
 def test_what_is_below_ten_times_the_error_of_the_reference_is_no_agreement(compared):
@@ -70,29 +74,29 @@ def test_what_is_below_ten_times_the_error_of_the_reference_is_no_agreement(comp
     bar = comparison.results["jointed-bar"]
     rms = float(np.sqrt((bar.stress**2).mean()))
     bar["stress_error"] = ("stress_y", [3e-3 * rms])
-    found = standings([comparison])["dem"]
-    assert found.total == pytest.approx(0.03) and found.verdict.word == "close"
+    found = engine_scores([comparison])["dem"]
+    assert found.total.judged == pytest.approx(0.03) and found.verdict.word == "close"
 
 
 def test_of_a_reference_that_stands_still_nothing_is_known(compared):
-    found = standings([compared(dem=0.1, spatial_lattice=-1.0)])
-    assert np.isnan(found["dem"].total) and found["dem"].verdict == NOT_CHECKED
+    found = engine_scores([compared(dem=0.1, spatial_lattice=-1.0)])
+    assert np.isnan(found["dem"].total.judged) and found["dem"].verdict == NOT_CHECKED
 
 
 def test_a_bound_of_the_scene_that_is_not_met_outdoes_every_misfit(compared):
     expect = {"dem ~ jointed-bar": 1e-4, "dem ~ lattice": 1.0, "dem ~ images": 1e-9}
-    found = standings([compared(expect, dem=0.002, jointed_bar=0.0, lattice=0.0)])
+    found = engine_scores([compared(expect, dem=0.002, jointed_bar=0.0, lattice=0.0)])
     assert found["dem"].broken == ("dem ~ jointed-bar",)
     assert found["dem"].verdict.sign == "✗" and found["dem"].verdict.word == "out of bounds"
 
 
-def standing(total, against):
-    held = Held("", Worst(nan), Worst(total), against, "", ())
-    return Standing((held,))
+def scored(total, against):
+    one = VariantScore("", Worst(nan), Worst(total), against, "", ())
+    return EngineScore((one,))
 
 
 def ranked(name, seconds, **total):
-    found = {engine.replace("_", "-"): standing(x, "jointed-bar") for engine, x in total.items()}
+    found = {engine.replace("_", "-"): scored(x, "jointed-bar") for engine, x in total.items()}
     return RankedScene(
         name, name, f"title of {name}", found, dict(zip(found, seconds, strict=True))
     )
@@ -104,27 +108,27 @@ def test_costs_are_ratios_to_the_cheapest_of_each_scene():
         ranked("b", [4e-3, 2e-3], dem=0.002, continuum_jointed=0.0),
         ranked("c", [1e-3], dem=0.01),
     ]
-    found = Overview(scenes)
-    assert found.engines == ["dem", "continuum-jointed"]
-    assert [[times(s.ratio(engine)) for engine in s.standings] for s in found.scenes] == [
+    found = overview(scenes)
+    assert found["engines"] == ["dem", "continuum-jointed"]
+    assert [[cell["cost"] for cell in cells.values()] for _, cells in found["rows"]] == [
         ["1.0×", "15×"],
         ["2.0×", "1.0×"],
         ["1.0×"],
     ]
-    sentences = found.lead
-    assert "0.2 to 4 % from the finest physics" in sentences["dem"]
-    assert "1.0× to 2.0× the time of the cheapest" in sentences["dem"]
-    assert "0 to < 0.001 %" in sentences["continuum-jointed"]
+    lead = found["lead"]
+    assert "0.2 to 4 % from the finest physics" in lead["dem"]
+    assert "1.0× to 2.0× the time of the cheapest" in lead["dem"]
+    assert "0 to < 0.001 %" in lead["continuum-jointed"]
 
 
 def test_the_cheapest_everywhere_says_its_seconds():
-    found = Overview([ranked("a", [2e-3], dem=0.04), ranked("b", [3.14], dem=0.04)])
-    assert found.lead["dem"].endswith("cheapest, 2 ms to 3.1 s a run.")
+    found = overview([ranked("a", [2e-3], dem=0.04), ranked("b", [3.14], dem=0.04)])
+    assert found["lead"]["dem"].endswith("cheapest, 2 ms to 3.1 s a run.")
 
 
 def test_an_engine_without_a_distance_is_not_given_one():
-    there = {"dem": standing(nan, "lattice"), "continuum-jointed": standing(nan, "")}
-    said = Overview([RankedScene("a", "a", "A", there, dict.fromkeys(there, 1.0))]).lead
+    there = {"dem": scored(nan, "lattice"), "continuum-jointed": scored(nan, "")}
+    said = overview([RankedScene("a", "a", "A", there, dict.fromkeys(there, 1.0))])["lead"]
     assert "not compared with finer physics" in said["dem"]
     assert NOT_CHECKED.word in said["continuum-jointed"]
 

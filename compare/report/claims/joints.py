@@ -1,0 +1,154 @@
+"""Figures 7 to 10: a soft layer, and joints that carry no tension."""
+
+from math import pi, sqrt
+
+import numpy as np
+import pandas as pd
+
+from cases.material.calibrate import calibrate
+from cases.schema.scene import Scene
+from compare.misfit.metrics import delay
+from compare.misfit.pairs import Comparison
+from compare.report.claims import pulses
+from compare.report.claims.claim import Measured, listed, share, shares
+
+
+def _quantity(scene: Scene) -> str:
+    return "stress" if scene.record.stress else "velocity"
+
+
+def _words(scene: Scene) -> str:
+    return "stress" if scene.record.stress else "block velocity"
+
+
+def _layered(comparisons: list[Comparison]) -> Comparison:
+    return next(c for c in comparisons if c.scene.soft_layers)
+
+
+def _beside_the_layer(
+    comparisons: list[Comparison], behind: bool
+) -> tuple[float, dict[str, tuple[pd.Series, pd.Series]]]:
+    """Return y of the receiver next to the layer, and each engine's waveforms there with and
+    without it, before what the layer and the loaded end send to and fro comes by once more."""
+    layered, plain = _layered(comparisons), next(c for c in comparisons if not c.scene.soft_layers)
+    scene, layer = layered.scene, layered.scene.soft_layers[0].y
+    places = getattr(scene.record, _quantity(scene))
+    sides = [i for i, y in enumerate(places) if (y > layer) == behind]
+    index = sides[0] if behind else sides[-1]
+    stop = (places[index] + 2 * layer) / calibrate(scene).bar_speed - pulses.period(scene) / 4
+    one, other = (
+        {
+            n: pulses.span(w, 0, stop)
+            for n, w in pulses.waveforms(c, _quantity(scene), index).items()
+        }
+        for c in (layered, plain)
+    )
+    return places[index], {name: (one[name], other[name]) for name in one if name in other}
+
+
+def harmonic_coefficients(scene: Scene) -> tuple[float, float]:
+    """Return |T| and |R| of the layer for a harmonic of the load's period (Schoenberg, 1980)."""
+    p, soft = calibrate(scene), calibrate(scene).soft[0]
+    excess = 1 / (1 / p.stiffness[soft] - 1 / p.regular_stiffness)
+    kappa = excess * pulses.period(scene) / (2 * pi * p.impedance)
+    return 2 * kappa / sqrt(4 * kappa**2 + 1), 1 / sqrt(4 * kappa**2 + 1)
+
+
+def reflects_in_front(comparisons: list[Comparison]) -> Measured:
+    """Figs 7, 8: the layer reflects, within a quarter of the share of the load's harmonic.
+
+    A one-cycle pulse holds all frequencies, and its peak is not that of one harmonic.
+    """
+    scene = _layered(comparisons).scene
+    y, waves = _beside_the_layer(comparisons, behind=False)
+    found = {n: pulses.peak(one - other) / pulses.peak(other) for n, (one, other) in waves.items()}
+    theory = harmonic_coefficients(scene)[1]
+    return Measured(
+        f"At y = {y:g} m the {_words(scene)} that the layer adds peaks at {shares(found)} of the "
+        f"incident peak; a harmonic of the load's period would be reflected by {share(theory)}.",
+        all(abs(x / theory - 1) < 0.25 for x in found.values()),
+    )
+
+
+def smaller_and_later(comparisons: list[Comparison]) -> Measured:
+    """Figs 7, 8: behind the layer the pulse is lower and later."""
+    scene = _layered(comparisons).scene
+    y, waves = _beside_the_layer(comparisons, behind=True)
+    ratios = {n: pulses.peak(one) / pulses.peak(other) for n, (one, other) in waves.items()}
+    delays = {
+        n: 1e3 * delay(one.values, other.values, pulses.sampling(one))
+        for n, (one, other) in waves.items()
+    }
+    return Measured(
+        f"At y = {y:g} m the {_words(scene)} peaks at {shares(ratios)} of that without the layer "
+        f"(a harmonic: {share(harmonic_coefficients(scene)[0])}) and is late by "
+        f"{listed(delays, '.2f', ' ms')}.",
+        max(ratios.values()) < 0.95 and min(delays.values()) > 0,
+    )
+
+
+def _by_tension(comparisons: list[Comparison]) -> tuple[Comparison, Comparison]:
+    """Return the variants whose joints carry tension and do not."""
+    without = next(c for c in comparisons if c.scene.joints.tension is False)
+    return next(c for c in comparisons if c.scene.joints.tension is not False), without
+
+
+def tension_is_cut(comparisons: list[Comparison]) -> Measured:
+    """Fig. 9: the tensile half-cycle is there with tension and gone without."""
+    carried, without = (
+        {n: abs(min(0.0, w.min())) / 1e6 for n, w in pulses.waveforms(c, "stress", 0).items()}
+        for c in _by_tension(comparisons)
+    )
+    load = abs(comparisons[0].scene.load.amplitude) / 1e6
+    return Measured(
+        f"Largest tensile stress in MPa with tension: {listed(carried, '.3f')}; without: "
+        f"{listed(without, '.3f')}.",
+        min(carried.values()) > 0.5 * load and max(without.values()) < 1e-6 * load,
+    )
+
+
+def blocks_separate(comparisons: list[Comparison]) -> Measured:
+    """Fig. 10: no block pulls another back, and the joint between two receivers opens."""
+    carried, without = (
+        {n: float(w.min() / w.max()) for n, w in pulses.waveforms(c, "velocity", 0).items()}
+        for c in _by_tension(comparisons)
+    )
+    opening = _opening(_by_tension(comparisons)[1])
+    ends = " The joint between the receivers ends open by " if opening else ""
+    return Measured(
+        f"The largest velocity backwards over that forwards with tension: {shares(carried)}; "
+        f"without, the pull back is gone: {shares(without)}.{ends}"
+        f"{listed(opening, '.3f', ' mm')}{'.' * bool(opening)}",
+        max(carried.values()) < -0.5
+        and min(without.values()) > -0.1
+        and all(x > 0 for x in opening.values()),
+    )
+
+
+def _opening(comparison: Comparison) -> dict[str, float]:
+    """Return by how far the last two receivers have moved apart, mm; nothing with only one."""
+    if len(comparison.scene.record.velocity) < 2:
+        return {}
+    moved = {
+        name: comparison.results[name].displacement.values[-2:, -1, 0]
+        for name in pulses.waveforms(comparison, "velocity", 0)
+    }
+    return {name: 1e3 * float(far - near) for name, (near, far) in moved.items()}
+
+
+def blocks_coast(comparisons: list[Comparison]) -> Measured:
+    """Fig. 10: between the pulse and what comes back from the end the velocity stays constant (no
+    force acts) and near zero."""
+    without = _by_tension(comparisons)[1]
+    scene, waves = without.scene, pulses.waveforms(without, "velocity", 0)
+    incident, reflected, _ = pulses.arrivals(scene, scene.record.velocity[0])
+    span = incident + pulses.period(scene), reflected - pulses.period(scene) / 4
+    after = {name: pulses.span(w, *span) / pulses.peak(w) for name, w in waves.items()}
+    left = {name: pulses.peak(w) for name, w in after.items()}
+    drift = {name: float(np.ptp(w.values)) for name, w in after.items()}
+    times = next(iter(after.values())).index
+    return Measured(
+        f"From {1e3 * times[0]:.1f} to {1e3 * times[-1]:.1f} ms the velocity is at most "
+        f"{shares(left, 2)} of its peak, and changes by {shares(drift, 3)} of it.",
+        max(left.values()) < 0.02 and max(drift.values()) < 0.005,
+    )

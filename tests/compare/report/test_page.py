@@ -1,0 +1,133 @@
+"""The page from synthetic parts: failures, missing parts, odd characters, tables."""
+
+import re
+
+import pandas as pd
+import pytest
+
+from compare.figures.export import Drawn
+from compare.report.claims.claim import Claim
+from compare.report.overview import overview
+from compare.report.page import render
+from compare.report.scenes import PAPER, SceneRequest, Shown, SolvedScene, without_repeats
+
+
+@pytest.fixture
+def figure(tmp_path):
+    """Return a function that gives a figure and writes its files."""
+
+    def make(name, numbers="x"):
+        for kind in ("svg", "pdf", "csv"):
+            (tmp_path / f"{name}.{kind}").write_text(numbers)
+        return Drawn(name, "A figure", tmp_path)
+
+    return make
+
+
+@pytest.fixture
+def page(tmp_path):
+    """Return a function that renders a page of nothing but the given parts, without its style."""
+    nothing = {
+        "subtitle": "About",
+        "overview": overview([]),
+        "summary": pd.DataFrame(),
+        "claims": [],
+        "about": None,
+        "scenes": [],
+        "rock_masses": [],
+        "studies": [],
+        "contents": {},
+        "command": "jointwave report",
+        "machine": "here",
+        "versions": {},
+        "hint": "",
+    }
+
+    def make(**parts):
+        text = render(nothing | parts, tmp_path)
+        return re.sub(r"<style>.*?</style>", "", text, flags=re.DOTALL)
+
+    return make
+
+
+@pytest.fixture
+def scene(tmp_path, figure):
+    """Return a function that gives a scene of the page with pictures, claims and texts."""
+    (tmp_path / "fig-05-misfits.csv").write_text("x")
+    empty = pd.DataFrame()
+
+    def make(figures=(), claims=(), name="fig-05", **texts):
+        request = SceneRequest(PAPER / f"{name}.toml", name, name)
+        section = {"heading": "Ends", "source": "source", "command": "c", "toml": "toml"}
+        section |= dict.fromkeys(("verdicts", "distances", "runs", "reasons"), empty)
+        misfits = pd.DataFrame({"undamped (%)": [0.5]}, pd.Index(["a ~ b"], name="pair"))
+        section |= {"misfits": misfits, "distances_file": tmp_path / "fig-05-misfits.csv"}
+        shown = [Shown(one, "What is seen.", folded) for one, folded in figures]
+        about = {}, pd.Series(), None, {}, {}, None
+        return SolvedScene(request, "Ends", shown, list(claims), section | texts, *about)
+
+    return make
+
+
+def test_a_failed_claim_is_red_and_named_at_the_top(page, scene):
+    claims = [Claim("waves pass", "They do.", True), Claim("waves stop", "No.", False)]
+    one = scene(claims=claims)
+    html = page(scenes=[one], claims=[(one.request, claim) for claim in claims])
+    assert '<li class="holds"><strong>waves pass.</strong> They do.</li>' in html
+    assert '<li class="fails"><strong>waves stop: does not hold.</strong> No.</li>' in html
+    assert "1 of 2 claims do not hold" in html
+    assert '<a href="#fig-05">fig. 5, waves stop</a>' in html
+
+
+def test_a_claim_about_the_whole_that_fails_is_red(page):
+    html = page(about=Claim("claim", "It is not so.", False))
+    assert '<p class="fails">It is not so.</p>' in html
+
+
+def test_text_of_scenes_is_escaped(page, scene):
+    html = page(scenes=[scene(heading="<b>a & b</b>", toml="x = '<i></script>'")])
+    assert "&lt;b&gt;a &amp; b&lt;/b&gt;" in html and "&lt;i&gt;&lt;/script&gt;" in html
+
+
+def test_tables_have_headings_labels_and_numbers(page):
+    """Percentages to three digits, others to four, whole numbers whole, a dash for none."""
+    index = pd.MultiIndex.from_tuples([("kind", "one"), ("kind", "two")], names=["kind", "pair"])
+    numbers = {"a (%)": [12.3456, 1e-4], "b": [0.123456, float("nan")], "c": [7, 1_000_000]}
+    html = page(summary=pd.DataFrame(numbers, index))
+    assert html.count("kind</th></tr>") == 1
+    for label, cells in {
+        "one": ("12.3", "0.1235", "7"),
+        "two": ("&lt; 0.001", "–", "1000000"),
+    }.items():
+        numbers = "".join(f'<td class="n">{cell}</td>' for cell in cells)
+        assert f"<tr><td>{label}</td>{numbers}</tr>" in html
+
+
+def test_a_study_shows_its_findings_failures_and_points(page, figure):
+    study = {"id": "study-s", "heading": "S", "command": "jointwave study s", "note": "A note."}
+    study |= {"sentences": ["Off by 1 %."], "failed": ["dem: no"], "figure": figure("s")}
+    study |= {"caption": "", "legend": "", "table": pd.DataFrame({"value": [0.5]})}
+    html = page(studies=[study])
+    assert '<section id="study-s">' in html and "Failed or missing: dem: no." in html
+    assert all(x in html for x in ("Off by 1\u00a0%.", "A note.", '<td class="n">0.5</td>'))
+
+
+def test_a_picture_whose_file_is_not_there_is_an_error(page, scene, figure):
+    gone = figure("gone")
+    gone.file("svg").unlink()
+    with pytest.raises(FileNotFoundError):
+        page(scenes=[scene([(gone, False)])])
+
+
+def test_no_picture_stands_twice(page, scene, figure):
+    """A later one of the same numbers, whatever it is called, is a link to the first."""
+    first, second, third = figure("first", "1"), figure("second", "1"), figure("third", "2")
+    scenes = [scene([(first, False)]), scene([(second, False), (third, False)], name="fig-06")]
+    html = page(scenes=without_repeats(scenes))
+    assert re.findall('<figure id="([a-z]+)-figure"', html) == ["first", "third"]
+    assert 'The same picture as <a href="#first-figure">fig. 5: A figure</a>.' in html
+
+
+def test_a_folded_picture_is_closed_until_it_is_opened(page, scene, figure):
+    html = page(scenes=[scene([(figure("more"), True)])])
+    assert "<details><summary>A figure</summary>" in html and "<details open" not in html
