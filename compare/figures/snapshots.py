@@ -71,7 +71,7 @@ def draw_snapshots(name: str, scene: Scene, s: Snapshots) -> Figure:
         figure.colorbar(colours, cax=bar, orientation="horizontal")
         bar.set_title(settings.quantity.label, loc="left", pad=3)
         words = f"y to the right; displacements × {settings.scale:,g}"
-        words += f", thickness × {settings.stretch:g}" * (settings.stretch != 1)
+        words += f", thickness × {settings.stretch:.2g}" * (settings.stretch != 1)
         figure.text(1 - 0.1 / WIDTH, 1 - 0.3 / height, words, ha="right")
     return figure
 

@@ -10,6 +10,7 @@ import typer
 
 from cases.errors import SceneError
 from cases.kinds import AnyScene
+from compare.cli import terminal
 from compare.cli.options import (
     JsonOption,
     SceneArgument,
@@ -49,7 +50,6 @@ def animate(
     """
     _require_positive("--scale", scale)
     _require_positive("--seconds", seconds)
-    from compare.cli import terminal
     from compare.figures.animation import video
     from compare.figures.animation.frame import Frame
     from compare.figures.animation.settings import settings_for
@@ -135,7 +135,6 @@ def _write_picture(path: Path, scene: AnyScene, time: float, scale: float | None
 
 def _simulate(scene: AnyScene, count: int) -> Any:
     """Return this many snapshots of a scene by both engines."""
-    from compare.cli import terminal
     from compare.figures.animation.snapshots import take
 
     with terminal.progress("both engines") as advance:
@@ -160,8 +159,6 @@ def _has_display() -> bool:
 
 
 def _say(path: Path, shown: Any, scale: float) -> None:
-    from compare.cli.terminal import say
-
-    say(f"{path}: {' and '.join(shown.found)}, displacements × {scale:,g}")
+    terminal.say(f"{path}: {' and '.join(shown.found)}, displacements × {scale:,g}")
     for name, reason in shown.reasons.items():
-        say(f"{name} is not shown: {reason}")
+        terminal.say(f"{name} is not shown: {reason}")

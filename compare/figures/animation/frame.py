@@ -25,7 +25,7 @@ from compare.figures.units import UNITS, unit_for
 from compare.misfit.pairs import Comparison
 
 SIZE = 12.8, 7.2  # inches
-LEFT, RIGHT, FOOT, GAP, NAME, LINE = 0.95, 0.25, 0.5, 0.55, 0.3, 0.2  # inches
+LEFT, RIGHT, FOOT, GAP, NAME, LINE = 1.05, 0.25, 0.5, 0.55, 0.3, 0.2  # inches
 BAR = 3.2, 0.13  # inches of the bar of colours
 HIGHEST = 2.4  # inches of all pillars
 LETTERS, WIDE = 85, 0x2E7F  # per line; last character that is not twice as wide as Latin ones
@@ -131,7 +131,8 @@ class Frame:
     def _add_pillars(self, top: float) -> None:
         width, count = SIZE[0] - LEFT - RIGHT, len(self.bodies)
         low, high = np.stack([body.reach() for body in self.bodies.values()], axis=1)
-        right, away, up = high.max(axis=0) - low.min(axis=0)
+        low, high = low.min(axis=0), high.max(axis=0)
+        right, away, up = high - low
         if self.in_space:  # as seen from above and aside
             aside, _, above = TOWARDS
             right, up = right + aside * away, up + above * (aside * right + away)
@@ -140,10 +141,13 @@ class Frame:
             top -= NAME + height
             ax = self._add_view(name, (LEFT, top, width, height))
             if ax is not None:
-                ax.set_aspect("equal")
+                ax.set(aspect="equal", xlim=(low[0], high[0]))
                 ax.set_axis_off()
         rest = top - FOOT - 2 * GAP
-        self._add_profile(self._axes(LEFT, top - GAP / 2 - 0.55 * rest, width, 0.55 * rest))
+        profile = self._axes(LEFT, top - GAP / 2 - 0.55 * rest, width, 0.55 * rest)
+        self._add_profile(profile)
+        shown = (0.0, self.simulated.scene.pillar.length) if self.in_space else (low[0], high[0])
+        profile.set_xlim(*shown)
         self._add_waveform(self._axes(LEFT, FOOT, width, 0.45 * rest))
 
     def _add_profile(self, ax: Axes) -> None:
@@ -156,7 +160,7 @@ class Frame:
         for layer in scene.soft_layers:
             ax.axvline(layer.y, color="#999999", linewidth=0.8, linestyle=":")
         reach = 1.08 * float(self.colours.get_clim()[1] or 1.0)
-        ax.set(xlim=(0, scene.pillar.length), ylim=(-reach, reach))
+        ax.set_ylim(-reach, reach)
         ax.set_xlabel("y (m)" + "; dotted: soft layers" * bool(scene.soft_layers))
         ax.set_ylabel(f"{quantity.name}\n({quantity.unit})")
 

@@ -18,7 +18,6 @@ CLOSER, FARTHER, ASIDE, TURNED = 0.8, 0.1, 0.04, 0.35
 THIN = 0.045  # smallest legible ratio of the pillar's height to its length
 FARTHEST = 0.04  # largest displacement as drawn, relative to the size of a rock mass
 SILENT = 0.1  # axial stress over that of a plane wave of this motion: below it no axial wave
-ROUND = [factor * 10.0**power for power in range(-12, 19) for factor in (1, 2, 5)]
 
 
 class Quantity(NamedTuple):
@@ -60,7 +59,7 @@ def caption(scene: AnyScene, settings: ViewSettings) -> str:
     """Return the caption of a picture: its exaggeration, and the static state subtracted."""
     parts = [f"displacements × {settings.scale:,g}"]
     if settings.stretch != 1:
-        parts.append(f"thickness × {settings.stretch:g}")
+        parts.append(f"thickness × {settings.stretch:.2g}")
     if settings.quantity != STRESS:
         return ", ".join(parts)
     if scene.gravity is not None:
@@ -91,8 +90,7 @@ def settings_for(
         ]
     else:
         up, quantity = _upwards(scene), _quantity(scene, found)
-        wanted = THIN * scene.pillar.length / scene.pillar.side
-        stretch = next(one for one in ROUND if one >= max(1.0, wanted * (1 - 1e-12)))
+        stretch = max(1.0, THIN * scene.pillar.length / scene.pillar.side)
         largest = [_largest_scale(scene, s, stretch) for s in found.values()]
     chosen = scale or max(1.0, round_down(min(largest, default=1.0)))
     return ViewSettings(up, chosen, stretch, quantity)

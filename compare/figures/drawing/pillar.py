@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
@@ -77,7 +76,8 @@ def sketch_of(scene: Scene) -> Sketch:
         np.array([-beside, -half - 0.5 * unit[1]]),
         np.array([pillar.length + beside, half + 1.4 * unit[1]]),
         stretch,
-        (f"y (m): {_size(scene)}{times}", ""),
+        ("y", "x"),
+        f"{_size(scene)}{times}",
         blocks,
         [tones[int(np.searchsorted(stops, y)) % len(tones)] for y in middles],
         {},
@@ -216,18 +216,3 @@ def appearance(scene: Scene) -> str:
     """Return everything that determines the drawing of a pillar."""
     joints = scene.joints.contact_points, scene.joints.point_rule, is_spatial(scene)
     return str([getattr(scene, key) for key in SEEN] + list(joints))
-
-
-def table(scene: Scene) -> pd.DataFrame:
-    """Return every drawn part with its places along the pillar."""
-    edges, ends, length = block_edges(scene), scene.ends, scene.pillar.length
-    rows = [("block", a, b, "") for a, b in pairwise(edges)]
-    rows += [("joint", y, y, "") for y in edges[1:-1]]
-    rows += [
-        ("soft layer", x.y, x.y, f"thickness {x.thickness or 0:g} m") for x in scene.soft_layers
-    ]
-    rows += [("segment", x.y[0], x.y[1], x.name or "") for x in scene.segments]
-    rows += [("end", 0.0, 0.0, ends.start), ("end", length, length, ends.end)]
-    rows += [("receiver", y, y, "stress") for y in scene.record.stress]
-    rows += [("receiver", y, y, "velocity") for y in scene.record.velocity]
-    return pd.DataFrame(rows, columns=["part", "from y (m)", "to y (m)", "what"])

@@ -3,7 +3,6 @@
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from cases.partition.blocks import Partition
 from cases.partition.outline import outline_of
@@ -79,7 +78,8 @@ def sketch_of(scene: RockMass) -> Sketch:
         low - margin,
         high + margin,
         1.0,
-        ("x (m)", "y (m)"),
+        ("x", "y"),
+        "",
         np.split(partition.corners, partition.first[1:-1]),
         [rocks[(k + 1) % len(rocks)] for k in partition.region],
         {one.name: REGIONS[k % len(REGIONS)] for k, one in enumerate(scene.regions)},
@@ -196,16 +196,3 @@ def _set_words(one: Any) -> str:
         law_words(one),
     ]
     return f"{one.name}: {', '.join(part for part in parts if part)}"
-
-
-def table(scene: RockMass) -> pd.DataFrame:
-    """Return every drawn line and receiver with its end points."""
-    partition, rows = partition_of(scene), list[tuple[Any, ...]]()
-    for index, name in [(-1, "no joint"), *enumerate(partition.joint_sets)]:
-        rows += [("joint", *line.ravel(), name) for line in _joint_lines(partition, index)]
-    for side, lines in _sides(partition).items():
-        rows += [("side", *line.ravel(), f"{side}, {_held(scene, side)}") for line in lines]
-    rows += [("receiver", *at, *at, "point") for at in scene.record.points]
-    rows += [("receiver", *at, *at, "point of a joint") for at in scene.record.joints]
-    columns = ["part", "from x (m)", "from y (m)", "to x (m)", "to y (m)", "what"]
-    return pd.DataFrame(rows, columns=columns)

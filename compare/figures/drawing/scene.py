@@ -13,7 +13,7 @@ from cases.effects import is_spatial
 from cases.schema.scene import Scene
 from compare.figures.drawing import pillar
 from compare.figures.drawing.pulses import draw_pulse
-from compare.figures.drawing.sketch import Sketch, draw, legend
+from compare.figures.drawing.sketch import Sketch, draw, legend, table
 from compare.figures.export import blank
 from compare.figures.figure import SceneFigure
 from compare.figures.panels import variant_names
@@ -38,16 +38,15 @@ def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
         seen = drawing.appearance(comparison.scene)
         groups.setdefault(seen, ([], comparison.scene))[0].append(words)
     rows = {", ".join(names): scene for names, scene in list(groups.values())[:MOST]}
-    tables = [drawing.table(scene).assign(variant=words) for words, scene in rows.items()]
-    table = pd.concat(tables, ignore_index=True)
-    table.insert(0, "variant", table.pop("variant"))
-    words = drawing.caption(next(iter(rows.values())))
-    figure = partial(_figure, rows, drawing)
-    return SceneFigure(f"{name}-scene", TITLE, words, figure, table)
+    sketches = {words: drawing.sketch_of(scene) for words, scene in rows.items()}
+    tables = pd.concat({words: table(sketch) for words, sketch in sketches.items()})
+    numbers = tables.rename_axis(["variant", None]).reset_index("variant").reset_index(drop=True)
+    caption = drawing.caption(next(iter(rows.values())))
+    figure = partial(_figure, rows, list(sketches.values()))
+    return SceneFigure(f"{name}-scene", TITLE, caption, figure, numbers)
 
 
-def _figure(rows: dict[str, Any], drawing: ModuleType) -> Figure:
-    sketches = [drawing.sketch_of(scene) for scene in rows.values()]
+def _figure(rows: dict[str, Any], sketches: list[Sketch]) -> Figure:
     heights = [_height(sketch) for sketch in sketches]
     top = total = sum(heights)
     with blank(total, WIDTH, True) as figure:

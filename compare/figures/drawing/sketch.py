@@ -3,6 +3,7 @@
 from typing import Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
@@ -46,16 +47,17 @@ class Arrow(NamedTuple):
 class Sketch(NamedTuple):
     """What a drawing shows of a scene, places in m to the right and up.
 
-    low, high : the shown rectangle [2]. stretch : of what is up. labels : of the axes. blocks,
-    tones : polygons [corners, 2] and their colours. regions : colours by name. lines : in drawing
-    order; a name that begins with "_" is not in the legend. marks : marker and places [n, 2] of
-    receivers. notes : place, text and its horizontal alignment.
+    low, high : the shown rectangle [2]. stretch : of what is up. axes : their names. size : in
+    words. blocks, tones : polygons [corners, 2] and their colours. regions : colours by name.
+    lines : in drawing order; a name that begins with "_" is not in the legend. marks : marker and
+    places [n, 2] of receivers. notes : place, text and its horizontal alignment.
     """
 
     low: Point
     high: Point
     stretch: float
-    labels: tuple[str, str]
+    axes: tuple[str, str]
+    size: str
     blocks: list[np.ndarray]
     tones: list[str]
     regions: dict[str, str]
@@ -90,7 +92,8 @@ def draw(ax: Axes, sketch: Sketch) -> None:
         ax.text(x, y, text, ha=side, va="center", fontsize=8, zorder=7, bbox=plain)
     ax.set(xlim=(sketch.low[0], sketch.high[0]), ylim=(sketch.low[1], sketch.high[1]))
     ax.set(aspect=sketch.stretch, anchor="NW")
-    ax.set(xlabel=sketch.labels[0], ylabel=sketch.labels[1])
+    right, up = (f"{name} (m)" for name in sketch.axes)
+    ax.set(xlabel=": ".join(part for part in (right, sketch.size) if part), ylabel=up)
 
 
 def legend(sketch: Sketch) -> list[Line2D]:
@@ -109,6 +112,16 @@ def legend(sketch: Sketch) -> list[Line2D]:
         for name, (marker, _) in sketch.marks.items()
     ]
     return entries
+
+
+def table(sketch: Sketch) -> pd.DataFrame:
+    """Return the ends of every line, and the place of every receiver, with its name."""
+    ends = {name.removeprefix("_"): lines.segments for name, lines in sketch.lines.items()}
+    ends |= {name: np.stack([places, places], axis=1) for name, (_, places) in sketch.marks.items()}
+    columns = [f"{way} {axis} (m)" for way in ("from", "to") for axis in sketch.axes]
+    found = pd.DataFrame(np.concatenate([x.reshape(-1, 4) for x in ends.values()]), columns=columns)
+    found.insert(0, "what", np.repeat(list(ends), [len(x) for x in ends.values()]))
+    return found
 
 
 def side_style(held: str) -> dict[str, Any]:

@@ -63,7 +63,7 @@ def test_every_block_joint_layer_and_receiver_is_drawn_in_its_place(pillar):
 def test_a_pillar_of_very_many_blocks_is_one_piece_with_its_count(pillar):
     count = 2 * MOST
     sketch = sketch_of(pillar(pillar__length=0.5 * count))
-    assert len(sketch.blocks) == 1 and f"{count} blocks of 0.5 m" in sketch.labels[0]
+    assert len(sketch.blocks) == 1 and f"{count} blocks of 0.5 m" in sketch.size
 
 
 @pytest.mark.parametrize("end", ["free", "fixed", "quiet", "matched"])
@@ -117,11 +117,11 @@ def test_contact_points_are_drawn_where_the_scene_moves_in_space(pillar, n, rule
 
 def test_a_squat_pillar_is_true_to_scale_and_a_slender_one_says_by_how_much(pillar):
     squat = sketch_of(pillar(pillar__length=4.0, pillar__side=2.0, record__stress=[2.0]))
-    assert squat.stretch == 1 and "thickness ×" not in squat.labels[0]
+    assert squat.stretch == 1 and "thickness ×" not in squat.size
     slender = sketch_of(pillar())
     across = slender.high[0] - slender.low[0]
     assert slender.stretch * 0.5 == pytest.approx(THIN * across)
-    assert f"thickness × {slender.stretch:.2g}" in slender.labels[0]
+    assert f"thickness × {slender.stretch:.2g}" in slender.size
 
 
 @pytest.mark.parametrize(
@@ -155,10 +155,10 @@ def test_variants_that_look_alike_share_a_drawing(pillar, ink):
     ]
     picture = scene_figure("fig", [Comparison(scene) for scene in scenes])
     assert [text.get_text() for text in picture.figure.texts] == ["(a)  a, b", "(b)  c"]
-    parts = Counter(zip(picture.table["variant"], picture.table["part"], strict=True))
-    assert parts["a, b", "block"] == parts["c", "block"] == 100
-    assert parts["c", "soft layer"] == 2 and parts["a, b", "soft layer"] == 0
-    assert parts["c", "joint"] == 99 and parts["c", "receiver"] == 1 and parts["c", "end"] == 2
+    parts = Counter(zip(picture.table["variant"], picture.table["what"], strict=True))
+    assert parts["a, b", "joints"] == parts["c", "joints"] == 99
+    assert parts["c", "y = 20 m: layer, 875 MPa/m"] == 1 and parts["c", "free start"] == 1
+    assert parts["c", "section: stress"] == 1 and len(parts) == 5 + 7
     assert ink(picture.figure) > 0.01
 
 
