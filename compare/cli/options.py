@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Iterable, Sequence
 from enum import StrEnum
+from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
 
@@ -12,6 +13,7 @@ from cases.errors import SceneError, all_of
 from cases.kinds import AnyScene
 from compare import scenes
 from compare.cli import completion
+from compare.cli.terminal import say_warnings
 from compare.engines import selection
 from compare.runs.processes import started
 from compare.scenes import find
@@ -100,8 +102,6 @@ CORES = os.cpu_count() or 1
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        from importlib.metadata import version
-
         print(f"jointwave {version('jointwave')}")
         raise typer.Exit
 
@@ -123,7 +123,7 @@ def root(
 
 def load(
     scene: str, changes: list[str], variant: str | None, strict: bool = False
-) -> list["AnyScene"]:
+) -> list[AnyScene]:
     """Return a file's variants, or the one that is named, with `--set` applied, warned of."""
     from cases.read import parse_override
 
@@ -137,9 +137,9 @@ def load(
 
 
 def warn(
-    scenes: Sequence["AnyScene"],
+    scenes: Sequence[AnyScene],
     strict: bool = False,
-    of: Callable[["AnyScene"], Iterable[str]] | None = None,
+    of: Callable[[AnyScene], Iterable[str]] | None = None,
 ) -> None:
     """Print what scenes say but hardly mean, a line each; strict : it is an error.
 
@@ -157,12 +157,10 @@ def warn(
     if strict and lines:
         where, why = scenes[0].where, "(an error by --strict)"
         raise all_of(SceneError(where, "", None, f"{line} {why}") for line in lines)
-    from compare.cli.terminal import say_warnings
-
     say_warnings(lines)
 
 
-def _whose(said: Sequence["AnyScene"], scenes: Sequence["AnyScene"]) -> str:
+def _whose(said: Sequence[AnyScene], scenes: Sequence[AnyScene]) -> str:
     """Return which variants say what is warned of, where not all do."""
     if len(said) == len(scenes):
         return ""

@@ -31,7 +31,7 @@ FRAMES, SECONDS = 201, 10.0
 @app.command()
 def animate(
     scene: SceneArgument,
-    changes: SetOption = [],  # noqa: B006
+    changes: SetOption = [],
     variant: OneVariantOption = "",
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help=".mp4 or .gif; default SCENE.mp4 here.")
@@ -72,7 +72,7 @@ def animate(
 @app.command()
 def view(
     scene: SceneArgument,
-    changes: SetOption = [],  # noqa: B006
+    changes: SetOption = [],
     variant: OneVariantOption = "",
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write this .png, open no window.")

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from cases.errors import SceneError
-from compare.cli import completion
+from compare.cli import completion, terminal
 from compare.cli.options import (
     CORES,
     DryOption,
@@ -33,7 +33,7 @@ def effects(
             autocompletion=completion.scenes,
         ),
     ] = None,
-    changes: SetOption = [],  # noqa: B006
+    changes: SetOption = [],
     variant: VariantOption = None,
     out: Annotated[Path, typer.Option(help="Folder for table, diagram and points.")] = Path(
         "effects"
@@ -74,14 +74,13 @@ def plan(
     seconds: Annotated[
         float | None, typer.Option(min=0.0, help="Most accurate within this time.")
     ] = None,
-    changes: SetOption = [],  # noqa: B006
+    changes: SetOption = [],
     variant: VariantOption = None,
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Find the cheapest engine, elements and step that meet a misfit, by a few cheap runs."""
     scenes = load(scene, changes, variant or "", strict)
-    from compare.cli import terminal
     from compare.experiments.planner import planner
     from compare.experiments.planner import show as plan_view
 
@@ -161,7 +160,7 @@ def report(
     ensembles: Annotated[
         list[Path],
         typer.Option("--ensemble", help="Folder that --ensemble of compare or run has written."),
-    ] = [],  # noqa: B006
+    ] = [],
     dry: DryOption = False,
     strict: StrictOption = False,
     as_json: JsonOption = False,
@@ -173,7 +172,7 @@ def report(
     """
     for one in scenes or []:
         load(one, [], None, strict)
-    from compare.cli import terminal, views
+    from compare.cli import views
 
     if dry:
         from compare.experiments.cost.experiment_cost import parts_of_report, show_parts

@@ -47,7 +47,7 @@ def fit(
         Engine | None, typer.Option(help="Solver of the scene (default: rigid blocks).")
     ] = None,
     model: ModelOption = None,
-    changes: SetOption = [],  # noqa: B006
+    changes: SetOption = [],
     variant: VariantOption = "",
     out: Annotated[
         Path | None, typer.Option(help="Also write table, fitted scene, curves and figure.")

@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from cases.errors import SceneError
-from compare.cli import completion
+from compare.cli import completion, terminal
 from compare.cli.options import JsonOption, app
 
 
@@ -29,7 +29,6 @@ def new(
 
     Existing files are not overwritten.
     """
-    from compare.cli import terminal
     from compare.cli.new import write_new
 
     if rock_mass and source is not None:
@@ -45,7 +44,6 @@ def doctor(as_json: JsonOption = False) -> None:
     Exit code 0 if both engines pass, else 1; missing or broken parts are listed. The first run
     compiles kernels, which takes up to a minute.
     """
-    from compare.cli import terminal
     from compare.cli.doctor import examine, show_health
 
     with terminal.progress("looking") as advance:

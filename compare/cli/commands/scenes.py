@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 import cases
+from compare.cli import terminal
 from compare.cli.options import (
     CORES,
     DryOption,
@@ -48,11 +49,11 @@ def list_scenes(as_json: JsonOption = False) -> None:
 @app.command()
 def run(
     scene: SceneArgument,
-    engine: EngineOption = [Engine(DEM.engine)],  # noqa: B006, B008
+    engine: EngineOption = [Engine(DEM.engine)],
     model: ModelOption = None,
-    changes: SetOption = [],  # noqa: B006
+    changes: SetOption = [],
     variant: VariantOption = None,
-    swept: SweepOption = [],  # noqa: B006
+    swept: SweepOption = [],
     members: EnsembleOption = 0,
     out: OutOption = Path("results"),
     vtx: Annotated[
@@ -87,7 +88,7 @@ def run(
     points are not run again, failed ones are listed. --ensemble does so for every member of a
     scene with random joints.
     """
-    from compare.cli import terminal, views
+    from compare.cli import views
     from compare.runs import jobs
     from compare.runs import run as runs
     from compare.runs.checkpoint.resume import Keeping
@@ -118,7 +119,7 @@ def run(
 @app.command()
 def explain(
     scene: SceneArgument,
-    changes: SetOption = [],  # noqa: B006
+    changes: SetOption = [],
     variant: VariantOption = None,
     strict: StrictOption = False,
     measured: Annotated[
@@ -129,7 +130,6 @@ def explain(
 ) -> None:
     """Print the effects of a scene, its critical steps, the exact solutions that apply, and the
     reference; for a rock mass also its blocks."""
-    from compare.cli import terminal
     from compare.cli.explain import explanation, show_explanation
 
     for one in load(scene, changes, variant or "", strict):

@@ -7,6 +7,7 @@ import typer
 
 from cases.errors import SceneError
 from cases.kinds import AnyScene
+from compare.cli import terminal
 from compare.cli.options import (
     CORES,
     DryOption,
@@ -30,17 +31,17 @@ from compare.cli.options import (
 @app.command()
 def compare(
     scene: SceneArgument,
-    changes: SetOption = [],  # noqa: B006
+    changes: SetOption = [],
     variant: VariantOption = None,
     out: Annotated[Path | None, typer.Option(help="Also write tables, curves and figure.")] = None,
     spectral: Annotated[
         bool, typer.Option(help="Add envelope and phase misfit (Kristekova et al. 2006).")
     ] = True,
-    given: WithOption = [],  # noqa: B006
+    given: WithOption = [],
     align: Annotated[
         bool, typer.Option("--align", help="Align each --with curve by cross-correlation.")
     ] = False,
-    swept: SweepOption = [],  # noqa: B006
+    swept: SweepOption = [],
     members: EnsembleOption = 0,
     workers: WorkersOption = CORES,
     dry: DryOption = False,
@@ -59,24 +60,20 @@ def compare(
     the stepping time, and the verdict. --all, --json, --out and --with also run all other
     solvers; --all shows every misfit of every pair, and data over model for external curves.
 
-    --with adds a waveform of another code, figure or experiment: a CSV file with a
-    header such as "time [ms], stress@20 [MPa]" (# starts a comment; commas, semicolons or tabs),
-    or a NetCDF file of jointwave run or with time and stress(time). A label names the only curve
-    of a file without names, or takes one out of several: curve.csv:stress@20,
-    "run.nc:-velocity@20.25 [mm/s]", and with a column's header in front it takes that column:
-    "gauge.csv:CH 3=stress@20 [MPa]", "gauge.csv:t=time [ms]". A comparison.csv of --out is
-    read variant by variant, or one solution of it: comparison.csv:dem. Empty
-    cells are skipped. The default unit is SI. Receivers of a rock mass have two coordinates:
-    "velocity_x@[20,30]", "stress_xx@[20,30] [MPa]", "traction_n@[20,20]", "gap@[20,20]"; in a file
-    with commas such a header is quoted. Stress is positive in compression; a minus
-    sign inverts it. Only the overlap in time is compared, at the times of the curve with fewer
-    samples there, the other interpolated linearly; amplitudes are never scaled, and times shifted
-    only by --align.
+    --with adds a waveform of another code, figure or experiment: a table with a header such as
+    "time [ms], stress@20 [MPa]", a seismogram, or a NetCDF file. A label names the only curve of a
+    file without names, or takes one out of several: curve.csv:stress@20,
+    "run.nc:-velocity@20.25 [mm/s]"; a column's header in front takes that column:
+    "gauge.csv:CH 3=stress@20 [MPa]". A comparison.csv of --out is read variant by variant.
+    Receivers of a rock mass have two coordinates: "velocity_x@[20,30]", "stress_xx@[20,30] [MPa]",
+    "gap@[20,20]". The default unit is SI; stress is positive in compression, a minus sign inverts
+    it. Only the overlap in time is compared; amplitudes are never scaled, and times shifted only by
+    --align.
 
     --sweep compares every value of a key, in several processes, and writes one table of all;
     --ensemble every member of a scene with random joints, with statistics of all.
     """
-    from compare.cli import comparison_view, terminal
+    from compare.cli.comparison_view import show_comparisons
     from compare.misfit.ranking import deciding
     from compare.runs import comparison
 
@@ -108,18 +105,18 @@ def compare(
         from compare.figures.comparison import write_comparisons
 
         write_comparisons(found, out)
-    comparison_view.show_comparisons(found, every, as_json, reads)
+    show_comparisons(found, every, as_json, reads)
 
 
 @app.command()
 def figure(
     scene: SceneArgument,
     out: Annotated[Path, typer.Option(help="Output file: .pdf, .svg or .png.")],
-    engine: EngineOption = [],  # noqa: B006
+    engine: EngineOption = [],
     model: ModelOption = None,
-    changes: SetOption = [],  # noqa: B006
+    changes: SetOption = [],
     variant: VariantOption = None,
-    given: WithOption = [],  # noqa: B006
+    given: WithOption = [],
     style: Annotated[
         Literal["journal", "screen"], typer.Option(help="Style for print or for slides.")
     ] = "journal",
@@ -143,7 +140,6 @@ def figure(
 
     In place of a scene, a folder that --ensemble has written: median and bands of its waveforms.
     """
-    from compare.cli import terminal
     from compare.figures.publication import FigureRequest, make, make_bands
     from compare.runs import jobs
 
@@ -162,9 +158,7 @@ def figure(
     terminal.say(f"wrote {path}")
 
 
-def _read_curves(
-    given: list[str], scenes: list["AnyScene"], align: bool, strict: bool
-) -> list[Any]:
+def _read_curves(given: list[str], scenes: list[AnyScene], align: bool, strict: bool) -> list[Any]:
     """Read what `--with` names; what is wrong with it is said before anything is solved."""
     if not given:
         if align:
