@@ -298,18 +298,6 @@ def test_compare_writes_figure_curves_and_distances(jointwave, tmp_path):
     assert {path.stem for path in out.iterdir()} == {"comparison", "comparison-misfits"}
 
 
-@pytest.mark.parametrize(
-    "arguments", [("list",), ("compare", SCENE, "--variant", "", *SHORT, "--no-spectral")]
-)
-def test_reader_that_leaves_early_is_no_error(arguments):
-    """As `jointwave compare ... | head -1`: no message about the closed pipe, with any imports."""
-    command = [sys.executable, "-m", "compare", *arguments]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        process.stdout.close()
-        said = process.stderr.read().decode()
-    assert said == ""
-
-
 def test_help_and_version_go_to_standard_output(jointwave):
     """Every command has help, and no argument at all is a call for it."""
     assert jointwave("--version").out.startswith("jointwave 0.")

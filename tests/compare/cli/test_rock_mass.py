@@ -1,19 +1,13 @@
 """A rock mass on the command line: its blocks explained, its solutions run, compared and drawn."""
 
-import io
 import json
-import sys
-from contextlib import redirect_stderr, redirect_stdout
-from unittest.mock import patch
 
 import pandas as pd
 import pytest
 import xarray as xr
 from PIL import Image
 
-import jointwave
-from compare.cli import completion
-from compare.cli.program import main
+import jointwave as jw
 from compare.runs.comparison import solved
 from compare.solvers.record import no
 
@@ -59,143 +53,118 @@ ONE_JOINT = {
 
 
 @pytest.fixture
-def jointwave_says(tmp_path, monkeypatch, one_joint, in_toml):
-    """Return a function that runs a command beside the scene: its exit code, output and errors."""
+def says(tmp_path, monkeypatch, one_joint, in_toml, jointwave):
+    """Return a function that runs a command beside the scenes: what it prints."""
     (tmp_path / "mass.toml").write_text(SCENE)
     scene = one_joint(**ONE_JOINT)
     scene["joint_sets"][0]["through"] = [20.0, 20.0]
     (tmp_path / "joint.toml").write_text(in_toml(scene))
     monkeypatch.chdir(tmp_path)
-
-    def says(command):
-        out, err = io.StringIO(), io.StringIO()
-        with (
-            patch.object(sys, "argv", ["jointwave", *command.split()]),
-            redirect_stdout(out),
-            redirect_stderr(err),
-            pytest.raises(SystemExit) as end,
-        ):
-            main()
-        return end.value.code, out.getvalue(), err.getvalue()
-
-    return says
+    return lambda command, code=0: jointwave(*command.split(), code=code)
 
 
-def test_a_scene_is_run_and_its_file_says_where_its_receivers_are(jointwave_says, tmp_path):
-    code, out, err = jointwave_says("run joint.toml --engine exact")
-    assert code == 0 and err == "" and "oblique-joint" in out
+def test_a_scene_is_run_and_its_file_says_where_its_receivers_are(says, tmp_path):
+    assert "oblique-joint" in says("run joint.toml --engine exact").out
     with xr.open_dataset(tmp_path / "results" / "exact-oblique-joint.nc") as found:
         assert found.velocity.point_x.values.tolist() == [20.0, 20.0]
         assert found.velocity.point_y.values.tolist() == [10.0, 30.0]
         assert found.traction.joint_point_y.values.tolist() == [20.0]
         assert json.loads(found.effects) == ["quiet sides", "energy ledger", "incident waves"]
-    again = jointwave_says("run joint.toml --engine exact --resume")
-    assert again[0] == 0
+    says("run joint.toml --engine exact --resume")
 
 
-def test_effects_of_it_are_asked_for(jointwave_says):
-    code, out, _ = jointwave_says("effects joint.toml --dry-run --json")
-    ((part, *_),) = (one.values() for one in json.loads(out))
-    assert code == 0 and part == "joint.toml"
+def test_effects_of_what_rigid_blocks_cannot_be_are_refused_in_one_line(says):
+    said = says("effects joint.toml --workers 1", code=2)
+    assert said.out == "" and said.err.count("\n") == 1
+    assert "dem does not apply: numerics.dem.block" in said.err
+    ((part, *_),) = (
+        one.values() for one in json.loads(says("effects joint.toml --dry-run --json").out)
+    )
+    assert part == "joint.toml"
 
 
-def test_effects_of_what_rigid_blocks_cannot_be_are_refused_in_one_line(jointwave_says):
-    code, out, err = jointwave_says("effects joint.toml --workers 1")
-    assert code == 2 and out == "" and len(err.splitlines()) == 1
-    assert "dem does not apply: numerics.dem.block" in err
-
-
-def test_a_view_of_it_is_a_picture_of_both_engines(jointwave_says, tmp_path, monkeypatch):
+def test_a_view_of_it_is_a_picture_of_both_engines(jointwave, says, tmp_path, monkeypatch):
     pytest.importorskip("pyvista")
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
+    said = says("view joint.toml --time 0.06", code=2)
+    assert "must be greater than 0 and at most time.duration = 0.03 s" in said.err
     coarse = "--set numerics.dem.block=5 --set numerics.continuum.size=4 --set record.fields=0.002"
-    code, out, err = jointwave_says(f"view joint.toml {coarse} --time 0.006 --out seen.png")
-    if "needs EGL or OSMesa" in err:
-        pytest.skip("VTK cannot render here")
-    assert code == 0 and out.startswith("seen.png: dem and continuum-jointed, displacements × ")
+    said = says(f"view joint.toml {coarse} --time 0.006 --out seen.png")
+    assert said.out.startswith("seen.png: dem and continuum-jointed, displacements × ")
     with Image.open(tmp_path / "seen.png") as file:
         assert file.size == (1280, 720) and len(file.getcolors(1_000_000)) > 100
-    code, _, err = jointwave_says("view joint.toml --time 0.06")
-    assert code == 2 and "must be greater than 0 and at most time.duration = 0.03 s" in err
 
 
-def test_a_dry_run_of_it(jointwave_says):
-    code, out, _ = jointwave_says("run joint.toml --engine exact --dry-run --json")
-    (run,) = json.loads(out)["runs"]
-    assert code == 0 and run["engine"] == "oblique-joint" and run["bytes"] > 0
+def test_a_dry_run_of_it(says):
+    (run,) = json.loads(says("run joint.toml --engine exact --dry-run --json").out)["runs"]
+    assert run["engine"] == "oblique-joint" and run["bytes"] > 0
 
 
-def test_a_sweep_of_it_has_a_row_a_receiver(jointwave_says, tmp_path):
+def test_a_sweep_of_it_has_a_row_a_receiver(says, tmp_path):
     """Of half the amplitude half the peak, at every receiver."""
-    command = "run joint.toml --engine exact --sweep waves.0.amplitude=1e6,5e5 --out swept"
-    code, out, _ = jointwave_says(command)
-    assert code == 0 and "velocity at [20, 30] m" in out
+    said = says("run joint.toml --engine exact --sweep waves.0.amplitude=1e6,5e5 --out swept")
+    assert "velocity at [20, 30] m" in said.out
     rows = pd.read_csv(tmp_path / "swept" / "sweep.csv")
     peaks = rows.pivot_table("peak", ["quantity", "x", "y"], "waves.0.amplitude")
     assert len(peaks) == 5 and (2 * peaks[5e5]).to_numpy() == pytest.approx(peaks[1e6].to_numpy())
-    grid = xr.open_dataset(tmp_path / "swept" / "sweep.nc")
-    assert {"x", "y"} <= set(grid.peak.dims)
+    assert {"x", "y"} <= set(xr.open_dataset(tmp_path / "swept" / "sweep.nc").peak.dims)
 
 
-def test_tables_and_curves_of_a_comparison_name_places(jointwave_says, tmp_path):
+COARSE = "compare joint.toml --set numerics.continuum.size=4"
+
+
+def curves_of(said):
+    """Return the distances of curves from the exact solution in a comparison's JSON."""
+    rows = [row for row in json.loads(said.out)[0]["rows"] if row["other"] == "oblique-joint"]
+    return [row for row in rows if row["kind"] == "given curves"]
+
+
+def test_tables_and_curves_of_a_comparison_name_places(says, tmp_path):
     """Files of --out are read back by --with: the same curves, at the same places."""
-    code, out, _ = jointwave_says("compare joint.toml --set numerics.continuum.size=4 --out found")
-    assert code == 0 and "oblique-joint" in out
+    assert "oblique-joint" in says(f"{COARSE} --out found").out
     header = (tmp_path / "found" / "comparison.csv").read_text().splitlines()[0]
     assert "oblique-joint | velocity x at [20, 10] m" in header
     assert "oblique-joint | traction s at [20, 20] m" in header
-    given = "found/comparison.csv:oblique-joint"
-    code, out, _ = jointwave_says(
-        f"compare joint.toml --set numerics.continuum.size=4 --json --with {given}"
-    )
-    rows = [
-        row
-        for row in json.loads(out)[0]["rows"]
-        if row["other"] == "oblique-joint" and row["kind"] == "given curves"
-    ]
+    rows = curves_of(says(f"{COARSE} --json --with found/comparison.csv:oblique-joint"))
     places = {(row["quantity"], row["x"], row["y"]) for row in rows}
     assert ("velocity x", 20.0, 30.0) in places and ("traction n", 20.0, 20.0) in places
     assert all(row["misfit"] < 1e-5 for row in rows)  # of six digits in the table
 
 
-def test_one_waveform_of_a_result_is_asked_for_by_its_place(jointwave_says):
-    jointwave_says("run joint.toml --engine exact")
+def test_one_waveform_of_a_result_is_asked_for_by_its_place(says):
+    says("run joint.toml --engine exact")
     file = "results/exact-oblique-joint.nc"
-    command = "compare joint.toml --set numerics.continuum.size=4 --json"
-    _, out, _ = jointwave_says(f"{command} --with {file}:velocity_x@[20,30]")
-    rows = [row for row in json.loads(out)[0]["rows"] if row["other"] == "oblique-joint"]
-    assert [row["quantity"] for row in rows if row["kind"] == "given curves"] == ["velocity x"]
-    code, _, err = jointwave_says(f"compare joint.toml --with {file}:velocity_x@[20,31]")
-    assert code == 2 and "velocity_x@[20,31] must be one of them" in err
+    rows = curves_of(says(f"{COARSE} --json --with {file}:velocity_x@[20,30]"))
+    assert [row["quantity"] for row in rows] == ["velocity x"]
+    said = says(f"{COARSE} --with {file}:velocity_x@[20,31]", code=2)
+    assert "velocity_x@[20,31] must be one of them" in said.err
 
 
-def test_a_place_of_the_other_kind_of_scene_is_refused(jointwave_says, tmp_path):
+@pytest.mark.parametrize(
+    ("scene", "place", "words"),
+    [
+        ("joint.toml", "velocity_x@20", "velocity_x@20: is not a receiver of a rock mass"),
+        ("joint.toml", "velocity_x@[1,2]", "at a receiver of the scene: points at [20, 10] m, ["),
+        ("guo-li-2002/fig-03", "gap@[1,2]", "gap@[1,2]: is not a receiver of a pillar"),
+    ],
+)
+def test_a_place_that_the_scene_has_not_is_refused(says, tmp_path, scene, place, words):
     (tmp_path / "curve.csv").write_text("0,1\n0.01,2\n0.02,3\n")
-    code, _, err = jointwave_says("compare joint.toml --with curve.csv:velocity_x@20")
-    assert code == 2 and "velocity_x@20: is not a receiver of a rock mass" in err
-    code, _, err = jointwave_says("compare joint.toml --with curve.csv:velocity_x@[1,2]")
-    assert code == 2 and "at a receiver of the scene: points at [20, 10] m, [20, 30] m" in err
-    pillar = "compare guo-li-2002/fig-03 --with curve.csv:gap@[1,2]"
-    code, _, err = jointwave_says(pillar)
-    assert code == 2 and "gap@[1,2]: is not a receiver of a pillar" in err
+    assert words in says(f"compare {scene} --with curve.csv:{place}", code=2).err
 
 
-def test_a_figure_has_a_panel_a_component(jointwave_says, tmp_path):
-    code, out, _ = jointwave_says(
-        "figure joint.toml --set numerics.continuum.size=4 --out joint.svg"
-    )
+def test_a_figure_has_a_panel_a_component(says, tmp_path):
+    said = says("figure joint.toml --set numerics.continuum.size=4 --out joint.svg")
     drawn = (tmp_path / "joint.svg").read_text()
-    assert code == 0 and "wrote joint.svg" in out
+    assert "wrote joint.svg" in said.out
     assert "velocity x at [20,\u00a010]\u00a0m" in drawn
     assert "traction s at [20,\u00a020]\u00a0m" in drawn
 
 
-def test_explain_says_what_its_blocks_are(jointwave_says):
+def test_explain_says_what_its_blocks_are(says):
     """30 bricks of 2 m2 less the two that the tunnel takes out, whole."""
-    code, out, err = jointwave_says("explain mass.toml --json")
-    assert code == 0 and err == ""
-    facts = json.loads(out)
+    facts = json.loads(says("explain mass.toml --json").out)
     assert (facts["blocks"], facts["area"]) == (28, 56.0)
     assert facts["smallest"]["area"] == facts["largest"]["area"] == 2.0
     assert facts["joint_sets"]["rows"] == {"contacts": 5 * 5 - 3, "length": 44.0}
@@ -208,75 +177,55 @@ def test_explain_says_what_its_blocks_are(jointwave_says):
     assert facts["rigid_blocks_lack"] == pytest.approx((2 / 24) ** 0.5, rel=1e-6)
 
 
-def test_explain_in_words(jointwave_says):
-    code, out, err = jointwave_says("explain mass.toml")
-    assert code == 0 and err == ""
-    for words in (
-        "A tunnel in brickwork",
-        "28 blocks, 56 m2",
-        "rigid blocks cannot represent 29 % of the intact rock's stiffness",
-        "smallest block: 2 m2",
-        "rows",
-        "MB",
-    ):
-        assert words in out
-    assert "quiet sides" in out and "oblique-joint" in out
+WORDS = ["A tunnel in brickwork", "28 blocks, 56 m2", "smallest block: 2 m2", "rows", "MB"]
+WORDS += ["rigid blocks cannot represent 29 % of the intact rock's stiffness", "oblique-joint"]
+
+
+def test_explain_in_words(says):
+    out = says("explain mass.toml").out
+    assert all(words in out for words in WORDS)
     assert "jointed-bar" not in out  # of a pillar
+    assert "rigid blocks: numerics" not in out  # none but those between the joints
 
 
-def test_explain_counts_cuts_through_rock(jointwave_says):
+def test_explain_counts_cuts_through_rock(says):
     """A tunnel that ends in the middle of bricks: those are cut along its faces."""
-    _, out, _ = jointwave_says("explain mass.toml --variant shifted --json")
-    facts = json.loads(out)
+    facts = json.loads(says("explain mass.toml --variant shifted --json").out)
     assert facts["area"] == 54.0 and facts["variant"] == "shifted"
-    assert "(no joint)" not in jointwave_says("explain mass.toml --variant shifted")[1]
-    triangle = "--set domain.openings=[[[3.0,2.5],[6.0,2.5],[5.0,3.5]]]"
-    found = jointwave_says(f"explain mass.toml --variant shifted {triangle}")[1]
-    assert "(no joint)" in found
+    assert "(no joint)" not in says("explain mass.toml --variant shifted").out
+    triangle = "domain.openings=[[[3.0,2.5],[6.0,2.5],[5.0,3.5]]]"
+    assert "(no joint)" in says(f"explain mass.toml --variant shifted --set {triangle}").out
+    said = says(f"explain mass.toml --set {triangle}", code=2)
+    assert said.out == "" and said.err.count("\n") == 1
+    assert said.err.startswith("jointwave: mass.toml: domain: a block is not convex")
 
 
-def test_explain_counts_the_blocks_that_are_run(jointwave_says):
+def test_explain_counts_the_blocks_that_are_run(says):
     """With half a block left at every quiet side there are five lines 8 m apart, the joint one of
     them, and four across it 10 m apart: 6 rows of 5 blocks."""
     square = "--set joint_sets.0.dip=0 --set rock.intact_poisson=0 --set numerics.dem.block=10"
-    _, out, _ = jointwave_says(f"explain joint.toml {square}")
+    out = says(f"explain joint.toml {square}").out
     assert "2 blocks, 1600 m2" in out and "30 rigid blocks: numerics.dem.block" in out
-    assert "rigid blocks: numerics" not in jointwave_says("explain mass.toml")[1]
 
 
-def test_explain_refuses_what_cannot_be_cut_in_one_line(jointwave_says):
-    opening = "domain.openings=[[[3.0,2.5],[6.0,2.5],[5.0,3.5]]]"
-    code, out, err = jointwave_says(f"explain mass.toml --set {opening}")
-    assert code == 2 and out == "" and len(err.splitlines()) == 1
-    assert err.startswith("jointwave: mass.toml: domain: a block is not convex")
-
-
-def test_intact_rock_is_one_block(jointwave_says):
-    _, out, _ = jointwave_says("explain mass.toml --variant bonded --json")
-    facts = json.loads(out)
+def test_intact_rock_is_one_block(says):
+    facts = json.loads(says("explain mass.toml --variant bonded --json").out)
     assert (facts["blocks"], facts["area"], facts["joint_sets"]) == (1, 60.0, {})
 
 
-def test_what_nothing_solves_says_why(jointwave_says):
+def test_what_nothing_solves_says_why(says):
     answers = {"one": no("the joints slip"), "other": no("it has two waves")}
-    with pytest.raises(jointwave.SceneError) as error:
-        solved(jointwave.load("joint.toml"), answers)
+    with pytest.raises(jw.SceneError) as error:
+        solved(jw.load("joint.toml"), answers)
     found = "joint.toml: nothing solves it: one: the joints slip; other: it has two waves"
     assert str(error.value) == found
 
 
-def test_the_python_interface_reads_and_solves_it(jointwave_says):
-    scene = jointwave.load("joint.toml")
-    assert scene.kind == "rock mass" and jointwave.solvers(scene)["oblique-joint"] == ""
-    found = jointwave.simulate(scene, "oblique-joint")
-    assert jointwave.misfit(found, found) == 0
-    assert [one.name for one in jointwave.load_variants("mass.toml")] == ["", "bonded", "shifted"]
-    with pytest.raises(jointwave.SceneError, match=r"jointwave\.properties accepts pillars only"):
-        jointwave.properties(scene)
-
-
-def test_variants_are_completed(jointwave_says):
-    class Asked:
-        args, params = (), {"scene": "mass.toml"}
-
-    assert completion.variants(Asked, "b") == ["bonded"]
+def test_the_python_interface_reads_and_solves_it(says):
+    scene = jw.load("joint.toml")
+    assert scene.kind == "rock mass" and jw.solvers(scene)["oblique-joint"] == ""
+    found = jw.simulate(scene, "oblique-joint")
+    assert jw.misfit(found, found) == 0
+    assert [one.name for one in jw.load_variants("mass.toml")] == ["", "bonded", "shifted"]
+    with pytest.raises(jw.SceneError, match=r"jointwave\.properties accepts pillars only"):
+        jw.properties(scene)
