@@ -21,7 +21,7 @@ from cases.errors import SceneError
 from cases.kinds import AnyScene
 from cases.sampling import sample_times
 from compare.misfit.external import LEAST_SAMPLES, Curves
-from compare.misfit.metrics import Distance, delay, distance, relative_l2, static_state
+from compare.misfit.metrics import Distance, distance, relative_l2, static_state
 from compare.misfit.places import Place
 
 MOST_SAMPLES = 4_000_000  # of a curve at a scene's interval, when its clock is shifted
@@ -184,41 +184,34 @@ def _shift(curves: Curves, scene: AnyScene, results: Results) -> Shift:
 def _shift_onto(name: str, curves: Curves, scene: AnyScene, result: Results) -> Shift | None:
     """Return the shift onto one solution; None if either is zero throughout.
 
-    All places have equal weight, each waveform divided by the solution's norm.
-    """
-    dt = scene.interval
-    span = curves.time[-1] - curves.time[0]
-    even = curves.time[0] + dt * np.arange(int(span / dt + 1e-6) + 1)
-    ones, others = [], []
-    for _, _, values, time, ours in _waveforms(curves, result):
-        scale = np.linalg.norm(ours) or np.inf
-        # Zeros behind each waveform, as long as the other one, keep places separate.
-        ones.append(np.pad(np.interp(even, curves.time, values) / scale, (0, len(time))))
-        others.append(np.pad(ours / scale, (0, len(even))))
-    if not ones:
-        return None
-    seconds = -delay(np.concatenate(ones), np.concatenate(others), dt) - even[0]
-    try:
-        return None if np.isnan(seconds) else _refined(seconds, name, curves, scene, result)
-    except SceneError:  # no overlap after this shift
-        return None
-
-
-def _refined(seconds: float, name: str, curves: Curves, scene: AnyScene, result: Results) -> Shift:
-    """Return the shift near `seconds` where the correlation at the samples themselves is largest.
-
-    Linear interpolation between few, uneven samples displaces the peak by a part of their interval.
+    All places have equal weight, each waveform divided by the solution's norm. The peak of the
+    cross-correlation is refined by the correlation at the samples themselves, which interpolation
+    between few, uneven samples displaces by a part of their interval.
     """
     from scipy.optimize import minimize_scalar  # slow to import
+    from scipy.signal import correlate
 
-    reach = max(scene.interval, float(np.diff(curves.time).mean()))
+    dt, total, last = scene.interval, np.zeros(1), 0
+    span = curves.time[-1] - curves.time[0]
+    even = curves.time[0] + dt * np.arange(int(span / dt + 1e-6) + 1)
+    for _, _, values, _, ours in _waveforms(curves, result):
+        scale = float(ours @ ours) or np.inf
+        total = total + correlate(ours, np.interp(even, curves.time, values)) / scale
+        last = len(even) - 1
+    if not total.any():
+        return None
+    seconds = (int(np.argmax(total)) - last) * dt - even[0]
+    reach = max(dt, float(np.diff(curves.time).mean()))
     near = _moved(curves, seconds)  # a small search variable gives a fine search
-    found = minimize_scalar(
-        lambda s: -_correlation(_moved(near, s), scene, result),
-        bounds=(-reach, reach),
-        method="bounded",
-        options={"xatol": 1e-4 * scene.interval},
-    )
+    try:
+        found = minimize_scalar(
+            lambda s: -_correlation(_moved(near, s), scene, result),
+            bounds=(-reach, reach),
+            method="bounded",
+            options={"xatol": 1e-4 * dt},
+        )
+    except SceneError:  # no overlap after this shift
+        return None
     return Shift(seconds + float(found.x), name, -float(found.fun))
 
 

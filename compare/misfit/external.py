@@ -14,7 +14,6 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -24,9 +23,9 @@ from cases.records import Column, Columns, read_columns
 from cases.units import TIME, UNITS, split_unit
 from cases.warnings import look_like_milliseconds
 from compare.engines import names
-from compare.misfit.external_columns import Asked, asked, base_of, exported, listed
+from compare.misfit.external_columns import Asked, Heading, asked, heading
 from compare.misfit.external_netcdf import is_netcdf, read_netcdf
-from compare.misfit.places import QUANTITIES, Place, parsed, recorded, same
+from compare.misfit.places import QUANTITIES, Place, recorded, same
 
 LEAST_SAMPLES = 3  # needed for a parabola through the peak of a correlation
 EXAMPLES = "stress@20, -stress@20 [MPa] or velocity_x@20.25 [mm/s]"
@@ -55,16 +54,6 @@ class Curves:
         return self.variant is None or self.variant == scene.name
 
 
-class _Found(NamedTuple):
-    """The waveform of a column [n] in SI, nan where it is empty, and its solution and variant in a
-    table of jointwave."""
-
-    place: Place
-    values: np.ndarray
-    solution: str = ""
-    variant: str = ""
-
-
 def read_curves(texts: list[str], scenes: Sequence[AnyScene]) -> list[Curves]:
     """Read the arguments of `--with`, each FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
 
@@ -76,7 +65,7 @@ def read_curves(texts: list[str], scenes: Sequence[AnyScene]) -> list[Curves]:
     with different times of a file. Raises SceneError for a file that cannot be read, is not in this
     format, or has no curve at a receiver of one of the scenes.
     """
-    every = [asked(text, lambda label: _label(label) is not None) for text in texts]
+    every = [asked(text, _is_label) for text in texts]
     files = dict.fromkeys(str(one.path) for one in every)
     short = Counter(Path(file).name for file in files) + Counter(names())
     found: list[Curves] = []
@@ -139,92 +128,97 @@ def _of_file(name: str, every: list[Asked]) -> list[Curves]:
         raise
     except ValueError as error:
         raise SceneError(str(path), "", None, str(error)) from None
-    groups: dict[tuple, dict[Place, np.ndarray]] = {}
-    for place, values, *whose in found:
-        group = groups.setdefault((*whose, np.isnan(values).tobytes()), {})
+    # One group for each solution, variant and set of times.
+    groups: dict[tuple[str, str, bytes], dict[Place, np.ndarray]] = {}
+    for about, values in found:
+        key = about.solution, about.variant, np.isnan(values).tobytes()
+        group, place = groups.setdefault(key, {}), about.place
+        assert place is not None
         if place in group:
             raise SceneError(str(path), "", None, f"{place} must be given only once")
         group[place] = values
     several, variants = (len({key[i] for key in groups}) > 1 for i in (0, 1))
-    curves, named = [], Counter[tuple]()
+    curves: list[Curves] = []
     for (solution, variant, _), group in groups.items():
-        called, place = f"{name}:{solution}" if several else name, next(iter(group))
-        named[called, variant] += 1
-        if named[called, variant] > 1:  # same name, different times
-            called = f"{called}:{place}"
-        there = ~np.isnan(group[place])
+        place, values = next(iter(group.items()))
+        there = ~np.isnan(values)
         if there.sum() < LEAST_SAMPLES:
             allowed = f"must hold at least {LEAST_SAMPLES} samples, not {there.sum()}"
             raise SceneError(str(path), str(place), None, allowed)
-        waveforms = {place: values[there] for place, values in group.items()}
+        called = f"{name}:{solution}" if several else name
         of_variant = variant if variants else None
+        if any((one.name, one.variant) == (called, of_variant) for one in curves):
+            called = f"{called}:{place}"  # of other times
+        waveforms = {place: values[there] for place, values in group.items()}
         curves.append(Curves(called, str(path), seconds[there], waveforms, of_variant, bool(unit)))
     return curves
 
 
-def _fitting(table: Columns, choice: Asked) -> list[_Found]:
-    """Return the waveforms of a file selected by one argument."""
+def _fitting(table: Columns, choice: Asked) -> list[tuple[Heading, np.ndarray]]:
+    """Return the waveforms of a file selected by one argument, [n] in SI, nan where cells are
+    empty."""
     wanted = _label(choice.label) if choice.label else None
     named = [c for c in table.rest if not choice.column or choice.fits(c)]
     alone = len(table.rest) == 1 or bool(choice.column and len(named) == 1)
-    found, base = [], base_of(table.rest)
+    headings = map(heading, (column.name for column in table.rest))
+    base = next((one.variant for one in headings if one.solution), "")  # comes first in a table
+    found = []
     for column in named:
-        ours = exported(column.name)
-        place, sign = own = _place(ours.label if ours else column.name)
+        own = heading(column.name)
         if wanted is not None:
-            place, sign = _as_wanted(column, own, wanted, alone)
+            own = _as_wanted(column, own, wanted, alone)
             column = column._replace(unit=split_unit(choice.label)[1] or column.unit)
-        elif place is None:
+        elif own.place is None:
             raise _without_place(column, choice, table)
-        if place is not None:
-            values = sign * column.si(UNITS[place.quantity])
-            variant = "" if ours is None or ours.variant == base else ours.variant
-            found.append(_Found(place, values, ours.solution if ours else "", variant))
+        if own.place is not None:
+            values = own.sign * column.si(UNITS[own.place.quantity])
+            variant = "" if own.variant == base else own.variant
+            found.append((own._replace(variant=variant), values))
     if not found:
         raise _not_there(choice, table)
     return found
 
 
-_Label = tuple[Place | None, float]  # and the sign of a column's values
-
-
-def _as_wanted(column: Column, own: _Label, wanted: _Label, alone: bool) -> _Label:
-    """Return the label of a column, which may have its own; None if another one is requested."""
-    if own[0] is not None and wanted[0] is not None:
-        fits = own[0][:2] == wanted[0][:2] and same(own[0].at, wanted[0].at)
-        return (own[0], min(own[1], wanted[1])) if fits else (None, 1.0)
+def _as_wanted(column: Column, own: Heading, wanted: Heading, alone: bool) -> Heading:
+    """Return the heading of a column, which may have its own; without a place if another one is
+    requested."""
+    assert wanted.place is not None
+    if own.place is not None:
+        fits = own.place[:2] == wanted.place[:2] and same(own.place.at, wanted.place.at)
+        return own._replace(sign=min(own.sign, wanted.sign)) if fits else Heading(None)
     bare = column.name.lower()
     said = bare if bare in QUANTITIES else ""
-    fits = wanted[0] is not None and (said == wanted[0].quantity or (alone and not said))
-    return wanted if fits else (None, 1.0)
+    fits = said == wanted.place.quantity or (alone and not said)
+    return wanted if fits else Heading(None)
 
 
 def _without_place(column: Column, choice: Asked, table: Columns) -> SceneError:
     which = f"{column.name}=" if column.name else ""
     allowed = (
         f"must be named as {EXAMPLES}, in a rock mass as {EXAMPLES_IN_PLANE}, or its place be "
-        f"given as {choice.path}:{which}stress@20; "
-        f"the file holds {listed(table.rest)}"
+        f"given as {choice.path}:{which}stress@20; the file holds {_listed(table)}"
     )
     return SceneError(str(choice.path), column.name or "second column", None, allowed)
 
 
 def _not_there(choice: Asked, table: Columns) -> SceneError:
-    held = f"{choice.path} holds {listed(table.rest)}"
+    held = f"{choice.path} holds {_listed(table)}"
     if choice.column:
         allowed = f"must be a label, such as {EXAMPLES}, a column or COLUMN=LABEL; {held}"
         return SceneError("--with", choice.text, None, f"{choice.column!r} {allowed}")
-    label = _label(choice.label)
-    wanted = label[0] if label else "a label"
+    wanted = _label(choice.label).place or "a label"
     return SceneError("--with", choice.text, None, f"{held}; {wanted} must be one of them")
 
 
-def _label(text: str) -> _Label | None:
-    """Return [-]QUANTITY[_COMPONENT]@PLACE [UNIT] as place and sign; None for what is none."""
-    found = _place(split_unit(text)[0])
-    return None if found[0] is None else found
+def _listed(table: Columns) -> str:
+    return ", ".join(column.name or "one column without a name" for column in table.rest)
 
 
-def _place(name: str) -> _Label:
-    text = name.strip()
-    return parsed(text.removeprefix("-").lstrip()), -1.0 if text.startswith("-") else 1.0
+def _is_label(text: str) -> bool:
+    found = _label(text)
+    return found.place is not None and not found.solution
+
+
+def _label(text: str) -> Heading:
+    """Return what a label says, [-]QUANTITY[_COMPONENT]@PLACE [UNIT], without its unit."""
+    return heading(split_unit(text)[0])

@@ -10,10 +10,20 @@ from typing import NamedTuple
 
 from cases.records import Column
 from cases.units import split_unit
-from compare.misfit.places import WORDS, parsed
+from compare.misfit.places import WORDS, Place, parsed
 
 PART = " | "  # separator of the parts of jointwave's headers
 TIME = "time"
+
+
+class Heading(NamedTuple):
+    """What a header says: the place, None if it names none, the sign of the values, and in a table
+    of jointwave the solution and the variant."""
+
+    place: Place | None
+    sign: float = 1.0
+    solution: str = ""
+    variant: str = ""
 
 
 class Asked(NamedTuple):
@@ -35,16 +45,8 @@ class Asked(NamedTuple):
             return True
         if split_unit(self.column) == (column.name, column.unit):
             return True
-        parts = parts_of(column.name)
-        return len(parts) > 1 and set(parts_of(self.column)) <= set(parts)
-
-
-class Exported(NamedTuple):
-    """The parts of jointwave's headers: solution, receiver as a label, and variant."""
-
-    solution: str
-    label: str
-    variant: str
+        parts = _parts_of(column.name)
+        return len(parts) > 1 and set(_parts_of(self.column)) <= set(parts)
 
 
 def asked(text: str, is_label: Callable[[str], bool]) -> Asked:
@@ -55,41 +57,29 @@ def asked(text: str, is_label: Callable[[str], bool]) -> Asked:
     found = next((i for i in colons if Path(text[:i]).is_file()), None)
     if found is None:
         file, _, label = text.rpartition(":")
-        return (
-            Asked(text, Path(file), "", label) if file and "@" in label else Asked(text, Path(text))
-        )
+        known = bool(file) and "@" in label
+        return Asked(text, Path(file), "", label) if known else Asked(text, Path(text))
     path, which = Path(text[:found]), text[found + 1 :].strip()
     if is_label(which):
         return Asked(text, path, "", which)
     column, equals, label = which.rpartition("=")
-    if equals and (is_label(label) or split_unit(label)[0].lower() == TIME):
-        return Asked(text, path, _unquoted(column), label.strip())
-    return Asked(text, path, _unquoted(which))
+    if not equals or not (is_label(label) or split_unit(label)[0].lower() == TIME):
+        column, label = which, ""
+    column = column.strip()
+    quoted = len(column) > 1 and column[0] == column[-1] and column[0] in "\"'"
+    return Asked(text, path, column[1:-1] if quoted else column, label.strip())
 
 
-def exported(name: str) -> Exported | None:
-    """Return the parts of one of jointwave's headers; None for others."""
-    parts = parts_of(name)
-    place = parsed(parts[1], WORDS) if len(parts) == 3 else None
-    return None if place is None else Exported(parts[0], str(place), parts[2])
+def heading(name: str) -> Heading:
+    """Return what a header says: `[-]QUANTITY[_COMPONENT]@PLACE`, or one of jointwave's."""
+    parts = _parts_of(name)
+    if len(parts) == 3 and (place := parsed(parts[1], WORDS)):
+        return Heading(place, 1.0, parts[0], parts[2])
+    text = name.strip()
+    sign = -1.0 if text.startswith("-") else 1.0
+    return Heading(parsed(text.removeprefix("-").lstrip()), sign)
 
 
-def base_of(columns: list[Column]) -> str:
-    """Return the name of the base scene, the first variant, in a table of jointwave; else ""."""
-    found = (exported(column.name) for column in columns)
-    return next((one.variant for one in found if one is not None), "")
-
-
-def parts_of(name: str) -> list[str]:
+def _parts_of(name: str) -> list[str]:
     """Return the parts of a header, variants as scenes name them."""
     return [part.strip().replace("ζ = ", "zeta ") for part in name.split(PART.strip(), 2)]
-
-
-def listed(columns: list[Column]) -> str:
-    """Return the names of columns, as a message lists them."""
-    return ", ".join(column.name or "one column without a name" for column in columns)
-
-
-def _unquoted(text: str) -> str:
-    text = text.strip()
-    return text[1:-1] if len(text) > 1 and text[0] == text[-1] and text[0] in "\"'" else text

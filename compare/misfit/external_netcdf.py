@@ -38,21 +38,22 @@ def read_netcdf(path: Path, least: int) -> Columns:
     if "time" not in found.variables or found.time.dims != ("time",):
         raise ValueError("time: must be a coordinate over itself")
     found = found.set_coords([name for name in coordinates if name in found])
-    columns = [
-        column
-        for quantity in QUANTITIES
-        if quantity in found
-        for column in _columns_of(found[quantity])
-    ]
+    held = [found[quantity] for quantity in QUANTITIES if quantity in found]
+    columns = [column for variable in held for column in _columns_of(variable)]
     if not columns:
         raise ValueError(f"must hold one or more of {', '.join(QUANTITIES)} over time")
-    all_of = Columns(Column("time", _unit(found.time), _floats(found.time)), columns)
+    if found.time.dtype.kind not in "fiu":
+        raise ValueError("time must hold numbers")
+    time = Column("time", _unit(found.time), found.time.values.astype(float))
+    all_of = Columns(time, columns)
     require_series(all_of, "sample {}".format, least)
     return all_of
 
 
 def _columns_of(variable: xr.DataArray) -> Iterator[Column]:
     """Yield `velocity_x@20` or `velocity_x@[20,30]` for each component and receiver."""
+    if variable.dtype.kind not in "fiu":
+        raise ValueError(f"{variable.name} must hold numbers")
     # A receiver selected from a result is still present, as a coordinate without dimension.
     named = [
         next((one for one in known if one in variable.dims or one in variable.coords), "")
@@ -72,16 +73,9 @@ def _columns_of(variable: xr.DataArray) -> Iterator[Column]:
         if component in one.coords:
             text += f"_{one[component].item()}"
         if place and all(name in one.coords for name in RECEIVERS[place]):
-            at = tuple(float(one[name]) for name in RECEIVERS[place])
-            text = str(Place(text, "", at))
-        yield Column(printable(text), _unit(variable), _floats(one))
+            text = str(Place(text, "", tuple(float(one[name]) for name in RECEIVERS[place])))
+        yield Column(printable(text), _unit(variable), one.values.astype(float))
 
 
 def _unit(variable: xr.DataArray) -> str:
     return printable(str(variable.attrs.get("units", ""))).strip()
-
-
-def _floats(variable: xr.DataArray) -> np.ndarray:
-    if variable.dtype.kind not in "fiu":
-        raise ValueError(f"{variable.name} must hold numbers")
-    return variable.values.astype(float)
