@@ -35,7 +35,7 @@ LEAST_STRETCHES = 20  # however short the run
 if TYPE_CHECKING:
     from cases.incident import IncidentField
     from cases.schema.rock_mass import RockMass
-    from continuum.snapshots import RockFilm
+    from continuum.snapshots import RockRecorder
 
 
 def simulate(
@@ -67,7 +67,7 @@ def simulate(
     began = perf_counter()
     begun = start(scene, model, dim, comm, incident)
     run, engine = begun.run, begun.engine
-    film = _film(run, engine.ahead)
+    recorder = _recorder(run, engine.ahead)
     ready = perf_counter()
     engine.compile()
     compiled = perf_counter()
@@ -80,10 +80,10 @@ def simulate(
         }
         about = _about(run) | begun.rest | engine.attributes() | seconds
         found = _recorded(run, run.choice.time.times[:count], about)
-        return found if film is None else film.developed(found)
+        return found if recorder is None else recorder.add_to(found)
 
     try:
-        begun.march(film, progress, keeper)
+        begun.march(recorder, progress, keeper)
     except StoppedError as error:
         error.result = result(error.samples)
         raise
@@ -105,23 +105,23 @@ class Start(NamedTuple):
 
     def march(
         self,
-        film: RockFilm | None = None,
+        recorder: RockRecorder | None = None,
         progress: Callable[[float], None] | None = None,
         keeper: Keeper | None = None,
     ) -> None:
-        """Take all samples, and snapshots for a film. Raises StoppedError, without its result."""
+        """Take all samples and snapshots. Raises StoppedError, without its result."""
         run, time = self.run, self.run.choice.time
 
         def march(first: int, last: int) -> None:
             # Every stretch ends with the step of a sample: what follows belongs to the next one.
             self.engine.march(max(0, (first - 1) * time.stride + 1), (last - 1) * time.stride + 1)
             self.monitor.check(first, last)
-            if film is not None:
-                film.look(last - 1)
+            if recorder is not None:
+                recorder.record_if_due(last - 1)
 
         work = self.engine.work * int(run.communicator.largest(run.state.u.size)) * time.stride
         chunk = min(FREEDOM_STEPS_AT_ONCE // work, time.samples // LEAST_STRETCHES)
-        run_in_stretches(time.samples, chunk, march, self.parts, progress, film, keeper, 1)
+        run_in_stretches(time.samples, chunk, march, self.parts, progress, recorder, keeper, 1)
 
     def march_again(self) -> Callable[[], None]:
         """Return a function that takes all samples from this state on, whenever it is called, with
@@ -130,7 +130,7 @@ class Start(NamedTuple):
 
         def march() -> None:
             fill(self.parts, kept)
-            self.march(_film(self.run, self.engine.ahead))
+            self.march(_recorder(self.run, self.engine.ahead))
 
         return march
 
@@ -231,10 +231,10 @@ def _borne(run: Run) -> csr_matrix | None:
     return borne_sides(run.scene, run.discrete.body)
 
 
-def _film(run: Run, ahead: float) -> RockFilm | None:
+def _recorder(run: Run, ahead: float) -> RockRecorder | None:
     """Return the recorder of snapshots; None, and nothing imported, without snapshots."""
     if run.scene.record.fields is None:
         return None
-    from continuum.snapshots import RockFilm
+    from continuum.snapshots import RockRecorder
 
-    return RockFilm(run.scene, run.discrete, run.state, ahead)
+    return RockRecorder(run.scene, run.discrete, run.state, ahead)

@@ -16,14 +16,14 @@ from continuum.space.body import axis
 from continuum.space.evaluation import at_reference, matrix_of
 from continuum.space.receivers import section_tractions
 from continuum.state import State
-from results.snapshots import Film, Snapshots, snapshots, with_snapshots
+from results.snapshots import SnapshotRecorder, Snapshots, snapshots, with_snapshots
 from results.subcells import KINDS, linear_cells
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
 
 
-class RockFilm(Film):
+class RockRecorder(SnapshotRecorder):
     """The rock at every snapshot of a scene; raises SceneError for too many.
 
     ahead : s, how far the displacements of the state are beyond the step of a sample.
@@ -34,7 +34,7 @@ class RockFilm(Film):
         self.cell = np.flatnonzero(body.cells[:, 0] >= 0)
         self.nodes, numbers = np.unique(body.cells[self.cell], return_inverse=True)
         self.table = numbers.reshape(self.cell.size, -1)
-        super().__init__(scene, int(body.communicator.sum(self.nodes.size)), self.shot)
+        super().__init__(scene, int(body.communicator.sum(self.nodes.size)), self.frame)
         self.discrete, self.state, self.ahead = discrete, state, ahead
         self.freedoms = body.freedom(self.nodes[:, None], np.arange(body.section.components))
         self.parts = linear_cells(
@@ -45,7 +45,7 @@ class RockFilm(Film):
             self.stress = axial_stress(discrete, self.cell, self.parts)
             self.prestress = scene.prestress.normal if scene.prestress else 0.0
 
-    def shot(self, sample: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def frame(self, sample: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return displacement, velocity of the nodes and stress of the cells at this sample, whose
         step has just been taken."""
         state = self.state
@@ -55,10 +55,10 @@ class RockFilm(Film):
         stress = self.stress @ strained + self.prestress if self.axial else np.zeros(0)
         return u[self.freedoms], v[self.freedoms], stress
 
-    def developed(self, result: xr.Dataset) -> xr.Dataset:
+    def add_to(self, result: xr.Dataset) -> xr.Dataset:
         """Return the run's result with its snapshots, which the first process alone has."""
         body = self.discrete.body
-        u, v, stress = (np.stack(column, axis=1) for column in zip(*self.shots, strict=True))
+        u, v, stress = (np.stack(column, axis=1) for column in zip(*self.frames, strict=True))
         of_cells = (stress.reshape(self.cell.size, len(self.parts), -1),) if self.axial else ()
         u -= 0.0 if self.axial else u[:, :1]  # of a rock mass it counts from the start
         own = Pieces(self.cell, self.table, of_cells, (body.x[self.nodes], u, v))

@@ -13,13 +13,13 @@ from cases.material.calibrate import Properties
 from cases.sampling import interpolation
 from cases.schema.scene import Scene
 from dem.static import prestressed
-from results.snapshots import Film, in_space, snapshots, with_snapshots
+from results.snapshots import SnapshotRecorder, in_space, snapshots, with_snapshots
 from results.subcells import CORNERS
 
 CORNERS_OF_A_BLOCK = 8
 
 
-class Shot(NamedTuple):
+class BlockFrame(NamedTuple):
     """All blocks and contacts at one instant, in the freedoms of the engine.
 
     stress : float array [N + 1], of contacts 0 .. N, Pa.
@@ -33,31 +33,31 @@ class Shot(NamedTuple):
     velocity: np.ndarray
 
 
-class BlockFilm(Film):
+class BlockRecorder(SnapshotRecorder):
     """The blocks at every snapshot of a scene; raises SceneError for too many.
 
     step : s, over which the load is a mean; None where it is not.
     """
 
     def __init__(
-        self, scene: Scene, p: Properties, shoot: Callable[[int], Shot], step: float | None
+        self, scene: Scene, p: Properties, capture: Callable[[int], BlockFrame], step: float | None
     ) -> None:
-        super().__init__(scene, CORNERS_OF_A_BLOCK * p.block_count, shoot)
+        super().__init__(scene, CORNERS_OF_A_BLOCK * p.block_count, capture)
         self.scene, self.p, self.step = scene, p, step
         self.at_rest = prestressed(scene, p) if scene.prestress else None
 
-    def developed(self, result: xr.Dataset) -> xr.Dataset:
+    def add_to(self, result: xr.Dataset) -> xr.Dataset:
         """Return the run's result with its snapshots."""
         time, count = result["time"].values[:: self.every], self.p.block_count
         corners, centres = corners_of(self.p), np.zeros((count, 1, 3))
         centres[:, 0, 1] = self.p.centre_y
-        shots = self.shots[: len(time)]
-        motion = [corner_motion(shot, corners, self.p) for shot in shots]
+        frames = self.frames[: len(time)]
+        motion = [corner_motion(frame, corners, self.p) for frame in frames]
         u, v = (np.stack(x) for x in zip(*motion, strict=True))
         if self.at_rest is not None:
             u[..., 1] -= self.at_rest[:, None]
         u, v = (x.reshape(len(time), -1, 3) for x in (u, v))
-        stress = np.stack([shot.stress for shot in shots])
+        stress = np.stack([frame.stress for frame in frames])
         if self.step is not None:
             y = self.p.contact_y
             contacts = interpolation(y, y.tolist())
@@ -85,19 +85,21 @@ def corners_of(p: Properties) -> np.ndarray:
     return unit * sides[:, None]
 
 
-def corner_motion(shot: Shot, corners: np.ndarray, p: Properties) -> tuple[np.ndarray, np.ndarray]:
+def corner_motion(
+    frame: BlockFrame, corners: np.ndarray, p: Properties
+) -> tuple[np.ndarray, np.ndarray]:
     """Return displacement (m) and velocity (m/s) of every block's corners, each [N, 8, 3]."""
-    freedoms = shot.displacement.shape[1]
+    freedoms = frame.displacement.shape[1]
     along = slice(min(freedoms, 3))
-    u, v = (in_space(x[:, along])[:, None] for x in (shot.displacement, shot.velocity))
+    u, v = (in_space(x[:, along])[:, None] for x in (frame.displacement, frame.velocity))
     u, v = (np.broadcast_to(x, (len(x), *corners.shape[-2:])) for x in (u, v))
     if freedoms == 6:
-        turn, spin = shot.displacement[:, None, 3:], shot.velocity[:, None, 3:]
+        turn, spin = frame.displacement[:, None, 3:], frame.velocity[:, None, 3:]
         return u + np.cross(turn, corners), v + np.cross(spin, corners)
     if freedoms == 7:
-        turn = shot.displacement[:, None, 3:]
+        turn = frame.displacement[:, None, 3:]
         arms = corners + turning(turn, corners)
-        return u + turning(turn, corners), v + np.cross(spin_of(turn, shot.velocity, p), arms)
+        return u + turning(turn, corners), v + np.cross(spin_of(turn, frame.velocity, p), arms)
     return u, v
 
 

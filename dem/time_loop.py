@@ -19,7 +19,7 @@ from numerics.instability import Sighting, stopped
 from numerics.time_loop import Keeper, run_in_stretches
 
 if TYPE_CHECKING:
-    from results.snapshots import Film
+    from results.snapshots import SnapshotRecorder
 
 BLOCK_STEPS_AT_ONCE = 20_000_000  # some 10 ms to 1 s: often enough for a progress bar
 ENOUGH_BLOCKS = 20_000  # from which a second thread gains more than synchronisation costs
@@ -45,22 +45,22 @@ def followed(
     run: Run,
     result: Callable[[int], xr.Dataset],
     progress: Callable[[float], None] | None,
-    film: Film | None,
+    recorder: SnapshotRecorder | None,
     keeper: Keeper | None,
 ) -> xr.Dataset:
     """Return the result of a run; if it stops early, the error has the valid part. result : a
     function of the number of valid samples."""
 
     def march(first: int, last: int) -> None:
-        if film is not None:
-            film.look(first)
+        if recorder is not None:
+            recorder.record_if_due(first)
         run.march(first, last)
         run.check(first, last)
 
     steps = min(BLOCK_STEPS_AT_ONCE // run.blocks, run.time.steps // LOOKS)
     chunk = max(LEAST_STEPS, steps) // run.time.stride
     try:
-        run_in_stretches(run.time.samples, chunk, march, run.parts, progress, film, keeper)
+        run_in_stretches(run.time.samples, chunk, march, run.parts, progress, recorder, keeper)
     except StoppedError as error:
         error.result = result(error.samples)
         raise

@@ -13,16 +13,16 @@ from typing import Any, Protocol
 from cases.errors import InterruptedRun
 
 
-class Film(Protocol):
+class SnapshotRecorder(Protocol):
     """Snapshots of every `every`-th sample; those of an earlier part of the run may be present.
 
-    shots : the recorded arrays of each.
+    frames : the recorded arrays of each.
     """
 
     every: int
-    shots: list[Any]
+    frames: list[Any]
 
-    def expect(self, samples: int) -> None:
+    def allocate(self, samples: int) -> None:
         """Count the snapshots of so many samples as taken."""
 
 
@@ -47,7 +47,7 @@ def run_in_stretches(
     march: Callable[[int, int], None],
     parts: Any,
     progress: Callable[[float], None] | None = None,
-    film: Film | None = None,
+    recorder: SnapshotRecorder | None = None,
     keeper: Keeper | None = None,
     snapshot_at: int = 0,
 ) -> None:
@@ -55,17 +55,17 @@ def run_in_stretches(
     first .. last - 1, and raises an error if the run exceeds its bounds.
 
     parts : the state of the run. keeper : may save it after every interval; None without.
-    film : snapshots at ends of intervals, of the sample before (`snapshot_at` 1) or after
+    recorder : snapshots at ends of intervals, of the sample before (`snapshot_at` 1) or after
     (`snapshot_at` 0); None without.
     """
     stops, done = {samples, *range(0, samples, max(1, chunk))}, 0
-    if film is not None:
-        stops.update(range(snapshot_at, samples, film.every))
-        parts = (parts, film.shots)
+    if recorder is not None:
+        stops.update(range(snapshot_at, samples, recorder.every))
+        parts = (parts, recorder.frames)
     if keeper is not None and keeper.done:
         done = keeper.done
-        if film is not None:
-            film.expect(done)
+        if recorder is not None:
+            recorder.allocate(done)
         keeper.restore(parts)
     for first, last in pairwise(sorted({done, *(stop for stop in stops if stop > done)})):
         march(first, last)

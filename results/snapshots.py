@@ -57,23 +57,23 @@ class Snapshots(NamedTuple):
         )
 
 
-class Film:
-    """The return values of `shoot(sample)` at every `every`-th sample of a run, in `shots`."""
+class SnapshotRecorder:
+    """The return values of `capture(sample)` at every `every`-th sample of a run, in `frames`."""
 
-    def __init__(self, scene: AnyScene, nodes: int, shoot: Callable[[int], Any]) -> None:
+    def __init__(self, scene: AnyScene, nodes: int, capture: Callable[[int], Any]) -> None:
         """nodes : of a snapshot; raises SceneError for too many snapshots of them."""
         refuse_beyond_room(scene, nodes)
-        self.every, self.shoot = samples_between(scene) or 1, shoot
-        self.shots: list[Any] = []
+        self.every, self.capture = samples_between(scene) or 1, capture
+        self.frames: list[Any] = []
 
-    def look(self, sample: int) -> None:
-        """Store a shot of this sample if it is due."""
+    def record_if_due(self, sample: int) -> None:
+        """Store a frame of this sample if it is due."""
         if sample % self.every == 0:
-            self.shots.append(self.shoot(sample))
+            self.frames.append(self.capture(sample))
 
-    def expect(self, samples: int) -> None:
-        """Allocate the shots of this many samples, to be filled by the caller."""
-        self.shots[:] = [copied(self.shoot(0)) for _ in range(0, samples, self.every)]
+    def allocate(self, samples: int) -> None:
+        """Allocate the frames of this many samples, to be filled by the caller."""
+        self.frames[:] = [copied(self.capture(0)) for _ in range(0, samples, self.every)]
 
 
 def samples_between(scene: AnyScene) -> int | None:

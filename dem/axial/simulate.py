@@ -29,7 +29,7 @@ from results.arrays import copied, size_of
 from results.dataset import dataset
 
 if TYPE_CHECKING:
-    from dem.snapshots import BlockFilm
+    from dem.snapshots import BlockRecorder
 
 #: Of (model, state, samples, stride, monitor): a function that takes samples first .. last - 1.
 Marcher = Callable[..., Callable[[int, int], None]]
@@ -77,7 +77,7 @@ def simulate(
     built = perf_counter()
     march(0, 0)
     mean = time.dt if scheme.takes_means else None
-    film = _film(scene, marcher, model, state, time.stride, mean)
+    recorder = _recorder(scene, marcher, model, state, time.stride, mean)
     compiled = perf_counter()
 
     def result(count: int) -> xr.Dataset:
@@ -110,7 +110,9 @@ def simulate(
             seconds_stepping=perf_counter() - compiled,
             versions=time_loop.versions(),
         )
-        return _with_breaks(found if film is None else film.developed(found), scene, state, time)
+        return _with_breaks(
+            found if recorder is None else recorder.add_to(found), scene, state, time
+        )
 
     def check(first: int, last: int) -> None:
         speed = np.abs(state.v)
@@ -119,7 +121,7 @@ def simulate(
         time_loop.refuse_beyond_bounds(scene, time, critical, monitor, speed, centres)
 
     whole = time_loop.Run(time, state.u.size, march, check, (state, samples, monitor))
-    return time_loop.followed(whole, result, progress, film, keeper)
+    return time_loop.followed(whole, result, progress, recorder, keeper)
 
 
 def _with_breaks(result: xr.Dataset, scene: Scene, state: State, time: Clock) -> xr.Dataset:
@@ -130,29 +132,29 @@ def _with_breaks(result: xr.Dataset, scene: Scene, state: State, time: Clock) ->
     return with_fragments(result, calibrate(scene), ~np.isnan(times), state.v, times)
 
 
-def _film(
+def _recorder(
     scene: Scene, marcher: Marcher, model: Model, state: State, stride: int, mean: float | None
-) -> BlockFilm | None:
+) -> BlockRecorder | None:
     """Return the recorder of snapshots; None, and nothing imported, without snapshots.
 
     mean : s, over which the load is a mean; None where it is not.
     """
     if scene.record.fields is None:
         return None
-    from dem.snapshots import BlockFilm, Shot
+    from dem.snapshots import BlockFrame, BlockRecorder
 
     p = calibrate(scene)
     everywhere = model._replace(receivers=_everywhere(p))
 
-    def shoot(sample: int) -> Shot:
+    def capture(sample: int) -> BlockFrame:
         """Take a sample of all contacts and blocks, with the step that it needs, on a copy."""
         now, twin = sample * stride, copied(state)
         found = buffers(everywhere, twin, 1)
         shifted = everywhere._replace(load=model.load[now:], base=model.base[now:])
         marcher(shifted, twin, found, 1)(0, 1)
-        return Shot(found.stress[:, 0], found.displacement, found.velocity)
+        return BlockFrame(found.stress[:, 0], found.displacement, found.velocity)
 
-    return BlockFilm(scene, p, shoot, mean)
+    return BlockRecorder(scene, p, capture, mean)
 
 
 def _everywhere(p: Properties) -> Receivers:

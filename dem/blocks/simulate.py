@@ -25,7 +25,7 @@ from results.plane import plane_dataset
 if TYPE_CHECKING:
     from cases.incident import IncidentField
     from cases.schema.rock_mass import RockMass
-    from dem.blocks.snapshots import PlaneFilm
+    from dem.blocks.snapshots import PlaneRecorder
 
 MOST_OF_DRIVE = 2_000_000  # numbers: forces on held blocks in memory at a time
 
@@ -45,7 +45,7 @@ def simulate(
     monitor = guard(highest_energy(system, state))
     built = perf_counter()
     step(system, state, samples, 0, 0)
-    film = _film(system, state)
+    recorder = _recorder(system, state)
     compiled = perf_counter()
 
     def result(count: int) -> xr.Dataset:
@@ -71,7 +71,7 @@ def simulate(
             seconds_stepping=perf_counter() - compiled,
             versions=time_loop.versions(),
         )
-        return found if film is None else film.developed(found)
+        return found if recorder is None else recorder.add_to(found)
 
     def march_samples(first: int, last: int) -> None:
         step(system, state, samples, first * time.stride, last * time.stride)
@@ -86,7 +86,7 @@ def simulate(
 
     parts = (state, samples, monitor)
     run = time_loop.Run(time, system.blocks.partition.count, march_samples, check, parts)
-    return time_loop.followed(run, result, progress, film, keeper)
+    return time_loop.followed(run, result, progress, recorder, keeper)
 
 
 def moved_apart(system: PlaneSystem, state: PlaneState) -> Moved | None:
@@ -108,13 +108,13 @@ def moved_apart(system: PlaneSystem, state: PlaneState) -> Moved | None:
     return Moved(i, j if j < count else -1, float(by[k]), float(size[k]), place)
 
 
-def _film(system: PlaneSystem, state: PlaneState) -> PlaneFilm | None:
+def _recorder(system: PlaneSystem, state: PlaneState) -> PlaneRecorder | None:
     """Return the recorder of snapshots; None, and nothing imported, without snapshots."""
     if system.blocks.scene.record.fields is None:
         return None
-    from dem.blocks.snapshots import PlaneFilm
+    from dem.blocks.snapshots import PlaneRecorder
 
-    return PlaneFilm(system, state)
+    return PlaneRecorder(system, state)
 
 
 def step(

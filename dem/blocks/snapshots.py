@@ -10,7 +10,7 @@ import xarray as xr
 from cases.partition.polygons import owner
 from dem.blocks.leapfrog import march, samples_for
 from results.arrays import copied
-from results.snapshots import Film, snapshots, with_snapshots
+from results.snapshots import SnapshotRecorder, snapshots, with_snapshots
 
 if TYPE_CHECKING:
     from cases.partition.blocks import Partition
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from dem.blocks.system import PlaneSystem
 
 
-class PlaneFilm(Film):
+class PlaneRecorder(SnapshotRecorder):
     """The blocks at every snapshot of a scene; raises SceneError for too many."""
 
     def __init__(self, system: PlaneSystem, state: PlaneState) -> None:
@@ -26,7 +26,7 @@ class PlaneFilm(Film):
         everywhere = np.arange(self.partition.count)
         model = system.model._replace(places=everywhere, watched=everywhere[:0])
 
-        def shoot(sample: int) -> tuple[np.ndarray, np.ndarray]:
+        def capture(sample: int) -> tuple[np.ndarray, np.ndarray]:
             """Return displacement and velocity of all blocks [N, 3], m and m/s, rad and rad/s, by
             a sample with the step that it needs, on a copy of the state."""
             step = sample * system.time.stride
@@ -36,12 +36,12 @@ class PlaneFilm(Film):
             march(model, copied(state), found, 1, (0, 1), drive, shake)
             return found.displacement[..., 0], found.velocity[..., 0]
 
-        super().__init__(system.blocks.scene, len(self.partition.corners), shoot)
+        super().__init__(system.blocks.scene, len(self.partition.corners), capture)
 
-    def developed(self, result: xr.Dataset) -> xr.Dataset:
+    def add_to(self, result: xr.Dataset) -> xr.Dataset:
         """Return the run's result with its snapshots; displacement counts from the first."""
         time = result["time"].values[:: self.every]
-        u, v = (np.stack(x) for x in zip(*self.shots[: len(time)], strict=True))
+        u, v = (np.stack(x) for x in zip(*self.frames[: len(time)], strict=True))
         cells, block = triangles(self.partition)
         moved, moving = (corner_motion(self.partition, x) for x in (u - u[0], v))
         corners = self.partition.corners

@@ -71,16 +71,18 @@ def between(values: np.ndarray, at: Interpolation) -> np.ndarray:
     return (1 - weight) * left + weight * right
 
 
-def shooter(p: Properties, model: RowModel, state: RowState, threads: int) -> Callable[[int], Any]:
+def capturing(
+    p: Properties, model: RowModel, state: RowState, threads: int
+) -> Callable[[int], Any]:
     """Return what takes a sample of all contacts and blocks, on a copy of the state.
 
     A velocity at a whole step needs the step, as it does at the receivers.
     """
-    from dem.snapshots import Shot
+    from dem.snapshots import BlockFrame
 
     everything = build_receivers(_all(p.block_count + 1), _all(p.block_count))
 
-    def shoot(sample: int) -> Shot:
+    def capture(sample: int) -> BlockFrame:
         n = sample * model.stride
         # Samples are at multiples of the stride: step 0, and step n as sample 1.
         everywhere = model._replace(receivers=everything, stride=max(n, 1))
@@ -89,9 +91,9 @@ def shooter(p: Properties, model: RowModel, state: RowState, threads: int) -> Ca
         buffers = buffers_for(everywhere, threads, guard([np.inf] * model.form.freedoms))
         marcher(everywhere, twin, buffers, found)(n, n + 1)
         force, velocity, displacement = (x[..., min(n, 1)] for x in found[:3])
-        return Shot(force[:, 1] / p.area, displacement, velocity)
+        return BlockFrame(force[:, 1] / p.area, displacement, velocity)
 
-    return shoot
+    return capture
 
 
 def _all(count: int) -> Interpolation:

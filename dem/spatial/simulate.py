@@ -25,7 +25,7 @@ from dem.spatial.ends import contact_points, face_of
 from dem.spatial.layout import LANES, STRIDE, unpacked
 from dem.spatial.march import marcher
 from dem.spatial.model import RowModel, RowState
-from dem.spatial.record import ledger_of, shooter, waveforms, with_breaks
+from dem.spatial.record import capturing, ledger_of, waveforms, with_breaks
 from dem.spatial.stability import critical_spatial_step, highest_speeds
 from dem.spatial.start import start
 from dem.static import stiffest
@@ -37,7 +37,7 @@ from results.arrays import changed, size_of
 from results.dataset import dataset
 
 if TYPE_CHECKING:
-    from dem.snapshots import BlockFilm
+    from dem.snapshots import BlockRecorder
 
 MOST_TURN = 0.045  # rad: small rotations then neglect 1 - cos = 1e-3 of a lever
 
@@ -82,7 +82,7 @@ def simulate(
     rest = start(scene, p, model, state)
     held = guard(highest_speeds(scene, p, model, state, time))
     march = marcher(model, state, buffers_for(model, threads, held), samples)
-    film = _film(scene, p, model, state, threads, time.dt)
+    recorder = _recorder(scene, p, model, state, threads, time.dt)
     ready = perf_counter()
 
     def result(count: int) -> xr.Dataset:
@@ -107,7 +107,7 @@ def simulate(
             seconds_stepping=perf_counter() - ready,
             versions=versions(),
         )
-        found = found if film is None else film.developed(found)
+        found = found if recorder is None else recorder.add_to(found)
         return with_breaks(found, p, model, state) if count == time.samples else found
 
     def check(first: int, last: int) -> None:
@@ -122,18 +122,18 @@ def simulate(
         march(first * time.stride, last * time.stride)
 
     run = Run(time, p.block_count, march_samples, check, (state, samples, held))
-    return followed(run, result, progress, film, keeper)
+    return followed(run, result, progress, recorder, keeper)
 
 
-def _film(
+def _recorder(
     scene: Scene, p: Properties, model: RowModel, state: RowState, threads: int, dt: float
-) -> BlockFilm | None:
+) -> BlockRecorder | None:
     """Return the recorder of snapshots; None, and nothing imported, without snapshots."""
     if scene.record.fields is None:
         return None
-    from dem.snapshots import BlockFilm
+    from dem.snapshots import BlockRecorder
 
-    return BlockFilm(scene, p, shooter(p, model, state, threads), dt)
+    return BlockRecorder(scene, p, capturing(p, model, state, threads), dt)
 
 
 def speeds(model: RowModel, state: RowState, blocks: int) -> np.ndarray:

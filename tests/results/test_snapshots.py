@@ -7,7 +7,7 @@ import xarray as xr
 from cases import SceneError
 from cases.sampling import sample_times
 from results.snapshots import (
-    Film,
+    SnapshotRecorder,
     Snapshots,
     in_space,
     refuse_beyond_room,
@@ -74,11 +74,13 @@ def test_later_snapshots_are_the_rest(found):
     assert found._replace(stress=None).since(1).stress is None
 
 
-def test_a_film_keeps_every_so_many_samples(scene_with):
-    film = Film(scene_with(**{"record.fields": 1.5e-4}), 8, lambda sample: 10 * sample)
+def test_a_recorder_keeps_every_so_many_samples(scene_with):
+    recorder = SnapshotRecorder(
+        scene_with(**{"record.fields": 1.5e-4}), 8, lambda sample: 10 * sample
+    )
     for sample in range(8):
-        film.look(sample)
-    assert film.shots == [0, 30, 60]
+        recorder.record_if_due(sample)
+    assert recorder.frames == [0, 30, 60]
 
 
 @pytest.mark.parametrize(
