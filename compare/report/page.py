@@ -36,8 +36,8 @@ def render(page: dict[str, Any], out: Path) -> str:
         "percent": percent,
         "cell": table_cell,
         "groups": groups,
+        "numeric": numeric,
     }
-    environment.tests["number"] = is_number
     return environment.get_template("report.html").render(page)
 
 
@@ -51,9 +51,10 @@ def unbroken(text: str) -> str:
     return text.replace(" %", "\u00a0%").replace("≤ ", "≤\u00a0")
 
 
-def is_number(value: Any) -> bool:
-    """Return whether a cell is to stand at the right."""
-    return not isinstance(value, str) or value[:1] in {*"0123456789+-<–±"}
+def numeric(table: pd.DataFrame) -> list[bool]:
+    """Return which columns of a table have a number in any cell, and stand at the right."""
+    figures = {*"0123456789+-<–±"}
+    return table.map(lambda x: not isinstance(x, str) or x[:1] in figures).any().tolist()
 
 
 def groups(table: pd.DataFrame) -> dict[str, list[tuple[list[str], tuple]]]:

@@ -96,7 +96,7 @@ def _by_tension(comparisons: list[Comparison]) -> tuple[Comparison, Comparison]:
 def tension_is_cut(comparisons: list[Comparison]) -> Measured:
     """Fig. 9: the tensile half-cycle is there with tension and gone without."""
     carried, without = (
-        {n: abs(min(0.0, w.min())) / 1e6 for n, w in pulses.waveforms(c, "stress", 0).items()}
+        pulses.by_engine(c, "stress", lambda w: abs(min(0.0, w.min())) / 1e6)
         for c in _by_tension(comparisons)
     )
     load = abs(comparisons[0].scene.load.amplitude) / 1e6
@@ -110,7 +110,7 @@ def tension_is_cut(comparisons: list[Comparison]) -> Measured:
 def blocks_separate(comparisons: list[Comparison]) -> Measured:
     """Fig. 10: no block pulls another back, and the joint between two receivers opens."""
     carried, without = (
-        {n: float(w.min() / w.max()) for n, w in pulses.waveforms(c, "velocity", 0).items()}
+        pulses.by_engine(c, "velocity", lambda w: float(w.min() / w.max()))
         for c in _by_tension(comparisons)
     )
     opening = _opening(_by_tension(comparisons)[1])
@@ -140,10 +140,10 @@ def blocks_coast(comparisons: list[Comparison]) -> Measured:
     """Fig. 10: between the pulse and what comes back from the end the velocity stays constant (no
     force acts) and near zero."""
     without = _by_tension(comparisons)[1]
-    scene, waves = without.scene, pulses.waveforms(without, "velocity", 0)
+    scene = without.scene
     incident, reflected, _ = pulses.arrivals(scene, scene.record.velocity[0])
     span = incident + pulses.period(scene), reflected - pulses.period(scene) / 4
-    after = {name: pulses.span(w, *span) / pulses.peak(w) for name, w in waves.items()}
+    after = pulses.by_engine(without, "velocity", lambda w: pulses.span(w, *span) / pulses.peak(w))
     left = {name: pulses.peak(w) for name, w in after.items()}
     drift = {name: float(np.ptp(w.values)) for name, w in after.items()}
     times = next(iter(after.values())).index

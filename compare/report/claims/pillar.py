@@ -1,6 +1,7 @@
 """Figures 2, 3 and 6: one pulse in a pillar, its passages, its decay and its width."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from typing import TypeVar
 
 import numpy as np
 import pandas as pd
@@ -15,14 +16,15 @@ from compare.report.claims import pulses
 from compare.report.claims.claim import Claim, Measured, falls, listed, share, shares
 from compare.solvers.dem import DEM
 
+T = TypeVar("T")
+
 
 def one_sine_cycle(comparisons: list[Comparison]) -> Measured:
     """Fig. 2: the stress at the loaded end is one cycle of a sine."""
-    base, scene = comparisons[0], comparisons[0].scene
-    errors = {
-        name: relative_l2(w.values, load_history(scene).value(w.index.values))
-        for name, w in pulses.waveforms(base, "stress", 0).items()
-    }
+    scene, load = comparisons[0].scene, load_history(comparisons[0].scene)
+    errors = pulses.by_engine(
+        comparisons[0], "stress", lambda w: relative_l2(w.values, load.value(w.index.values))
+    )
     return Measured(
         f"The load is one cycle of {scene.load.amplitude / 1e6:g} MPa and "
         f"{1e3 * pulses.period(scene):g} ms; relative L2 distance of the stress at "
@@ -35,40 +37,31 @@ def three_pulses(comparisons: list[Comparison]) -> Measured:
     """Fig. 3: incident, first reflected (reversed) and second reflected pulse pass in turn, each
     above a tenth of the largest stress."""
     scene, y = comparisons[0].scene, comparisons[0].scene.record.stress[0]
-    waves = pulses.waveforms(comparisons[0], "stress", 0)
-    signed = {
-        name: [pulses.first_swing(part) * pulses.peak(part) / 1e6 for part in parts]
-        for name, w in waves.items()
-        for parts in [[pulses.passage(w, scene, y, n) for n in range(3)]]
-    }
+    found = pulses.signed_peaks(comparisons[0])
+    largest = pulses.by_engine(comparisons[0], "stress", pulses.peak)
     due = ", ".join(f"{1e3 * t:.1f}" for t in pulses.arrivals(scene, y))
     return Measured(
         f"At y = {y:g} m they are due at {due} ms. Their peaks in MPa, signed by the first "
         f"half-cycle, which a free end reverses, {variant_names(comparisons)[0]}: "
-        f"{listed(signed, '+.3f')}.",
-        all(
-            min(np.multiply(signed[name], [1, -1, 1])) > 0.1 * pulses.peak(w) / 1e6
-            for name, w in waves.items()
-        ),
+        f"{listed(_in_MPa(found), '+.3f')}.",
+        all(min(a, -b, c) > 0.1 * largest[name] for name, (a, b, c) in found.items()),
     )
 
 
-def _passage_peaks(comparison: Comparison) -> dict[str, list[float]]:
-    """Return the peaks of the three passages at the first section, MPa, by engine."""
-    scene, y = comparison.scene, comparison.scene.record.stress[0]
-    return {
-        name: [pulses.peak(pulses.passage(w, scene, y, n)) / 1e6 for n in range(3)]
-        for name, w in pulses.waveforms(comparison, "stress", 0).items()
-    }
+def _in_MPa(stresses: dict[str, list[float]]) -> dict[str, list[float]]:
+    return {name: [x / 1e6 for x in values] for name, values in stresses.items()}
+
+
+def _peaks(comparison: Comparison) -> dict[str, list[float]]:
+    """Return the peaks of the three passages, MPa, by engine."""
+    found = _in_MPa(pulses.signed_peaks(comparison))
+    return {name: list(map(abs, values)) for name, values in found.items()}
 
 
 def falls_with_distance(comparisons: list[Comparison]) -> Measured:
     """Fig. 3: each later passage of a damped pulse is lower."""
-    found = {
-        variant: _passage_peaks(one)
-        for one, variant in zip(comparisons, variant_names(comparisons), strict=True)
-        if one.scene.joints.damping_ratio
-    }
+    named = zip(variant_names(comparisons), comparisons, strict=True)
+    found = {name: _peaks(one) for name, one in named if one.scene.joints.damping_ratio}
     texts = [f"{variant}: {listed(peaks, '.3f')}" for variant, peaks in found.items()]
     return Measured(
         f"Peaks of the incident, first and second reflected pulse in MPa. {'. '.join(texts)}.",
@@ -80,7 +73,7 @@ def falls_with_damping(comparisons: list[Comparison]) -> Measured:
     """Fig. 3: at equal distance a pulse is lower the larger the damping ratio."""
     ordered = sorted(comparisons, key=lambda c: c.scene.joints.damping_ratio or 0.0)
     ratios = ", ".join(f"{c.scene.joints.damping_ratio or 0:g}" for c in ordered)
-    found = _over_variants(ordered, _passage_peaks)
+    found = _over_variants(map(_peaks, ordered))
     second = {name: [peaks[2] for peaks in of_all] for name, of_all in found.items()}
     return Measured(
         f"Peak of the second reflected pulse in MPa at ζ = {ratios}: {listed(second, '.3f')}. The "
@@ -91,12 +84,7 @@ def falls_with_damping(comparisons: list[Comparison]) -> Measured:
 
 def broader(comparisons: list[Comparison]) -> Measured:
     """Fig. 6: the larger the damping ratio, the longer the pulse's mean period."""
-    found = _over_variants(
-        comparisons,
-        lambda c: {
-            n: 1e3 * mean_period(w.values, pulses.sampling(w)) for n, w in _first_pass(c).items()
-        },
-    )
+    found = _of_first_pass(comparisons, lambda w: 1e3 * mean_period(w.values, pulses.sampling(w)))
     return Measured(
         f"Mean period of the pulse in ms, {', '.join(variant_names(comparisons))}: "
         f"{listed(found, '.2f')}.",
@@ -106,10 +94,7 @@ def broader(comparisons: list[Comparison]) -> Measured:
 
 def second_half_weaker(comparisons: list[Comparison]) -> Measured:
     """Fig. 6: the larger the damping ratio, the lower the second half-cycle beside the first."""
-    found = _over_variants(
-        comparisons,
-        lambda c: {n: pulses.second_over_first(w) for n, w in _first_pass(c).items()},
-    )
+    found = _of_first_pass(comparisons, pulses.second_over_first)
     return Measured(
         f"Peak of the second half-cycle over that of the first, "
         f"{', '.join(variant_names(comparisons))}: {listed(found, '.3f')}.",
@@ -117,21 +102,22 @@ def second_half_weaker(comparisons: list[Comparison]) -> Measured:
     )
 
 
-def _over_variants(
-    comparisons: list[Comparison], measure: Callable[[Comparison], dict]
-) -> dict[str, list]:
-    """Return by engine what is measured in each variant."""
-    found = [measure(one) for one in comparisons]
-    return {name: [one[name] for one in found] for name in found[0]}
+def _over_variants(found: Iterable[dict[str, T]]) -> dict[str, list[T]]:
+    """Return by engine what was measured in each variant."""
+    variants = list(found)
+    return {name: [one[name] for one in variants] for name in variants[0]}
 
 
-def _first_pass(comparison: Comparison) -> dict[str, pd.Series]:
-    scene = comparison.scene
+def _of_first_pass(
+    comparisons: list[Comparison], measure: Callable[[pd.Series], float]
+) -> dict[str, list[float]]:
+    """Return by engine what is measured of the incident pulse of each variant."""
+    scene = comparisons[0].scene
     stop = pulses.arrivals(scene, scene.record.stress[0])[1] - pulses.period(scene)
-    return {
-        name: pulses.span(w, 0.0, stop)
-        for name, w in pulses.waveforms(comparison, "stress", 0).items()
-    }
+    return _over_variants(
+        pulses.by_engine(one, "stress", lambda w: measure(pulses.span(w, 0.0, stop)))
+        for one in comparisons
+    )
 
 
 def mostly_dispersion(comparison: Comparison) -> Claim:

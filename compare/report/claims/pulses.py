@@ -5,6 +5,9 @@ m/s. Passages are those of the homogenised bar: the wave travels from the loaded
 speed c and back from the other end.
 """
 
+from collections.abc import Callable
+from typing import TypeVar
+
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -14,6 +17,8 @@ from cases.schema.scene import Scene
 from compare.engines import ENGINES, in_order
 from compare.misfit.pairs import Comparison
 
+T = TypeVar("T")
+
 
 def waveforms(comparison: Comparison, quantity: str, index: int) -> dict[str, pd.Series]:
     """Return each engine's waveform at the index-th receiver of a quantity, along y."""
@@ -21,6 +26,25 @@ def waveforms(comparison: Comparison, quantity: str, index: int) -> dict[str, pd
         name: _along_axis(comparison.results[name], quantity, index)
         for name in in_order(comparison.results)
         if name in ENGINES
+    }
+
+
+def by_engine(
+    comparison: Comparison, quantity: str, measure: Callable[[pd.Series], T]
+) -> dict[str, T]:
+    """Return what is measured of each engine's waveform at the first receiver of a quantity."""
+    return {name: measure(w) for name, w in waveforms(comparison, quantity, 0).items()}
+
+
+def signed_peaks(comparison: Comparison, index: int = 0) -> dict[str, list[float]]:
+    """Return by engine the peaks of the three passages at a section, Pa, each with the sign of its
+    first half-cycle."""
+    scene, y = comparison.scene, comparison.scene.record.stress[index]
+    return {
+        name: [
+            first_swing(part) * peak(part) for part in (passage(w, scene, y, n) for n in range(3))
+        ]
+        for name, w in waveforms(comparison, "stress", index).items()
     }
 
 

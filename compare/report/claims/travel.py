@@ -43,14 +43,11 @@ def overlap(comparison: Comparison) -> float:
 
 def reflection(comparisons: list[Comparison]) -> Measured:
     """Fig. 4: the free end reverses the pulse, and no end sends back more than it got."""
-    scene, ratios = comparisons[0].scene, {}
+    scene = comparisons[0].scene
     places = np.array(scene.record.stress)
     index = int(np.argmin(np.abs(places - 0.6 * scene.pillar.length)))
-    y = places[index]
-    for name, w in pulses.waveforms(comparisons[0], "stress", index).items():
-        there, back = (pulses.passage(w, scene, y, n) for n in (0, 1))
-        signs = pulses.first_swing(there) * pulses.first_swing(back)
-        ratios[name] = signs * pulses.peak(back) / pulses.peak(there)
+    peaks, y = pulses.signed_peaks(comparisons[0], index), places[index]
+    ratios = {name: back / there for name, (there, back, _) in peaks.items()}
     return Measured(
         f"At y = {y:g} m the peak of the pulse off the free end over the incident one, signed by "
         f"the first half-cycle: {listed(ratios, '+.2f')}; -1 without damping.",
@@ -107,12 +104,8 @@ def _by_end(comparisons: list[Comparison], end: str) -> Comparison:
 
 def _reflected_over_incident(comparison: Comparison) -> dict[str, float]:
     """Return the first reflected over the incident peak at the first section, by engine."""
-    scene, y = comparison.scene, comparison.scene.record.stress[0]
-    peaks = {
-        name: [pulses.peak(pulses.passage(w, scene, y, n)) for n in (0, 1)]
-        for name, w in pulses.waveforms(comparison, "stress", 0).items()
-    }
-    return {name: reflected / incident for name, (incident, reflected) in peaks.items()}
+    peaks = pulses.signed_peaks(comparison)
+    return {name: abs(reflected / incident) for name, (incident, reflected, _) in peaks.items()}
 
 
 def quiet_end(comparisons: list[Comparison]) -> Measured:

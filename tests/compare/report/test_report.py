@@ -66,17 +66,6 @@ def part(text, name):
     return found[: found.index("</section>")]
 
 
-def test_no_picture_and_no_numbers_stand_under_two_captions(report, text):
-    """Figures 7 and 8, 9 and 10 share their physics: equal parts are links."""
-    drawn = dict.fromkeys(re.findall(r'<figure id="(fig-[a-z0-9-]+)-figure"', text))
-    seen = {}
-    for name in drawn:
-        table = (report.file.parent / "figures" / f"{name}.csv").read_bytes()
-        assert seen.setdefault(table, name) == name
-    for name in ("fig-07", "fig-08", "fig-09", "fig-10"):
-        assert [d for d in drawn if d.startswith(f"{name}-space-time")], name
-
-
 @pytest.mark.parametrize("name", ["fig-03", "fig-05", "fig-06", "fig-07", "fig-08", "fig-09"])
 def test_variants_of_a_figure_share_a_pair_of_axes_an_engine(report, name):
     svg = (report.file.parent / "figures" / f"{name}-variants.svg").read_text(encoding="utf-8")
@@ -153,16 +142,6 @@ def test_rock_masses_stand_beside_the_studies(report, text):
         shown = part(text, name)
         assert "<img" in shown and "Failed or missing" not in shown
         assert all(words in shown for words in ("rigid blocks: SV wave", "jointed rock: P wave"))
-
-
-@pytest.mark.parametrize("name", FIGURES)
-def test_csv_holds_every_sample_of_every_curve(report, name):
-    table = curves_of(report, name)
-    assert table.columns[0] == "time (s)"
-    assert table.columns[1:].str.endswith(("(Pa)", "(m/s)")).all()
-    assert not table.isna().any().any()
-    scene = cases.load_variant(PAPER / f"{name}.toml")
-    assert table["time (s)"].iloc[-1] == pytest.approx(scene.time.duration)
 
 
 def test_csv_holds_the_load_itself(report):
