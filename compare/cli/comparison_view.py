@@ -11,7 +11,7 @@ from compare.figures.tables import reading_frame
 from compare.misfit.alignment import Beside
 from compare.misfit.differences import STRESS, VELOCITY
 from compare.misfit.metrics import Worst
-from compare.misfit.pairs import GIVEN, Comparison, Row
+from compare.misfit.pairs import GIVEN, Comparison
 from compare.report.verdict import EngineScore, engine_scores, score
 from compare.solvers.incident import side_error
 from compare.solvers.record import Kind
@@ -149,7 +149,7 @@ def _show_distances(comparison: Comparison) -> None:
         heading = f"{GIVEN}, data over model" if row.pair.kind == GIVEN else row.pair.kind
         d = row.distance._replace(delay=1e3 * row.distance.delay)
         place = f"{row.place.named} {row.place.receiver}"
-        place += " (near a quiet side)" * _is_near(row, near)
+        place += " (near a quiet side)" * ((row.place.key, row.place.at) in near)
         numbers = [_number(x, form) for x, form in zip(d, DISTANCES.values(), strict=True)]
         pair = f"{row.pair.one} ~ {row.pair.other}"
         groups.setdefault(heading, []).append([pair, place, *numbers])
@@ -169,14 +169,10 @@ def _number(x: float | None, form: str) -> str:
     return "-" if x is None or isnan(x) else format(x, form)
 
 
-def _near_sides(comparison: Comparison) -> dict[str, list[tuple[float, ...]]]:
-    """Return by key of [record] the receivers that feel an error of quiet sides."""
+def _near_sides(comparison: Comparison) -> list[tuple[str, tuple[float, ...]]]:
+    """Return key of [record] and place of the receivers that feel an error of quiet sides."""
     found = side_error(comparison.scene)
-    return found.near if found else {}
-
-
-def _is_near(row: Row, near: dict[str, list[tuple[float, ...]]]) -> bool:
-    return row.place.at in near.get(row.place.key, [])
+    return [(key, at) for key, places in (found.near if found else {}).items() for at in places]
 
 
 def _alignment(beside: Beside) -> str:
@@ -225,7 +221,7 @@ def _facts(comparison: Comparison, reads: bool) -> dict[str, Any]:
         "rows": [
             r.facts
             | {"floor": r.floor, "faint": r.faint, "of_all": r.of_all}
-            | {"near_side": _is_near(r, near)}
+            | {"near_side": (r.place.key, r.place.at) in near}
             for r in comparison.rows
         ],
         "curves": [_curve_facts(beside) for beside in comparison.besides],

@@ -28,35 +28,40 @@ SCENE = SHIPPED / "guo-li-2002" / "fig-03.toml"
 #: The self-checks: pairs of an engine and its exact solution, with the library that each needs.
 PAIRS = {"dem ~ lattice": "numba", "continuum-jointed ~ jointed-bar": "basix"}
 PATIENCE = 120.0  # s, for one library
+VIEW = "for jointwave view: pip install 'jointwave[view]'"
 COLOURS = {"missing": "yellow", "broken": "bold red"}
 
-#: Loads the MPI of pip's dolfinx, without which its libraries find none.
-MPI = "from contextlib import suppress\nwith suppress(ImportError): import dolfinx_solver\n"
-#: What is looked for: a program that prints its version, and how to get it.
+#: Imports a module and prints a version, with the MPI of pip's dolfinx where its libraries need it.
+PROGRAM = """
+from contextlib import suppress
+with suppress(ImportError): import dolfinx_solver
+import {0} as module
+print({1})
+"""
+OWN = "module.__version__"
+#: What is looked for: module, version, and how to get it.
 PARTS = {
-    name: (f"import {name}; print({name}.__version__)", f"pip install {name}")
+    name: (name, OWN, f"pip install {name}")
     for name in ("numpy", "scipy", "numba", "pandas", "xarray", "matplotlib", "obspy")
 } | {
-    "basix": ("import basix; print(basix.__version__)", f"for the continuum: {INSTALL}"),
-    "gmsh": ("import gmsh; print(gmsh.__version__)", f"for triangles and tetrahedra: {GMSH}"),
+    "basix": ("basix", OWN, f"for the continuum: {INSTALL}"),
+    "gmsh": ("gmsh", OWN, f"for triangles and tetrahedra: {GMSH}"),
     "MPI": (
-        f"{MPI}from mpi4py import MPI; print(MPI.Get_library_version().split(', package')[0])",
+        "mpi4py.MPI",
+        "module.Get_library_version().split(', package')[0]",
         "for mpiexec: comes with dolfinx; or pip install mpi4py",
     ),
     "PETSc": (
-        f"{MPI}from petsc4py import PETSc as p; print(*p.Sys.getVersion(), p.ScalarType.__name__)",
+        "petsc4py.PETSc",
+        "'.'.join(map(str, module.Sys.getVersion())), module.ScalarType.__name__",
         "for implicit steps and static states: comes with dolfinx",
     ),
-    "dolfinx": (
-        f"{MPI}import dolfinx; print(dolfinx.__version__)",
-        "for --vtx: apt install python3-dolfinx",
-    ),
-    "VTK": (
-        "import pyvista as p; print(*p.vtk_version_info[:3], 'of pyvista', p.__version__)",
-        "for jointwave view: pip install 'jointwave[view]'",
-    ),
+    "dolfinx": ("dolfinx", OWN, "for --vtx: apt install python3-dolfinx"),
+    "VTK": ("vtkmodules.all", "module.VTK_VERSION", VIEW),
+    "pyvista": ("pyvista", OWN, VIEW),
     "ffmpeg": (
-        "import imageio_ffmpeg; print(imageio_ffmpeg.get_ffmpeg_version())",
+        "imageio_ffmpeg",
+        "module.get_ffmpeg_version()",
         "for jointwave animate: pip install imageio-ffmpeg",
     ),
 }
@@ -107,8 +112,8 @@ def examine(progress: Callable[[float], None]) -> tuple[list[Part], list[Check]]
 
 def look(name: str) -> Part:
     """Return the state of one of PARTS."""
-    program, hint = PARTS[name]
-    return _part(name, [sys.executable, "-c", program], hint)
+    *module, hint = PARTS[name]
+    return _part(name, [sys.executable, "-c", PROGRAM.format(*module)], hint)
 
 
 def check(pair: str, needed: Part) -> Check:

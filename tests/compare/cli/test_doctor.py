@@ -64,7 +64,7 @@ def test_what_breaks_is_a_line_and_fails_the_check_that_needs_it_alone(broken, j
 
 def test_rigid_blocks_alone_are_well(monkeypatch):
     """Without FEniCSx the table says how to get it, and its engine is not checked."""
-    parts = {"numba": PARTS["numba"], "basix": ("import no_basix_here", "pip install it")}
+    parts = {"numba": PARTS["numba"], "basix": ("no_basix_here", "1", "pip install it")}
     monkeypatch.setattr(doctor, "PARTS", parts)
     found, (one,) = doctor.examine(lambda fraction: None)
     assert one.pair == BLOCKS and one.holds
@@ -85,7 +85,7 @@ def test_no_launcher_and_one_that_starts_nothing(tmp_path, monkeypatch):
 
 def test_what_takes_too_long_is_broken(monkeypatch):
     monkeypatch.setattr(doctor, "PATIENCE", 0.2)
-    monkeypatch.setitem(PARTS, "numpy", ("import time; time.sleep(9)", "wait"))
+    monkeypatch.setitem(PARTS, "numpy", ("time", "module.sleep(9)", "wait"))
     assert doctor.look("numpy") == Part("numpy", "broken", "took more than 0.2 s", "wait")
 
 
