@@ -2,33 +2,19 @@
 
 from contextlib import suppress
 from functools import cache
-from pathlib import Path
 
 from matplotlib import font_manager
-from matplotlib.figure import Figure
 from matplotlib.ft2font import FT2Font
-from matplotlib.text import Text
 
 from cases.errors import SceneError
 
 LATIN = "DejaVu Sans"
-
-#: Fonts with Chinese characters, in order of preference: those with TrueType outlines, which can
-#: be embedded in every format, come first.
+#: Fonts with Chinese characters and TrueType outlines, which can be embedded in every format.
 CHINESE = (
-    "WenQuanYi Micro Hei",
-    "WenQuanYi Zen Hei",
-    "Microsoft YaHei",
-    "SimHei",
-    "Heiti SC",
+    *("WenQuanYi Micro Hei", "WenQuanYi Zen Hei", "Microsoft YaHei", "SimHei", "Heiti SC"),
     "Droid Sans Fallback",
-    "Noto Sans CJK SC",
-    "Noto Sans CJK JP",
-    "Source Han Sans SC",
-    "Noto Sans SC",
-    "PingFang SC",
 )
-HINT = "apt install fonts-wqy-microhei (or fonts-noto-cjk, for SVG and PNG)"
+HINT = "apt install fonts-wqy-microhei"
 
 
 @cache
@@ -53,7 +39,8 @@ def families_of(language: str) -> list[str]:
 
 def missing(text: str) -> set[str]:
     """Return the characters of a text for which no font of ours has a glyph."""
-    known = {letter for family in families() for letter in FT2Font(_file(family)).get_charmap()}
+    files = (font_manager.findfont(family, fallback_to_default=False) for family in families())
+    known = {letter for file in files for letter in FT2Font(str(file)).get_charmap()}
     return {letter for letter in text if not letter.isspace() and ord(letter) not in known}
 
 
@@ -62,28 +49,3 @@ def refuse_unknown_letters(texts: list[str]) -> None:
     if found := missing("".join(texts)):
         letters = " ".join(sorted(found)[:8])
         raise SceneError("figure", "", None, f"no font here has {letters}; {HINT}")
-
-
-def refuse_postscript(figure: Figure) -> None:
-    """Raise SceneError if a figure has Chinese characters and their font has PostScript outlines,
-    which a PDF cannot embed as TrueType."""
-    text = "".join(part.get_text() for part in figure.findobj(Text))
-    latin = FT2Font(_file(LATIN)).get_charmap()
-    is_latin = all(letter.isspace() or ord(letter) in latin for letter in text)
-    if not is_latin and is_postscript(_file(family := families()[-1])):
-        allowed = (
-            f"cannot embed {family}, whose outlines are PostScript: write .svg or .png, or "
-            "apt install fonts-wqy-microhei"
-        )
-        raise SceneError("figure", "", None, allowed)
-
-
-def is_postscript(file: str) -> bool:
-    """Return whether a font, or the first of a collection, has PostScript outlines."""
-    content = Path(file).read_bytes()
-    start = int.from_bytes(content[12:16], "big") if content[:4] == b"ttcf" else 0
-    return content[start : start + 4] == b"OTTO"
-
-
-def _file(family: str) -> str:
-    return str(font_manager.findfont(family, fallback_to_default=False))

@@ -4,13 +4,10 @@ The widths are those of Elsevier's artwork (International Journal of Rock Mechan
 Sciences and others): 90 mm for one column, 190 mm for two, at most 240 mm high.
 """
 
-from importlib.metadata import version
-from pathlib import Path
 from textwrap import wrap
 from typing import Any, NamedTuple
 from unicodedata import east_asian_width
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -18,27 +15,20 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
-from compare.engines import EXACT, Progress, applies, in_order, names, solve, solver
-from compare.figures import bands, fonts
-from compare.figures.export import blank, write_drawing
+from compare.engines import in_order, names, solver
+from compare.figures import fonts
+from compare.figures.export import blank
 from compare.figures.panels import Panel, panels
 from compare.figures.style import GIVEN, RC, style
 from compare.figures.units import UNITS, Unit, unit_for
 from compare.figures.words import WORDS, Words
-from compare.misfit.alignment import lay_beside
 from compare.misfit.pairs import Comparison
-from compare.runs.jobs import names_of
-from compare.runs.output import refuse_foreign
 
 MM, POINT = 1 / 25.4, 25.4 / 72  # inches; mm
 LETTER, LINE = 0.62, 1.3  # width of a letter on average, and height of a line, over its size
 HANDLE, APART = 0.8, 1.6  # in a legend, letters from a line to its text, and between columns
 BESIDE = 14.0  # mm beside a panel, for its ordinate
 TICK = 10.0  # least mm per number along the time axis
-
-#: First bytes of a file of each kind: only such a file is overwritten.
-BEGINS = {"pdf": (b"%PDF",), "svg": (b"<?xml", b"<svg"), "png": (b"\x89PNG",)}
 
 
 class Appearance(NamedTuple):
@@ -217,90 +207,3 @@ def _legend(
     letters = int((room / max(1, columns) - beside) / LETTER)
     entries = [Line2D([], [], label="\n".join(_lines(label, letters)), **x) for label, x in lines]
     return entries, min(max(1, columns), len(entries))
-
-
-def save(figure: Figure, path: Path, kind: str, title: str, dpi: int) -> Path:
-    """Write a figure; kind : "pdf", "svg" or "png", the last with `dpi` dots per inch.
-
-    A PDF embeds its fonts as TrueType; letters of an SVG are outlines. Raises SceneError if a file
-    of another kind is in its place, or for a font that a PDF cannot embed.
-    """
-    refuse_foreign(path, BEGINS[kind])
-    if kind == "pdf":
-        fonts.refuse_postscript(figure)
-    creator = f"jointwave {version('jointwave')}"
-    about: dict[str, dict[str, str | None]] = {
-        "pdf": {"Creator": creator, "CreationDate": None},
-        "svg": {"Creator": creator, "Date": None},
-        "png": {"Software": creator},
-    }
-    settings: dict[Any, Any] = {"pdf.fonttype": 42, "svg.fonttype": "path", "svg.hashsalt": title}
-    with matplotlib.rc_context(settings):
-        return write_drawing(path, figure, dpi=dpi, metadata={"Title": title} | about[kind])
-
-
-class FigureRequest(NamedTuple):
-    """The request of `jointwave figure`; kind : None to follow the file's suffix."""
-
-    style: str
-    columns: int
-    kind: str | None
-    language: str
-    out: Path
-
-    @property
-    def format(self) -> str:
-        """pdf, svg or png; raises SceneError for others, or if the suffix contradicts it."""
-        named = self.out.suffix.removeprefix(".").lower()
-        allowed = BEGINS if self.kind is None else [self.kind]
-        if named not in allowed:
-            raise SceneError("--out", str(self.out), None, f"must end in .{', .'.join(allowed)}")
-        return named
-
-
-def make(
-    scenes: list[AnyScene],
-    runs: list[tuple[str, str | None]],
-    curves: list[Any],
-    request: FigureRequest,
-    progress: Progress,
-) -> Path:
-    """Solve scenes, draw them with external curves, and write the figure.
-
-    runs : (engine, model) each, see `compare.runs.jobs`; empty: all that apply.
-    """
-    kind, appearance = request.format, STYLES[request.style]
-    wanted = [_solvers(scene, runs) for scene in scenes]
-    found, done = [], 0
-    for scene, solvers in zip(scenes, wanted, strict=True):
-        comparison = Comparison(scene)
-        for name in solvers:
-            comparison.results[name] = solve(name, scene)
-            done += 1
-            progress(done / sum(map(len, wanted)))
-        given = [curve for curve in curves if curve.holds_for(scene)]
-        comparison.besides += [lay_beside(c, scene, comparison.results, False) for c in given]
-        found.append(comparison)
-    figure = draw(found, appearance, request.columns, request.language)
-    return save(figure, request.out, kind, scenes[0].title, appearance.dpi)
-
-
-def make_bands(folder: Path, engines: list[str], request: FigureRequest) -> Path:
-    """Draw the bands of an ensemble from its folder and write the figure; engines : "dem",
-    "continuum", "exact"; empty: all in the folder."""
-    kind, appearance = request.format, STYLES[request.style]
-    starts = tuple(one for name in engines for one in (EXACT if name == "exact" else [name]))
-    every = bands.statistics_in(folder)
-    found = {k: v for k, v in every.items() if not engines or k.startswith(starts)}
-    if not found:
-        raise SceneError("--engine", ", ".join(engines), None, f"has no results in {folder}")
-    width = appearance.widths[request.columns - 1] * MM
-    figure = bands.draw(found, width, appearance.rc(request.language))
-    return save(figure, request.out, kind, bands.TITLE, appearance.dpi)
-
-
-def _solvers(scene: AnyScene, runs: list[tuple[str, str | None]]) -> list[str]:
-    if not runs:
-        return [name for name in names() if applies(name, scene)]
-    found = [name for engine, model in runs for name in names_of(engine, model, scene)]
-    return list(dict.fromkeys(found))

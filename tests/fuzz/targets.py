@@ -187,7 +187,7 @@ SOLVERS = (
     "compare.experiments.study.summary.run",
     "compare.studies.hard_cases.make_study",
     "compare.report.report.build",
-    "compare.figures.publication.make",
+    "compare.figures.publication_file.make",
     "compare.figures.animation.snapshots.take",
     "compare.cli.explain.explanation",
     "compare.cli.doctor.examine",

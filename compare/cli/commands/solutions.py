@@ -140,7 +140,7 @@ def figure(
 
     In place of a scene, a folder that --ensemble has written: median and bands of its waveforms.
     """
-    from compare.figures.publication import FigureRequest, make, make_bands
+    from compare.figures.publication_file import FigureRequest, make, make_bands
     from compare.runs import jobs
 
     request = FigureRequest(style, columns, kind, language, out)

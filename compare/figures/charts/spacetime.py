@@ -29,33 +29,13 @@ HEIGHT = 3.2  # inches
 LAYER: dict[str, Any] = {"color": "#111111", "linewidth": 1.1, "linestyle": (0, (4, 3))}
 
 
-class Quantity(NamedTuple):
-    """The quantity drawn: a variable of the results, and its component (None: its only one)."""
-
-    variable: str
-    component: int | None
-
-    @property
-    def words(self) -> str:
-        """Variable and component: "shear x"."""
-        return f"{self.variable} {axis_of(*self)}".rstrip()
-
-    def of(self, result: xr.Dataset) -> np.ndarray:
-        """Return the motion [places, times] of a result, SI."""
-        values = motion(result, self.variable)
-        return values.reshape(*values.shape[:2], -1)[..., self.component or 0]
-
-
 class Diagram(NamedTuple):
-    """One diagram: its name, its values [places, times] in `unit`, the colours and the meaning of
-    their ends; `share` : the largest difference over the largest value, else None.
-    """
+    """One diagram: its name and its values [places, times] in `unit`; `share` : of a difference,
+    the largest over the largest value of what it is taken from."""
 
     name: str
     values: np.ndarray
     unit: Unit
-    colours: str
-    limit: float
     share: float | None = None
 
     @property
@@ -74,10 +54,11 @@ class Diagrams(NamedTuple):
     """The diagrams of one figure of a variant over time [n] (s) and y [m] (m).
 
     exact : whether they are the differences of engines from the exact solutions of their models.
+    words : the quantity and its component.
     """
 
     exact: bool
-    quantity: Quantity
+    words: str
     time: np.ndarray
     y: np.ndarray
     diagrams: list[Diagram]
@@ -99,38 +80,38 @@ def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
     if not engines:
         return []
     first = fields[engines[0]]
-    quantity = Quantity(*loudest(first, (FORCES, MOTION, ROTATION), least=LEAST))
-    values = {name: quantity.of(result) for name, result in fields.items()}
+    quantity, component = loudest(first, (FORCES, MOTION, ROTATION), least=LEAST)
+    values = {
+        name: np.atleast_3d(motion(result, quantity))[..., component or 0]
+        for name, result in fields.items()
+    }
     if not any(v.any() for v in values.values()):
         return []
-    between = [p for p in pairs() if {p.one, p.other} <= set(engines)]
+    between = [(p.one, p.other) for p in pairs() if {p.one, p.other} <= set(engines)]
+    own = [(one, other) for one in engines if (other := own_exact(one, fields, scene))]
     shown = [_diagram(engines[0], values[engines[0]], quantity)]
-    shown += [_difference(p.one, p.other, values, quantity) for p in between]
-    own = {engine: own_exact(engine, fields, scene) for engine in engines}
-    errors = [_difference(e, other, values, quantity) for e, other in own.items() if other]
-    places = first[first[quantity.variable].dims[0]].values
+    shown += [_difference(*pair, values, quantity) for pair in between]
+    errors = [_difference(*pair, values, quantity) for pair in own]
+    words = f"{quantity} {axis_of(quantity, component)}".rstrip()
+    places = first[first[quantity].dims[0]].values
     return [
-        Diagrams(exact, quantity, first.time.values, places, found)
+        Diagrams(exact, words, first.time.values, places, found)
         for exact, found in ((False, shown), (True, errors))
         if found
     ]
 
 
-def _difference(one: str, other: str, values: dict[str, np.ndarray], quantity: Quantity) -> Diagram:
+def _difference(one: str, other: str, values: dict[str, np.ndarray], quantity: str) -> Diagram:
     found = values[one] - values[other]
     scale = float(np.abs(values[other]).max())
     share = float(np.abs(found).max()) / scale if scale else 0.0
     return _diagram(f"{one} − {other}", found, quantity, share)
 
 
-def _diagram(
-    name: str, values: np.ndarray, quantity: Quantity, share: float | None = None
-) -> Diagram:
+def _diagram(name: str, values: np.ndarray, quantity: str, share: float | None = None) -> Diagram:
     """Return the diagram of SI values; share : for a difference."""
-    largest = float(np.abs(values).max())
-    unit = unit_for(UNITS[quantity.variable], largest)
-    colours = FIELD if share is None else DIFFERENCE
-    return Diagram(name, values / unit.size, unit, colours, largest / unit.size, share)
+    unit = unit_for(UNITS[quantity], float(np.abs(values).max()))
+    return Diagram(name, values / unit.size, unit, share)
 
 
 def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneFigure:
@@ -138,7 +119,7 @@ def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneF
 
     name : unique on the page. variant : its name there.
     """
-    words = f"{shown.quantity.words} along the pillar over time, {variant}"
+    words = f"{shown.words} along the pillar over time, {variant}"
     title = f"Numerical error of {words}" if shown.exact else f"{words[0].upper()}{words[1:]}"
     caption, draw = _caption(scene, variant, shown), partial(_draw, scene, shown)
     return SceneFigure(name, title, caption, draw, shown.table(), shown.exact)
@@ -146,7 +127,7 @@ def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneF
 
 def _caption(scene: Scene, variant: str, shown: Diagrams) -> str:
     """Describe the colours, and the places and times of their values."""
-    sign = "Compression is red, tension blue. " if shown.quantity.variable == "stress" else ""
+    sign = "Compression is red, tension blue. " if shown.words == "stress" else ""
     layers = " Dashed: the soft layer." if scene.soft_layers else ""
     if shown.exact:
         sign = "Each engine minus the exact solution of its own model. "
@@ -174,13 +155,14 @@ def _draw(scene: Scene, shown: Diagrams) -> Figure:
 
 
 def _draw_diagram(ax: Axes, diagram: Diagram, shown: Diagrams) -> QuadMesh:
+    limit = float(np.abs(diagram.values).max()) or 1.0
     mesh = ax.pcolormesh(
         1e3 * shown.time,
         shown.y,
         diagram.values,
-        vmin=-diagram.limit,
-        vmax=diagram.limit,
-        cmap=diagram.colours,
+        vmin=-limit,
+        vmax=limit,
+        cmap=FIELD if diagram.share is None else DIFFERENCE,
         shading="gouraud",
         rasterized=True,
     )

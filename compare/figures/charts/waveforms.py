@@ -13,7 +13,6 @@ from compare.figures.charts.overlays import (
     changed_key,
     draw_overlays,
 )
-from compare.figures.charts.stacks import draw_stacks, stacks_of
 from compare.figures.figure import SceneFigure
 from compare.figures.panels import Panel, curve_table, in_page, panels
 from compare.figures.units import UNITS
@@ -32,25 +31,19 @@ def waveforms(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     """Return the waveforms of every variant at every receiver, with external curves.
 
     Variants that differ by one key share one pair of axes per engine, followed by all solutions of
-    each variant; many receivers of one variant are stacked.
+    each variant.
     """
     receivers = [panel for row in panels(comparisons) for panel in row]
-    ending = f"{POSITIVE}{_at_rest(receivers)}"
     overlaid = by_variant(comparisons)
-    title, caption = TITLE, f"{STYLES} {BELOW} {ending}"
-    draw, figures = partial(draw_solutions, comparisons), []
-    if overlaid:
-        figures = [_of_variants(name, comparisons, overlaid, receivers)]
-        title = "Waveforms of every solution, variant by variant"
-    elif len(comparisons) == 1 and (stacks := stacks_of(receivers)):
-        draw = partial(draw_stacks, stacks, solutions_legend(comparisons, {}))
-        caption = (
-            "Each waveform is offset to the y of its receiver, with its difference from "
-            f"the reference beside it. {STYLES} {ending}"
-        )
-    table = curve_table(comparisons).reset_index()
-    every = SceneFigure(f"{name}-waveforms", title, caption, draw, table, folded=bool(overlaid))
-    return [*figures, every]
+    every = SceneFigure(
+        f"{name}-waveforms",
+        "Waveforms of every solution, variant by variant" if overlaid else TITLE,
+        f"{STYLES} {BELOW} {POSITIVE}{_at_rest(receivers)}",
+        partial(draw_solutions, comparisons),
+        curve_table(comparisons).reset_index(),
+        folded=bool(overlaid),
+    )
+    return [_of_variants(name, comparisons, overlaid, receivers), every] if overlaid else [every]
 
 
 def draw_solutions(comparisons: list[Comparison]) -> Figure:

@@ -19,7 +19,8 @@ from cases.errors import SceneError
 from compare.engines import ENGINES, names
 from compare.exact.blocks import lattice
 from compare.figures import fonts
-from compare.figures.publication import MM, STYLES, FigureRequest, draw, make, save
+from compare.figures.publication import MM, STYLES, draw
+from compare.figures.publication_file import FigureRequest, make, save
 from compare.figures.style import style
 from compare.figures.words import CHINESE, WORDS
 from compare.misfit.pairs import Comparison
@@ -185,18 +186,6 @@ def test_a_letter_that_no_font_has_is_refused(comparison, monkeypatch):
     found.scene = found.scene.model_copy(update={"name": "软弱层"})
     with pytest.raises(SceneError, match=r"no font here has .*层"):
         draw([found], JOURNAL, 1, "en")
-
-
-def test_postscript_outlines_are_known_from_the_first_bytes(tmp_path):
-    """Of a font, and of the first of a collection."""
-    file = tmp_path / "a.otf"
-    for content, expected in (
-        (b"OTTO", True),
-        (b"\0\1\0\0", False),
-        (b"ttcf" + bytes(8) + (16).to_bytes(4, "big") + b"OTTO", True),
-    ):
-        file.write_bytes(content)
-        assert fonts.is_postscript(str(file)) == expected
 
 
 def test_every_solution_has_words_and_a_line_of_its_own():

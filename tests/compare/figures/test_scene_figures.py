@@ -69,32 +69,6 @@ def test_variants_stand_in_one_pair_of_axes_and_every_solution_in_a_fold(picture
     assert "joints.damping_ratio" in first.caption and "reference, lattice" in first.caption
 
 
-def test_many_sections_of_one_variant_are_stacked_by_their_places(pillar, compared):
-    """Each waveform begins at its y, all on one scale; residuals beside them on a larger one."""
-    places = [10.0, 20.0, 35.0]
-    scene = pillar(time__duration=0.05, record__stress=places)
-    (comparison,) = compared(scene)
-    (picture,) = waveforms("fig", [comparison])
-    left, right = picture.figure.axes
-    drawn = {line.get_gid(): line.get_ydata() for line in left.lines if line.get_gid()}
-    stress = comparison.results["dem"].stress.values
-    metres = [np.ptp(drawn[f"0-{k}-dem"]) / np.ptp(stress[k]) for k in range(3)]
-    np.testing.assert_allclose(metres, metres[0])
-    assert [drawn[f"0-{k}-dem"][0] for k in range(3)] == places
-    assert "m represent" in left.get_ylabel() and left.get_yticks().tolist() == places
-    rest = [line for line in right.lines if line.get_gid()]
-    assert {line.get_gid().split("-", 3)[3] for line in rest} == {"dem"}
-    error = stress[0] - comparison.results["lattice"].stress.values[0]
-    times = np.ptp(rest[0].get_ydata()) / np.ptp(error)
-    assert f"enlarged {times / metres[0]:.2g} times" in right.get_title(loc="left")
-
-
-def test_two_sections_or_curves_of_others_keep_panels_of_their_own(pillar, compared):
-    (comparison,) = compared(pillar(time__duration=0.03, record__stress=[10.0, 20.0]))
-    (picture,) = waveforms("fig", [comparison])
-    assert len(picture.figure.axes) == 4
-
-
 def test_waveforms_hold_the_numbers_of_the_table(pictures):
     """And under them the difference from the reference."""
     picture = every_solution(pictures)
