@@ -228,7 +228,7 @@ def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = 
     """Run all cases and the maps, saved in OUT/stability/; write their tables and figure into
     `out`."""
     folder = out / NAME
-    cells = Store[Column](Column, folder).compute(columns(), _key_of_cells, computed, pool)
+    cells = Store[Column](Column, folder).compute(columns(), store.key, computed, pool)
     rows = Store[HardRow](HardRow, folder).compute(hard_cases(), key, row_of, pool, progress, RATE)
     maps = maps_of(cells)
     with blank(3.6) as figure:
@@ -247,10 +247,6 @@ def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = 
     files.append(drawn.file("svg"))
     about = table(rows), said, failed, files, facts, drawn
     return Summary(NAME, TITLE, *about, about=NOTE)
-
-
-def _key_of_cells(column: Column) -> str:
-    return store.key(column)
 
 
 def table(rows: list[HardRow]) -> pd.DataFrame:

@@ -15,7 +15,7 @@ from compare.exact.blocks import lattice
 from compare.misfit.external import Curves, read_curves
 from compare.misfit.places import Place
 from compare.scenes import shipped
-from compare.studies import fit as fitting
+from compare.studies import fit_trials
 from compare.studies.fit_files import draw, scene_text
 from compare.studies.fit_keys import changed, free_keys
 
@@ -195,7 +195,7 @@ def test_trials_without_a_solution_are_left_out(scene):
 
 
 def test_search_that_does_not_end_is_an_error(scene, monkeypatch):
-    monkeypatch.setattr(fitting, "MOST", 2)
+    monkeypatch.setattr(fit_trials, "MOST", 2)
     with pytest.raises(StoppedError, match="not converged after"):
         jointwave.fit(scene, [heard(scene)], list(TRUE))
 
@@ -279,7 +279,7 @@ def test_fault_is_one_line_and_exit_2(arguments, words, files, command):
 
 
 def test_no_convergence_is_exit_3(files, monkeypatch, command):
-    monkeypatch.setattr(fitting, "MOST", 1)
+    monkeypatch.setattr(fit_trials, "MOST", 1)
     assert "not converged" in command(*asked(files), "--free", LAYER, code=3).err
 
 
