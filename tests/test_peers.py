@@ -13,7 +13,7 @@ from closed_forms.leapfrog import displacements
 from compare.engines import solve
 from compare.exact.schemes.leapfrog import modes, of_modes
 from compare.misfit.metrics import relative_l2
-from compare.report.peers import read, section
+from compare.report.peers import read, summarise
 from compare.runs.output import write_csv
 
 TOOLS = Path(__file__).parents[1] / "tools" / "peers"
@@ -207,8 +207,8 @@ def test_failed_installation_is_a_reason(peers, tmp_path, monkeypatch):
 def test_missing_peer_is_in_the_table_and_says_why(peers, tmp_path):
     own = peers("table")
     rows = own.frame([own.missing_row("Akantu bar", "the homogenised bar", "no wheel here")])
-    found = section(read(write_csv(tmp_path / "points.csv", rows)), tmp_path)
-    assert found["failed"] == ["Akantu bar (the homogenised bar): no wheel here"]
+    found = summarise(read(write_csv(tmp_path / "points.csv", rows)), tmp_path)
+    assert found.failed == ["Akantu bar (the homogenised bar): no wheel here"]
 
 
 def test_runs_take_turns_after_one_that_is_not_timed(peers, command):
@@ -240,7 +240,7 @@ def test_failed_run_is_listed_and_not_run_again(peers, command, program, message
     assert (job.folder / "count").read_text() == "x"
     assert measure.ratios(turns, turns) == {}
     table = write_csv(tmp_path / "points.csv", peers("table").frame([row]))
-    assert message in section(read(table), tmp_path)["failed"][0]
+    assert message in summarise(read(table), tmp_path).failed[0]
 
 
 def test_program_that_is_not_there_is_a_failure(peers, command):

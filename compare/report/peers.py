@@ -5,17 +5,18 @@ Every row is a run of a whole process on one core; ours are among them, in turns
 
 import io
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
 from cases.errors import SceneError
 from cases.files import read_text
-from compare.figures.export import blank, save
+from compare.figures.export import Drawn, blank, save
+from compare.studies.summary import Summary
 
 PLACE = Path("out/peers/points.csv")  # where `make bench-peers` writes
 LARGEST_FILE = 1_000_000  # bytes; the table has a row for each run
 TITLE = "The free pillar in other codes"
+LEGEND = "Over ours: seconds over those of our run that it is compared with, median."
 TEXTS = ("curve", "solves", "settings", "state", "message", "beside", "machine")
 NUMBERS = {  # in the file, and on the page
     "misfit": "own model (%)",
@@ -47,25 +48,14 @@ def read(file: Path | None) -> pd.DataFrame | None:
     return table.fillna(dict.fromkeys(TEXTS, ""))
 
 
-def section(found: pd.DataFrame, folder: Path) -> dict[str, Any]:
-    """Return the section of the page: every run, ratios in sentences; draw it into `folder`."""
+def summarise(found: pd.DataFrame, folder: Path) -> Summary:
+    """Return every run, ratios in sentences, and what is missing; draw it into `folder`."""
     done, missing = found[found.state == "done"], found[found.state != "done"]
+    failed = [f"{one.curve} ({one.solves}): {one.message}" for one in missing.itertuples()]
     machine = "; ".join(dict.fromkeys(filter(None, found.machine))) or "an unnamed machine"
-    return {
-        "id": "peers",
-        "heading": f"What accuracy costs. {TITLE}",
-        "contents": "Other codes",
-        "command": "make bench-peers",
-        "sentences": sentences(done),
-        "failed": [f"{one.curve} ({one.solves}): {one.message}" for one in missing.itertuples()],
-        "figure": _draw(done, found, folder),
-        "caption": "Misfits are relative L2 norms of the stress at the receiver, from jointed "
-        "rock, the finest physics. Every run is a whole process on one core; runs alternate with "
-        f"ours; medians of rounds on {machine}: compare their ratios. Our compiled kernels are "
-        "loaded from the cache.",
-        "legend": "Over ours: seconds over those of our run that it is compared with, median.",
-        "table": _table(done),
-    }
+    figure = _draw(done, found, folder)
+    about = sentences(done), failed, figure.drawings, None, figure, "", LEGEND, machine
+    return Summary("peers", TITLE, _table(done), *about)
 
 
 def sentences(done: pd.DataFrame) -> list[str]:
@@ -92,7 +82,7 @@ def _table(done: pd.DataFrame) -> pd.DataFrame:
     return shown.set_index([(done.curve + ": " + done.solves).rename("curve"), point])
 
 
-def _draw(done: pd.DataFrame, found: pd.DataFrame, folder: Path) -> Any:
+def _draw(done: pd.DataFrame, found: pd.DataFrame, folder: Path) -> Drawn:
     with blank(4.0) as figure:
         axes = figure.subplots(1, 2, sharey=True)
         for ax, column in zip(axes, ("seconds", "whole"), strict=True):

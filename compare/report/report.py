@@ -4,7 +4,7 @@ import platform
 import shlex
 from collections.abc import Sequence
 from functools import partial
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -26,7 +26,7 @@ from compare.report.scenes import (
     solve,
     without_repeats,
 )
-from compare.report.sections import sections
+from compare.report.sections import section, sections
 from compare.runs.output import write_text
 from compare.studies.store import DIED, alone, in_processes, in_turn
 from compare.text import percent
@@ -125,9 +125,16 @@ def _scenes_page(solved: list[SolvedScene]) -> dict[str, Any]:
         "studies": [],
         "contents": {"Figures" if numbered else "Scenes": _links(solved)},
         "machine": timings.measured_on(),
-        "versions": found | {name: version(name) for name in PACKAGES},
+        "versions": found | {name: _version(name) for name in PACKAGES},
         "hint": "",
     }
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:  # run from its folder
+        return "(not installed)"
 
 
 def _ranked(one: SolvedScene) -> RankedScene:
@@ -151,7 +158,9 @@ def _paper_page(
     studies = list(sections(out, pool, hard, lambda x: progress(SCENES + (1 - SCENES) * x)))
     if others is not None:
         place = next(i for i, one in enumerate(studies) if one["id"].startswith("study-"))
-        studies.insert(place + 1, peers.section(others, out / "studies"))
+        found = peers.summarise(others, out / "studies")
+        shown = section("peers", found, "make bench-peers", contents="Other codes")
+        studies.insert(place + 1, shown)
     page = _scenes_page(paper)
     links = [(one["id"], one["contents"]) for one in studies]
     page["contents"] |= {"Rock masses": _links(rock), "Studies": links}

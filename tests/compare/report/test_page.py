@@ -10,6 +10,8 @@ from compare.report.claims.claim import Claim
 from compare.report.overview import overview
 from compare.report.page import render
 from compare.report.scenes import PAPER, SceneRequest, Shown, SolvedScene, without_repeats
+from compare.report.sections import section
+from compare.studies.summary import Summary
 
 
 @pytest.fixture
@@ -104,9 +106,9 @@ def test_tables_have_headings_labels_and_numbers(page):
 
 
 def test_a_study_shows_its_findings_failures_and_points(page, figure):
-    study = {"id": "study-s", "heading": "S", "command": "jointwave study s", "note": "A note."}
-    study |= {"sentences": ["Off by 1 %."], "failed": ["dem: no"], "figure": figure("s")}
-    study |= {"caption": "", "legend": "", "table": pd.DataFrame({"value": [0.5]})}
+    table = pd.DataFrame({"value": [0.5]})
+    found = Summary("s", "S", table, ["Off by 1 %."], ["dem: no"], [], {}, figure("s"), "A note.")
+    study = section("study", found, "jointwave study s", id="study-s")
     html = page(studies=[study])
     assert '<section id="study-s">' in html and "Failed or missing: dem: no." in html
     assert all(x in html for x in ("Off by 1\u00a0%.", "A note.", '<td class="n">0.5</td>'))

@@ -24,17 +24,17 @@ def file(tmp_path):
 
 
 def test_ratios_are_in_sentences_and_the_missing_code_says_why(file, tmp_path):
-    section = peers.section(peers.read(file), tmp_path)
-    (sentence,) = section["sentences"]
+    found = peers.summarise(peers.read(file), tmp_path)
+    (sentence,) = found.sentences
     assert sentence.startswith("Code beside jointwave blocks: stepping 5.81 to 124 times, whole")
-    assert section["failed"] == ["Gone (spheres): no apt here"]
-    assert "unnamed machine" in section["caption"]
-    table = section["table"].reset_index()
+    assert found.failed == ["Gone (spheres): no apt here"]
+    assert "unnamed machine" in found.about
+    table = found.table.reset_index()
     assert list(table["curve"]) == ["jointwave blocks: rigid blocks", *["Code: points"] * 2]
     assert table["settings"].eq("elements per block: 2").all()
     assert list(table["stepping over ours"])[1:] == [124.4, 5.81]
     assert table["own model (%)"].eq(1).all() and table["finest physics (%)"].eq(4).all()
-    svg = section["figure"].file("svg").read_text(encoding="utf-8")
+    svg = found.figure.file("svg").read_text(encoding="utf-8")
     assert "Code: points" in svg and "Gone" not in svg
 
 
