@@ -201,27 +201,21 @@ def variant_names(comparisons: list[Comparison]) -> list[str]:
 def _base_name(base: AnyScene, variants: list[AnyScene]) -> str:
     if not isinstance(base, Scene):
         return "base scene"
-    ratio = base.joints.damping_ratio
-    words = {
-        "damping": "undamped" if ratio is None else f"ζ = {ratio:g}",
-        "start": f"{base.ends.start} start",
-        "end": base.ends.end,
-        "layers": "soft layer" if base.soft_layers else "no soft layer",
-        "tension": "no tension" if base.joints.tension is False else "tension",
-    }
-    changed = {key for v in variants for key in words if _part(v, key) != _part(base, key)}
-    unknown = "base scene" if variants else words["damping"]
-    return ", ".join(words[key] for key in words if key in changed) or unknown
+    words, others = _words(base), [_words(variant) for variant in variants]
+    changed = [word for key, word in words.items() if any(one[key] != word for one in others)]
+    return ", ".join(changed) or ("base scene" if variants else words["damping"])
 
 
-def _part(scene: Any, key: str) -> object:
+def _words(scene: Any) -> dict[str, str]:
+    """Return what variants of pillars usually change, in words."""
+    ratio = scene.joints.damping_ratio
     return {
-        "damping": scene.joints.damping_ratio,
-        "start": scene.ends.start,
+        "damping": "undamped" if ratio is None else f"ζ = {ratio:g}",
+        "start": f"{scene.ends.start} start",
         "end": scene.ends.end,
-        "layers": len(scene.soft_layers),
-        "tension": scene.joints.tension is not False,
-    }[key]
+        "layers": "soft layer" if scene.soft_layers else "no soft layer",
+        "tension": "no tension" if scene.joints.tension is False else "tension",
+    }
 
 
 def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:

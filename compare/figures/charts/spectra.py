@@ -1,7 +1,6 @@
 """Amplitude spectra of the waveforms, with the characteristic frequencies of the scene."""
 
 from functools import partial
-from math import cos, isfinite, pi, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -9,11 +8,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
-from scipy.optimize import brentq
 
-from cases.material.calibrate import Properties, calibrate
-from cases.schema.scene import Scene
 from compare.figures.charts.axes import GREY, chart, set_heading, share, solutions_legend
+from compare.figures.charts.marks import Frequency, marks_of
 from compare.figures.figure import SceneFigure
 from compare.figures.panels import Panel, in_page, panels
 from compare.figures.style import style
@@ -23,83 +20,6 @@ from compare.misfit.pairs import Comparison
 HEIGHT = 2.1  # inches
 DECADES = 5  # drawn below the largest amplitude
 NEAR = 1.25  # ratio of two marks below which their names are on opposite sides
-
-
-class Frequency(NamedTuple):
-    """A frequency (Hz) and its meaning, short and in words."""
-
-    name: str
-    frequency: float
-    words: str
-
-
-def marks_of(panel: Panel) -> list[Frequency]:
-    """Return the marks of a panel's scene for longitudinal waves or, if blocks do not rotate, shear
-    waves; in order of frequency. Only the load's for other motion, which is dispersive, and for a
-    rock mass."""
-    scene = panel.comparison.scene
-    periods = {one.period for one in scene.pulses if one.period}
-    found = [Frequency("load", 1 / period, "1/T of the load") for period in periods]
-    if not isinstance(scene, Scene):
-        return sorted(found, key=lambda mark: mark.frequency)
-    p = calibrate(scene)
-    if len(p.each) > 1:
-        least = min(one.bar_speed / (pi * one.spacing) for one in p.each)
-        found.append(Frequency("chain cut-off", least, "least cut-off of the chain of blocks"))
-        return sorted(found, key=lambda mark: mark.frequency)
-    if panel.component is None or (panel.quantity == "velocity" and panel.component == 1):
-        found += _of_waves(scene, p, p.bar_speed) + _of_layers(p) + _of_joints(p)
-    elif scene.motion.rotation == "none" and panel.quantity != "rotation":
-        found += _of_waves(scene, p, p.shear_speed)
-    return sorted(found, key=lambda mark: mark.frequency)
-
-
-def _of_waves(scene: Scene, p: Properties, speed: float) -> list[Frequency]:
-    """Return the cut-off of the chain, omega = 2 sqrt(k/m) = 2 c/d (Brillouin 1946), and the first
-    mode of a pillar whose ends both reflect."""
-    marks = [Frequency("chain cut-off", speed / (pi * p.spacing), "cut-off of the chain of blocks")]
-    ends = {scene.ends.start, scene.ends.end}
-    if ends <= {"free", "fixed"}:
-        waves = 2 if len(ends) == 1 else 4  # pillar lengths per wavelength
-        length = p.spacing * p.block_count
-        marks.append(Frequency("first mode", speed / (waves * length), "first mode of the pillar"))
-    return marks
-
-
-def _of_layers(p: Properties) -> list[Frequency]:
-    """Return where a soft layer transmits half the energy, kappa = K / (Z omega) = 1/2
-    (Pyrak-Nolte, Myer & Cook 1990)."""
-    compliances = {c for c in p.excess_compliance[p.soft].tolist() if c > 0}
-    return [
-        Frequency(
-            "soft layer", 1 / (pi * p.impedance * c), "half-energy frequency of the soft layer"
-        )
-        for c in compliances
-    ]
-
-
-def _of_joints(p: Properties) -> list[Frequency]:
-    """Return the end of the first pass band of equal joints in elastic rock."""
-    if p.intact_modulus is None or not isfinite(p.regular_own_stiffness):
-        return []
-    speed = (p.intact_modulus / p.density) ** 0.5
-    edge = band_edge(p.density * speed, p.regular_own_stiffness, p.spacing / speed)
-    return [Frequency("joints' band edge", edge, "end of the first pass band of joints in rock")]
-
-
-def band_edge(impedance: float, stiffness: float, crossing: float) -> float:
-    """Return the frequency (Hz) at which the first pass band of equal joints ends.
-
-    impedance : of the rock, Pa s/m. stiffness : of a joint, Pa/m. crossing : of the rock between
-    two joints, s. There cos(phi) = cos(theta) - sin(theta) / (2 kappa) is -1 (Cai & Zhao, Int. J.
-    Rock Mech. Min. Sci. 37, 2000); divided by 2 cos(theta/2), which vanishes at the band's other
-    edge, this is cos(theta/2) = sin(theta/2) / (2 kappa).
-    """
-
-    def bloch(theta: float) -> float:
-        return cos(theta / 2) - sin(theta / 2) * theta * impedance / (2 * stiffness * crossing)
-
-    return float(brentq(bloch, 0.0, pi, xtol=1e-14) / (2 * pi * crossing))
 
 
 TAPERED = 0.1  # of the waveform, at its end

@@ -7,15 +7,8 @@ import pytest
 
 from cases.material.calibrate import calibrate
 from closed_forms.parallel_joints import transmission
-from compare.figures.charts.spectra import (
-    TAPERED,
-    band_edge,
-    marks_of,
-    spectra,
-    spectra_of,
-    spectrum,
-    tapered,
-)
+from compare.figures.charts.marks import band_edge, marks_of
+from compare.figures.charts.spectra import TAPERED, spectra, spectra_of, spectrum, tapered
 from compare.figures.panels import panels
 
 LAYER = {"y": 20.0, "spacing_stiffness": 4.375e8}
