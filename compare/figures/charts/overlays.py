@@ -62,9 +62,10 @@ class Overlay(NamedTuple):
 
     @property
     def label(self) -> str:
-        """Label of the ordinate, with the static state that is not drawn."""
-        unit = DRAWN[UNITS[self.quantity]]
-        rest = f"\nless {self.at_rest / unit.size:.4g} at rest" if self.at_rest else ""
+        """Label of the ordinate, with the static state that is not drawn; a velocity has none but
+        the remainder of its relaxation."""
+        unit, rests = DRAWN[UNITS[self.quantity]], self.at_rest and self.quantity != "velocity"
+        rest = f"\nless {self.at_rest / unit.size:.4g} at rest" if rests else ""
         return f"{self.quantity} ({unit.name}){rest}"
 
     @property
