@@ -5,26 +5,26 @@ from collections.abc import Iterator
 from math import isnan
 from typing import Any
 
-from compare.cli.terminal import print_json, say, say_warnings, show_numbers, show_table
+from compare.cli.frames import show_frame
+from compare.cli.terminal import print_json, say, say_warnings, show_table
 from compare.engines import ENGINES
-from compare.figures.tables import reading_frame
+from compare.figures.tables import alignment_frame, reading_frame
 from compare.misfit.alignment import Beside
 from compare.misfit.differences import STRESS, VELOCITY
 from compare.misfit.metrics import Worst
 from compare.misfit.pairs import GIVEN, Comparison
+from compare.misfit.places import Place
+from compare.report.tables import distance_table, reason_table, run_table
 from compare.report.verdict import EngineScore, engine_scores, score
 from compare.solvers.incident import side_error
 from compare.solvers.record import Kind
-from compare.text import cell, in_seconds, mean_and_worst, percent
+from compare.text import in_seconds, mean_and_worst, percent
 from results.dataset import energy_residual, open_ledger
 
 MOST_LINES = 10  # of the answer
 HINT = "all misfits, and solutions that do not apply: --all; as JSON: --json"
 ANSWER = ["engine", "worst misfit", "at", "PPV", "peak stress", "compared with", "own error"]
 ANSWER += ["stepping", "verdict"]
-#: Columns of the distances behind pair and place, in the order of `Distance`, and their formats.
-DISTANCES = {"misfit": ".3%", "peak": ".4f", "delay, ms": "+.3f", "period": ".4f"}
-DISTANCES |= {"envelope": ".2%", "phase": ".2%"}
 
 
 def show_comparisons(
@@ -42,10 +42,14 @@ def show_comparisons(
         return
     _show_answer(found, every)
     if every:
-        for one in found:
-            _show_distances(one)
+        _show_all(found)
     if reads:
-        _show_readings(found)
+        say("")
+        read = reading_frame(found)
+        if read.empty:
+            say("no velocities are recorded: record.velocity or record.points is empty")
+        else:
+            show_frame(read.set_index(["variant", "solution", "at"]))
 
 
 def _show_answer(found: list[Comparison], every: bool) -> None:
@@ -133,40 +137,30 @@ def _files(found: list[Comparison]) -> Iterator[str]:
                 if rows:
                     row = max(rows, key=lambda row: row.distance.misfit)
                     far, peak = percent(row.distance.misfit), row.distance.peak_ratio
-                    ratio = f"data/model {_number(peak, '.3f')}"
+                    ratio = f"data/model {'-' if isnan(peak) else format(peak, '.3f')}"
                     parts.append(f"{far} % from {engine} ({row.place.words}, {ratio})")
             clock = f", clock {1e3 * beside.shift.seconds:+.4g} ms" if beside.shift else ""
             where = "; ".join(parts) or "no engine records a waveform there"
             yield f"{variant}{name}{clock}: {where}"
 
 
-def _show_distances(comparison: Comparison) -> None:
-    """Print every distance of one variant, its ledgers, and what does not apply."""
-    scene, near = comparison.scene, _near_sides(comparison)
-    say(f"\n{scene.title} {scene.name}".rstrip(), "bold")
-    groups: dict[str, list[list[str]]] = {}
-    for row in comparison.rows:
-        heading = f"{GIVEN}, data over model" if row.pair.kind == GIVEN else row.pair.kind
-        d = row.distance._replace(delay=1e3 * row.distance.delay)
-        place = f"{row.place.named} {row.place.receiver}"
-        place += " (near a quiet side)" * ((row.place.key, row.place.at) in near)
-        numbers = [_number(x, form) for x, form in zip(d, DISTANCES.values(), strict=True)]
-        pair = f"{row.pair.one} ~ {row.pair.other}"
-        groups.setdefault(heading, []).append([pair, place, *numbers])
-    if groups:
-        show_numbers(["pair", "at", *DISTANCES], groups)
-    else:
-        say("  nothing to compare: no pair of solutions applies")
-    for beside in comparison.besides:
-        say(f"  {_alignment(beside)}")
-    for name, residual in _residuals(comparison).items():
-        say(f"  {name}: energy residual {residual:.1e} of the work done by the load")
-    for name, reason in comparison.reasons.items():
-        say(f"  {name} does not apply: {reason}", "dim")
-
-
-def _number(x: float | None, form: str) -> str:
-    return "-" if x is None or isnan(x) else format(x, form)
+def _show_all(found: list[Comparison]) -> None:
+    """Print every distance, how curves were aligned, the runs, and what does not apply."""
+    curves = alignment_frame(found)
+    if not curves.empty:
+        curves = curves.set_index(["file", "variant"])
+    for table in (distance_table(found), curves, run_table(found)):
+        if not table.empty:
+            say("")
+            show_frame(table)
+    for one in found:
+        name = f"{one.scene.name}: " if one.scene.name and len(found) > 1 else ""
+        near = [Place(key, "", at).receiver for key, at in _near_sides(one)]
+        if near:
+            say(f"{name}near a quiet side: {', '.join(near)}")
+    for reason in reason_table(found).itertuples(index=False):
+        whose = "" if reason[1] == "all" else f" ({reason[1]})"
+        say(f"{reason[0]} does not apply{whose}: {reason[2]}", "dim")
 
 
 def _near_sides(comparison: Comparison) -> list[tuple[str, tuple[float, ...]]]:
@@ -175,37 +169,9 @@ def _near_sides(comparison: Comparison) -> list[tuple[str, tuple[float, ...]]]:
     return [(key, at) for key, places in (found.near if found else {}).items() for at in places]
 
 
-def _alignment(beside: Beside) -> str:
-    """Return in one line how a file's curves were compared with the solutions."""
-    shift, (start, end) = beside.shift, (1e3 * beside.time[0] + 0.0, 1e3 * beside.time[-1])
-    whose = "its own" if beside.own_times else "the scene's"
-    parts = [f"at {len(beside.time)} of {whose} times, {start:.6g} to {end:.6g} ms"]
-    parts += [f"{beside.outside:.1%} of its duration outside the scene's"]
-    parts += [f"linear interpolation loses {beside.missed:.2%} of the finer waveform"]
-    if shift and shift.onto:
-        moved = f"shifted by {1e3 * shift.seconds:+.4f} ms to align with {shift.onto}"
-        parts += [f"{moved}, correlation {shift.correlation:.4f}"]
-    elif shift:
-        parts += ["not shifted: no wave to correlate with"]
-    if beside.left_out:
-        parts += [f"not in this scene: {', '.join(map(str, beside.left_out))}"]
-    return f"{beside.curves.name}: {'; '.join(parts)}"
-
-
 def _residuals(comparison: Comparison) -> dict[str, float]:
     results = comparison.results.items()
     return {name: energy_residual(r) for name, r in results if "energy" in r}
-
-
-def _show_readings(found: list[Comparison]) -> None:
-    read = reading_frame(found)
-    say("")
-    if read.empty:
-        say("no velocities are recorded: record.velocity or record.points is empty")
-        return
-    variants = read.set_index("variant").map(cell).groupby(level=0, sort=False)
-    groups = {str(name): rows.values.tolist() for name, rows in variants}
-    show_numbers([*read.columns[1:]], groups)
 
 
 def _facts(comparison: Comparison, reads: bool) -> dict[str, Any]:

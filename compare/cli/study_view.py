@@ -4,10 +4,9 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 
-import pandas as pd
-
+from compare.cli.frames import show_frame
 from compare.cli.options import warn
-from compare.cli.terminal import print_json, progress, say, show_numbers, show_table
+from compare.cli.terminal import print_json, progress, say
 from compare.engines import Progress
 from compare.experiments.cost.dry_run import show_runs
 from compare.runs.checkpoint.lock import locked
@@ -16,9 +15,6 @@ from compare.studies.store import Pool, on_pool, plain
 from compare.studies.summary import Summary
 from compare.studies.sweep import Sweep, Work, run
 from compare.studies.sweep_table import summarise
-from compare.text import table_cell
-
-LONGEST = 40  # characters of a cell that is not wrapped
 
 
 def run_and_show(
@@ -66,7 +62,7 @@ def show(found: Summary, as_json: bool) -> None:
     if as_json:
         print_json(plain(found.facts))
         return
-    _show(found.table)
+    show_frame(found.table)
     for line in filter(None, [found.legend, *found.sentences]):
         say(line)
     for line in found.failed:
@@ -75,20 +71,3 @@ def show(found: Summary, as_json: bool) -> None:
         say(found.note)
     if found.files:
         say(f"written: {', '.join(map(str, found.files))}")
-
-
-def _show(table: pd.DataFrame) -> None:
-    """Print a table under its headings; with sentences in its cells each group is a table whose
-    cells are wrapped."""
-    groups: dict[str, list[list[str]]] = {}
-    for (heading, *labels), *values in table.itertuples(name=None):
-        cells = [table_cell(x, name) for x, name in zip(values, table.columns, strict=True)]
-        groups.setdefault(heading, []).append([*map(str, labels), *cells])
-    header = [*map(str, table.index.names[1:]), *map(str, table.columns)]
-    lengths = (len(cell) for rows in groups.values() for row in rows for cell in row[1:])
-    if max(lengths, default=0) <= LONGEST:
-        show_numbers(header, groups)
-        return
-    for heading, rows in groups.items():
-        say(heading, "bold")
-        show_table(header, rows)
