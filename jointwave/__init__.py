@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from cases.kinds import AnyScene
     from cases.material.calibrate import Properties
     from cases.material.closure import Closure
-    from compare.experiments.planner.planner import Plan
     from compare.misfit.external import Curves
     from compare.misfit.pairs import Comparison
     from compare.readings import (
@@ -40,6 +39,7 @@ if TYPE_CHECKING:
     )
     from compare.report.verdict import VariantScore
     from compare.studies.fit import Fit
+    from compare.studies.plan import Plan
 
 __all__ = [
     "arias_intensity",
@@ -231,9 +231,9 @@ def plan(
 
     Raises SceneError where nothing exact is known of the scene, and no run converges in reach.
     """
-    from compare.experiments.planner import planner
+    from compare.studies import plan as plans
 
-    return planner.plan(scene, misfit, seconds, progress)
+    return plans.plan(scene, misfit, seconds, progress)
 
 
 def figure(

@@ -8,10 +8,10 @@ import pytest
 
 import cases
 from compare.engines import solve
-from compare.experiments.study.findings import orders
-from compare.experiments.study.study import load
-from compare.experiments.study.summary import run
 from compare.misfit.metrics import misfit
+from compare.studies.findings import judged, orders
+from compare.studies.study import load
+from compare.studies.work_precision import run
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -48,7 +48,7 @@ def test_study_runs_on_its_scene(scene_file):
     study = load(str(path))
     rows = run(study, scene_file.parent / "points")
     assert [row.state for row in rows] == ["done"] * 3
-    (order,) = orders(study, rows)
+    (order,) = orders(study, judged(rows))
     assert order.measured == pytest.approx(order.theory, abs=0.1)
 
 

@@ -24,11 +24,11 @@ from cases.read import load, load_variant
 from cases.records import read_columns
 from cases.schema.values import CONTROL
 from compare.cli import program, start, terminal
-from compare.experiments.study.study import load as load_study
 from compare.figures.export import save
 from compare.runs.checkpoint.lock import locked
 from compare.runs.jobs import plan
 from compare.runs.output import refuse_foreign, write, write_csv, write_folder
+from compare.studies.study import load as load_study
 
 ROOT = Path(cases.__file__).parents[1]
 PACKAGES = ("cases", "results", "numerics", "joints", "dem", "continuum", "compare")
@@ -62,7 +62,7 @@ record = { points = [[0.5, 0.5]] }
 READS = {"read_bytes", "read_text", "load_dataset", "open_dataset", "read_csv", "loadtxt"}
 DOORS = {
     *("cases/files.py", "results/netcdf.py"),  # the doors
-    *("cases/size.py", "compare/experiments/cost/timings.py"),  # of the system
+    *("cases/size.py", "compare/runs/timings.py"),  # of the system
     *(
         "numerics/cache.py",
         "compare/runs/checkpoint/signature.py",

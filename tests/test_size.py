@@ -21,7 +21,6 @@ from cases.records import read_columns, read_history
 from cases.size import LIMIT, memory, refuse_beyond_memory, waveform_bytes
 from compare.engines import solve
 from compare.exact.bar import images
-from compare.experiments.study.measure import PointRow
 from compare.misfit.external_netcdf import read_netcdf
 from compare.misfit.places import COMPONENT_DIMENSIONS, QUANTITIES
 from compare.report import peers
@@ -29,6 +28,7 @@ from compare.runs.checkpoint.files import Checkpoints
 from compare.runs.checkpoint.resume import result_of
 from compare.runs.output import read_kept
 from compare.runs.processes import ALONE
+from compare.studies.measure import PointRow
 from results.labels import RECEIVERS
 
 AT_ONCE = 200e6  # bytes: what reading a scene of ten million blocks takes, not one run refused here

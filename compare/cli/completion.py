@@ -7,17 +7,15 @@ import os
 from collections.abc import Iterable
 from contextlib import suppress
 from glob import escape, glob
-from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
 import typer
 
 from cases.files import read_toml
-from compare import experiments
 from compare.scenes import find, names
+from compare.studies import IN_CODE, SHIPPED
 
 LARGEST_FILE = 1_000_000  # bytes: larger files take too long to read at a key press
-STUDIES = Path(experiments.__file__).parent / "study" / "shipped"
 
 
 def scenes(incomplete: str) -> list[str]:
@@ -59,8 +57,8 @@ def models(incomplete: str) -> list[str]:
 
 def studies(incomplete: str) -> list[str]:
     """Return shipped studies and study files."""
-    shipped = sorted(path.stem for path in STUDIES.glob("*.toml"))
-    return [*_begun([*shipped, *experiments.IN_CODE], incomplete), *_files(incomplete)]
+    shipped = sorted(path.stem for path in SHIPPED.glob("*.toml"))
+    return [*_begun([*shipped, *IN_CODE], incomplete), *_files(incomplete)]
 
 
 def _files(incomplete: str) -> list[str]:

@@ -14,12 +14,12 @@ from cases.schema.scene import Scene
 from cases.size import spoken
 from compare.cli.terminal import say, show_table
 from compare.engines import ENGINES, solver
-from compare.experiments.cost import timings
-from compare.experiments.cost.step_cost import nanoseconds, remembered_whole, whole
 from compare.misfit.ranking import applicable, reference_of
 from compare.readings.entering_wave import entering_waves
+from compare.runs import timings
 from compare.solvers.properties import least_lever, spans, speeds
 from compare.solvers.record import Prepared
+from compare.studies.step_cost import step_costs, with_every_effect
 
 ROUND_OFF = 1e-6  # of a stiffness that is fitted
 
@@ -100,10 +100,9 @@ def _cost(scene: AnyScene, measured: bool) -> Facts:
     own: float | None = None
     everything: float | None = None
     if isinstance(scene, Scene) and measured:
-        own, everything = nanoseconds(scene), whole(scene.block_count)
-        timings.note_block_step(scene, own)
+        own, everything = (one.ns for one in step_costs([scene, with_every_effect(scene)]))
     elif isinstance(scene, Scene):
-        own, everything = timings.block_step(scene), remembered_whole(scene.block_count)
+        own = timings.block_step(scene)
     return {"nanoseconds_per_block_step": own, "nanoseconds_with_everything": everything}
 
 

@@ -4,11 +4,11 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 
+from compare.cli.forecast_view import show_runs
 from compare.cli.frames import show_frame
 from compare.cli.options import warn
 from compare.cli.terminal import print_json, progress, say
 from compare.engines import Progress
-from compare.experiments.cost.dry_run import show_runs
 from compare.runs.checkpoint.lock import locked
 from compare.runs.processes import started
 from compare.studies.store import Pool, on_pool, plain
@@ -48,7 +48,7 @@ def sweep(
     warn(asked.scenes, strict)
     if dry:
         runs, failing = asked.runs(work)
-        show_runs(runs, as_json, list(failing.items()))
+        show_runs(runs, as_json, failing)
         return
 
     def done(pool: Pool | None, advance: Progress) -> Summary:

@@ -13,12 +13,10 @@ import pandas as pd
 
 from cases.errors import SceneError
 from compare.engines import Progress
-from compare.experiments.cost import timings
 from compare.report import peers
 from compare.report.overview import RankedScene, overview, seconds_of_stepping
 from compare.report.page import render
 from compare.report.scenes import (
-    RATE,
     ROCK_MASSES,
     SceneRequest,
     SolvedScene,
@@ -28,6 +26,7 @@ from compare.report.scenes import (
 )
 from compare.report.sections import section, sections
 from compare.runs.output import write_text
+from compare.runs.timings import measured_on
 from compare.studies.store import DIED, alone, in_processes, in_turn
 from compare.text import percent
 
@@ -91,13 +90,12 @@ def _solve(
     """Return the scenes, solved and drawn by processes, and timed alone afterwards."""
     found: dict[str, SolvedScene] = {}
     run = partial(in_processes, workers) if workers > 1 else in_turn
-    with timings.timing(RATE, len(requests)):
-        points = {one.name: one for one in requests}
-        for name, one in run(partial(solve, folder=out / "figures"), points):
-            if one is None:
-                raise MemoryError(f"scene {name}: {DIED}")
-            found[name] = one
-            progress(len(found) / len(requests))
+    points = {one.name: one for one in requests}
+    for name, one in run(partial(solve, folder=out / "figures"), points):
+        if one is None:
+            raise MemoryError(f"scene {name}: {DIED}")
+        found[name] = one
+        progress(len(found) / len(requests))
     solved = [found[one.name] for one in requests]
     with alone():
         timed = [seconds_of_stepping(one.scene, one.seconds) for one in solved]
@@ -124,7 +122,7 @@ def _scenes_page(solved: list[SolvedScene]) -> dict[str, Any]:
         "rock_masses": [],
         "studies": [],
         "contents": {"Figures" if numbered else "Scenes": _links(solved)},
-        "machine": timings.measured_on(),
+        "machine": measured_on(),
         "versions": found | {name: _version(name) for name in PACKAGES},
         "hint": "",
     }

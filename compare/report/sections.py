@@ -10,14 +10,14 @@ from compare.engines import Progress
 from compare.experiments.ablation import runner as effects
 from compare.experiments.ablation.summary import summarise as summarise_effects
 from compare.experiments.scattering import summary as scattering
-from compare.experiments.study.study import load
-from compare.experiments.study.summary import REPORTED
-from compare.experiments.study.summary import run as run_study
-from compare.experiments.study.summary import summarise as summarise_study
 from compare.figures.snapshots import make_snapshots
 from compare.studies.hard_cases import make_study as make_hard_cases
 from compare.studies.store import Pool
+from compare.studies.study import load
 from compare.studies.summary import Summary
+from compare.studies.work_precision import REPORTED
+from compare.studies.work_precision import run as run_study
+from compare.studies.work_precision import summarise as summarise_study
 
 #: Share of the progress that each part takes.
 PARTS = {"joints": 0.15, "studies": 0.2, "effects": 0.15, "hard cases": 0.5}

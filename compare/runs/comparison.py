@@ -6,11 +6,11 @@ from time import perf_counter
 from cases.errors import SceneError
 from cases.kinds import AnyScene
 from compare.engines import Progress, solve
-from compare.experiments.cost import timings
 from compare.misfit.alignment import lay_beside
 from compare.misfit.external import Curves
 from compare.misfit.pairs import Comparison, measure, measure_curves
 from compare.misfit.ranking import applicable
+from compare.runs import timings
 from compare.solvers.record import Answer
 
 

@@ -10,7 +10,7 @@ import xarray as xr
 
 from cases.errors import SceneError, StoppedError
 from compare.engines import Progress, solve, solver
-from compare.experiments.cost import timings
+from compare.runs import timings
 from compare.runs.checkpoint.resume import Keeping, Watch, result_of, watch
 from compare.runs.jobs import Job
 from compare.runs.output import write_dataset

@@ -37,7 +37,6 @@ from compare.studies.store import Pool, Store
 from compare.studies.summary import Summary, frame, number, text_table, write_tables
 from results.dataset import energy_residual, scene_hash
 
-RATE = "hard case"  # key of the timings of rows
 NAME = "stability"
 TITLE = "Hard cases for both engines, and the margin by which they hold"
 NOTE = (
@@ -229,7 +228,7 @@ def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = 
     `out`."""
     folder = out / NAME
     cells = Store[Column](Column, folder).compute(columns(), store.key, computed, pool)
-    rows = Store[HardRow](HardRow, folder).compute(hard_cases(), key, row_of, pool, progress, RATE)
+    rows = Store[HardRow](HardRow, folder).compute(hard_cases(), key, row_of, pool, progress)
     maps = maps_of(cells)
     with blank(3.6) as figure:
         axes = figure.subplots(1, len(maps), squeeze=False, sharey=True)[0]

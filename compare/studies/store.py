@@ -10,7 +10,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -22,7 +22,6 @@ from joblib import Parallel, delayed
 
 from cases.errors import SceneError, UnstableError
 from compare.engines import Progress
-from compare.experiments.cost import timings
 from compare.runs.checkpoint.lock import exclusive
 from compare.runs.checkpoint.signature import program
 from compare.runs.output import read_kept, write_text
@@ -97,27 +96,25 @@ class Store(Generic[T]):
         work: Callable[[P], T],
         pool: Pool | None = None,
         progress: Progress | None = None,
-        rate: str = "",
         lost: Callable[[P], T] | None = None,
     ) -> list[T]:
         """Return the results of points, in order; saved ones are not recomputed.
 
         work : returns the result of a point. pool : does the work; None: this process, one point
-        after the other. rate : key of the timings of a point. lost : returns the result of a point
-        whose process has died, not saved; None: MemoryError is raised.
+        after the other. lost : returns the result of a point whose process has died, not saved;
+        None: MemoryError is raised.
         """
         named = {key(point): point for point in points}
         found = {name: done for name in named if (done := self.read(name)) is not None}
         missing = {name: point for name, point in named.items() if name not in found}
-        with timings.timing(rate, len(missing)) if rate else nullcontext():
-            for name, result in (pool or in_turn)(work, missing):
-                if result is not None:
-                    self.save(name, result)
-                elif lost is None:
-                    raise MemoryError(f"a point has no result: {DIED}")
-                found[name] = lost(named[name]) if result is None and lost else result
-                if progress:
-                    progress(len(found) / len(named))
+        for name, result in (pool or in_turn)(work, missing):
+            if result is not None:
+                self.save(name, result)
+            elif lost is None:
+                raise MemoryError(f"a point has no result: {DIED}")
+            found[name] = lost(named[name]) if result is None and lost else result
+            if progress:
+                progress(len(found) / len(named))
         return [found[key(point)] for point in points]
 
 

@@ -31,9 +31,9 @@ from cases.schema.scene import Scene
 from cases.warnings import warnings
 from compare.cli import program
 from compare.engines import applies, names
-from compare.experiments.study.study import load as load_study
-from compare.experiments.study.summary import key
 from compare.misfit.external import read_curves
+from compare.studies.study import load as load_study
+from compare.studies.work_precision import key
 from results.dataset import scene_hash
 
 SECONDS = 5  # of the processor, for one input
@@ -183,8 +183,8 @@ SOLVERS = (
     "compare.runs.comparison.compare",
     "compare.studies.sweep.run",
     "compare.experiments.ablation.runner.run",
-    "compare.experiments.planner.planner.plan",
-    "compare.experiments.study.summary.run",
+    "compare.studies.plan.plan",
+    "compare.studies.work_precision.run",
     "compare.studies.hard_cases.make_study",
     "compare.report.report.build",
     "compare.figures.publication_file.make",

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import strategies as st
 
 import cases
-from compare.experiments.study.study import SHIPPED as STUDIES
+from compare.studies import SHIPPED as STUDIES
 
 SCENES = [
     p.read_text(encoding="utf-8") for p in sorted(Path(cases.__file__).parent.glob("*/*.toml"))

@@ -6,10 +6,9 @@ from time import perf_counter
 
 import bare
 import numpy as np
+from rows import changed, stretch
 
 from cases.material.calibrate import calibrate
-from compare.experiments.cost.scenes import changed
-from compare.experiments.cost.step_cost import stretch
 
 ROUNDS = 9
 SHORTEST = 0.03  # s

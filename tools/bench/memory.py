@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from compare.experiments.cost.scenes import changed
+from rows import changed
 
 MOST = 1_000_000
 

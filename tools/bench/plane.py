@@ -7,9 +7,8 @@ from statistics import median
 
 import numpy as np
 from kernels import ROUNDS, SLIDES, rate, side_by_side
+from rows import ELASTIC, Stretch, changed, lattice, stretch
 
-from compare.experiments.cost.scenes import ELASTIC, changed, lattice
-from compare.experiments.cost.step_cost import Stretch, stretch
 from dem.blocks.leapfrog import march, samples_for
 from dem.blocks.model import PlaneModel, state_at_rest
 from dem.blocks.system import prepared
@@ -23,7 +22,7 @@ POINTS = 4  # of a block: two contacts of two points; in the row one contact of 
 
 def model_of(blocks: int, law: dict) -> PlaneModel:
     """Return the constants of such a lattice, without the load."""
-    return prepared(lattice(blocks, law, law, {"loads": [PRESSURE]})).model
+    return prepared(lattice(blocks, law, {"loads": [PRESSURE]})).model
 
 
 def moving(model: PlaneModel, threads: int = 1) -> Stretch:

@@ -5,13 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 from plain_dolfinx import Pillar, Steps, in_order
+from rows import changed
 
 import cases
 from cases.read import load
 from cases.sampling import Clock
 from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
-from compare.experiments.cost.scenes import changed
 from continuum.build import Discrete, build_model
 from continuum.explicit.march import run
 from continuum.model import Model

@@ -16,9 +16,9 @@ from job import Job
 
 import cases
 from cases.schema.scene import Scene
-from compare.experiments.cost.scenes import PILLAR
 from compare.report.peers import sentences
 from compare.runs.output import write_csv
+from compare.scenes import find
 
 
 class Peer(NamedTuple):
@@ -93,7 +93,8 @@ def main() -> None:
     if options.rounds < 1:
         parser.error("--rounds must be at least 1")
     measure.on_one_core()
-    scene, root = cases.load_variant(PILLAR, "", ours.ALIKE), options.out.resolve()
+    scene = cases.load_variant(find(ours.SCENE), "", ours.ALIKE)
+    root = options.out.resolve()
     about = table.machine()  # its load before ours
     jobs, missing = written(options.peers or list(PEERS), scene, root)
     rows = rows_of(*beside(jobs, scene, root), options.rounds, ours.references(scene, root))

@@ -22,14 +22,14 @@ from job import ONE_THREAD
 from lammps_bonds import UNBREAKABLE
 from measure import on_one_core
 
-from compare.experiments.cost.scenes import ELASTIC, lattice
+import cases
 from dem.blocks.leapfrog import march, samples_for
 from dem.blocks.model import PlaneModel, state_at_rest
 from dem.blocks.system import prepared
 from joints.law import law_of
 
 SIDES = (32, 100, 316)  # bodies along each side
-LOAD = {"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1.0}  # taken off again
+SCENE = Path(__file__).with_name("lattice.toml")
 BODY_STEPS = 2_000_000  # of one run
 SPEED = 0.1  # m/s: turns of 1e-4, above the 1e-8 of an arc cosine near 1 that LAMMPS takes them by
 ALIKE = 1e-3  # of displacement: turns of 1e-4, which only LAMMPS takes as finite
@@ -68,7 +68,8 @@ class Lattice(NamedTuple):
 
 def bodies(side: int) -> Lattice:
     """Return the lattice, with the inertia of spheres of diameter 1 m."""
-    system = prepared(lattice(side**2, ELASTIC, ELASTIC, {"loads": [LOAD]}))
+    size = {"domain.size": [float(side), float(side)]}
+    system = prepared(cases.load_variant(SCENE, "", size))
     inertia = system.model.blocks.inertia.copy()
     inertia[:, 2] = inertia[:, 0] / 10
     blocks = system.model.blocks._replace(inertia=inertia, dt=0.5 * system.model.blocks.dt)

@@ -5,7 +5,7 @@ import platform
 
 import pandas as pd
 
-from compare.experiments.cost.timings import processor
+from compare.runs.timings import processor
 from compare.studies.summary import cell
 
 #: The columns that all studies share, then those of the peers.

@@ -54,9 +54,10 @@ def effects(
 
     wanted = _cases(scene, changes, variant, strict)
     if dry:
-        from compare.experiments.cost.experiment_cost import parts_of_effects, show_parts
+        from compare.cli.forecast_view import show_parts
+        from compare.studies import parts
 
-        show_parts(parts_of_effects(wanted, out), as_json)
+        show_parts(parts.of_effects(wanted, out), as_json)
         return
     run_and_show(
         f"{len(wanted)} variants",
@@ -79,16 +80,16 @@ def plan(
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Find the cheapest engine, elements and step that meet a misfit, by a few cheap runs."""
+    """Find the cheapest engine, elements and step that meet a misfit, run from cheap to dear."""
     scenes = load(scene, changes, variant or "", strict)
-    from compare.experiments.planner import planner
-    from compare.experiments.planner import show as plan_view
+    from compare.cli import plan_view
+    from compare.studies import plan as plans
 
     found = []
     for one in scenes:
         with terminal.progress(one.name or one.title) as advance:
-            found.append(planner.plan(one, misfit, seconds, advance))
-    plan_view.show_plans(found, misfit, as_json)
+            found.append(plans.plan(one, misfit, seconds, advance))
+    plan_view.show_plans(found, as_json)
 
 
 @app.command()
@@ -113,9 +114,10 @@ def study(
     and transmission of P and SV waves at one joint, over the angle, `parallel-joints` at several.
     """
     if dry:
-        from compare.experiments.cost.experiment_cost import parts_of_study, show_parts
+        from compare.cli.forecast_view import show_parts
+        from compare.studies import parts
 
-        show_parts(parts_of_study(name, out), as_json)
+        show_parts(parts.of_study(name, out), as_json)
         return
     from compare.cli.study_view import run_and_show
 
@@ -130,8 +132,8 @@ def study(
 
         title, work = joints.TITLES[name], lambda pool, tell: joints.make_study(name, out, tell)
     else:
-        from compare.experiments.study.study import load
-        from compare.experiments.study.summary import run, summarise
+        from compare.studies.study import load
+        from compare.studies.work_precision import run, summarise
 
         asked = load(name)
         title, work = (
@@ -175,9 +177,14 @@ def report(
     from compare.cli import views
 
     if dry:
-        from compare.experiments.cost.experiment_cost import parts_of_report, show_parts
+        from compare.cli.forecast_view import show_parts
+        from compare.report.scenes import ROCK_MASSES, asked_for
+        from compare.scenes import load as load_variants
+        from compare.studies import parts
 
-        show_parts(parts_of_report(scenes or (), out), as_json)
+        asked = [*asked_for(scenes or ()), *(() if scenes else asked_for(ROCK_MASSES))]
+        variants = [load_variants(one.file) for one in asked]
+        show_parts(parts.of_report(variants, None if scenes else out), as_json)
         return
     from compare.report.report import build
 

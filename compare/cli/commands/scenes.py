@@ -104,9 +104,9 @@ def run(
     scenes = load(scene, changes, variant, strict)
     asked = jobs.plan(scenes, wanted, out)
     if dry:
-        from compare.experiments.cost import dry_run
+        from compare.cli.forecast_view import show_runs
 
-        dry_run.show_runs([("", job.scene, job.name) for job in asked], as_json)
+        show_runs([("", job.scene, job.name) for job in asked], as_json)
         return
     processes = started()
     folders, keeping = {job.path.parent for job in asked}, Keeping(every, resume, watched())

@@ -89,9 +89,10 @@ def compare(
     scenes = load(scene, changes, variant, strict)
     curves = _read_curves(given, scenes, align, strict)
     if dry:
-        from compare.experiments.cost import dry_run
+        from compare.cli.forecast_view import show_runs
+        from compare.studies.forecast import all_runs
 
-        dry_run.show_all(scenes, as_json)
+        show_runs(all_runs(scenes), as_json)
         return
     shows_all = every or as_json or out is not None or bool(curves)
     found = []

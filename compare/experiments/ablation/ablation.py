@@ -15,12 +15,11 @@ from cases.effects import active_effects
 from cases.kinds import AnyScene
 from compare.engines import applies, solve
 from compare.experiments.ablation.variants import left_out, only
-from compare.experiments.cost.scenes import everything_like
-from compare.experiments.cost.step_cost import StepCost, freedoms_in_turns, in_turns, stretch
 from compare.misfit.metrics import pairings, rms
 from compare.misfit.weight import ROUND_OFF
 from compare.solvers.continuum import JOINTED_ROCK
 from compare.solvers.dem import DEM
+from compare.studies.step_cost import StepCost, shortened, step_costs, with_every_effect
 from compare.studies.store import FAILURES, reason_of
 
 ROCK = JOINTED_ROCK.name
@@ -99,7 +98,7 @@ def prepare(scene: AnyScene) -> list[Dropped]:
     """Return the results without each effect, and compile all kernels to be timed."""
     result = solve(DEM.name, scene)
     dropped = [_drop(scene, name, result) for name in active_effects(scene)]
-    stretch(only(scene, None))[0]()
+    solve(DEM.name, shortened(only(scene, None)))
     _runs(lambda: solve(ROCK, scene))
     return dropped
 
@@ -111,7 +110,7 @@ def _drop(scene: AnyScene, name: str, result: Any) -> Dropped:
     except FAILURES as error:
         return Dropped(name, nan, nan, False, False, reason_of(error))
     steps = result.attrs["steps"] / without.attrs["steps"]
-    alone = _runs(lambda: stretch(only(scene, name))[0]())
+    alone = _runs(lambda: solve(DEM.name, shortened(only(scene, name))))
     rock = _runs(lambda: solve(ROCK, one))
     misfit, stirred = _influence(without, result)
     return Dropped(name, misfit, float(steps), alone, rock, "", stirred)
@@ -145,8 +144,8 @@ def ablate(name: str, scene: AnyScene, dropped: list[Dropped]) -> Ablation:
     """
     alone = {one.effect: only(scene, one.effect) for one in dropped if one.alone}
     without = {one.effect: left_out(scene, one.effect) for one in dropped if not one.reason}
-    first = [everything_like(scene), only(scene, None), scene]
-    full, bare, own, *rest = in_turns([*first, *alone.values(), *without.values()])
+    first = [with_every_effect(scene), only(scene, None), scene]
+    full, bare, own, *rest = step_costs([*first, *alone.values(), *without.values()])
     in_alone = dict(zip(alone, rest, strict=False))
     in_without = dict(zip(without, rest[len(alone) :], strict=True))
     rock = _in_rock(scene, {one.effect: without[one.effect] for one in dropped if one.rock})
@@ -171,4 +170,4 @@ def _in_rock(scene: AnyScene, without: dict[str, AnyScene]) -> dict[str, StepCos
     if not applies(ROCK, scene):
         return {}
     timed = {OWN: scene} | without
-    return dict(zip(timed, freedoms_in_turns(JOINTED_ROCK, list(timed.values())), strict=True))
+    return dict(zip(timed, step_costs(list(timed.values()), ROCK), strict=True))

@@ -8,13 +8,11 @@ from cases.kinds import AnyScene, pillar_of
 from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments.ablation.ablation import Ablation, Dropped, ablate, prepare
-from compare.experiments.cost import timings
 from compare.scenes import find, shipped
 from compare.studies import store
 from compare.studies.store import Pool, Store, alone
 from results.dataset import scene_hash
 
-RATE = "effects of a variant"  # key of the timings of cases
 PREPARING = 0.8  # of the time, if nothing is compiled yet
 
 #: Scenes of the report's page, each with its variants, whose kernels are compiled there anyhow.
@@ -68,16 +66,15 @@ def run(
     done = ablations(folder)
     tell = progress or (lambda fraction: None)
     new = [case for case in wanted if not done.has(case.key)]
-    with timings.timing(RATE, len(new)):
-        results = prepared(new, folder, pool, lambda x: tell(PREPARING * x))
-        dropped = {case.key: one for case, one in zip(new, results, strict=True)}
-        with alone():
-            return done.compute(
-                wanted,
-                lambda case: case.key,
-                lambda case: ablate(case.name, case.scene, dropped[case.key]),
-                progress=lambda part: tell(PREPARING + (1 - PREPARING) * part),
-            )
+    results = prepared(new, folder, pool, lambda x: tell(PREPARING * x))
+    dropped = {case.key: one for case, one in zip(new, results, strict=True)}
+    with alone():
+        return done.compute(
+            wanted,
+            lambda case: case.key,
+            lambda case: ablate(case.name, case.scene, dropped[case.key]),
+            progress=lambda part: tell(PREPARING + (1 - PREPARING) * part),
+        )
 
 
 def prepared(

@@ -31,7 +31,6 @@ SPACING = 0.960768922830523  # m, a tenth of the P wavelength
 BACK = 6.0  # m that SV waves begin before the domain, ahead of which they make P waves
 COMPILED = 0.05  # s of compiling, above which a run is repeated for timing
 RINGS = 0.012  # s, extension of the record per further joint, for waves between joints
-RATE = "wave at joints"  # key of the timings of points
 
 
 class JointsPoint(NamedTuple):
@@ -104,7 +103,7 @@ def run(
     time: as many points may run at a time as there are cores."""
     rows: Store[JointsRow] = Store(JointsRow, folder)
     with alone():
-        return rows.compute(points(study, brief), key, measure, pool, progress, RATE)
+        return rows.compute(points(study, brief), key, measure, pool, progress)
 
 
 def key(point: JointsPoint) -> str:

@@ -11,10 +11,10 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from compare.engines import Progress, solver
 from compare.exact.plane.waves import KINDS
-from compare.experiments.cost.timings import machine
 from compare.experiments.scattering.points import AT, COUNTS, JointsRow, closed_form, run, scene_of
 from compare.figures.export import blank, save
 from compare.figures.style import style
+from compare.runs.timings import machine
 from compare.studies.store import Pool
 from compare.studies.summary import Summary, frame, number, text_table, write_tables
 from compare.text import percent

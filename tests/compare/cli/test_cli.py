@@ -8,9 +8,11 @@ import sys
 import pytest
 import xarray as xr
 
+from compare.cli import explain
 from compare.cli.explain import explanation
 from compare.cli.new import starter
-from compare.experiments.cost import step_cost, timings
+from compare.engines import solve
+from compare.runs import timings
 
 SCENE = "guo-li-2002/fig-03"
 SHORT = ("--set", "time.duration=0.02")
@@ -74,13 +76,17 @@ def test_explain_steps_no_block_unless_it_is_asked_to(pillar, monkeypatch):
         raise AssertionError("a block is stepped")
 
     with monkeypatch.context() as held:
-        held.setattr(step_cost, "stretch", refuse)
+        held.setattr(explain, "step_costs", refuse)
         assert explanation(scene)["nanoseconds_per_block_step"] is None
         with pytest.raises(AssertionError, match="a block is stepped"):
             explanation(scene, measured=True)
-    timings.note_block_step(scene, 2.5)
+    result = solve("dem", scene)
+    timings.note("dem", scene, result.attrs)
     found = explanation(scene)
-    assert found["nanoseconds_per_block_step"] == pytest.approx(2.5)
+    steps = result.attrs["steps"] * scene.block_count
+    assert found["nanoseconds_per_block_step"] == pytest.approx(
+        1e9 * result.attrs["seconds_stepping"] / steps
+    )
     assert found["references"]["dem"]["name"] == "jointed-bar"
 
 

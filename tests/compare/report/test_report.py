@@ -10,12 +10,12 @@ import pytest
 import cases
 from cases.effects import active_effects
 from compare.experiments.ablation.runner import reported
-from compare.experiments.study.study import load
-from compare.experiments.study.summary import REPORTED
 from compare.report.report import build
 from compare.report.scenes import PAPER
 from compare.report.verdict import NOT_CHECKED
 from compare.runs.field_files import read_pvd
+from compare.studies.study import load
+from compare.studies.work_precision import REPORTED
 from compare.text import percent
 
 pytestmark = pytest.mark.slow  # minutes: small pages are opened in test_browser

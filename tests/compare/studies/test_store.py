@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 from cases.errors import SceneError
-from compare.experiments.cost import timings
 from compare.studies.store import Store, in_processes, key, on_executor, plain
 
 
@@ -105,13 +104,6 @@ def test_a_damaged_file_is_one_line_that_names_it(store):
     with pytest.raises(SceneError, match=r"1\.json.*is damaged, remove it") as error:
         store.compute([1], str, square)
     assert "\n" not in str(error.value)
-
-
-def test_the_seconds_of_a_point_are_remembered_where_any_was_computed(store):
-    store.compute([1, 2], str, square, rate="square")
-    assert timings.whole("square") > 0
-    store.compute([1, 2], str, square, rate="none is new")
-    assert timings.whole("none is new") is None
 
 
 def test_keys_tell_all_that_decides_a_point_apart(monkeypatch):

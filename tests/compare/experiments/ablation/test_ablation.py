@@ -11,8 +11,8 @@ from cases.schema.joint import PARTS
 from compare.experiments.ablation import ablation
 from compare.experiments.ablation.ablation import ablate, prepare
 from compare.experiments.ablation.variants import NEEDS, WITHOUT, left_out, only
-from compare.experiments.cost.step_cost import StepCost
 from compare.misfit.metrics import relative_l2
+from compare.studies.step_cost import StepCost
 
 LAYER = [{"y": 20.0, "spacing_stiffness": 4e8, "damping_ratio": 0.05, "tension": False}]
 ACROSS = {"load__direction": [0.6, 0.8, 0.0]}
@@ -95,8 +95,8 @@ def test_what_needs_others_is_not_alone(pillar):
 @pytest.fixture
 def cheap(monkeypatch):
     """The cost of everything, by a step that is quickly compiled; one round of everything."""
-    monkeypatch.setattr("compare.experiments.cost.scenes.EVERYTHING", {})
-    monkeypatch.setattr("compare.experiments.cost.step_cost.REPEATS", 1)
+    monkeypatch.setattr(ablation, "with_every_effect", lambda scene: scene)
+    monkeypatch.setattr("compare.studies.step_cost.REPEATS", 1)
 
 
 def test_influence_is_the_misfit_of_the_result_without(pillar, cheap):
@@ -120,12 +120,13 @@ def test_costs_are_differences_of_what_was_timed(pillar, monkeypatch):
     """Of steps of known cost, 20 ns with everything: alone over the bare one, otherwise of the
     scene's own over the one without."""
 
-    def known(scenes):
+    def known(scenes, name="dem"):
         effects = [active_effects(one) for one in scenes[1:]]
         ns = [20.0, *(KNOWN["dashpots" in e, "energy ledger" in e] for e in effects)]
         return [StepCost(x, 0.25 * x) for x in ns]
 
-    monkeypatch.setattr(ablation, "in_turns", known)
+    monkeypatch.setattr(ablation, "step_costs", known)
+    monkeypatch.setattr(ablation, "applies", lambda name, scene: False)  # in rock nothing is timed
     scene = pillar(joints__damping_ratio=0.05, time__duration=0.01)
     names = "dashpots", "energy ledger"
     one = ablate(

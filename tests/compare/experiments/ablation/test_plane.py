@@ -11,10 +11,11 @@ from compare.engines import solve
 from compare.experiments.ablation import ablation
 from compare.experiments.ablation.ablation import ablate, prepare
 from compare.experiments.ablation.variants import NEEDS, left_out, only
-from compare.experiments.cost import scenes, step_cost
 from compare.misfit.metrics import misfit
+from compare.studies import step_cost
 
-ROWS = {"name": "rows", "dip": 0.0, "spacing": 2.0, **scenes.ELASTIC}
+ELASTIC = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+ROWS = {"name": "rows", "dip": 0.0, "spacing": 2.0, **ELASTIC}
 COLUMNS = ROWS | {"name": "columns", "dip": 90.0}
 PRESS = {"kind": "pressure", "side": "top", "shape": "ricker", "amplitude": 1e6, "period": 0.004}
 WAVE = {"kind": "P", "direction": [0.0, 1.0], "shape": "step", "amplitude": 1e6}
@@ -88,33 +89,9 @@ def test_a_side_that_a_wave_enters_stays():
         left_out(scene, "quiet sides")
 
 
-def test_everything_has_every_effect_but_periodic_sides_and_snapshots():
-    """Nor a quality factor: rigid blocks have no rock for it."""
-    scene = scenes.everything_in_plane(mass(), 1000)
-    left = {one.name for one in effects(scene) if not one.active}
-    assert left == {"periodic sides", "field output", "constant Q"}
-
-
-@pytest.mark.parametrize(("most", "side"), [(1000, 5.0), (16, 4.0), (1, 2.0)])
-def test_everything_has_as_many_blocks(most, side):
-    """Of 30 blocks the square below; a step has a cost of its own, which few blocks share."""
-    scene = scenes.everything_in_plane(mass(), most)
-    assert scene.domain.size == [side, side]
-
-
-def test_a_stretch_takes_the_steps_of_a_run():
-    """All of a short scene's: 30 blocks, and one sample more than the steps between them."""
-    scene = mass()
-    march, block_steps = step_cost.stretch(scene)
-    march()
-    result = solve("dem", scene)
-    stride = result.attrs["steps"] // (len(result.time) - 1)
-    assert block_steps == 30 * stride * len(result.time)
-
-
 def test_influence_is_the_misfit_of_the_result_without(monkeypatch):
     """Local damping, which only rigid blocks have, and a quiet side; loads cannot be left out."""
-    monkeypatch.setattr(ablation, "everything_like", lambda scene: scene)
+    monkeypatch.setattr(ablation, "with_every_effect", lambda scene: scene)
     monkeypatch.setattr(step_cost, "REPEATS", 1)
     scene = mass(damping={"local": 0.3}, boundaries={"bottom": "quiet"})
     one = ablate("a/b", scene, prepare(scene))

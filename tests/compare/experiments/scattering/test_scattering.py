@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from compare.engines import solve
-from compare.experiments.cost.experiment_cost import parts_of_study
 from compare.experiments.scattering import points, summary
 from compare.experiments.scattering.points import JointsPoint, JointsRow, measure, scene_of
 from compare.experiments.scattering.summary import WAVES, draw
+from compare.studies import parts
 
 #: |R_p|, |R_s|, |T_p|, |T_s| of P at nu = 0.25, K_n = Z_p omega, K_s = Z_s omega, found by solving
 #: the four boundary conditions as they stand.
@@ -100,7 +100,7 @@ def test_a_brief_study_has_every_other_point():
 
 
 def test_a_dry_run_counts_the_points(tmp_path):
-    (part,) = parts_of_study("oblique-joint", tmp_path)
+    (part,) = parts.of_study("oblique-joint", tmp_path)
     assert part.count == part.to_do == len(points.points("oblique-joint")) == 36
 
 

@@ -1,1 +1,0 @@
-"""The cost model: time and memory of steps, runs and experiments."""

@@ -1,1 +1,0 @@
-"""The cheapest configuration that meets a misfit."""

@@ -1,0 +1,186 @@
+"""The findings of a study: errors that count, orders of convergence, and results in sentences.
+
+A point counts with the largest error of itself and of all finer points of its curve: accuracy lost
+in a finer step was luck.
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import isnan, log
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from compare.misfit.metrics import JUDGED
+from compare.studies.measure import PointRow
+from compare.studies.study import ARGUMENTS, Curve, FineRun, Study
+from compare.text import percent
+
+TARGETS = (0.1, 0.01, 1e-3, 1e-4)
+CLEARLY = 0.9  # of the expected error: a smaller one is due to cancellation
+ROUND_OFF = 1e-11  # below, an error no longer falls
+KNOWN = 10  # least ratio of an error to its floor for an order accurate to some per cent
+
+
+def judged(rows: Sequence[PointRow]) -> pd.DataFrame:
+    """Return the table of a study, a row a point in its order, SI.
+
+    Beside the fields of `PointRow`: held, the error that counts, of the sum or, where that is
+    unknown, the numerical one; cancels, whether the point measures less than that.
+    """
+    table = pd.DataFrame(rows, columns=list(PointRow._fields))
+    held = assured(table, "total").fillna(assured(table, "numerical"))
+    alone = table[["numerical", "modelling"]].max(axis=1)
+    counted = table["total"].fillna(table["numerical"])
+    cancels = (table["measured"] < CLEARLY * alone) | (counted < CLEARLY * held)
+    return table.assign(held=held, cancels=cancels)
+
+
+def assured(table: pd.DataFrame, error: str) -> pd.Series:
+    """Return the largest error of each point and of all finer ones of its curve, with the same
+    physics; nan where a point has no error.
+
+    Finer has as many freedoms and steps or more or, where these are not counted, stands later.
+    """
+    errors = table[error].where(table["state"] == "done")
+    model = table["curve"] + " " + table["settings"].map(_physics)
+
+    def largest(i: int) -> float:
+        freedoms, steps = table["freedoms"][i], table["steps"][i]
+        finer = (table["freedoms"] >= freedoms) & (table["steps"] >= steps)
+        if isnan(freedoms + steps):
+            finer = table.index >= i
+        return errors[finer & (model == model[i])].max()
+
+    return table.index.to_series().map(largest).where(errors.notna()).astype(float)
+
+
+def _physics(settings: dict[str, Any]) -> str:
+    """Return the varied keys other than numerics and block size: these change the problem."""
+    free = {"pillar.block", *ARGUMENTS}
+    kept = {k: v for k, v in settings.items() if k not in free and not k.startswith("numerics.")}
+    return repr(sorted(kept.items()))
+
+
+def done(table: pd.DataFrame, error: str, cost: str) -> pd.DataFrame:
+    """Return the points that were done and have both numbers."""
+    return table[(table["state"] == "done") & (table[error] > 0) & (table[cost] > 0)]
+
+
+class Cheapest(NamedTuple):
+    """The cheapest point within a misfit, and that of another curve; None if there is none."""
+
+    misfit: float
+    point: Any
+    next_best: Any | None
+
+
+def cheapest(table: pd.DataFrame) -> list[Cheapest]:
+    """Return the cheapest point within each of `TARGETS`, if there is one and if the reference of
+    errors is known to a tenth of the target."""
+    found = []
+    by_cost = done(table, "total", "seconds").sort_values("seconds")
+    for target in TARGETS:
+        known = JUDGED * by_cost["total_floor"] <= target
+        within = list(by_cost[(by_cost["held"] <= target) & known].itertuples())
+        if within:
+            others = (point for point in within if point.curve != within[0].curve)
+            found.append(Cheapest(target, within[0], next(others, None)))
+    return found
+
+
+def floor(table: pd.DataFrame, error: str) -> float:
+    """Return the error below which errors are not known; 0 against exact solutions. For totals it
+    is that of the finest physics, without that of each curve's own model."""
+    largest = float(table[f"{error}_floor"].max())
+    if error == "total":
+        of_finest = float((table["total_floor"] - table["numerical_floor"]).max())
+        largest = of_finest or largest
+    return 0.0 if isnan(largest) else largest
+
+
+class Order(NamedTuple):
+    """The order measured along one curve: that between its two finest points, with the varied
+    key or its inverse; all of them; and the theoretical one."""
+
+    curve: str
+    key: str
+    measured: float
+    steps: list[float]
+    theory: float
+
+
+def orders(study: Study, table: pd.DataFrame) -> list[Order]:
+    """Return the orders of all curves with a theoretical order and at least two points."""
+    found = (_order(curve, table[table["curve"] == curve.label]) for curve in study.curves)
+    return [order for order in found if order is not None]
+
+
+def _order(curve: Curve, table: pd.DataFrame) -> Order | None:
+    numeric = [k for k, v in curve.vary.items() if len(v) > 1 and np.isreal(v[0])]
+    if curve.order is None or len(numeric) != 1:
+        return None
+    (key,) = numeric
+    least = (KNOWN * table["numerical_floor"].fillna(0.0)).clip(lower=ROUND_OFF)
+    known = table[(table["state"] == "done") & (table["numerical"] > least)]
+    # The actual step if a key of steps is varied: two fractions may be one step.
+    size = known["dt"] if "step" in key else known["settings"].map(lambda s: float(s[key]))
+    points = known.assign(size=size).drop_duplicates("size", keep="last")
+    # The error falls along the points, whichever way the key goes.
+    pairs = pairwise(points.sort_values("numerical", ascending=False).itertuples())
+    steps = [abs(log(a.numerical / b.numerical) / log(a.size / b.size)) for a, b in pairs]
+    return Order(curve.label, key, steps[-1], steps, curve.order) if steps else None
+
+
+def sentences(study: Study, table: pd.DataFrame) -> list[str]:
+    """Return the findings of a study: the measured orders; of a timed one the cheapest point within
+    each misfit, and the extra cost of the next best curve; where errors cancel; and the accuracy of
+    the finest physics, if it is a fine run."""
+    found = []
+    if study.timed and table["total"].notna().any():
+        found += [_cheapest(target) for target in cheapest(table)]
+        found += _cancelling(table[table["cancels"] & (table["measured"] > 0)])
+        if isinstance(study.finest, FineRun):
+            found.append(
+                f"The finest physics is a fine run of {study.finest.method}; a coarser one is "
+                f"{percent(floor(table, 'total'))} % from it."
+            )
+    if failed := int((table["state"] == "failed").sum()):
+        found.append(f"{failed} of {len(table)} points failed; they are listed in the table.")
+    return found + [
+        f"{one.curve}: order {one.measured:.2f} with {one.key}, in theory {one.theory:g}."
+        for one in orders(study, table)
+    ]
+
+
+def _cheapest(target: Cheapest) -> str:
+    best, other = target.point, target.next_best
+    text = (
+        f"Within {percent(target.misfit)} % of the finest physics the cheapest is {best.curve} "
+        f"({_errors(best)}; {_seconds(best.seconds)})"
+    )
+    if other is None:
+        return f"{text}; no other curve reaches it."
+    times = f"{other.seconds / best.seconds:.3g} times as long"
+    return f"{text}; the next best, {other.curve} ({_errors(other)}), steps {times}."
+
+
+def _errors(point: Any) -> str:
+    parts = f"numerical {percent(point.numerical)} % + modelling {percent(point.modelling)} %"
+    return f"{parts} = {percent(point.total)} %"
+
+
+def _seconds(value: float) -> str:
+    return f"{value:.2g} s" if value >= 0.1 else f"{max(1e3 * value, 0.1):.2g} ms"
+
+
+def _cancelling(points: pd.DataFrame) -> list[str]:
+    if points.empty:
+        return []
+    most = points.loc[(points["measured"] / points["held"]).idxmin()]
+    return [
+        f"At {len(points)} points errors cancel, or a finer step is worse; they are marked, and "
+        f"count for what all finer points of their curve hold: {most.curve} measures "
+        f"{percent(most.measured)} % from the finest physics and counts for {percent(most.held)} %."
+    ]

@@ -1,0 +1,140 @@
+"""One point of a study, measured: its errors, counts, time and memory."""
+
+from collections.abc import Callable
+from math import nan
+from statistics import median
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import xarray as xr
+
+from cases.errors import SceneError
+from cases.kinds import AnyScene, pillar_of
+from compare.engines import applies, solve, solver
+from compare.solvers.record import Answer
+from compare.studies.methods import METHODS
+from compare.studies.reference import UNKNOWN, error, finest_of, known, own_of
+from compare.studies.store import FAILURES
+from compare.studies.study import StudyPoint
+
+LONG = 0.1  # s: longer steps are timed once
+
+
+class PointRow(NamedTuple):
+    """A point in the table of a study; numbers that a method does not have are nan.
+
+    state : "done" or "failed", with the reason in `message`.
+    numerical : misfit from the exact solution of the method's own model; modelling : of that from
+        the finest physics; total : sum of both and their floors, an upper bound. measured :
+        from the finest physics, where the two may cancel.
+    numerical_floor, total_floor : below which they are not known, 0 against closed forms.
+    dt : s. steps : of time. work : freedoms times evaluations of all forces, which are
+        degree-of-freedom-steps where a step takes one. bytes : of the model and its state.
+    seconds, spread : stepping, median and half the range of the repeats, or of the
+        first run where that takes long; setup, compile : of the first run.
+    """
+
+    curve: str
+    method: str
+    settings: dict[str, Any]
+    state: str
+    message: str
+    numerical: float = nan
+    modelling: float = nan
+    total: float = nan
+    measured: float = nan
+    numerical_floor: float = nan
+    total_floor: float = nan
+    dt: float = nan
+    steps: float = nan
+    freedoms: float = nan
+    work: float = nan
+    bytes: float = nan
+    seconds: float = nan
+    spread: float = nan
+    setup: float = nan
+    compile: float = nan
+
+
+def measure(point: StudyPoint) -> PointRow:
+    """Run a point and return its row; a point that fails gives a row with the reason."""
+    row = PointRow(point.curve.label, point.curve.method, point.settings, "done", "")
+    try:
+        run = runner(point)
+        result = run()
+        seconds = _timed(run, result, point.study.repeats if point.study.timed else 1)
+        found = _errors(point, result) | _counts(result) | seconds
+        return row._replace(**found)  # type: ignore[arg-type]
+    except FAILURES as failure:
+        return row._replace(state="failed", message=str(failure))
+
+
+def runner(point: StudyPoint) -> Callable[[], xr.Dataset]:
+    """Return the function that solves a point once."""
+    method, scene, arguments = point.curve.method, point.scene, point.arguments
+    if not (answer := method_applies(method, scene)):
+        raise SceneError(scene.title, "", None, f"{method} does not apply: {answer.reason}")
+
+    def run() -> xr.Dataset:
+        began = perf_counter()
+        if method in METHODS:
+            result = METHODS[method].solve(pillar_of(scene, method), **arguments)
+        elif arguments:
+            result = solver(method).run(scene, **arguments)
+        else:
+            result = solve(method, scene)
+        result.attrs.setdefault("seconds_stepping", perf_counter() - began)  # of exact solutions
+        return result
+
+    return run
+
+
+def method_applies(method: str, scene: AnyScene) -> Answer:
+    """Return whether a method applies to a scene, or the reason why not."""
+    if method in METHODS:
+        return METHODS[method].applies(pillar_of(scene, method))
+    return applies(method, scene)
+
+
+def _errors(point: StudyPoint, result: xr.Dataset) -> dict[str, float]:
+    study = point.study
+    own = known(own_of(point), study, point.physics)
+    finest = known(finest_of(study), study, {})
+    numerical = error(result, own, study)
+    modelling = UNKNOWN if own is None else error(own.result, finest, study)
+    floor = numerical.floor + modelling.floor
+    return {
+        "numerical": numerical.misfit,
+        "modelling": modelling.misfit,
+        "total": numerical.misfit + modelling.misfit + floor,
+        "measured": error(result, finest, study).misfit,
+        "numerical_floor": numerical.floor,
+        "total_floor": floor,
+    }
+
+
+def _counts(result: xr.Dataset) -> dict[str, float]:
+    def first(*names: str) -> float:
+        return float(next((result.attrs[x] for x in names if x in result.attrs), nan))
+
+    freedoms = first("degrees_of_freedom")
+    # Forces are evaluated in stages, by Newton's method, or once per step.
+    evaluations = first("force_evaluations", "newton_iterations", "steps")
+    return {
+        "dt": first("dt"),
+        "steps": first("steps"),
+        "freedoms": freedoms,
+        "work": evaluations * freedoms,
+        "bytes": first("bytes"),
+        "setup": first("seconds_setup"),
+        "compile": first("seconds_compile"),
+    }
+
+
+def _timed(run: Callable[[], xr.Dataset], result: xr.Dataset, repeats: int) -> dict[str, float]:
+    """Return the seconds of stepping of repeats, now that everything is compiled, or those of the
+    result if they are long or need no repeats."""
+    seconds = [float(result.attrs["seconds_stepping"])]
+    if repeats > 1 and seconds[0] <= LONG:
+        seconds = [float(run().attrs["seconds_stepping"]) for _ in range(repeats)]
+    return {"seconds": median(seconds), "spread": (max(seconds) - min(seconds)) / 2}

@@ -1,0 +1,107 @@
+"""The parts of commands over many runs, for `--dry-run`: a study, effects of scenes, the report.
+
+The time of a part is that of its runs that are not done.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from cases.effects import active_effects
+from cases.errors import SceneError
+from cases.kinds import AnyScene
+from compare.experiments.ablation import runner as ablation
+from compare.experiments.scattering import points as scattering
+from compare.solvers.dem import DEM
+from compare.studies import hard_cases, work_precision
+from compare.studies.forecast import Part, Run, all_runs, part
+from compare.studies.store import Store
+from compare.studies.study import StudyPoint, load
+
+
+def of_study(name: str, out: Path) -> list[Part]:
+    """Return the curves of a study, the rows of the hard cases or the waves at joints."""
+    if name == hard_cases.NAME:
+        return [_hard_cases(out)]
+    if name in scattering.SOLVERS:
+        return [_joints(name, out)]
+    study, stem = load(name), Path(name).stem
+    curves = (study.model_copy(update={"curves": [curve]}) for curve in study.curves)
+    return [
+        _part(
+            f"{stem}: {one.curves[0].label} ({one.curves[0].method})",
+            one.points(),
+            work_precision.key,
+            _of_point,
+            out / stem,
+        )
+        for one in curves
+    ]
+
+
+def of_effects(wanted: Sequence[ablation.Variant], out: Path) -> list[Part]:
+    """Return the variants whose effects would be measured: a run with all, one without each."""
+    return [
+        _part(f"{one.name} {one.scene.name}".strip(), [one], lambda x: x.key, _of_effects, out)
+        for one in wanted
+    ]
+
+
+def of_report(scenes: Iterable[Sequence[AnyScene]], out: Path | None) -> list[Part]:
+    """Return the parts of the report: the variants of its scenes, and in `out` all of its studies;
+    None: without any."""
+    runs = [all_runs(variants) for variants in scenes]
+    found = [part("scenes", len(runs), runs)]
+    if out is None:
+        return found
+    studies = out / "studies"
+    found += [one for name in work_precision.REPORTED for one in of_study(name, studies)]
+    found += [_joints(name, studies, brief=True) for name in scattering.SOLVERS]
+    found.append(_hard_cases(studies))
+    cases = ablation.reported()
+    return [*found, _part("effects", cases, lambda x: x.key, _of_effects, out / "effects")]
+
+
+def _part(
+    label: str,
+    points: Sequence[Any],
+    key: Callable[[Any], str],
+    runs: Callable[[Any], list[Run]],
+    folder: Path,
+) -> Part:
+    """Return a part; runs : of a point; key, folder : of its result in the store."""
+    done = Store[Any](None, folder)
+    to_do = [runs(point) for point in points if not done.has(key(point))]
+    return part(label, len(points), to_do)
+
+
+def _joints(name: str, out: Path, brief: bool = False) -> Part:
+    points = scattering.points(name, brief)
+    return _part(name, points, scattering.key, _of_joints, out / name)
+
+
+def _hard_cases(out: Path) -> Part:
+    found, folder = hard_cases.hard_cases(), out / hard_cases.NAME
+    return _part("hard cases", found, hard_cases.key, _of_hard_case, folder)
+
+
+def _of_point(point: StudyPoint) -> list[Run]:
+    try:
+        return [("", point.scene, point.curve.method)]
+    except SceneError:
+        return []  # it fails before its first step
+
+
+def _of_effects(one: ablation.Variant) -> list[Run]:
+    return [("", one.scene, DEM.name)] * (1 + len(active_effects(one.scene)))
+
+
+def _of_joints(point: scattering.JointsPoint) -> list[Run]:
+    return [("", scattering.scene_of(*point[1:]), point.solver)]
+
+
+def _of_hard_case(one: hard_cases.HardCase) -> list[Run]:
+    try:
+        return [("", one.read(), one.engine)]
+    except SceneError:
+        return []

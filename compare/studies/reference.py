@@ -1,0 +1,112 @@
+"""References of errors: exact solutions, or fine runs whose own error is bounded."""
+
+from math import nan
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from cases.kinds import AnyScene
+from compare.engines import ENGINES, EXACT, applies, solve, solver
+from compare.misfit.metrics import Pairing, pairings, relative_l2, worst
+from compare.misfit.ranking import applicable, finest, own_exact
+from compare.studies.methods import METHODS
+from compare.studies.study import FINEST, NONE, FineRun, Study, StudyPoint
+from results.dataset import scene_hash
+
+
+class Reference(NamedTuple):
+    """The reference of errors.
+
+    error : relative, of the reference itself: the bound of a computed solution, 0 for a closed
+    form; for a run its distance from a coarser one. settings : of a run, "" for an exact solution.
+    """
+
+    name: str
+    result: xr.Dataset
+    error: float
+    settings: str = ""
+
+
+class Error(NamedTuple):
+    """A misfit, and its floor, below which it is not known: 0 against a closed form."""
+
+    misfit: float
+    floor: float
+
+
+UNKNOWN = Error(nan, nan)
+
+
+def finest_of(study: Study) -> str | FineRun | None:
+    """Return the reference of total errors: as set by the study, else the finest exact solution;
+    None if the finest that applies is an engine and the study gives no fine run of it."""
+    if study.finest is not None:
+        return None if study.finest == NONE else study.finest
+    scene = study.changed({})
+    found = finest([name for name, answer in applicable(scene).items() if answer], scene)
+    return None if found is None or found.name in ENGINES else found.name
+
+
+def own_of(point: StudyPoint) -> str | FineRun | None:
+    """Return the reference of a point's numerical error: as set by its curve, else the exact
+    solution of its own model, else a run of its engine as fine as the study's; None without."""
+    own, study, scene = point.curve.own, point.study, point.scene
+    if own is not None:
+        return finest_of(study) if own == FINEST else None if own == NONE else own
+    method = point.curve.method
+    engine = METHODS[method].ENGINE if method in METHODS else method
+    exact = own_exact(engine, [name for name in EXACT if applies(name, scene)], scene)
+    if exact or not isinstance(study.finest, FineRun):
+        return exact
+    alike = solver(engine).engine == solver(study.finest.method).engine
+    return study.finest.model_copy(update={"method": engine}) if alike else None
+
+
+def known(against: str | FineRun | None, study: Study, physics: dict[str, Any]) -> Reference | None:
+    """Return a reference of the study's scene with some physics changed; None without."""
+    if against is None:
+        return None
+    if isinstance(against, str):
+        scene = study.changed(physics)  # an exact solution has no numerics
+        plain = scene.model_copy(update={"numerics": type(scene.numerics)(), "expect": {}})
+        exact = _solved(against, plain)
+        return Reference(against, exact, worst(exact, exact).floor)
+    changes = physics | against.changes
+    fine = _solved(against.method, study.changed(changes))
+    coarse = _solved(against.method, study.changed(changes | against.coarser))
+    return Reference(against.method, fine, _misfit(coarse, fine, study), str(against.changes))
+
+
+def error(result: xr.Dataset, against: Reference | None, study: Study) -> Error:
+    """Return the error of a result, over the quantity of the study; 0 of a reference itself,
+    unknown without one."""
+    if against is None:
+        return UNKNOWN
+    if result is against.result:
+        return Error(0.0, 0.0)
+    return Error(_misfit(result, against.result, study), against.error)
+
+
+def _solved(name: str, scene: AnyScene) -> xr.Dataset:
+    """Return a solution, computed once per process."""
+    key = name, scene_hash(scene)
+    if key not in _solutions:
+        _solutions[key] = solve(name, scene)
+    return _solutions[key]
+
+
+_solutions: dict[tuple[str, str], xr.Dataset] = {}
+
+
+def _misfit(one: xr.Dataset, other: xr.Dataset, study: Study) -> float:
+    """Return the misfit of the worst waveform; for a single quantity, the relative L2 norm over
+    time and all its receivers, of the worst component."""
+    if study.quantity is None:
+        return worst(one, other).misfit
+    by_component: dict[str, list[Pairing]] = {}
+    for pair in pairings(one, other):
+        if pair.place.quantity == study.quantity:
+            by_component.setdefault(pair.place.component, []).append(pair)
+    both = ([(p.one, p.other) for p in pairs] for pairs in by_component.values())
+    return max((relative_l2(*np.array(waves).swapaxes(0, 1)) for waves in both), default=nan)

@@ -1,0 +1,82 @@
+"""The cost of a step of one rigid block, or of one degree of freedom of deformable rock."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from statistics import median
+from typing import NamedTuple
+
+import cases
+from cases.kinds import AnyScene
+from cases.schema.scene import Scene
+from compare.engines import ENGINES, solve, solver
+from compare.runs import timings
+from compare.solvers.dem import DEM
+from compare.solvers.record import OF_BLOCK_IN_PLANE
+
+SCENES = Path(__file__).parent / "scenes"
+UNIT_STEPS = 1_000_000  # steps of one block or freedom in a timed run, about
+REPEATS = 5
+ENOUGH = 0.02  # s of stepping: shorter runs are repeated more often, for the clock's resolution
+MOST_REPEATS = 40
+BLOCKS = 1000  # with every effect, at most
+
+
+class StepCost(NamedTuple):
+    """The least cost of a step in some runs, ns, and the excess of their median: the resolution of
+    timings on this machine."""
+
+    ns: float
+    noise: float
+
+
+def step_costs(scenes: Sequence[AnyScene], name: str = DEM.name) -> list[StepCost]:
+    """Return the cost of a step of one block or freedom in an engine's runs of some scenes.
+
+    The beginning of each scene is run several times; the scenes alternate, so that temporary load
+    of the machine affects all of them. The rates are stored, see `compare.runs.timings`.
+    Raises SceneError if the engine does not apply, UnstableError if a run becomes unstable.
+    """
+    short = [shortened(scene, name) for scene in scenes]
+    for scene in short:
+        solve(name, scene)  # compiles
+    rounds: list[list[float]] = []
+    spent = 0.0
+    while len(rounds) < REPEATS or (spent < ENOUGH and len(rounds) < MOST_REPEATS):
+        results = [solve(name, scene) for scene in short]
+        spent += min(float(one.attrs["seconds_stepping"]) for one in results)
+        rounds.append([_nanoseconds(name, *pair) for pair in zip(short, results, strict=True)])
+    for scene, result in zip(short, results, strict=True):
+        timings.note(name, scene, result.attrs)
+    each = list(zip(*rounds, strict=True))
+    return [StepCost(min(ns), median(ns) - min(ns)) for ns in each]
+
+
+def shortened(scene: AnyScene, name: str = DEM.name) -> AnyScene:
+    """Return the beginning of a scene, one sample or more, on one thread and without snapshots."""
+    run = solver(name).prepare(scene)
+    steps = run.steps * ENGINES[name].units(scene, run.freedoms)
+    duration = scene.time.duration * min(1.0, UNIT_STEPS / steps)
+    time = scene.time.model_copy(update={"duration": max(scene.interval, duration)})
+    record = scene.record.model_copy(update={"interval": scene.interval, "fields": None})
+    dem = scene.numerics.dem.model_copy(update={"threads": 1})
+    numerics = scene.numerics.model_copy(update={"dem": dem})
+    return scene.model_copy(update={"time": time, "record": record, "numerics": numerics})
+
+
+def _nanoseconds(name: str, scene: AnyScene, result) -> float:
+    about = result.attrs
+    units = ENGINES[name].units(scene, about["degrees_of_freedom"])
+    return 1e9 * float(about["seconds_stepping"]) / (about["steps"] * units)
+
+
+def with_every_effect(scene: AnyScene) -> AnyScene:
+    """Return a scene of this kind with every effect and about as many rigid blocks: with few blocks
+    the fixed cost of a step matters."""
+    if isinstance(scene, Scene):
+        count = min(scene.block_count, BLOCKS)
+        return cases.load_variant(SCENES / "every-effect.toml", "", {"pillar.length": 0.5 * count})
+    blocks = solver(DEM.name).prepare(scene).freedoms // OF_BLOCK_IN_PLANE
+    side = float(max(2, int(min(blocks, BLOCKS) ** 0.5)))
+    return cases.load_variant(
+        SCENES / "every-effect-in-plane.toml", "", {"domain.size": [side, side]}
+    )

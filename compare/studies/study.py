@@ -1,0 +1,242 @@
+"""Studies: a scene, curves of varied keys, and the references of errors, read from TOML."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from math import prod
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    model_validator,
+)
+
+import cases
+from cases.errors import SceneError, nearest
+from cases.files import read_toml
+from cases.kinds import AnyScene
+from compare.engines import names, solvers
+from compare.scenes import find
+from compare.studies import IN_CODE, SHIPPED
+from compare.studies.methods import METHODS
+
+LARGEST_FILE = 1_000_000  # bytes
+MOST_POINTS = 10_000
+FINEST, NONE = "finest", "none"  # references of errors other than solutions
+#: Settings that are arguments of a method, not keys of a scene, with their type.
+ARGUMENTS: dict[str, type[int] | type[float]] = {"n_terms": int, "rtol": float}
+LARGEST_ARGUMENT = 1e9
+
+
+def _plain(value: Any) -> Any:
+    """Refuse values not allowed in scenes or in tables of studies: dates, huge numbers."""
+    if isinstance(value, dict | list):
+        for part in value.values() if isinstance(value, dict) else value:
+            _plain(part)
+    elif isinstance(value, int) and value.bit_length() > 64:
+        raise ValueError("must be a number of at most 64 bits")
+    elif not isinstance(value, int | float | str):
+        raise ValueError("must be a number, a text, or true or false")
+    return value
+
+
+def _one_of(*others: str) -> BeforeValidator:
+    """Return a check that a text is the name of a solver or one of these."""
+
+    def check(value: Any) -> Any:
+        known = (*names(), *others)
+        if isinstance(value, str) and value not in known:
+            raise ValueError(f"must be one of {', '.join(known)}")
+        return value
+
+    return BeforeValidator(check)
+
+
+def combinations(values: Mapping[str, Sequence[Any]]) -> Iterator[dict[str, Any]]:
+    """Yield every combination of the values of some keys, the last key first to change."""
+    for one in product(*values.values()):
+        yield dict(zip(values, one, strict=True))
+
+
+Value = Annotated[Any, AfterValidator(_plain)]
+Values = Annotated[list[Value], Field(min_length=1)]
+Changes = Annotated[dict[str, Value], Field(default_factory=dict)]
+Varied = Annotated[dict[str, Values], Field(default_factory=dict)]
+
+
+class StudyTable(BaseModel):
+    """A table of a study's file; unknown keys are errors."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class FineRun(StudyTable):
+    """The reference of errors if there is no exact solution: an engine's fine run.
+
+    changes : of the scene, mainly its numerics. coarser : additional changes; the distance of that
+        run from this one is the floor below which errors are not known.
+    """
+
+    method: Annotated[str, _one_of()]
+    changes: Changes
+    coarser: dict[str, Value]
+
+
+class Curve(StudyTable):
+    """One way to solve the scene, with its varied keys.
+
+    method : an engine, an exact solution, or one of `compare.studies.methods`.
+    vary : dotted keys and their values, all combinations; `n_terms` is an exact series' own.
+    each : dotted keys and their values: every combination is a curve of its own, whose label has
+        the value in place of the key's last part in braces.
+    own : the exact solution of the curve's own model, or a fine run of it, for its numerical
+        error; "finest": that of the study; "none"; absent: the exact one that ranks highest
+        (`compare.misfit.ranking`), else a run of its engine at the numerics of the study's fine
+        run.
+    order : in theory, of the numerical error, with the first varied key or, where that falls as
+        its value grows (elements, steps per period), with its inverse.
+    """
+
+    label: str
+    method: Annotated[str, _one_of(*METHODS)]
+    changes: Changes
+    vary: Varied
+    each: Varied
+    own: Annotated[str | FineRun | None, _one_of(FINEST, NONE)] = None
+    order: float | None = None
+
+    @model_validator(mode="after")
+    def _arguments_are_of_the_method(self) -> "Curve":
+        given = {key: [value] for key, value in self.changes.items()} | self.vary
+        for name in given.keys() & ARGUMENTS.keys():
+            takers = [one.name for one in solvers() if name in one.arguments]
+            takers += [one for one, module in METHODS.items() if name in module.ARGUMENTS]
+            if self.method not in takers:
+                raise ValueError(f"{name} is an argument of {', '.join(takers)}")
+            kind = ARGUMENTS[name]
+            for value in given[name]:
+                if type(value) is not kind or not 0 < value < LARGEST_ARGUMENT:
+                    number = "a whole number" if kind is int else "a number"
+                    raise ValueError(f"{name} = {value}: must be {number} above 0")
+        return self
+
+    def expanded(self) -> Iterator["Curve"]:
+        """Yield the curves into which `each` expands this one."""
+        for values in combinations(self.each):
+            label = self.label
+            for key, value in values.items():
+                label = label.replace(f"{{{key.rpartition('.')[2]}}}", str(value))
+            changes = self.changes | values
+            yield self.model_copy(update={"label": label, "changes": changes, "each": {}})
+
+
+def _expanded(curves: list[Curve]) -> list[Curve]:
+    """Return the curves without `each`; raises ValueError for more points than allowed."""
+    lengths = ([*map(len, (*one.each.values(), *one.vary.values()))] for one in curves)
+    if (count := sum(map(prod, lengths))) > MOST_POINTS:
+        raise ValueError(f"give {count:.6g} points, at most {MOST_POINTS}")
+    return [one for curve in curves for one in curve.expanded()]
+
+
+class Study(StudyTable):
+    """A scene, its finest physics, and curves.
+
+    finest : the reference of modelling errors: an exact solution or a fine run; "none";
+        absent: the exact solution that ranks highest.
+    quantity : whose relative L2 norm over time and all its receivers is the misfit, as in
+        the theory of orders; absent: the misfit of the worst waveform.
+    note : a remark for the reader.
+    timed : whether seconds count: points are then run one at a time, `repeats` times each.
+    """
+
+    title: str
+    scene: str
+    variant: str = ""
+    changes: Changes
+    finest: Annotated[str | FineRun | None, _one_of(NONE)] = None
+    quantity: Literal["stress", "velocity", "displacement"] | None = None
+    note: str = ""
+    timed: bool = False
+    repeats: Annotated[int, Field(ge=1, le=100)] = 3
+    curves: Annotated[list[Curve], Field(min_length=1), AfterValidator(_expanded)]
+
+    def changed(self, changes: dict[str, Any]) -> AnyScene:
+        """Return the scene with changes; raises SceneError if it is invalid."""
+        changes = self.changes | changes | {"expect": {}}
+        return cases.load_variant(find(self.scene), self.variant, changes, asked=False)
+
+    def points(self) -> list["StudyPoint"]:
+        """Return all points, curve by curve."""
+        return [
+            StudyPoint(self, curve, settings)
+            for curve in self.curves
+            for settings in combinations(curve.vary)
+        ]
+
+
+@dataclass(frozen=True)
+class StudyPoint:
+    """One run of a study: a curve with one value of each varied key."""
+
+    study: Study
+    curve: Curve
+    settings: dict[str, Any]
+
+    @property
+    def changes(self) -> dict[str, Any]:
+        """The changes of the scene."""
+        given = self.curve.changes | self.settings
+        return {k: v for k, v in given.items() if k not in ARGUMENTS}
+
+    @property
+    def physics(self) -> dict[str, Any]:
+        """The changes of the scene besides its numerics."""
+        return {k: v for k, v in self.changes.items() if not k.startswith("numerics.")}
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """The settings that are not keys of the scene, such as the terms of a series."""
+        given = self.curve.changes | self.settings
+        return {k: v for k, v in given.items() if k in ARGUMENTS}
+
+    @cached_property
+    def scene(self) -> AnyScene:
+        """The scene to solve; raises SceneError if it is invalid."""
+        return self.study.changed(self.changes)
+
+
+def shipped() -> dict[str, Path]:
+    """Return the shipped studies by name."""
+    return {path.stem: path for path in sorted(SHIPPED.glob("*.toml"))}
+
+
+def load(name: str) -> Study:
+    """Read a shipped study or a study's file, whose scene may be given relative to it.
+
+    Raises SceneError, in one line.
+    """
+    path = shipped().get(name, Path(name))
+    if not path.is_file():
+        known = [*shipped(), *IN_CODE]
+        allowed = f"is not a file, nor one of {', '.join(known)}{nearest(name, known)}"
+        raise SceneError(name, "", None, allowed)
+    try:
+        study = Study.model_validate(read_toml(path, LARGEST_FILE))
+    except ValidationError as error:
+        first = error.errors()[0]
+        given = first["input"]
+        value = given if isinstance(given, str | int | float) or given == [] else None
+        key = ".".join(str(part) for part in first["loc"])
+        allowed = first["msg"].removeprefix("Value error, ")
+        raise SceneError(str(path), key, value, allowed[0].lower() + allowed[1:]) from None
+    except ValueError as error:
+        raise SceneError(str(path), "", None, str(error)) from None
+    beside = path.parent / study.scene
+    return study.model_copy(update={"scene": str(beside)}) if beside.is_file() else study

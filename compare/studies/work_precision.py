@@ -1,0 +1,195 @@
+"""The table, the diagram and the findings of a study: error over seconds and over counted work.
+
+A cross is a point that is more accurate than its errors or finer points imply: it does not count.
+Colours are those of models.
+"""
+
+import json
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
+
+from compare.engines import Progress, names
+from compare.figures.export import blank, save
+from compare.figures.style import style
+from compare.runs.timings import machine
+from compare.studies.findings import done, floor, judged, orders, sentences
+from compare.studies.measure import PointRow, measure
+from compare.studies.store import Pool, Store, alone
+from compare.studies.store import key as store_key
+from compare.studies.study import Study, StudyPoint, load
+from compare.studies.summary import Summary, number, text_table, write_tables
+
+#: The studies of the report, in its order.
+REPORTED = ("free-pillar", "convergence", "uniform-chain", "one-joint")
+CANCELS = "×"
+ERRORS = {
+    "numerical": "numerical error (own model)",
+    "total": "numerical + modelling error",
+}
+COSTS = {"seconds": "seconds of stepping", "work": "degrees of freedom x force evaluations"}
+MARKERS = "os^vDPX*<>hpd8H"
+#: Colours of methods without one elsewhere, distinct from all others (Okabe & Ito 2008).
+OTHERS = ("#6b6b6b", "#cc79a7", "#8a6d00", "#7a4fbf", "#000000")
+LEGEND = (
+    "Sum: numerical and modelling error with what their references are not known to; it counts. "
+    f"Measured: from the finest physics; {CANCELS} where errors cancel, or a finer point is worse."
+)
+COLUMNS = [
+    *("point", "numerical, %", "modelling, %", "sum, %", "measured, %", "steps", "work", "kB"),
+    *("set-up, s", "compiling, s", "stepping, s", "±"),
+]
+
+
+def run(
+    study: Study, folder: Path, pool: Pool | None = None, progress: Progress | None = None
+) -> list[PointRow]:
+    """Return the rows of all points of a study, in its order; they are saved in `folder`.
+
+    Points of a timed study are run one at a time in this process, regardless of `pool`, and only
+    one timed study runs on a machine at a time.
+    """
+    rows: Store[PointRow] = Store(PointRow, folder)
+    with alone() if study.timed else nullcontext():
+        pool = None if study.timed else pool
+        return rows.compute(study.points(), key, measure, pool, progress)
+
+
+def key(point: StudyPoint) -> str:
+    """Return the key of a point: everything that determines its row."""
+    study = point.study.model_dump(mode="json", exclude={"title", "curves"})
+    return store_key(study, point.curve.model_dump(mode="json"), point.settings)
+
+
+def reported(
+    out: Path,
+    studies: tuple[str, ...] = REPORTED,
+    progress: Progress | None = None,
+    pool: Pool | None = None,
+) -> list[tuple[Path, str, Study, list[PointRow]]]:
+    """Run studies one after the other, because they are timed; return the arguments of `summarise`
+    for each. Points are saved in `out`."""
+    measured, folder = [], out / "studies"
+    for i, name in enumerate(studies):
+        study = load(name)
+        measured.append((folder, name, study, run(study, folder / name, pool)))
+        if progress:
+            progress((i + 1) / len(studies))
+    return measured
+
+
+def summarise(folder: Path, name: str, study: Study, rows: list[PointRow]) -> Summary:
+    """Return the summary of a study; write NAME.csv, NAME.nc and the diagram into `folder`."""
+    table = judged(rows)
+    written = table.assign(settings=table["settings"].map(json.dumps))
+    data = written.rename_axis("point").to_xarray()
+    data = data.assign_attrs(title=study.title, study=study.model_dump_json(), **machine())
+    files = write_tables(folder, name, written, data)
+    figure = None
+    if any(len(done(table, error, "work")) for error in ERRORS):
+        costs = {k: words for k, words in COSTS.items() if study.timed or k != "seconds"}
+        figure = save(draw(name, table, costs), folder, name, study.title)
+        files += figure.drawings
+    failed = table[table["state"] == "failed"]
+    return Summary(
+        name,
+        study.title,
+        shown(table),
+        sentences(study, table),
+        [f"{one.curve}, {_settings(one.settings)}: {one.message}" for one in failed.itertuples()],
+        files,
+        {"rows": rows, "orders": orders(study, table), "files": [str(file) for file in files]},
+        figure,
+        study.note,
+        LEGEND if table["total"].notna().any() else "",
+        study.quantity or "",
+        study.timed,
+    )
+
+
+def shown(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the table as text, the points of each curve under its name."""
+    return text_table(COLUMNS, ((point.curve, _cells(point)) for point in table.itertuples()))
+
+
+def _cells(point: Any) -> list[str]:
+    errors = (point.numerical, point.modelling, point.total, point.measured)
+    numbers = [
+        *((100 * error, ".3g") for error in errors),
+        (point.steps, ".0f"),
+        (point.work, ".2e"),
+        (point.bytes / 1e3, ".3g"),
+        *((t, ".2g") for t in (point.setup, point.compile, point.seconds, point.spread)),
+    ]
+    cells = [number(value, form) for value, form in numbers]
+    cells[3] += f" {CANCELS}" * point.cancels
+    return [_settings(point.settings) or "base scene", *cells]
+
+
+def _settings(settings: dict[str, Any]) -> str:
+    return ", ".join(f"{k.rpartition('.')[2]} {v}" for k, v in settings.items())
+
+
+def draw(name: str, table: pd.DataFrame, costs: dict[str, str]) -> Figure:
+    """Return the diagram of a judged table: one row of axes per error, one column per cost.
+
+    costs : columns of the table, with the words for each. The curve k of row i, column j is the
+    SVG group NAME-i-j-k.
+    """
+    errors = [error for error in ERRORS if any(len(done(table, error, cost)) for cost in costs)]
+    count = table["curve"].nunique()
+    with blank(0.6 + 0.09 * count + 3.4 * len(errors)) as figure:
+        axes = figure.subplots(len(errors), len(costs), squeeze=False, sharey="row")
+        for i, error in enumerate(errors):
+            for j, cost in enumerate(costs):
+                _draw_panel(axes[i, j], table, error, cost, f"{name}-{i}-{j}")
+                axes[i, j].set_xlabel(costs[cost])
+            axes[i, 0].set_ylabel(ERRORS[error])
+        entries: dict[str, Any] = {}
+        for ax in axes.flat:
+            entries |= zip(*ax.get_legend_handles_labels()[::-1], strict=True)
+        about: dict[str, Any] = {"ncols": 2, "fontsize": 7.5, "frameon": False}
+        figure.legend(entries.values(), entries, loc="outside upper center", **about)
+    return figure
+
+
+def _draw_panel(ax: Axes, table: pd.DataFrame, error: str, cost: str, name: str) -> None:
+    styles = line_styles(table)
+    points = done(table, error, cost)
+    for k, (curve, about) in enumerate(styles.items()):
+        found = points[points["curve"] == curve]
+        (line,) = ax.loglog(found[cost], found[error], label=curve, zorder=2, **about)
+        line.set_gid(f"{name}-{k}")
+    shown = "measured" if error == "total" else error
+    crossed = done(table, shown, cost)
+    crossed = crossed[crossed["cancels"] & ((error == "total") | crossed["total"].isna())]
+    if len(crossed):
+        words = "errors cancel, or a finer point is worse: excluded"
+        ax.plot(crossed[cost], crossed[shown], "x", color="#c0392b", markersize=6, label=words)
+    if least := floor(table, error):
+        ax.axhspan(0, least, color="#f2f2f2", zorder=0, label="fine runs differ")
+    ax.xaxis.set_minor_formatter(NullFormatter())
+    ax.grid(which="major", color="#e4e7ea", linewidth=0.6)
+
+
+def line_styles(table: pd.DataFrame) -> dict[str, dict[str, Any]]:
+    """Return how matplotlib draws each curve: a model has one colour, its curves other markers."""
+    methods = table.groupby("curve", sort=False)["method"].first()
+    others = [name for name in dict.fromkeys(methods) if name not in names()]
+    ranks = methods.groupby(methods).cumcount()
+    return {
+        curve: {
+            "color": style(method).colour
+            if method in names()
+            else OTHERS[others.index(method) % len(OTHERS)],
+            "marker": MARKERS[ranks[curve] % len(MARKERS)],
+            "markersize": 4.5,
+            "linewidth": 1.2,
+        }
+        for curve, method in methods.items()
+    }

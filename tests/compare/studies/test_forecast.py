@@ -1,0 +1,194 @@
+"""Estimates of `--dry-run`: steps exact, sizes exact, memory within a factor."""
+
+import json
+import tracemalloc
+
+import pytest
+
+from cases.errors import SceneError
+from cases.size import LIMIT, estimates, refuse_beyond_memory
+from compare.cli.forecast_view import in_words
+from compare.engines import solve
+from compare.runs import timings
+from compare.studies import parts
+from compare.studies.forecast import forecast, total
+from compare.studies.step_cost import step_costs
+from compare.studies.study import load
+from compare.studies.work_precision import run
+
+SHORT = {"time__duration": 0.01, "record__velocity": [20.25]}
+SPACE = {"load__direction": [0.6, 0.8, 0.0]}
+SCENE = "guo-li-2002/fig-03"
+
+RUNS = {
+    "blocks": ("dem", {}),
+    "damped blocks": ("dem", {"joints__damping_ratio": 0.05}),
+    "blocks of fourth order": ("dem", {"numerics__dem__scheme": "fourth-order"}),
+    "blocks in space": ("dem", SPACE),
+    "jointed rock": ("continuum-jointed", {}),
+    "homogenised rock": ("continuum-equivalent", {}),
+    "implicit rock": ("continuum-jointed", {"numerics__continuum__scheme": "implicit"}),
+    "an exact solution": ("lattice", {}),
+}
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_steps_and_size_are_those_of_the_run(pillar, name):
+    engine, changes = RUNS[name]
+    scene = pillar(**SHORT, **changes)
+    found, result = forecast(scene, engine), solve(engine, scene)
+    assert found.steps == result.attrs.get("steps", 0)
+    assert found.bytes > 0 and found.seconds is None
+    if engine == "dem":
+        assert found.size == "100 blocks"
+    elif engine.startswith("continuum-"):
+        assert found.size == f"{result.attrs['degrees_of_freedom']:,} freedoms"
+        assert found.scheme == result.attrs["scheme"]
+
+
+@pytest.mark.parametrize(
+    "engine, changes",
+    [
+        ("dem", {"pillar__length": 50_000.0}),
+        ("dem", {"record__interval": 1e-8, "numerics__dem__step_fraction": 0.5}),
+        ("dem", {"pillar__length": 10_000.0, **SPACE}),
+        ("continuum-jointed", {"pillar__length": 5000.0}),
+        ("continuum-equivalent", {"record__interval": 1e-8}),
+    ],
+)
+def test_memory_is_what_the_arrays_take_within_a_factor_of_three(pillar, engine, changes):
+    """Relative to the peak of Python's arrays, by tracemalloc."""
+    scene = pillar(**{**SHORT, "time__duration": 2e-3, "record__energy": False, **changes})
+    solve(engine, scene)  # compiled, imported
+    tracemalloc.start()
+    solve(engine, scene)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most > 2e6
+    assert most / 3 <= forecast(scene, engine).bytes <= 3 * most
+
+
+def test_a_run_beyond_the_memory_is_refused_as_the_run_would_be(pillar, monkeypatch):
+    scene = pillar(record__interval=1e-6, time__duration=1.0, load__period=0.01)
+    monkeypatch.setenv(LIMIT, "0.1")
+    for name in ("dem", "continuum-jointed"):
+        with pytest.raises(SceneError, match="would need about") as told:
+            forecast(scene, name)
+        with pytest.raises(SceneError) as refused:
+            solve(name, scene)
+        assert str(told.value) == str(refused.value)
+
+
+def test_estimates_are_collected_by_their_keys(pillar):
+    with estimates() as parts:
+        refuse_beyond_memory(pillar(), {"a": 1.0, "b": 2.0})
+        refuse_beyond_memory(pillar(), {"b": 3.0, "c": 4.0})
+    refuse_beyond_memory(pillar(), {"d": 1.0})
+    assert parts == {"a": 1.0, "b": 3.0, "c": 4.0}
+
+
+@pytest.mark.parametrize("engine", ["dem", "continuum-jointed"])
+def test_time_is_that_of_the_last_run_of_the_kind(pillar, engine):
+    """Proportional to steps and size; no estimate for another kind of run."""
+    scene = pillar(**SHORT)
+    about = dict(solve(engine, scene).attrs) | {"seconds_stepping": 2.0}
+    timings.note(engine, scene, about)
+    assert forecast(scene, engine).seconds == pytest.approx(2.0)
+    longer = pillar(**SHORT | {"time__duration": 0.02})
+    assert forecast(longer, engine).seconds == pytest.approx(4.0, rel=0.01)
+    assert forecast(pillar(**SHORT, joints__damping_ratio=0.1), engine).seconds is None
+    timings.note(engine, scene, about | {"seconds_stepping": 1e-3})  # too short to tell
+    assert forecast(scene, engine).seconds == pytest.approx(2.0)
+    timings.note(engine, scene, about | {"seconds_stepping": 8.0})
+    assert forecast(scene, engine).seconds == pytest.approx(8.0)
+
+
+def test_an_exact_solution_has_the_time_of_its_own_scene(pillar):
+    scene = pillar(**SHORT)
+    timings.note("lattice", scene, {}, 0.5)
+    assert forecast(scene, "lattice").seconds == 0.5
+    assert forecast(pillar(**SHORT, ends__end="quiet"), "lattice").seconds is None
+    assert total(forecast(scene, name).seconds for name in ("lattice", "images")) == (0.5, 1)
+
+
+def test_what_explain_measures_is_known(pillar):
+    scene = pillar(**SHORT)
+    assert timings.block_step(scene) is None
+    (found,) = step_costs([scene])
+    assert 0 < found.ns < 1e4 and found.noise >= 0
+    told = forecast(scene, "dem")
+    assert told.seconds == pytest.approx(1e-9 * timings.block_step(scene) * 100 * told.steps)
+
+
+def test_a_broken_or_protected_file_of_rates_costs_nothing(pillar, tmp_path, monkeypatch):
+    timings._file().write_text("[1, 2")
+    assert forecast(pillar(**SHORT), "dem").seconds is None
+    (tmp_path / "no-folder").write_text("")
+    monkeypatch.setattr(timings, "_file", lambda: tmp_path / "no-folder" / "rates.json")
+    timings.note("lattice", pillar(**SHORT), {}, 0.5)
+    assert forecast(pillar(**SHORT), "lattice").seconds is None
+
+
+def test_times_in_words():
+    words = {2e-4: "under 1 ms", 0.02: "20 ms", 4.0: "4 s", 90.0: "1.5 min", 7200.0: "2 h"}
+    assert {seconds: in_words(seconds) for seconds in words} == words
+
+
+@pytest.fixture
+def dry(tmp_path, command):
+    """Return a function that gives a command's estimates, and checks that it writes nothing."""
+
+    def run(*arguments, code=0):
+        said = command(*arguments, "--dry-run", code=code)
+        assert not list(tmp_path.iterdir())
+        return said
+
+    return run
+
+
+def test_nothing_is_run_or_written(dry):
+    """For every command: only estimates are printed."""
+    said = dry("run", SCENE, "--engine", "dem", "--engine", "continuum").out
+    assert "12 would run" in said and "7,200" in said and "100 blocks" in said
+    said = dry("compare", SCENE, "--variant", "").out
+    assert "8 would run" in said and "lattice" in said
+    said = dry("effects", SCENE, "--variant", "zeta 0.05").out
+    assert f"{SCENE} zeta 0.05" in said and "1 of 1 to do" in said
+    assert "jointed rock, order 3" in dry("study", "free-pillar").out
+    said = dry("report").out
+    assert "10 of 10 to do" in said and "hard cases" in said and "oblique-joint" in said
+
+
+def test_every_point_of_a_sweep_is_told_and_which_would_fail(dry):
+    options = ("--sweep", "joints.damping_ratio=-1,0.1", "--variant", "", "--json")
+    facts = json.loads(dry("run", SCENE, *options).out)
+    assert [run["point"] for run in facts["runs"]] == ["joints.damping_ratio=0.1"]
+    (failing,) = facts["failing"]
+    assert "must be at least 0" in failing["message"]
+
+
+def test_a_scene_that_cannot_run_is_one_line(dry):
+    said = dry("run", SCENE, "--set", "numerics.dem.step_fraction=1.5", code=2).err
+    assert said.count("\n") == 1 and "critical step" in said
+
+
+def test_the_time_of_a_study_is_that_of_its_runs_that_are_not_done(tmp_path):
+    """Points that are kept are not to do, and take no time."""
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        'title = "mine"\nscene = "guo-li-2002/fig-03"\n'
+        'changes = { "time.duration" = 0.01 }\n[[curves]]\nlabel = "blocks"\nmethod = "dem"\n'
+        'vary = { "numerics.dem.step_fraction" = [0.4, 0.05] }\n'
+    )
+    (before,) = parts.of_study(str(file), tmp_path)
+    assert (before.count, before.to_do, before.seconds, before.untimed) == (2, 2, 0.0, 2)
+    coarse, fine = (solve("dem", point.scene) for point in load(str(file)).points())
+    scene = load(str(file)).points()[0].scene
+    timings.note("dem", scene, dict(coarse.attrs) | {"seconds_stepping": 2.0})
+    (timed,) = parts.of_study(str(file), tmp_path)
+    more = fine.attrs["steps"] / coarse.attrs["steps"]
+    assert more > 2 and timed.untimed == 0
+    assert timed.seconds == pytest.approx(2.0 * (1 + more))
+    run(load(str(file)), tmp_path / "mine")
+    (after,) = parts.of_study(str(file), tmp_path)
+    assert (after.to_do, after.seconds) == (0, 0.0)

@@ -1,0 +1,178 @@
+"""A point measured: its references, its errors, and points that fail; the running of all points."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from compare.engines import applies, solve
+from compare.misfit.metrics import misfit, pairings
+from compare.studies import measure as measuring
+from compare.studies import work_precision
+from compare.studies.findings import judged, orders, sentences
+from compare.studies.measure import measure, method_applies
+from compare.studies.reference import finest_of, own_of
+from compare.studies.store import alone
+from compare.studies.study import FineRun, load, shipped
+from compare.studies.work_precision import key, run
+
+STEP = "numerics.dem.step_fraction"
+FINE = {"method": "dem", "changes": {STEP: 0.01}, "coarser": {STEP: 0.02}}
+
+
+def fine(study, **keys):
+    """Return the study of rigid blocks, measured against their own fine run."""
+    curve = {"label": "blocks", "method": "dem", "own": "finest", "order": 2}
+    vary = {STEP: [0.4, 0.2]}
+    return study([curve | {"vary": vary}], finest=FINE, **keys)
+
+
+def test_the_floor_is_how_far_the_coarser_run_is_from_the_finer(study):
+    """And bounds the finer run's own error: leapfrog of second order, it is a third of that."""
+    asked = fine(study)
+    row = measure(asked.points()[0])
+    runs = [solve("dem", asked.changed({STEP: f})) for f in (0.01, 0.02, 0.4)]
+    exact = solve("lattice", asked.changed({}))
+    assert row.total_floor == row.numerical_floor == misfit(runs[1], runs[0])
+    assert row.measured == row.numerical == misfit(runs[2], runs[0]) and row.modelling == 0
+    assert row.total == row.numerical + row.numerical_floor
+    assert misfit(runs[0], exact) < row.total_floor < 4 * misfit(runs[0], exact)
+
+
+def test_errors_against_a_fine_run_are_nearly_those_against_the_exact_solution(study, tmp_path):
+    asked = fine(study, timed=True, repeats=1)
+    exact = study([asked.curves[0].model_dump() | {"own": "lattice"}])
+    rows = run(asked, tmp_path)
+    for one, other in zip(rows, run(exact, tmp_path), strict=True):
+        assert one.numerical == pytest.approx(other.numerical, rel=0.02)
+        assert 0 < other.numerical_floor < 1e-11  # a matrix exponential knows its round-off
+    (order,) = orders(asked, judged(rows))
+    assert order.measured == pytest.approx(2, abs=0.1)
+    said = " ".join(sentences(asked, judged(rows)))
+    assert "The finest physics is a fine run of dem; a coarser one is 0.0" in said
+
+
+def test_errors_are_measured_by_the_one_ranking(study):
+    """Where the file is silent: own model and finest physics, of what applies to the scene."""
+    curves = [
+        {"label": name, "method": name}
+        for name in ("dem", "solve-ivp", "continuum-jointed", "continuum-equivalent", "series")
+    ]
+    asked = study(curves)
+    assert finest_of(asked) == "jointed-bar"
+    owns = [own_of(point) for point in asked.points()]
+    assert owns == ["lattice", "lattice", "jointed-bar", "images", "images"]
+    assert finest_of(study(finest="none")) is None
+    soft = study(changes=study().changes | {"joints.tension": False})
+    assert finest_of(soft) is None  # jointed rock, of which no exact solution holds
+
+
+def test_a_fine_run_of_one_model_of_the_rock_stands_for_that_of_the_other(study):
+    """At the same numerics; blocks have others."""
+    numerics = {"changes": {"numerics.continuum.order": 4}, "coarser": {"pillar.block": 0.5}}
+    names = ("continuum-jointed", "continuum-equivalent", "dem")
+    asked = study(
+        [{"label": name, "method": name} for name in names],
+        finest={"method": "continuum-jointed", **numerics},
+        changes=study().changes | {"joints.friction_angle": 30.0, "load.direction": [1, 0, 0]},
+    )
+    rock, homogenised, blocks = (own_of(point) for point in asked.points())
+    assert rock == asked.finest and blocks is None
+    assert homogenised == rock.model_copy(update={"method": "continuum-equivalent"})
+
+
+def test_modelling_error_is_that_of_the_own_model_whatever_the_step(study):
+    asked = study(finest="jointed-bar")
+    rows = [measure(point) for point in asked.points()[:2]]
+    lattice, rock = (solve(name, asked.changed({})) for name in ("lattice", "jointed-bar"))
+    assert [row.modelling for row in rows] == [misfit(lattice, rock)] * 2
+    for row in rows:
+        assert row.total == row.numerical + row.modelling + row.total_floor
+        assert row.numerical_floor < row.total_floor < 1e-4  # bars have an error of 1e-8 inside
+    assert rows[0].measured == misfit(solve("dem", asked.points()[0].scene), rock)
+
+
+def test_an_error_is_that_of_the_waveform_furthest_off_or_of_one_quantity_in_space(study):
+    """Receivers are pooled only where a study asks for the norm that orders are of in theory."""
+    places = study().changes | {"record.stress": [0.5, 2.0], "record.velocity": [1.0, 5.0]}
+    asked = study(changes=places)
+    pairs = pairings(solve("dem", asked.points()[0].scene), solve("lattice", asked.changed({})))
+    assert measure(asked.points()[0]).numerical == max(p.misfit for p in pairs)
+    of = [p for p in pairs if p.place.quantity == "velocity"]
+    off = sum(np.sum((p.one - p.other) ** 2) for p in of)
+    size = sum(np.sum(p.other**2) for p in of)
+    row = measure(study(changes=places, quantity="velocity").points()[0])
+    assert len(of) == 2 and row.numerical == pytest.approx(np.sqrt(off / size))
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_every_point_of_shipped_studies_can_be_run(name):
+    """Its scene holds together, and its method and all that errors are measured against apply."""
+    study, held = load(name), set()
+    for point in study.points():
+        answer = method_applies(point.curve.method, point.scene)
+        assert answer, (point.settings, answer.reason)
+        own, finest = own_of(point), finest_of(study)
+        assert own is not None
+        for against, physics in ((own, point.physics), (finest, {})):
+            if against is None or (key := repr((against, physics))) in held:
+                continue
+            held.add(key)
+            if isinstance(against, FineRun):
+                for changes in (against.changes, against.changes | against.coarser):
+                    assert applies(against.method, study.changed(physics | changes))
+            else:
+                assert applies(against, study.changed(physics))
+
+
+def test_an_interrupted_study_ends_with_the_same_table(study, tmp_path, monkeypatch):
+    """Completed points are kept, including seconds; only the rest is run, to the same counts."""
+    whole, calls = run(study(), tmp_path / "whole"), []
+
+    def until_third(point):
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        calls.append(point.settings)
+        return measuring.measure(point)
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(work_precision, "measure", until_third)
+        run(study(), tmp_path / "resumed")
+    kept = {p.name: p.read_text() for p in (tmp_path / "resumed").iterdir()}
+    assert len(kept) == 2
+    rows = run(study(), tmp_path / "resumed")
+    assert [(r.settings, r.numerical, r.work) for r in rows] == [
+        (r.settings, r.numerical, r.work) for r in whole
+    ]
+    assert all((tmp_path / "resumed" / name).read_text() == text for name, text in kept.items())
+
+
+def test_another_scene_curve_or_setting_is_another_point(study):
+    """Kept points are taken only where everything that decides them is the same."""
+    points = [*study().points(), *study(changes={}).points(), *study(repeats=4).points()]
+    assert len({key(point) for point in points}) == len(points)
+    assert key(study(title="another").points()[0]) == key(points[0])
+
+
+def test_points_that_cannot_be_run_say_why(study, tmp_path):
+    """Above the critical step, and where the exact solution does not hold: rows, not crashes."""
+    vary = {STEP: [0.1, 1.5]}
+    curve = {"label": "blocks", "method": "dem", "own": "lattice", "vary": vary}
+    none = {"label": "series", "method": "series"}
+    good, unstable, wrong = run(study([curve, none]), tmp_path)
+    assert (good.state, unstable.state, wrong.state) == ("done", "failed", "failed")
+    assert "step_fraction" in unstable.message and "not a sine" in wrong.message
+    assert good.numerical < 0.01 and unstable.numerical != unstable.numerical
+
+
+def test_timed_points_are_run_one_at_a_time_whatever_the_pool(study, tmp_path):
+    """A pool that cannot be made is not asked for; a second timed study waits for the first."""
+    rows = run(study(timed=True, repeats=2), tmp_path, pool=lambda work, points: 1 / 0)
+    assert all(row.seconds > 0 and row.spread >= 0 for row in rows)
+    program = "from compare.studies.store import alone\nwith alone(): print('in')"
+    with alone():
+        waiting = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE)
+        with pytest.raises(subprocess.TimeoutExpired):
+            waiting.communicate(timeout=3)
+    assert waiting.communicate(timeout=600)[0] == b"in\n"

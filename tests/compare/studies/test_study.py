@@ -1,0 +1,143 @@
+"""Files of studies, the command, and its output files."""
+
+import json
+import subprocess
+import sys
+
+import pandas as pd
+import pytest
+import xarray as xr
+
+from cases.errors import SceneError
+from compare.studies.findings import judged
+from compare.studies.measure import PointRow
+from compare.studies.study import load
+from compare.studies.work_precision import COSTS, draw, run
+
+GOOD = """
+title = "two steps"
+scene = "guo-li-2002/fig-03"
+changes = { "pillar.length" = 5.0, "record.stress" = [2.0], "time.duration" = 0.01 }
+finest = "lattice"
+
+[[curves]]
+label = "blocks"
+method = "dem"
+own = "lattice"
+vary = { "numerics.dem.step_fraction" = [0.1, 0.05] }
+order = 2
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("scene =", "scen =", "scene"),
+        ("order = 2", 'order = "two"', "curves.0.order = 'two'"),
+        ("order = 2", "oder = 2", "curves.0.oder"),
+        ("[0.1, 0.05]", "[]", "step_fraction = []"),
+        ("title", "title = ", "not valid TOML"),
+        ("[0.1, 0.05]", "[" * 3000, "not valid TOML"),
+        ('method = "dem"', 'method = "den"', "curves.0.method = 'den'"),
+        ('own = "lattice"', 'own = "truth"', "curves.0.own = 'truth'"),
+        ('finest = "lattice"', 'finest = "truth"', "finest = 'truth'"),
+        ("[0.1, 0.05]", "[2026-01-01]", "a number, a text, or true or false"),
+        ("[0.1, 0.05]", "[0x" + "f" * 99 + "]", "at most 64 bits"),
+        ("vary = {", "vary = { n_terms = [9],", "is an argument of series, kelvin-voigt"),
+        (
+            '"dem"\nown',
+            '"series"\nchanges = { n_terms = 1.5 }\nown',
+            "n_terms = 1.5: must be a whole",
+        ),
+        (
+            "vary = {",
+            f"vary = {{ 'load.period' = {[*range(1, 200)]}, 'pillar.side' = {[*range(1, 200)]},",
+            "give 79202 points, at most 10000",
+        ),
+    ],
+)
+def test_a_mistake_in_a_study_is_one_line(tmp_path, old, new, words):
+    path = tmp_path / "study.toml"
+    path.write_text(GOOD.replace(old, new, 1))
+    with pytest.raises(SceneError, match=words.replace("[", r"\[").replace("]", r"\]")):
+        load(str(path))
+
+
+def test_a_curve_for_each_value_is_one_as_written_out(study):
+    """With the value in its label and its changes; the others of its keys stay."""
+    one = {"label": "order {order}", "method": "continuum-jointed", "changes": {"a": 1}}
+    found = study([{**one, "each": {"numerics.continuum.order": [2, 3]}}])
+    assert [curve.label for curve in found.curves] == ["order 2", "order 3"]
+    assert found.curves[1].changes == {"a": 1, "numerics.continuum.order": 3}
+    assert not any(curve.each for curve in found.curves)
+    with pytest.raises(ValueError, match=r"give 1e\+06 points, at most 10000"):
+        study([{**one, "each": {"a": list(range(1000)), "b": list(range(1000))}}])
+
+
+def test_a_study_that_is_not_there_names_those_that_are(command):
+    said = command("study", "no-such", code=2).err
+    assert said.startswith("jointwave: no-such: is not a file, nor one of column-3d")
+    assert "oblique-joint" in said
+
+
+@pytest.fixture
+def made(once, command):
+    """Return the folder of a study run by the command, and its output; made once."""
+
+    def make(folder):
+        (mine := folder / "mine.toml").write_text(GOOD)
+        done = command("study", mine, "--out", folder / "out", "--workers", 1, "--json")
+        return folder, json.loads(done.out)
+
+    return once("study-mine", make)
+
+
+def test_command_writes_what_it_prints(made):
+    folder, facts = made
+    table = pd.read_csv(folder / "out" / "mine.csv")
+    data = xr.load_dataset(folder / "out" / "mine.nc")
+    assert [r["numerical"] for r in facts["rows"]] == pytest.approx(list(table.numerical), rel=1e-8)
+    assert list(data.numerical.values) == pytest.approx(list(table.numerical), rel=1e-8)
+    assert data.attrs["processor"] and json.loads(data.attrs["study"])["title"] == "two steps"
+    assert facts["orders"][0]["measured"] == pytest.approx(2, abs=0.1)
+
+
+def test_two_ranks_give_the_table_of_one_process(made, tmp_path, mpiexec):
+    (folder, facts), (launcher, env) = made, mpiexec
+    study = ("study", folder / "mine.toml", "--out", tmp_path, "--json")
+    two = [*launcher, "-n", "2", sys.executable, "-m", "compare", *map(str, study)]
+    done = subprocess.run(two, capture_output=True, text=True, env=env)
+    assert done.returncode == 0, done.stderr
+    ranks = json.loads(done.stdout)
+    keys = ("numerical", "total", "steps", "work")
+    one, two = ([[row[key] for key in keys] for row in f["rows"]] for f in (facts, ranks))
+    assert one == two
+
+
+def test_every_point_is_drawn_where_it_was_measured(study, tmp_path):
+    """Two errors over two costs; each curve's line holds its points in the study's order."""
+    timed = study(timed=True, repeats=1, finest="jointed-bar")
+    table = judged(run(timed, tmp_path))
+    figure = draw("wp", table, COSTS)
+    lines = {line.get_gid(): line for ax in figure.axes for line in ax.lines}
+    for i, error in enumerate(("numerical", "total")):
+        for j, cost in enumerate(("seconds", "work")):
+            line = lines[f"wp-{i}-{j}-0"]
+            assert list(line.get_xdata()) == list(table[cost])
+            assert list(line.get_ydata()) == list(table[error])
+    assert all(ax.get_xscale() == ax.get_yscale() == "log" for ax in figure.axes)
+
+
+def test_points_whose_errors_cancel_are_crossed_where_they_measure(study):
+    """And curves of one model have one colour, with markers of their own."""
+    about = {"settings": {}, "state": "done", "message": "", "numerical": 0.01, "modelling": 0.02}
+    numbers = {"total": 0.03, "steps": 1.0, "freedoms": 1.0, "work": 1.0, "total_floor": 0.0}
+    rows = [
+        PointRow(**about, **numbers, curve=name, method="dem", measured=measured)
+        for name, measured in (("a", 0.03), ("b", 0.005))
+    ]
+    (_, total) = draw("wp", judged(rows), {"work": "work"}).axes
+    (crosses,) = [line for line in total.lines if line.get_marker() == "x"]
+    assert list(crosses.get_ydata()) == [0.005]
+    one, other = total.lines[:2]
+    assert one.get_color() == other.get_color() and one.get_marker() != other.get_marker()

@@ -1,0 +1,74 @@
+"""Rows and lattices of rigid blocks of any size, and functions that take their steps alone."""
+
+from collections.abc import Callable
+from math import isqrt
+from pathlib import Path
+from typing import Any
+
+import cases
+from cases.effects import is_spatial
+from cases.kinds import pillar_of
+from cases.sampling import Clock
+from cases.schema.rock_mass import RockMass
+from cases.schema.scene import Scene
+from cases.validate import validated
+from compare.scenes import find
+from dem.axial.samples import buffers
+from dem.axial.simulate import scheme_of
+from dem.spatial.build import buffers_for, samples_for, state_at_rest
+from dem.spatial.march import marcher
+from dem.spatial.simulate import prepare
+
+BLOCK_STEPS = 5_000_000  # of one call, at most, unless it has a single sample
+BLOCK_STEPS_IN_SPACE = 50_000  # each takes ten times as long
+ELASTIC = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+
+Stretch = tuple[Callable[[], None], int]  # takes some samples; block-steps of one call
+
+
+def changed(changes: dict, blocks: int = 1000) -> Scene:
+    """Return the paper's pillar with this number of blocks and some dotted keys changed."""
+    pillar = find("guo-li-2002/fig-03")
+    return pillar_of(cases.load_variant(pillar, "", {"pillar.length": 0.5 * blocks, **changes}))
+
+
+def lattice(blocks: int, law: dict, tables: dict[str, Any]) -> RockMass:
+    """Return a square lattice of about this number of 1 m blocks; tables : more of the scene."""
+    side = max(2, isqrt(blocks))
+    joints = {"spacing": 1.0, "through": [0.0, 0.0]} | law
+    ours = {
+        "title": "a square lattice",
+        "domain": {"size": [float(side), float(side)]},
+        "rock": {"density": 2600.0, "intact_modulus": 5e10},
+        "joint_sets": [{"name": "x", "dip": 90.0} | joints, {"name": "y", "dip": 0.0} | joints],
+        "time": {"duration": 0.01},
+        "record": {"points": [[0.5, 0.5]], "energy": False},
+    }
+    return validated(ours | tables, Path("lattice.toml"), frozenset())
+
+
+def stretch(scene: Scene, threads: int = 1) -> Stretch:
+    """Return a function that takes some samples of a pillar, and its number of block-steps."""
+    return _in_space(scene, threads) if is_spatial(scene) else _along_axis(scene)
+
+
+def _along_axis(scene: Scene) -> Stretch:
+    scheme = scheme_of(scene)
+    model, state, time, _ = scheme.build(scene)
+    count = _samples(time, state.u.size, BLOCK_STEPS)
+    samples = buffers(model, state, count)
+    march = scheme.marcher(scene, time)(model, state, samples, time.stride, None)
+    return lambda: march(0, count), count * time.stride * state.u.size
+
+
+def _in_space(scene: Scene, threads: int) -> Stretch:
+    p, model, time, _ = prepare(scene)
+    count = _samples(time, p.block_count, BLOCK_STEPS_IN_SPACE)
+    state, samples, steps = state_at_rest(model), samples_for(model, count), count * time.stride
+    march = marcher(model, state, buffers_for(model, threads, None), samples)
+    march(0, 0)
+    return lambda: march(0, steps), steps * p.block_count
+
+
+def _samples(time: Clock, blocks: int, most: int) -> int:
+    return min(time.samples, max(64, most // blocks) // time.stride + 1)
