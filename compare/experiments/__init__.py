@@ -1,4 +1,1 @@
-"""Experiments over many runs: studies, sweeps, plans, fits, ablation, robustness, cost."""
-
-#: Studies without a file.
-IN_CODE = ("stability", "oblique-joint", "parallel-joints")
+"""Experiments over many runs: effects of scenes, and waves at joints."""
