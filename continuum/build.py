@@ -3,34 +3,33 @@
 from __future__ import annotations
 
 from math import ceil, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix, diags, identity, kron
 
 from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate, mechanisms_of
+from cases.material.constant_q import Mechanisms
 from cases.sampling import Clock
-from cases.schema.pulse import shortest_period
+from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from continuum.ends import build_ends, end_stiffness, fixed_ends
 from continuum.explicit.critical import any_motion
 from continuum.joints import interfaces, joint_law, resolved_joints
 from continuum.mesh.description import Mesh
+from continuum.mesh.given import given_mesh
 from continuum.mesh.pillar import elements_in_block, pillar_mesh
 from continuum.model import Fixed, Interfaces, Model, Receivers, RockOperators, memory_of
-from continuum.size import refuse_large_file, refuse_large_mesh
-from continuum.space.body import Body, build_body, rock_matrices
+from continuum.plane.discrete import PlaneDiscrete
+from continuum.size import refuse_large_file, refuse_large_mesh, resolved_period
+from continuum.space.assembly import body_and_jumps
+from continuum.space.body import Body, rock_matrices
 from continuum.space.elasticity import Material
-from continuum.space.interface import Jumps, jumps
+from continuum.space.interface import Jumps
 from continuum.space.kinematics import Kinematics, kinematics, layer_thickness, materials
 from continuum.space.receivers import points, sections
 from numerics.cache_lines import zeros
-
-if TYPE_CHECKING:
-    from cases.material.constant_q import Mechanisms
-    from cases.schema.rock_mass import RockMass
-    from continuum.plane.rock import PlaneDiscrete
 
 
 class Discrete(NamedTuple):
@@ -71,23 +70,10 @@ def discretise(scene: Scene, model: str, dim: int | None = None, comm=None) -> D
     return Discrete(p, motion, rock, body, across, interfaces(across, law, carried, scene))
 
 
-def body_and_jumps(comm, mesh: Mesh, *asked, **named) -> tuple[Body, Jumps | None]:
-    """Return the rock of a mesh and the jumps across its joints (None without), or this process's
-    share of them; what is asked is as for `build_body`."""
-    if comm is not None:
-        from continuum.parallel.body import share_of
-
-        return share_of(comm, mesh, *asked, **named)
-    body = build_body(mesh, *asked, **named)
-    return body, jumps(body) if mesh.joints.joint.size else None
-
-
 def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh:
     """Return the mesh of a scene's pillar: its own file, or blocks."""
     numerics = scene.numerics.continuum
     if numerics.mesh_path is not None:
-        from continuum.mesh.given import given_mesh
-
         refuse_large_file(scene)
         return given_mesh(numerics.mesh_path, scene, p, motion.dim)
     layers = layer_thickness(scene, p)
@@ -110,12 +96,6 @@ def elements_for(scene: Scene, p: Properties, model: str) -> int:
     assert modulus is not None
     speed = sqrt(modulus / p.density)
     return elements_in_block(p.spacing, speed, resolved_period(scene), damped=bool(p.time_constant))
-
-
-def resolved_period(scene: Scene | RockMass) -> float:
-    """Return the period (s) that elements resolve: the shortest of what acts, or a tenth of the
-    scene."""
-    return shortest_period(scene.pulses) or scene.time.duration / 10
 
 
 def critical_step_of(scene: Scene, discrete: Discrete, model: str) -> float:

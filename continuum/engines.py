@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from continuum.implicit.balance import implicit_matrices
+from continuum.implicit.run import Implicit
 from continuum.model import Model
 from continuum.monitor import Monitor
 from continuum.run import Run
@@ -64,9 +66,6 @@ def let_go(model: Model, state: State, body: Body, weight: np.ndarray) -> None:
 
 def implicit_engine(run: Run, monitor: Monitor) -> Engine:
     """Return the generalised-alpha method of the scene's spectral radius."""
-    from continuum.implicit.balance import implicit_matrices
-    from continuum.implicit.run import Implicit
-
     rho, stride = run.scene.numerics.continuum.spectral_radius, run.choice.time.stride
     matrices = implicit_matrices(run.discrete.body)
     steps = Implicit(run.model, run.state, run.samples, matrices, rho)

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix, vstack
 
 from cases.material.calibrate import Properties
+from cases.schema.rock_mass import RockMass
+from cases.schema.scene import Scene
 from continuum.model import Interfaces
 from continuum.space.interface import Jumps
 from continuum.space.stencils import stencils
 from joints.law import Law, law, parts_of, stiffest, table_of
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.scene import Scene
+from joints.shear import UNLIMITED
 
 #: Over an ordinary joint: the stiffness of one that differs from it in strength alone, where the
 #: homogenised bar holds it already. It makes the rock softer by a tenth of one joint.
@@ -65,8 +64,6 @@ def _excess(compliance: np.ndarray, regular: float | np.ndarray) -> np.ndarray:
 
 def _fails(p: Properties, shears: bool) -> np.ndarray:
     """Return which joints can open, slide, break or close nonlinearly, bool array [N - 1]."""
-    from joints.shear import UNLIMITED
-
     found = ~p.tension | p.across()
     if shears and p.cohesion is not None:
         found = found | (p.cohesion < UNLIMITED)

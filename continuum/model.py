@@ -9,17 +9,15 @@ mass, viscosity and weight is then its own share, and `total` and `beta` are of 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from cases.material.constant_q import Mechanisms
 from continuum.space.operator import Operator
 from continuum.space.stencils import Stencils
 from joints.law import Law, Parts
-
-if TYPE_CHECKING:
-    from cases.material.constant_q import Mechanisms
 
 
 class Memory(NamedTuple):

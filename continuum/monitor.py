@@ -4,6 +4,7 @@ No node can be faster than all forces together can make it, and no energy come f
 
 import numpy as np
 
+from continuum.plane.discrete import blocks_of, motion_of_blocks, prestressed
 from continuum.run import Run
 from numerics.divergence import ENERGY, EVERY, audit, guard, look, speed_that
 from numerics.instability import Sighting, stopped
@@ -90,8 +91,6 @@ class Monitor:
         found = self.communicator.of_largest(share, found)
         beyond = found is not None and found.by > LARGEST * found.size
         if run.scene.kind == "rock mass" and not beyond:
-            from continuum.plane.rock import motion_of_blocks
-
             moved = motion_of_blocks(run.discrete, run.state.u)
             found = overlapping(run.discrete.partition, moved) or found
         refuse_large_motion(run.scene, "the continuum", found, n * self.time.dt, first)
@@ -112,8 +111,6 @@ def farthest_joint(run: Run) -> Moved | None:
     if across is None or not across.joint.size:
         return None
     if run.scene.kind == "rock mass":
-        from continuum.plane.rock import blocks_of
-
         pairs = blocks_of(run.discrete)[across.joint]
         by = np.linalg.norm(jump, axis=0)
         size = np.sqrt(run.discrete.partition.area[pairs].min(axis=1))
@@ -166,8 +163,6 @@ def _prestressed(run: Run, pushing: float) -> float:
     memory = run.model.rock.memory
     relaxed = 1.0 if memory is None else memory.relaxed
     if run.scene.kind == "rock mass":
-        from continuum.plane.rock import prestressed
-
         return prestressed(run.scene, run.discrete, pushing, relaxed)
     p, prestress = run.discrete.properties, abs(run.scene.prestress.normal)
     softness = p.block_count * p.spacing / p.modulus / relaxed + np.abs(p.excess_compliance).sum()

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from cases.incident import IncidentField
+from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from continuum.build import build_model, critical_step_of, discretise
 from continuum.model import Model
 from continuum.parallel.serial import Serial
+from continuum.plane import run as rock_mass
 from continuum.scheme import Choice, choose
 from continuum.size import refuse_large_run
 from continuum.state import Samples, State, empty_samples, state_at_rest
-
-if TYPE_CHECKING:
-    from cases.incident import IncidentField
-    from cases.schema.rock_mass import RockMass
 
 
 class Run(NamedTuple):
@@ -55,9 +54,7 @@ def run_of(
     if isinstance(scene, Scene):
         model = build_model(scene, discrete, rock, choice.time)
     else:
-        from continuum.plane.run import build_model as of_rock_mass
-
-        model = of_rock_mass(scene, discrete, choice.time, incident)
+        model = rock_mass.build_model(scene, discrete, choice.time, incident)
     state = state_at_rest(model, scene.record.energy)
     samples = empty_samples(model, state, choice.time.samples)
     return Run(scene, rock, discrete, model, state, samples, choice, critical)
@@ -72,9 +69,7 @@ def discrete_and_steps(
     """
     comm = comm if comm is not None and comm.size > 1 else None
     if not isinstance(scene, Scene):
-        from continuum.plane.run import discrete_and_steps as of_rock_mass
-
-        return of_rock_mass(scene, rock, comm)
+        return rock_mass.discrete_and_steps(scene, rock, comm)
     discrete = discretise(scene, rock, dim, comm)
     critical = critical_step_of(scene, discrete, rock)
     choice = choose(scene, discrete, critical)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import ceil
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -11,12 +11,11 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from cases.errors import SceneError
 from cases.sampling import MOST_STEPS, Clock, clock, sample_times
+from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
-from continuum.build import Discrete, operators, resolved_period
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
-    from continuum.plane.rock import PlaneDiscrete
+from continuum.build import Discrete, operators
+from continuum.plane.discrete import PlaneDiscrete
+from continuum.size import resolved_period
 
 #: How many explicit steps one implicit step must replace before its cost is looked into: it solves
 #: an equation with several times the entries of the stiffness, and is not vectorised over blocks.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numba
 import numpy as np
@@ -13,13 +13,19 @@ import xarray as xr
 from scipy.sparse import csr_matrix
 
 from cases.errors import SceneError, StoppedError
+from cases.incident import IncidentField
+from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from continuum.build import weight_of
 from continuum.ends import borne_ends
 from continuum.engines import Engine, explicit_engine, implicit_engine
+from continuum.implicit.static import elastic_rest, holding, settle_static
 from continuum.model import Model
 from continuum.monitor import Monitor
+from continuum.plane.sides import borne_sides
+from continuum.plane.waveforms import recorded
 from continuum.run import Run, run_of
+from continuum.snapshots import RockRecorder
 from continuum.space import compat
 from continuum.space.kinematics import refuse
 from continuum.state import State
@@ -31,11 +37,6 @@ from results.dataset import dataset
 
 FREEDOM_STEPS_AT_ONCE = 10_000_000  # some 0.1 s: often enough for a progress bar
 LEAST_STRETCHES = 20  # however short the run
-
-if TYPE_CHECKING:
-    from cases.incident import IncidentField
-    from cases.schema.rock_mass import RockMass
-    from continuum.snapshots import RockRecorder
 
 
 def simulate(
@@ -161,8 +162,6 @@ def _recorded(run: Run, times: np.ndarray, about: dict[str, Any]) -> xr.Dataset:
             run.communicator.gather(rows)
     until = changed(run.samples, lambda rows: rows[:, : times.size])
     if run.scene.kind == "rock mass":
-        from continuum.plane.waveforms import recorded
-
         return recorded(run, until, times, about)
     terms, energy = energy_terms(run.model, until.energy, run.communicator)
     waves = waveforms(run.scene, run.discrete, until)
@@ -204,8 +203,6 @@ def _at_rest(run: Run) -> tuple[Run, dict[str, Any]]:
     static, weight = gravity is not None and gravity.static, weight_of(run.scene, body)
     if weight is None and not run.scene.excavated:
         return run, {}
-    from continuum.implicit.static import elastic_rest, holding, settle_static
-
     rest: dict[str, Any] = {}
     hold = holding(body, _borne(run))
     if weight is not None and not static:  # it acts later
@@ -226,8 +223,6 @@ def _borne(run: Run) -> csr_matrix | None:
     """Return the areas of sides that bear the weight beside their dashpots; None without."""
     if isinstance(run.scene, Scene):
         return borne_ends(run.scene, run.discrete.body)
-    from continuum.plane.sides import borne_sides
-
     return borne_sides(run.scene, run.discrete.body)
 
 
@@ -235,6 +230,4 @@ def _recorder(run: Run, ahead: float) -> RockRecorder | None:
     """Return the recorder of snapshots; None, and nothing imported, without snapshots."""
     if run.scene.record.fields is None:
         return None
-    from continuum.snapshots import RockRecorder
-
     return RockRecorder(run.scene, run.discrete, run.state, ahead)

@@ -1,6 +1,8 @@
 """Memory of runs of deformable rock, estimated before any of it is allocated."""
 
 from cases.sampling import Clock
+from cases.schema.pulse import shortest_period
+from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from cases.size import load_bytes, refuse_beyond_memory, snapshot_bytes, waveform_bytes
 from continuum.space.kinematics import Kinematics
@@ -40,3 +42,9 @@ def refuse_large_run(scene: Scene, motion: Kinematics, time: Clock) -> None:
         "time.duration": load_bytes(scene, time.steps),
     }
     refuse_beyond_memory(scene, parts)
+
+
+def resolved_period(scene: Scene | RockMass) -> float:
+    """Return the period (s) that elements resolve: the shortest of what acts, or a tenth of the
+    scene."""
+    return shortest_period(scene.pulses) or scene.time.duration / 10

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from scipy.sparse import csr_matrix
 
+from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from continuum.build import Discrete
 from continuum.parallel.serial import Pieces
@@ -18,9 +19,6 @@ from continuum.space.receivers import section_tractions
 from continuum.state import State
 from results.snapshots import SnapshotRecorder, Snapshots, snapshots, with_snapshots
 from results.subcells import KINDS, linear_cells
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
 
 
 class RockRecorder(SnapshotRecorder):

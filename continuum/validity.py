@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from cases.material.calibrate import Properties, calibrate
+from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from continuum.joints import resolved_joints
+from continuum.plane.validity import applies as of_rock_mass
 from continuum.space.kinematics import holds, kinematics
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
+from joints.shear import UNLIMITED
 
 
 def applies(scene: Scene | RockMass, model: str = "jointed", dim: int | None = None) -> str:
     """Return "" if this model can simulate the scene, else the reason."""
     if not isinstance(scene, Scene):
-        from continuum.plane.validity import applies as of_rock_mass
-
         return of_rock_mass(scene, model)
     p, motion = calibrate(scene), kinematics(scene, dim)
     reason = holds(scene, motion.dim) or _beyond(scene, p)
@@ -54,8 +50,6 @@ def _beyond(scene: Scene, p: Properties) -> str:
 
 
 def _beyond_the_homogenised(scene: Scene, p: Properties, shears: bool) -> str:
-    from joints.shear import UNLIMITED
-
     if scene.rock.quality_factor is not None and len(p.each) > 1:
         return "homogenised segments have no common quality_factor"
     ordinary = np.setdiff1d(np.arange(p.block_count - 1), p.soft)

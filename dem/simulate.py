@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+import xarray as xr
+
 from cases.effects import is_spatial
 from cases.errors import SceneError
 from cases.kinds import AnyScene
+from cases.material.constant_q import beyond_blocks
 from cases.schema.scene import Scene
+from dem.axial.simulate import simulate as along_axis
+from dem.spatial.simulate import simulate as in_space
 from numerics.time_loop import Keeper
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from cases.incident import IncidentField
 
 
@@ -33,19 +36,12 @@ def simulate(
     large for their kinematics and an unsupported quality factor; StoppedError, an
     UnstableError with the result so far, when the motion leaves its bounds.
     """
-    if (quality := scene.rock.quality_factor) is not None:
-        from cases.material.constant_q import beyond_blocks
-
-        if reason := beyond_blocks(scene):
-            raise SceneError(scene.where, "rock.quality_factor", quality, reason)
+    if (quality := scene.rock.quality_factor) is not None and (reason := beyond_blocks(scene)):
+        raise SceneError(scene.where, "rock.quality_factor", quality, reason)
     if not isinstance(scene, Scene):
-        from dem.blocks.simulate import simulate as in_plane
+        from dem.blocks.simulate import simulate as in_plane  # with shapely, which no pillar needs
 
         return in_plane(scene, progress, keeper, incident)
     if is_spatial(scene):
-        from dem.spatial.simulate import simulate as in_space
-
         return in_space(scene, progress, keeper)
-    from dem.axial.simulate import simulate as along_axis
-
     return along_axis(scene, progress, keeper)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numba
 import numpy as np
@@ -17,9 +17,7 @@ from cases.sampling import Clock
 from numerics.divergence import ENERGY, Guard
 from numerics.instability import Sighting, stopped
 from numerics.time_loop import Keeper, run_in_stretches
-
-if TYPE_CHECKING:
-    from results.snapshots import SnapshotRecorder
+from results.snapshots import SnapshotRecorder
 
 BLOCK_STEPS_AT_ONCE = 20_000_000  # some 10 ms to 1 s: often enough for a progress bar
 ENOUGH_BLOCKS = 20_000  # from which a second thread gains more than synchronisation costs

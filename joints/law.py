@@ -8,19 +8,18 @@ Per unit area: traction in Pa, compression positive; gap in m, positive when ope
 penetration is negative. The shear traction acts on the right block.
 """
 
-from typing import TYPE_CHECKING, Any, NamedTuple, overload
+from typing import Any, NamedTuple, overload
 
 import numpy as np
 
+from cases.kinds import AnyScene
+from cases.material.closure import stress_in_reach
 from joints.closure import closure_stiffness
 from joints.dilation import lift, riding_stiffness
 from joints.formula import formula
 from joints.normal import normal_traction
 from joints.shear import UNLIMITED, cohesion_left, shear_return, shear_strength
 from joints.slide import after_slide
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 
 class Law(NamedTuple):
@@ -189,8 +188,6 @@ def stiffest(law: Law, scene: "AnyScene") -> tuple[Any, Any]:
     joints closed as far as is in reach, and slid where that lifts them."""
     normal, shear = law.normal_stiffness, law.shear_stiffness
     if law.maximum_closure is not None:
-        from cases.material.closure import stress_in_reach
-
         normal = closure_stiffness(law, stress_in_reach(scene))
     if law.dilation is not None:
         normal, shear = riding_stiffness(law.dilation, law.friction, normal, shear)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from cases.errors import StoppedError
 from cases.sampling import Clock
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.scene import Scene
+from cases.schema.rock_mass import RockMass
+from cases.schema.scene import Scene
 
 HUGE = 1e100  # an amplitude whose square overflows
 

@@ -6,16 +6,14 @@ that met nothing at the start pass through one another.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from cases.errors import StoppedError
+from cases.partition.blocks import Partition
+from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
-
-if TYPE_CHECKING:
-    from cases.partition.blocks import Partition
-    from cases.schema.rock_mass import RockMass
 
 LARGEST = 0.02  # of the smaller block
 OVERLAP = 0.01  # of its area: corners that touch at the start overlap by its square

@@ -8,8 +8,8 @@ import dem
 from cases.errors import StoppedError
 from cases.material.calibrate import calibrate
 from continuum.run import discrete_and_steps
+from dem.axial.build import build
 from dem.axial.leapfrog import marcher
-from dem.axial.model import build
 from dem.axial.samples import buffers
 from dem.axial.simulate import scheme_of
 from dem.axial.stability import highest_speed

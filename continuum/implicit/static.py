@@ -17,11 +17,12 @@ does. The forces themselves know nothing of it.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from cases.errors import SceneError
+from cases.schema.rock_mass import RockMass
+from cases.schema.scene import Scene
 from continuum.implicit.balance import Matrices, implicit_matrices, trial_forces
 from continuum.implicit.newton import Outcome, newton
 from continuum.implicit.pattern import System
@@ -32,12 +33,6 @@ from continuum.space.tractions import NN, XX, ZZ
 from continuum.state import State
 from joints.law import IN_MOTION
 from results.arrays import copied, fill
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_matrix
-
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.scene import Scene
 
 TOLERANCE = 1e-10  # of the residual, over the largest summed force
 LEAST_PART = 2.0**-4  # of the steady forces

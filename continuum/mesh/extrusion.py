@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from continuum.mesh.cells import CORNERS, DIMENSION, oriented
+from continuum.mesh.session import gmsh_session
 
 
 class Column(NamedTuple):
@@ -59,8 +60,6 @@ def _grid(kind: str, across: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
 
 def _tetrahedra(kind: str, across: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
     """Return `_grid` of tetrahedra, by gmsh."""
-    from continuum.mesh.session import gmsh_session
-
     with gmsh_session() as gmsh:
         _mesh_column(gmsh, across, rows)
         tags, x, _ = gmsh.model.mesh.getNodes()

@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from continuum.mesh.session import gmsh_session
+
 
 class Template(NamedTuple):
     """The mesh of a block.
@@ -50,8 +52,6 @@ def quadrilaterals(m: int, n: int) -> Template:
 def triangles(shapes: list[tuple[np.ndarray, np.ndarray]], size: float) -> list[Template]:
     """Return the triangles in polygons, each given by its corners [k, 2] (m, counter-clockwise)
     and the number of triangle edges on each of its sides [k]; size : of triangles, m."""
-    from continuum.mesh.session import gmsh_session
-
     with gmsh_session() as gmsh:
         gmsh.option.setNumber("Geometry.AutoCoherence", 0)
         gmsh.option.setNumber("Mesh.MeshSizeMax", size)

@@ -6,24 +6,21 @@ They are worked out for some steps at a time, in a buffer of bounded size.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
 from cases.errors import SceneError
 from cases.histories import LoadHistory
-from cases.incident import FaceTractions, FreeField, tractions
+from cases.incident import FaceTractions, FreeField, IncidentField, tractions
 from cases.loads import step_means
 from cases.material.quiet_sides import medium_impedances
 from cases.schema.pulse import shortest_period
+from cases.schema.rock_mass import RockMass
+from continuum.parallel.serial import Serial
 from continuum.plane.sides import SidePoints
-
-if TYPE_CHECKING:
-    from cases.incident import IncidentField
-    from cases.schema.rock_mass import RockMass
-    from continuum.parallel.serial import Serial
-    from continuum.space.body import Body
+from continuum.space.body import Body
 
 BUFFER = 500_000  # numbers in the buffer, at most, but for one step
 SAMPLES = 40_000_000  # numbers of a field that is sampled beforehand, at most

@@ -3,24 +3,20 @@ an excavation takes from the walls of openings."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from cases.loads import velocity_of
 from cases.material.quiet_sides import base_traction, medium_impedances
 from cases.partition.parts import covered
+from cases.schema.rock_mass import RockMass
+from cases.schema.sources import PlaneLoad
+from continuum.mesh.description import Side
+from continuum.plane.discrete import stress_of
 from continuum.plane.drive import Push
-from continuum.plane.rock import stress_of
 from continuum.plane.sides import outward, points_on
 from continuum.space import compat
+from continuum.space.body import Body
 from continuum.space.evaluation import cells_at, on_freedoms, places_in
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.sources import PlaneLoad
-    from continuum.mesh.description import Side
-    from continuum.space.body import Body
 
 
 def pushes(scene: RockMass, body: Body) -> list[Push]:

@@ -7,21 +7,18 @@ is its normal, from the contact's block i to its block j, turned to the left.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import block_diag, csr_matrix, vstack
 
 from cases.partition.locate import contact_at
+from cases.schema.rock_mass import RockMass
 from continuum.model import Receivers
+from continuum.plane.discrete import PlaneDiscrete, stress_of
 from continuum.plane.recovery import recovered_stress
-from continuum.plane.rock import stress_of
 from continuum.space.evaluation import cells_at, matrix_of, places_in
 from continuum.space.receivers import per_component, shares_of_pieces
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
-    from continuum.plane.rock import PlaneDiscrete
 
 
 class JointReaders(NamedTuple):

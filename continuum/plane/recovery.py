@@ -11,19 +11,14 @@ element at the point.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from continuum.space import compat
+from continuum.space.body import Body
 from continuum.space.elasticity import TENSOR, PlaneRock, elastic_moduli
 from continuum.space.evaluation import at_reference, matrix_of, reference_points
 from continuum.space.receivers import shares_of_pieces
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_matrix
-
-    from continuum.space.body import Body
 
 COMPONENTS = ((0, 0), (1, 1), (0, 1))
 LEAST = 1.5  # points for each coefficient of a polynomial

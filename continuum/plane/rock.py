@@ -6,8 +6,6 @@ effective medium of the sets with a spacing, and joints that stand alone as they
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
-
 import numpy as np
 
 from cases.errors import SceneError
@@ -16,46 +14,19 @@ from cases.material.dashpots import set_time_constants
 from cases.material.effective_medium import compliant, stiffness
 from cases.material.rock import elastic_rock
 from cases.material.strength import strength_of
+from cases.partition.blocks import Partition
 from cases.partition.periodic import Across, across_periodic, of_all
 from cases.partition.regions import within
 from cases.partition.scene import partition_of
-from continuum.build import body_and_jumps
+from cases.schema.joint_set import JointSet
+from cases.schema.rock_mass import RockMass
 from continuum.joints import interfaces
 from continuum.mesh.plane import plane_mesh
-from continuum.model import Interfaces
+from continuum.plane.discrete import MOTION, PlaneDiscrete, stress_of
 from continuum.plane.size import element_sizes, refuse_large_mesh
-from continuum.space.body import Body
-from continuum.space.elasticity import PlaneRock, Section
-from continuum.space.interface import Jumps
-from continuum.space.kinematics import Kinematics
+from continuum.space.assembly import body_and_jumps
+from continuum.space.elasticity import PlaneRock
 from joints.law import Law, law
-
-if TYPE_CHECKING:
-    from cases.partition.blocks import Partition
-    from cases.schema.joint_set import JointSet
-    from cases.schema.rock_mass import RockMass
-
-MOTION = Kinematics(2, Section(2, 1.0), False)
-
-
-class PlaneDiscrete(NamedTuple):
-    """A rock mass in space.
-
-    resolved : the scene with the joint sets that are resolved alone. partition : of it.
-    across : contacts across periodic sides. block : int array [cells]; vertex : int array [cells,
-    corners], `PlaneMesh`. materials : [rock] and the regions'. jumps, joints : None without any.
-    """
-
-    resolved: RockMass
-    partition: Partition
-    across: list[Across]
-    block: np.ndarray
-    vertex: np.ndarray
-    materials: list[PlaneRock]
-    body: Body
-    jumps: Jumps | None
-    joints: Interfaces | None
-    kinematics: Kinematics = MOTION
 
 
 def smeared(scene: RockMass, model: str) -> list[JointSet]:
@@ -148,50 +119,3 @@ def _carried(scene: RockMass, found: PlaneDiscrete, contact: np.ndarray) -> np.n
     xx, yy, xy = stress_of(scene)
     t = np.array([xx * n[0] + xy * n[1], xy * n[0] + yy * n[1]])
     return np.array([(t * n).sum(axis=0), t[0] * n[1] - t[1] * n[0]])
-
-
-def blocks_of(found: PlaneDiscrete) -> np.ndarray:
-    """Return the two blocks of every contact, those across periodic sides last [c, 2]."""
-    return of_all(found.partition, found.across, "blocks")
-
-
-def motion_of_blocks(found: PlaneDiscrete, u: np.ndarray) -> np.ndarray:
-    """Return the mean displacement (m) and rotation of each block [n, 3], of its nodes' motion."""
-    body, partition = found.body, found.partition
-    own = np.flatnonzero(body.cells[:, 0] >= 0)
-    node, block = body.cells[own], np.repeat(found.block[own], body.cells.shape[1])
-    moved = u[body.freedom(node[:, :, None], np.arange(2))].reshape(-1, 2)
-    arm = body.x[node].reshape(-1, 2) - partition.centroid[block]
-    (a, b), (x, y) = arm.T, moved.T
-    values = np.ones_like(a), x, y, a, b, a * y - b * x, a * a + b * b
-    sums = np.array([np.bincount(block, one, minlength=partition.count) for one in values])
-    whole: Any = body.communicator.sum(sums)  # type: ignore[arg-type]
-    count, x, y, a, b, turned, spread = whole
-    x, y, a, b = x / count, y / count, a / count, b / count
-    turn = (turned - count * (a * y - b * x)) / (spread - count * (a * a + b * b))
-    return np.stack([x + turn * b, y - turn * a, turn], axis=1)
-
-
-def stress_of(scene: RockMass) -> np.ndarray:
-    """Return the prestress, xx, yy, xy [3], Pa, compression positive; zero without."""
-    given = scene.prestress
-    return np.zeros(3) if given is None else np.array([given.xx, given.yy, given.xy])
-
-
-def prestressed(scene: RockMass, discrete: PlaneDiscrete, pushing: float, relaxed: float) -> float:
-    """Return the root of twice the energy (sqrt(J/m)) that a prestress keeps in rock and joints,
-    and that rock gives off by pushing on both sides of joints that open, so long (s/sqrt(kg)).
-
-    relaxed : what the rock keeps of its stiffness in the end.
-    """
-    stress, joints, shared = stress_of(scene), discrete.joints, discrete.body.communicator
-    softest = min(np.linalg.eigvalsh(one.stiffness).min() for one in discrete.materials)
-    least = relaxed * softest
-    stored = float(stress @ stress) / least * float(discrete.partition.area.sum())
-    size, softness = float(np.abs(stress).max()), 0.0
-    if joints is not None:
-        law = joints.law
-        softness = max(np.max(1 / law.normal_stiffness), np.max(1 / law.shear_stiffness))
-    length = shared.sum(0.0 if joints is None else float(joints.area.sum()))
-    stored += 4 * size**2 * length * shared.largest(softness)
-    return float(np.sqrt(stored)) + pushing * 4 * size * length

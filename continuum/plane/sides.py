@@ -7,22 +7,20 @@ sets that have a spacing: both models of the rock are as stiff there to long wav
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
 from cases.loads import base_steps
 from cases.material.quiet_sides import borne, medium_impedances
+from cases.sampling import Clock
+from cases.schema.rock_mass import RockMass
 from continuum.mesh.description import Side
 from continuum.model import Dashpots, Fixed
+from continuum.space.body import Body
 from continuum.space.evaluation import places_in
 from continuum.space.interface import facet_points
-
-if TYPE_CHECKING:
-    from cases.sampling import Clock
-    from cases.schema.rock_mass import RockMass
-    from continuum.space.body import Body
 
 INSIDE = 1e-7  # of a cell: how far inside it a field is asked for, lest it is beyond a joint
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from continuum.run import Run
+from continuum.state import Samples
 from continuum.waveforms import energy_terms, vectors
 from results.plane import plane_dataset
-
-if TYPE_CHECKING:
-    from continuum.run import Run
-    from continuum.state import Samples
 
 
 def quantities(run: Run, samples: Samples) -> dict[str, np.ndarray]:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from cases.effects import is_spatial
 from cases.errors import SceneError
 from cases.material.calibrate import Properties, mechanisms_of
+from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from cases.schema.segment import alone, regions
 from continuum.space.elasticity import Material, Section
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
 
 MODELS = ("jointed", "equivalent")
 

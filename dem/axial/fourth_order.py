@@ -30,7 +30,8 @@ from cases.loads import load_history, until_it_ends
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock, clock
 from cases.schema.scene import Scene
-from dem.axial.model import Model, unloaded
+from dem.axial.build import unloaded
+from dem.axial.model import Model
 from dem.axial.samples import Samples
 from dem.axial.springs import spring_forces
 from dem.axial.stability import critical_chain_step

@@ -4,15 +4,13 @@ spring that relaxes (`cases.material.constant_q`)."""
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from cases.material.calibrate import Properties, mechanisms_of
-
-if TYPE_CHECKING:
-    from cases.material.constant_q import Mechanisms
-    from cases.schema.scene import Scene
+from cases.material.constant_q import Mechanisms, in_series
+from cases.schema.scene import Scene
 
 
 class RelaxingJoints(NamedTuple):
@@ -64,8 +62,6 @@ def _of_joints(scene: Scene, p: Properties) -> list[Mechanisms] | None:
     rock = mechanisms_of(scene, "jointed")
     if rock is None:
         return None
-    from cases.material.constant_q import in_series
-
     assert p.own_stiffness is not None
     own, etas = 1 / p.own_stiffness, p.own_time_constant
     ratio = own / (1 / p.stiffness - own)

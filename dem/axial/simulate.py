@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from time import perf_counter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -15,21 +15,20 @@ from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock, interpolation
 from cases.schema.scene import Scene
 from dem import time_loop
-from dem.axial import leapfrog
-from dem.axial.model import Model, Receivers, build
+from dem.axial import fourth_order, leapfrog
+from dem.axial.build import build
+from dem.axial.model import Model, Receivers
 from dem.axial.samples import buffers, terms
 from dem.axial.stability import highest_speed
 from dem.axial.start import start
 from dem.axial.state import State
 from dem.fragments import with_fragments
+from dem.snapshots import BlockFrame, BlockRecorder
 from dem.static import since_prestress
 from numerics.divergence import guard, look
 from numerics.time_loop import Keeper
 from results.arrays import copied, size_of
 from results.dataset import dataset
-
-if TYPE_CHECKING:
-    from dem.snapshots import BlockRecorder
 
 #: Of (model, state, samples, stride, monitor): a function that takes samples first .. last - 1.
 Marcher = Callable[..., Callable[[int, int], None]]
@@ -54,7 +53,6 @@ def scheme_of(scene: Scene) -> Scheme:
     """Return how a scene's chain is stepped; a scheme that it does not name is not imported."""
     if scene.numerics.dem.scheme == "leapfrog":
         return Scheme(build, lambda scene, time: leapfrog.marcher, 1, True)
-    from dem.axial import fourth_order
 
     def marcher(scene: Scene, time: Clock) -> Marcher:
         return partial(fourth_order.marcher, fourth_order.compose(scene, time))
@@ -141,8 +139,6 @@ def _recorder(
     """
     if scene.record.fields is None:
         return None
-    from dem.snapshots import BlockFrame, BlockRecorder
-
     p = calibrate(scene)
     everywhere = model._replace(receivers=_everywhere(p))
 

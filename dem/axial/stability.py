@@ -11,19 +11,16 @@ away. Local damping can add a share of every unbalanced force to it, as if the s
 from __future__ import annotations
 
 from math import cos, pi, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cases.material.calibrate import Properties
 from cases.sampling import Clock
 from dem.axial.ends import end_stiffness
+from dem.axial.model import Model
+from dem.axial.state import State
 from numerics.critical_step import critical_step, critical_step_of_modes
 from numerics.divergence import speed_that
-
-if TYPE_CHECKING:
-    from dem.axial.model import Model
-    from dem.axial.state import State
 
 
 def critical_chain_step(p: Properties, start: str, end: str) -> float:

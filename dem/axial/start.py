@@ -7,8 +7,9 @@ import numpy as np
 
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
+from dem.axial.build import unloaded, with_mass_damping
 from dem.axial.leapfrog import march
-from dem.axial.model import Chain, Model, unloaded, with_mass_damping
+from dem.axial.model import Chain, Model
 from dem.axial.springs import spring_forces
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from dem.axial.model import Effects
 from numerics.cache_lines import zeros
-
-if TYPE_CHECKING:
-    from dem.axial.model import Effects
 
 
 class State(NamedTuple):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from cases.partition.blocks import Partition
 from cases.partition.lattice import further_sets
 from cases.partition.regions import rocks_of
 from cases.partition.scene import partition_of
+from cases.schema.rock_mass import RockMass
 from dem.blocks.joints import Columns, columns
 from dem.blocks.links import Links, links_of
 from dem.blocks.model import Blocks, PlaneForm
@@ -19,9 +20,6 @@ from dem.blocks.stability import critical_plane_step
 from dem.blocks.tiles import Contacts, contacts_of
 from joints.law import Law, parts_of
 from joints.normal import gap_under
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
 
 
 class RigidBlocks(NamedTuple):

@@ -3,20 +3,18 @@ set, each set of cuts, and every other contact."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from cases.material.contact_points import CUT, points_of
 from cases.material.dashpots import set_time_constants
 from cases.material.rigid_blocks import RigidJoints
+from cases.material.rock_mass import Stiffness
 from cases.material.strength import strength_of
 from cases.schema.joint import JointLaw
+from cases.schema.rock_mass import RockMass
 from joints.law import Law, law, stiffest, uniform
-
-if TYPE_CHECKING:
-    from cases.material.rock_mass import Stiffness
-    from cases.schema.rock_mass import RockMass
 
 
 class Columns(NamedTuple):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,10 +13,8 @@ from cases.partition.blocks import Partition
 from cases.partition.periodic import across_periodic, of_all
 from cases.partition.regions import ROCK, rocks_of
 from cases.partition.subdivision import NO_SET
-
-if TYPE_CHECKING:
-    from cases.schema.joint_set import JointSet
-    from cases.schema.rock_mass import RockMass
+from cases.schema.joint_set import JointSet
+from cases.schema.rock_mass import RockMass
 
 
 class Links(NamedTuple):

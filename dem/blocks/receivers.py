@@ -8,7 +8,7 @@ are beyond joints, the block moves as it is: u + phi x r, with its mean stress.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,10 +16,8 @@ from cases.errors import SceneError
 from cases.partition.blocks import Partition
 from cases.partition.lattice import squared
 from cases.partition.locate import contact_at, rock_neighbours, sides_at
+from cases.schema.rock_mass import RockMass
 from dem.blocks.links import Links
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
 
 #: Of the largest singular value of the neighbours' places: below it they lie on a line.
 ON_A_LINE = 0.05

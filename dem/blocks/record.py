@@ -11,17 +11,13 @@ times the angular acceleration to the shear stress; it is zero for squares and l
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from dem.blocks.leapfrog import PlaneSamples
 from dem.blocks.links import Links
 from dem.blocks.receivers import BlockReceivers
+from dem.blocks.system import PlaneSystem
 from dem.blocks.tile import ALONG, BEND, FORCE_X, FORCE_Y, GAP, SLIP
-
-if TYPE_CHECKING:
-    from dem.blocks.system import PlaneSystem
 
 #: xx, yy and xy of a tensor.
 COMPONENTS = ((0, 0), (1, 1), (0, 1))

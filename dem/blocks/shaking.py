@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cases.loads import history_of
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
+from cases.schema.rock_mass import RockMass
 
 #: Of (steps): the velocity of every wall in each [n, walls, 2], m/s.
 Shaking = Callable[[np.ndarray], np.ndarray]

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
+from cases.incident import IncidentField
+from cases.schema.rock_mass import RockMass
 from dem import time_loop
+from dem.blocks.bounds import highest_energy, motion_of_contacts
 from dem.blocks.leapfrog import PlaneSamples, march, samples_for
 from dem.blocks.model import PlaneState, state_at_rest
 from dem.blocks.record import quantities
-from dem.blocks.stability import highest_energy, motion_of_contacts
+from dem.blocks.snapshots import PlaneRecorder
 from dem.blocks.start import start
 from dem.blocks.system import PlaneSystem, prepared
 from numerics.divergence import SPEED, Guard, audit, guard
@@ -21,11 +23,6 @@ from numerics.small_motion import Moved, farthest, matters, overlapping, refuse_
 from numerics.time_loop import Keeper
 from results.arrays import size_of
 from results.plane import plane_dataset
-
-if TYPE_CHECKING:
-    from cases.incident import IncidentField
-    from cases.schema.rock_mass import RockMass
-    from dem.blocks.snapshots import PlaneRecorder
 
 MOST_OF_DRIVE = 2_000_000  # numbers: forces on held blocks in memory at a time
 
@@ -112,8 +109,6 @@ def _recorder(system: PlaneSystem, state: PlaneState) -> PlaneRecorder | None:
     """Return the recorder of snapshots; None, and nothing imported, without snapshots."""
     if system.blocks.scene.record.fields is None:
         return None
-    from dem.blocks.snapshots import PlaneRecorder
-
     return PlaneRecorder(system, state)
 
 

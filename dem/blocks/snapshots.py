@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import xarray as xr
 
+from cases.partition.blocks import Partition
 from cases.partition.polygons import owner
 from dem.blocks.leapfrog import march, samples_for
+from dem.blocks.model import PlaneState
+from dem.blocks.system import PlaneSystem
 from results.arrays import copied
 from results.snapshots import SnapshotRecorder, snapshots, with_snapshots
-
-if TYPE_CHECKING:
-    from cases.partition.blocks import Partition
-    from dem.blocks.model import PlaneState
-    from dem.blocks.system import PlaneSystem
 
 
 class PlaneRecorder(SnapshotRecorder):

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from cases.histories import LoadHistory
 from cases.loads import velocity_of
 from cases.material.quiet_sides import base_traction, impedances
 from cases.partition.blocks import Partition
 from cases.partition.locate import block_at
 from cases.partition.parts import loaded_part
+from cases.sampling import Clock
+from cases.schema.plane import StressInPlane
+from cases.schema.rock_mass import RockMass
+from cases.schema.sources import PlaneLoad
 from dem.blocks.edges import gathered, on_rows, points_on, resultant
 from dem.blocks.waves import Delayed, Sampled
-
-if TYPE_CHECKING:
-    from cases.histories import LoadHistory
-    from cases.sampling import Clock
-    from cases.schema.plane import StressInPlane
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.sources import PlaneLoad
 
 #: Samples times held blocks whose forces are there at once.
 AT_ONCE = 100_000

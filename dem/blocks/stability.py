@@ -1,4 +1,4 @@
-"""Bounds of a rock mass of rigid blocks: its critical step, and how fast its blocks can become.
+"""The critical step of a rock mass of rigid blocks.
 
 The critical step, with dashpots and what holds the sides, follows from the bound of
 `cases.material.rigid_step`, block by block, on stiffness and damping together. Slip and opening
@@ -11,7 +11,6 @@ makes forces that turn a velocity round 1 + alpha times as large.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,18 +18,9 @@ from cases.material.contact_points import ContactPoints
 from cases.material.rigid_step import block_stiffness
 from cases.material.rock_mass import Inertia, Stiffness
 from cases.partition.blocks import Contacts
-from cases.spectrum import highest_frequency
 from dem.blocks.joints import Columns
 from dem.blocks.links import Links
-from dem.blocks.model import PlaneState
-from dem.blocks.shaking import variation
-from dem.blocks.tile import relative
-from dem.blocks.tiles import LENGTH, START
 from numerics.critical_step import critical_step
-from numerics.divergence import speed_that
-
-if TYPE_CHECKING:
-    from dem.blocks.system import PlaneSystem
 
 
 def critical_plane_step(links: Links, columns: Columns, inertia: Inertia, local: float) -> float:
@@ -70,43 +60,3 @@ def _stiffness(
     contacts = Contacts(links.blocks, links.start, links.end, links.normal, length, links.column)
     beyond = int(links.blocks.max(initial=-1)) + 1
     return block_stiffness(max(count, beyond), contacts, points, Stiffness(normal, shear))[:count]
-
-
-def highest_energy(system: PlaneSystem, state: PlaneState) -> float:
-    """Return a bound on sqrt(m) v of any degree of freedom, sqrt(J per metre).
-
-    From sources, gravity and moving walls, and the energy stored at the start.
-    """
-    blocks, time, mass = system.blocks, system.time, system.blocks.inertia.mass
-    own = system.model.blocks
-    duration = time.dt * (time.steps + time.stride)
-    shaken = 0.0
-    if system.shaking is not None:
-        shaken = variation(system.shaking(np.arange(time.steps + time.stride)))
-    with np.errstate(over="ignore"):
-        return speed_that(
-            system.sources.impulse(
-                blocks.masses[system.sources.rows], highest_frequency(blocks.scene)
-            ),
-            duration * np.hypot(own.gravity_x, own.gravity_y) * np.sqrt(mass.sum()),
-            np.sqrt(mass.sum()) * shaken,
-            stored(system, state),
-        )
-
-
-def motion_of_contacts(system: PlaneSystem, state: PlaneState) -> tuple[np.ndarray, ...]:
-    """Return opening and slip (m) at the centres of all contacts, and their rotation [c]."""
-    k, links = system.model.contacts.rows(), system.blocks.links
-    (x_i, y_i, turn_i), (x_j, y_j, turn_j) = state.u.T[:, links.blocks].transpose(2, 0, 1)
-    return relative(x_j - x_i, y_j - y_i, turn_i, turn_j, *k[:LENGTH])
-
-
-def stored(system: PlaneSystem, state: PlaneState) -> float:
-    """Return the root of twice the energy in all contacts, sqrt(J per metre)."""
-    k, links, own = system.model.contacts.rows(), system.blocks.links, system.blocks.columns
-    gap, slip, turn = motion_of_contacts(system, state)
-    if system.model.form.stressed:
-        gap, slip = gap + k[START], slip + k[START + 1]
-    length, column = k[LENGTH], links.column
-    twice = own.normal[column] * (gap**2 + (length * turn) ** 2 / 12) + own.shear[column] * slip**2
-    return float(np.sqrt((length * twice).sum()))

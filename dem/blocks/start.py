@@ -4,7 +4,6 @@ gravity."""
 from __future__ import annotations
 
 from math import ceil
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from dem.blocks.leapfrog import marcher, samples_for
 from dem.blocks.model import PlaneState, held_by, state_at_rest
 from dem.blocks.sources import Sources, reactions
 from dem.blocks.stability import critical_plane_step
+from dem.blocks.system import PlaneSystem
 from dem.blocks.tiles import LANES, START, Contacts
 from dem.static import (
     NEVER,
@@ -26,9 +26,6 @@ from dem.static import (
 )
 from joints.law import IN_MOTION, sticking
 from results.arrays import copied, fill
-
-if TYPE_CHECKING:
-    from dem.blocks.system import PlaneSystem
 
 PARTS = 40  # in which walls of openings are released where joints may slip or open
 RESISTED = 1e-9  # of the largest resistance: below it there is none

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from cases.incident import IncidentField, free_field
 from cases.material.quiet_sides import borne, impedances
 from cases.sampling import Clock, clock
+from cases.schema.rock_mass import RockMass
 from cases.size import refuse_beyond_memory, snapshot_bytes, waveform_bytes
 from dem.blocks.build import RigidBlocks, constants, contacts, form_of, rigid_blocks
 from dem.blocks.edges import dashpots, on_freedoms, points_on
@@ -19,9 +20,6 @@ from dem.blocks.sources import Sources, load_pattern, on_sides, reactions
 from dem.blocks.waves import incoming
 from dem.time_loop import thread_count
 from joints.law import table_of
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
 
 #: Bytes a block, with its contacts and all that makes them, and for each of their points.
 OF_BLOCK, OF_POINT = 2000, 60

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from cases.histories import LoadHistory, Step
 from cases.incident import FaceTractions, FreeField, IncidentField, tractions
+from cases.sampling import Clock
 from cases.schema.pulse import shortest_period
+from cases.schema.rock_mass import RockMass
 from dem.blocks.edges import EdgePoints, gathered, on_rows, resultant
-
-if TYPE_CHECKING:
-    from cases.sampling import Clock
-    from cases.schema.rock_mass import RockMass
 
 #: Samples of a field in a period of a pulse, where it is not evaluated at every step.
 IN_A_PERIOD = 200
@@ -48,8 +46,6 @@ class Delayed:
 
     def drive(self, first: int, last: int, dt: float, count: int) -> np.ndarray:
         """Return forces and moments in the steps first .. last - 1 [n, count, 3]."""
-        from scipy.sparse import csr_array
-
         edges = dt * (np.arange(first, last + 1) - 0.5)
         mean = np.diff(self.history.impulse(edges - self.late[:, None]), axis=1) / dt
         place = 3 * self.row[:, None] + np.arange(3)

@@ -11,6 +11,7 @@ from cases.material.calibrate import Properties
 from cases.sampling import Clock, Interpolation
 from cases.schema.scene import Scene
 from dem.fragments import with_fragments
+from dem.snapshots import BlockFrame
 from dem.spatial.build import (
     buffers_for,
     build_receivers,
@@ -78,8 +79,6 @@ def capturing(
 
     A velocity at a whole step needs the step, as it does at the receivers.
     """
-    from dem.snapshots import BlockFrame
-
     everything = build_receivers(_all(p.block_count + 1), _all(p.block_count))
 
     def capture(sample: int) -> BlockFrame:

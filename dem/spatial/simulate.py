@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from time import perf_counter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -14,6 +14,7 @@ from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock, clock
 from cases.schema.scene import Scene
 from dem.size import refuse_large
+from dem.snapshots import BlockRecorder
 from dem.spatial.build import (
     buffers_for,
     build_model,
@@ -35,9 +36,6 @@ from numerics.small_motion import Moved, matters, refuse_large_motion
 from numerics.time_loop import Keeper
 from results.arrays import changed, size_of
 from results.dataset import dataset
-
-if TYPE_CHECKING:
-    from dem.snapshots import BlockRecorder
 
 MOST_TURN = 0.045  # rad: small rotations then neglect 1 - cos = 1e-3 of a lever
 
@@ -131,8 +129,6 @@ def _recorder(
     """Return the recorder of snapshots; None, and nothing imported, without snapshots."""
     if scene.record.fields is None:
         return None
-    from dem.snapshots import BlockRecorder
-
     return BlockRecorder(scene, p, capturing(p, model, state, threads), dt)
 
 

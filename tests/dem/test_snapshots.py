@@ -232,8 +232,7 @@ def test_a_run_without_snapshots_imports_nothing_for_them(tmp_path):
         "from compare.cli.program import main\n"
         "try: main()\n"
         "except SystemExit as end: assert end.code == 0, end.code\n"
-        "mine = {'results.snapshots', 'results.subcells', 'dem.snapshots',\n"
-        "        'compare.runs.field_files', 'meshio'}\n"
+        "mine = {'compare.runs.field_files', 'meshio'}\n"
         "print(sorted(mine & set(sys.modules)))"
     )
     scene = "guo-li-2002/fig-03"

@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import eigvalsh_tridiagonal
 
 from cases.material.calibrate import calibrate
-from dem.axial.model import build
+from dem.axial.build import build
 from dem.axial.start import ChainRelaxation
 from dem.static import relax
 

@@ -12,7 +12,7 @@ from compare.engines import solve
 from compare.figures import scene_figures
 from compare.figures.charts.spacetime import diagrams_of, space_time
 from compare.figures.scene_figures import along_pillar, recorded_along, sections
-from dem.axial.model import build_model
+from dem.axial.build import build_model
 
 
 def fields_of(scene, names):

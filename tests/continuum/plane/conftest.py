@@ -5,7 +5,8 @@ from typing import Any
 import pytest
 
 from cases.schema.rock_mass import RockMass
-from continuum.plane.rock import PlaneDiscrete, discretise
+from continuum.plane.discrete import PlaneDiscrete
+from continuum.plane.rock import discretise
 
 QUIET = dict.fromkeys(("left", "right", "bottom", "top"), "quiet")
 

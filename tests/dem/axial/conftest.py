@@ -5,8 +5,8 @@ import pytest
 
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
+from dem.axial.build import build_model
 from dem.axial.leapfrog import march
-from dem.axial.model import build_model
 from dem.axial.state import state_at_rest
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cases.schema.scene import Scene
-from dem.axial.model import build
+from dem.axial.build import build
 from dem.axial.stability import highest_speed
 
 SCENE = {

@@ -9,8 +9,8 @@ from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from closed_forms import leapfrog
 from compare.exact.bar import images
+from dem.axial.build import build_model
 from dem.axial.leapfrog import march
-from dem.axial.model import build_model
 from dem.axial.state import state_at_rest
 
 

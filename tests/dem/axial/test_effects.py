@@ -7,8 +7,8 @@ import pytest
 import dem
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
+from dem.axial.build import build, build_model
 from dem.axial.leapfrog import arguments, loop_for, march, marcher
-from dem.axial.model import build, build_model
 from dem.axial.samples import buffers
 from dem.axial.state import state_at_rest
 from joints.law import Law, Parts

@@ -10,8 +10,8 @@ from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from compare.engines import solve
 from compare.misfit.metrics import misfit
+from dem.axial.build import build, build_model
 from dem.axial.leapfrog import march
-from dem.axial.model import build, build_model
 from dem.axial.relaxation import unrelaxed
 from dem.axial.state import state_at_rest
 from results.dataset import energy_residual

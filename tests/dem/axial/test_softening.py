@@ -6,8 +6,8 @@ import pytest
 import dem
 from cases.material.calibrate import calibrate
 from closed_forms.spall import lattice_spall
+from dem.axial.build import build
 from dem.axial.leapfrog import march, marcher
-from dem.axial.model import build
 from dem.axial.samples import buffers, terms
 from results.dataset import energy_residual
 

@@ -3,7 +3,7 @@
 import pytest
 
 from cases.material.calibrate import calibrate
-from dem.axial.model import build
+from dem.axial.build import build
 from numerics.cache_lines import CACHE_LINE
 from results.arrays import arrays
 

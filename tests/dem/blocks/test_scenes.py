@@ -416,7 +416,7 @@ def test_an_unstable_run_is_stopped_with_what_is_sound(rock_mass, wave):
 
 def test_rare_samples_do_not_hide_a_pulse_from_the_divergence_monitor(rock_mass, wave):
     """What waves and forces can cause is the same whether a sample falls on the pulse or none."""
-    from dem.blocks.stability import highest_energy
+    from dem.blocks.bounds import highest_energy
 
     force = {
         "kind": "force", "at": [6.2, 5.3], "direction": [0.6, 0.8], "shape": "ricker",
