@@ -17,7 +17,7 @@ from compare.solvers.record import HEADINGS, Answer, Solver, no
 if TYPE_CHECKING:
     import xarray as xr
 
-    from numerics.time_loop import Keeper
+    from numerics.time_loop import Checkpointer
 
 #: The engines by name; their packages are imported when they run.
 ENGINES: dict[str, Solver] = {one.name: one for one in (DEM, JOINTED_ROCK, EQUIVALENT_ROCK)}
@@ -107,7 +107,7 @@ def solve(
     scene: AnyScene,
     progress: Progress | None = None,
     comm=None,
-    keeper: Keeper | None = None,
+    keeper: Checkpointer | None = None,
 ) -> xr.Dataset:
     """Return the result of one engine or exact solution.
 

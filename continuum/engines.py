@@ -40,7 +40,7 @@ def explicit_engine(run: Run, monitor: Monitor) -> Engine:
     """Return leapfrog."""
     time, communicator = run.choice.time, run.communicator
     if run.sudden is not None:
-        let_go(run.model, run.state, run.discrete.body, run.sudden)
+        apply_sudden_gravity(run.model, run.state, run.discrete.body, run.sudden)
     of_run = run.model, run.state, run.samples
     march = communicator.leapfrog(*of_run, time.stride, monitor.guard)
 
@@ -51,7 +51,7 @@ def explicit_engine(run: Run, monitor: Monitor) -> Engine:
     return Engine(compile, march, time.dt, dict)
 
 
-def let_go(model: Model, state: State, body: Body, weight: np.ndarray) -> None:
+def apply_sudden_gravity(model: Model, state: State, body: Body, weight: np.ndarray) -> None:
     """Set the velocities before the first step of rock that gravity acts on from t = 0 on.
 
     At t = 0, in the middle of the first two, it is at rest.

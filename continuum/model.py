@@ -17,7 +17,7 @@ from scipy.sparse import csr_matrix
 from cases.material.constant_q import Mechanisms
 from continuum.space.operator import Operator
 from continuum.space.stencils import Stencils
-from joints.law import Law, Parts
+from joints.law import Law, LawFlags
 
 
 class Memory(NamedTuple):
@@ -102,7 +102,7 @@ class Interfaces(NamedTuple):
     area: np.ndarray
     law: Law
     table: np.ndarray
-    parts: Parts
+    parts: LawFlags
     prestress: Any
     stiffest: Any
 

@@ -7,7 +7,7 @@ import numpy as np
 from continuum.plane.discrete import blocks_of, motion_of_blocks, prestressed
 from continuum.run import Run
 from numerics.divergence import ENERGY, EVERY, audit, guard, look, speed_that
-from numerics.instability import Sighting, stopped
+from numerics.instability import Divergence, stopped
 from numerics.small_motion import (
     LARGEST,
     Moved,
@@ -69,7 +69,7 @@ class Monitor:
             return
         step, what, sound = self.guard.found.tolist() if self.guard.found[0] >= 0 else (n, 0, n)
         key = "step_fraction" if self.explicit else "steps_per_period"
-        seen = Sighting(
+        seen = Divergence(
             "the continuum",
             f"numerics.continuum.{key}",
             int(-self.communicator.largest(-step)),

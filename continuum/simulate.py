@@ -31,7 +31,7 @@ from continuum.space.kinematics import refuse
 from continuum.state import State
 from continuum.validity import applies
 from continuum.waveforms import energy_terms, waveforms
-from numerics.time_loop import Keeper, run_in_stretches
+from numerics.time_loop import Checkpointer, run_in_chunks
 from results.arrays import changed, copied, fill, size_of
 from results.dataset import dataset
 
@@ -45,7 +45,7 @@ def simulate(
     dim: int | None = None,
     progress: Callable[[float], None] | None = None,
     comm=None,
-    keeper: Keeper | None = None,
+    keeper: Checkpointer | None = None,
     incident: IncidentField | None = None,
 ) -> xr.Dataset:
     """Simulate a scene as deformable rock.
@@ -108,7 +108,7 @@ class Start(NamedTuple):
         self,
         recorder: RockRecorder | None = None,
         progress: Callable[[float], None] | None = None,
-        keeper: Keeper | None = None,
+        keeper: Checkpointer | None = None,
     ) -> None:
         """Take all samples and snapshots. Raises StoppedError, without its result."""
         run, time = self.run, self.run.choice.time
@@ -122,7 +122,7 @@ class Start(NamedTuple):
 
         work = self.engine.work * int(run.communicator.largest(run.state.u.size)) * time.stride
         chunk = min(FREEDOM_STEPS_AT_ONCE // work, time.samples // LEAST_STRETCHES)
-        run_in_stretches(time.samples, chunk, march, self.parts, progress, recorder, keeper, 1)
+        run_in_chunks(time.samples, chunk, march, self.parts, progress, recorder, keeper, 1)
 
     def march_again(self) -> Callable[[], None]:
         """Return a function that takes all samples from this state on, whenever it is called, with

@@ -14,7 +14,7 @@ from cases.material.constant_q import beyond_blocks
 from cases.schema.scene import Scene
 from dem.axial.simulate import simulate as along_axis
 from dem.spatial.simulate import simulate as in_space
-from numerics.time_loop import Keeper
+from numerics.time_loop import Checkpointer
 
 if TYPE_CHECKING:
     from cases.incident import IncidentField
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 def simulate(
     scene: AnyScene,
     progress: Callable[[float], None] | None = None,
-    keeper: Keeper | None = None,
+    keeper: Checkpointer | None = None,
     incident: IncidentField | None = None,
 ) -> xr.Dataset:
     """Simulate a scene with rigid blocks.

@@ -15,8 +15,8 @@ from cases.errors import StoppedError
 from cases.kinds import AnyScene
 from cases.sampling import Clock
 from numerics.divergence import ENERGY, Guard
-from numerics.instability import Sighting, stopped
-from numerics.time_loop import Keeper, run_in_stretches
+from numerics.instability import Divergence, stopped
+from numerics.time_loop import Checkpointer, run_in_chunks
 from results.snapshots import SnapshotRecorder
 
 BLOCK_STEPS_AT_ONCE = 20_000_000  # some 10 ms to 1 s: often enough for a progress bar
@@ -44,7 +44,7 @@ def followed(
     result: Callable[[int], xr.Dataset],
     progress: Callable[[float], None] | None,
     recorder: SnapshotRecorder | None,
-    keeper: Keeper | None,
+    keeper: Checkpointer | None,
 ) -> xr.Dataset:
     """Return the result of a run; if it stops early, the error has the valid part. result : a
     function of the number of valid samples."""
@@ -58,7 +58,7 @@ def followed(
     steps = min(BLOCK_STEPS_AT_ONCE // run.blocks, run.time.steps // LOOKS)
     chunk = max(LEAST_STEPS, steps) // run.time.stride
     try:
-        run_in_stretches(run.time.samples, chunk, march, run.parts, progress, recorder, keeper)
+        run_in_chunks(run.time.samples, chunk, march, run.parts, progress, recorder, keeper)
     except StoppedError as error:
         error.result = result(error.samples)
         raise
@@ -84,7 +84,7 @@ def refuse_beyond_bounds(
     at = places[int(np.nan_to_num(speed, nan=np.inf).argmax())].tolist()
     place = tuple(at) if isinstance(at, list) else at
     key = "numerics.dem.step_fraction"
-    seen = Sighting("the rigid blocks", key, step, sound, what == ENERGY, place)
+    seen = Divergence("the rigid blocks", key, step, sound, what == ENERGY, place)
     raise stopped(scene, time, critical, seen)
 
 

@@ -1,7 +1,7 @@
 """The law of a joint: its parameters, its parts, and the complete law in one call.
 
 Every formula here is plain Python that numba compiles into the kernels that call it. A kernel takes
-the parameters as one table, and `Parts`, a tuple of booleans, as a constant: absent parts are
+the parameters as one table, and `LawFlags`, a tuple of booleans, as a constant: absent parts are
 eliminated when the kernel is compiled. A new parameter is a field of `Law`, and its formula.
 
 Per unit area: traction in Pa, compression positive; gap in m, positive when open, so that
@@ -71,7 +71,7 @@ IN_MOTION = [
 ]
 
 
-class Parts(NamedTuple):
+class LawFlags(NamedTuple):
     """Which parts the law has: constants of a compiled kernel.
 
     path : the history has the accumulated slip, or the state of the faces.
@@ -118,7 +118,7 @@ class History(NamedTuple):
     path: float = 0.0
 
 
-def parts_of(law: Law) -> Parts:
+def parts_of(law: Law) -> LawFlags:
     """Return the parts of a law."""
     shear = law.shear_stiffness is not None
     slip = law.cohesion is not None or law.friction is not None
@@ -126,7 +126,7 @@ def parts_of(law: Law) -> Parts:
     weakening = shear and law.weakening_distance is not None
     dilation = shear and law.dilation is not None
     rate_state = shear and law.direct_effect is not None
-    return Parts(
+    return LawFlags(
         dashpots=law.normal_viscosity is not None or law.shear_viscosity is not None,
         no_tension=no_tension,
         softening=softening,

@@ -76,12 +76,12 @@ def _restore(typing, old):
 # An intrinsic has another name in every process: a kernel that closed over one would never be found
 # in the cache.
 @formula
-def flush_tiny():
-    """Flush denormals to zero in this thread from now on; return the setting for `restore_tiny`."""
+def flush_denormals():
+    """Flush denormals to zero in this thread from now on; return the setting before."""
     return _flush()
 
 
 @formula
-def restore_tiny(old):
-    """Restore this thread's handling of denormals before `flush_tiny`."""
+def restore_denormals(old):
+    """Restore this thread's handling of denormals before `flush_denormals`."""
     _restore(old)

@@ -12,15 +12,15 @@ from cases.schema.scene import Scene
 HUGE = 1e100  # an amplitude whose square overflows
 
 
-class Sighting(NamedTuple):
+class Divergence(NamedTuple):
     """A finding of the divergence monitor.
 
-    who : in words. key : of the scene, that decides the step. step : at which a bound was exceeded,
-    after the last `sound` one. energy : whether the ledger exceeded it, not a speed. y : of the
-    fastest point, m; in the plane x and y.
+    engine : in words. key : of the scene, that decides the step. step : at which a bound was
+    exceeded, after the last `sound` one. energy : whether the ledger exceeded it, not a speed.
+    y : of the fastest point, m; in the plane x and y.
     """
 
-    who: str
+    engine: str
     key: str
     step: int
     sound: int
@@ -28,25 +28,27 @@ class Sighting(NamedTuple):
     y: float | tuple[float, float]
 
 
-def stopped(scene: Scene | RockMass, time: Clock, critical: float, seen: Sighting) -> StoppedError:
+def stopped(
+    scene: Scene | RockMass, time: Clock, critical: float, seen: Divergence
+) -> StoppedError:
     """Return the error of a run that exceeds its bounds, with the valid samples; critical in s."""
     name = f"{scene.where}, {scene.name}" if scene.name else scene.where
     what = "gained energy" if seen.energy else "diverged"
     error = StoppedError(
-        f"{name}: {seen.who} {what} at t = {seen.step * time.dt:.6g} s, step {seen.step} of "
+        f"{name}: {seen.engine} {what} at t = {seen.step * time.dt:.6g} s, step {seen.step} of "
         f"{time.dt:.4g} s, fastest at {_place(seen)} m: {_cause(scene, time, critical, seen)}"
     )
     error.samples = max(0, seen.sound) // time.stride + 1
     return error
 
 
-def _place(seen: Sighting) -> str:
+def _place(seen: Divergence) -> str:
     if isinstance(seen.y, tuple):
         return "[" + ", ".join(f"{x:.6g}" for x in seen.y) + "]"
     return f"y = {seen.y:.6g}"
 
 
-def _cause(scene: Scene | RockMass, time: Clock, critical: float, seen: Sighting) -> str:
+def _cause(scene: Scene | RockMass, time: Clock, critical: float, seen: Divergence) -> str:
     if time.dt > 0.9999 * critical:
         return (
             f"the step is {time.dt / critical:.4g} times the critical step {critical:.4g} s; "

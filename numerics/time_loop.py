@@ -26,7 +26,7 @@ class SnapshotRecorder(Protocol):
         """Count the snapshots of so many samples as taken."""
 
 
-class Keeper(Protocol):
+class Checkpointer(Protocol):
     """Saves and restores the state of one run.
 
     done : number of samples of an earlier run of the same scene; 0 for a new run.
@@ -41,14 +41,14 @@ class Keeper(Protocol):
         """Save the parts after so many samples, or raise InterruptedRun."""
 
 
-def run_in_stretches(
+def run_in_chunks(
     samples: int,
     chunk: int,
     march: Callable[[int, int], None],
     parts: Any,
     progress: Callable[[float], None] | None = None,
     recorder: SnapshotRecorder | None = None,
-    keeper: Keeper | None = None,
+    keeper: Checkpointer | None = None,
     snapshot_at: int = 0,
 ) -> None:
     """Take all samples of a run in intervals of `chunk`; `march(first, last)` takes samples

@@ -9,7 +9,7 @@ from cases.errors import StoppedError
 from cases.material.calibrate import calibrate
 from continuum.run import discrete_and_steps
 from dem.axial.build import build
-from dem.axial.leapfrog import marcher
+from dem.axial.leapfrog import make_stepper
 from dem.axial.samples import buffers
 from dem.axial.simulate import scheme_of
 from dem.axial.stability import highest_speed
@@ -81,14 +81,14 @@ def test_it_stops_within_so_many_steps_of_leaving_its_bounds(pillar):
     model, state, time, _ = build(scene)
     speed = highest_speed(model, state, time)
     samples, left = buffers(model, state, time.samples), None
-    take = marcher(model, state, samples, 1)
+    take = make_stepper(model, state, samples, 1)
     for n in range(time.steps):
         take(n, n + 1)
         if left is None and np.abs(state.v).max() > RUNAWAY * speed:
             left = n + 1
     model, state, time, _ = build(scene)
     held = guard(speed)
-    marcher(model, state, buffers(model, state, time.samples), 1, held)(0, time.samples)
+    make_stepper(model, state, buffers(model, state, time.samples), 1, held)(0, time.samples)
     assert left is not None and left <= held.found[0] < left + EVERY
     assert held.found[1] == SPEED
 
@@ -100,10 +100,10 @@ def test_a_chain_that_gains_energy_is_stopped_by_its_ledger(pillar):
     model, state, time, _ = build(scene)
     samples, held = buffers(model, state, time.samples), guard(np.inf)
     half = int(0.008 / scene.interval)  # the pulse is within the pillar
-    marcher(model, state, samples, time.stride, held)(0, half)
+    make_stepper(model, state, samples, time.stride, held)(0, half)
     assert held.found[0] == -1
     model.laws[0] *= 1.5
-    marcher(model, state, samples, time.stride, held)(half, time.samples)
+    make_stepper(model, state, samples, time.stride, held)(half, time.samples)
     assert half * time.stride <= held.found[0] < half * time.stride + EVERY
     assert held.found[1] == ENERGY
 

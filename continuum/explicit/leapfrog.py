@@ -15,14 +15,14 @@ from continuum.space.stencils import add_transposed, multiply_stencils
 from continuum.space.tractions import joint_energy, joint_loads
 from joints.formula import formula
 from numerics.arguments import unpacked
-from numerics.denormals import flush_tiny, restore_tiny
+from numerics.denormals import flush_denormals, restore_denormals
 from numerics.divergence import EVERY, SPEED
 from numerics.jit import jitted
 
 
 @cache
 def leapfrog_for(parts, directions, shared=False):
-    """Return the kernel for joints of a law with these parts (`joints.law.Parts`) and jumps
+    """Return the kernel for joints of a law with these parts (`joints.law.LawFlags`) and jumps
     in so many directions, both None without joints; shared : by several processes.
 
     It is given what `continuum.explicit.march.arguments` packs: None for what a model lacks.
@@ -53,7 +53,7 @@ def leapfrog_for(parts, directions, shared=False):
     ):  # fmt: skip
         """Take steps first .. last - 1 and a sample at every step that `stride` divides; return
         MPI's error code, 0 without."""
-        flushing, failed, elastic = flush_tiny(), 0, 0.0
+        setting, failed, elastic = flush_denormals(), 0, 0.0
         for n in range(first, last):
             # Forces from the displacements and rates of step n.
             if elongation is None:
@@ -214,7 +214,7 @@ def leapfrog_for(parts, directions, shared=False):
                         found[0], found[1], found[2] = n + 1, SPEED, n - EVERY
                     if link is None:
                         break
-        restore_tiny(flushing)
+        restore_denormals(setting)
         return failed
 
     @jitted

@@ -19,7 +19,7 @@ from continuum.space.tractions import joint_loads, joint_tangents
 from continuum.state import State
 from joints.formula import formula
 from numerics.arguments import Packed, unpacked
-from numerics.denormals import flush_tiny, restore_tiny
+from numerics.denormals import flush_denormals, restore_denormals
 from numerics.jit import jitted
 
 
@@ -132,7 +132,7 @@ def forces_for(parts, directions):
         dashpots, braking, quiet, reaction, springs, closure, old_closure,
     ):  # fmt: skip
         """Set the forces; return the largest that is summed up, N."""
-        flushing, found = flush_tiny(), 0.0
+        setting, found = flush_denormals(), 0.0
         for i in range(u.size):
             mean[i] = (u[i] - old_u[i]) / dt
         if ledger is not None:
@@ -237,7 +237,7 @@ def forces_for(parts, directions):
         if mass is not None:
             for i in range(u.size):
                 force[i] -= alpha * row_times(*mass, v, i)
-        restore_tiny(flushing)
+        restore_denormals(setting)
         return found
 
     @jitted

@@ -42,7 +42,7 @@ from joints.energy import elastic_energy
 from joints.formula import formula
 from joints.law import law_of
 from numerics.arguments import Packed, unpacked
-from numerics.denormals import flush_tiny, restore_tiny
+from numerics.denormals import flush_denormals, restore_denormals
 from numerics.divergence import EVERY, SPEED, Guard, guard, out_of_bounds
 from numerics.jit import jitted
 from numerics.sums import total_of
@@ -127,7 +127,7 @@ def _unit_force(scene: Scene) -> float:
     return scene.load.direction[1] * scene.pillar.area
 
 
-def marcher(
+def make_stepper(
     composition: Composition,
     model: Model,
     state: State,
@@ -167,7 +167,7 @@ def loop_for(effects):
         u, v, force, start, end, work, stress, velocity, displacement, energy, squares,
         limit, found, every, first, last, s, stride,
     ):  # fmt: skip
-        tiny = flush_tiny()
+        setting = flush_denormals()
         tail, law = u.size - 1, law_of(laws, 0)
         due = first + every if first + every < last else last
         for n in range(first, last):
@@ -234,7 +234,7 @@ def loop_for(effects):
                     found[0], found[1], found[2] = n + 1, SPEED, n - EVERY
                     break
                 due = due + every if due + every < last else last
-        restore_tiny(tiny)
+        restore_denormals(setting)
 
     @jitted
     def loop(given, first, last, s, stride):

@@ -22,7 +22,7 @@ from joints.law import law_of
 from joints.normal import normal_traction, spring_traction
 from joints.softening import strength_left
 from numerics.arguments import Packed, unpacked
-from numerics.denormals import flush_tiny, restore_tiny
+from numerics.denormals import flush_denormals, restore_denormals
 from numerics.divergence import ENERGY, EVERY, SPEED, Guard, gains_energy, guard, out_of_bounds
 from numerics.jit import jitted
 from numerics.sums import total_of
@@ -30,7 +30,7 @@ from numerics.sums import total_of
 UNGUARDED = guard(0.0)  # placeholder of a loop without a monitor
 
 
-def marcher(
+def make_stepper(
     model: Model, state: State, samples: Samples, stride: int, monitor: Guard | None = None
 ) -> Callable[[int, int], None]:
     """Return a function that takes samples first .. last - 1, `stride` steps apart, the steps after
@@ -89,7 +89,7 @@ def loop_for(effects):
         stress, velocity, displacement, energy, v_before,
         limit, peak, found, every, first, last, s, stride,
     ):  # fmt: skip
-        tiny = flush_tiny()
+        setting = flush_denormals()
         count, law, dt, x, mass = u.size, law_of(laws, 0), c.dt, c.impulse_to_speed, c.mass
         due = first + every if first + every < last else last
         for n in range(first, last):
@@ -250,7 +250,7 @@ def loop_for(effects):
                     found[0], found[1], found[2] = lost, what, lost - EVERY - 1
                     break
                 due = due + every if due + every < last else last
-        restore_tiny(tiny)
+        restore_denormals(setting)
 
     @jitted
     def loop(given, first, last, s, stride):

@@ -7,7 +7,7 @@ import numpy as np
 from cases.sampling import Interpolation
 from dem.axial.ends import End
 from dem.axial.relaxation import RelaxingJoints
-from joints.law import Parts
+from joints.law import LawFlags
 
 
 class Receivers(NamedTuple):
@@ -25,7 +25,7 @@ class Effects(NamedTuple):
     mechanisms of each joint. ledger : whether energies are recorded.
     """
 
-    joints: Parts
+    joints: LawFlags
     masses: bool = False
     start: bool = False
     end: bool = False

@@ -26,25 +26,25 @@ from dem.fragments import with_fragments
 from dem.snapshots import BlockFrame, BlockRecorder
 from dem.static import since_prestress
 from numerics.divergence import guard, look
-from numerics.time_loop import Keeper
+from numerics.time_loop import Checkpointer
 from results.arrays import copied, size_of
 from results.dataset import dataset
 
 #: Of (model, state, samples, stride, monitor): a function that takes samples first .. last - 1.
-Marcher = Callable[..., Callable[[int, int], None]]
+MakeStepper = Callable[..., Callable[[int, int], None]]
 
 
 class Scheme(NamedTuple):
     """How the chain is stepped.
 
     build : of (scene), to the model, the state, the clock and the critical step.
-    marcher : of (scene, clock), to what takes samples.
+    make_stepper : of (scene, clock), to what takes samples.
     forces : how often a step computes the force of every joint.
     takes_means : whether the load is its mean over each step.
     """
 
     build: Callable[[Scene], tuple[Model, State, Clock, float]]
-    marcher: Callable[[Scene, Clock], Marcher]
+    make_stepper: Callable[[Scene, Clock], MakeStepper]
     forces: int
     takes_means: bool
 
@@ -52,16 +52,18 @@ class Scheme(NamedTuple):
 def scheme_of(scene: Scene) -> Scheme:
     """Return how a scene's chain is stepped; a scheme that it does not name is not imported."""
     if scene.numerics.dem.scheme == "leapfrog":
-        return Scheme(build, lambda scene, time: leapfrog.marcher, 1, True)
+        return Scheme(build, lambda scene, time: leapfrog.make_stepper, 1, True)
 
-    def marcher(scene: Scene, time: Clock) -> Marcher:
-        return partial(fourth_order.marcher, fourth_order.compose(scene, time))
+    def make_stepper(scene: Scene, time: Clock) -> MakeStepper:
+        return partial(fourth_order.make_stepper, fourth_order.compose(scene, time))
 
-    return Scheme(fourth_order.build, marcher, len(fourth_order.KICKS), False)
+    return Scheme(fourth_order.build, make_stepper, len(fourth_order.KICKS), False)
 
 
 def simulate(
-    scene: Scene, progress: Callable[[float], None] | None = None, keeper: Keeper | None = None
+    scene: Scene,
+    progress: Callable[[float], None] | None = None,
+    keeper: Checkpointer | None = None,
 ) -> xr.Dataset:
     """Simulate a scene of axial motion, one degree of freedom per block."""
     began = perf_counter()
@@ -70,12 +72,12 @@ def simulate(
     model, rest = start(scene, model, state)
     samples = buffers(model, state, time.samples)
     monitor = guard(highest_speed(model, state, time))
-    marcher = scheme.marcher(scene, time)
-    march = marcher(model, state, samples, time.stride, monitor)
+    make_stepper = scheme.make_stepper(scene, time)
+    march = make_stepper(model, state, samples, time.stride, monitor)
     built = perf_counter()
     march(0, 0)
     mean = time.dt if scheme.takes_means else None
-    recorder = _recorder(scene, marcher, model, state, time.stride, mean)
+    recorder = _recorder(scene, make_stepper, model, state, time.stride, mean)
     compiled = perf_counter()
 
     def result(count: int) -> xr.Dataset:
@@ -131,7 +133,12 @@ def _with_breaks(result: xr.Dataset, scene: Scene, state: State, time: Clock) ->
 
 
 def _recorder(
-    scene: Scene, marcher: Marcher, model: Model, state: State, stride: int, mean: float | None
+    scene: Scene,
+    make_stepper: MakeStepper,
+    model: Model,
+    state: State,
+    stride: int,
+    mean: float | None,
 ) -> BlockRecorder | None:
     """Return the recorder of snapshots; None, and nothing imported, without snapshots.
 
@@ -147,7 +154,7 @@ def _recorder(
         now, twin = sample * stride, copied(state)
         found = buffers(everywhere, twin, 1)
         shifted = everywhere._replace(load=model.load[now:], base=model.base[now:])
-        marcher(shifted, twin, found, 1)(0, 1)
+        make_stepper(shifted, twin, found, 1)(0, 1)
         return BlockFrame(found.stress[:, 0], found.displacement, found.velocity)
 
     return BlockRecorder(scene, p, capture, mean)

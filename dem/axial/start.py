@@ -23,7 +23,7 @@ from dem.static import (
     stiffest,
     undamped,
 )
-from joints.law import Parts
+from joints.law import LawFlags
 from numerics.jit import jitted
 
 
@@ -171,7 +171,7 @@ class ChainRelaxation:
 
 
 @cache
-def joint_forces_for(parts: Parts) -> Callable:
+def joint_forces_for(parts: LawFlags) -> Callable:
     """Return `spring_forces` for Python, of laws with these parts."""
 
     @jitted

@@ -15,7 +15,7 @@ from cases.partition.scene import partition_of
 from cases.schema.rock_mass import RockMass
 from dem.blocks.joints import Columns, columns
 from dem.blocks.links import Links, links_of
-from dem.blocks.model import Blocks, PlaneForm
+from dem.blocks.model import Blocks, KernelFlags
 from dem.blocks.stability import critical_plane_step
 from dem.blocks.tiles import Contacts, contacts_of
 from joints.law import Law, parts_of
@@ -59,10 +59,10 @@ def rigid_blocks(scene: RockMass) -> RigidBlocks:
     return RigidBlocks(scene, partition, links, found, own, joints)
 
 
-def form_of(blocks: RigidBlocks, held: bool, shaken: bool) -> PlaneForm:
+def form_of(blocks: RigidBlocks, held: bool, shaken: bool) -> KernelFlags:
     """Return the effects of a rock mass."""
     scene, own = blocks.scene, blocks.columns
-    return PlaneForm(
+    return KernelFlags(
         parts=parts_of(own.law),
         points=own.points,
         mass_damping=scene.damping.alpha is not None,

@@ -14,13 +14,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem.blocks.model import PlaneForm, PlaneModel, PlaneState
+from dem.blocks.model import KernelFlags, PlaneModel, PlaneState
 from dem.blocks.tile import AFTER, BEFORE, CONTACT_ROWS, SUMMED, step_for
 from dem.blocks.tiles import LANES, depth_of, marks
 from numerics.arguments import Packed, unpacked
 from numerics.atomic import give_way, peek, post
 from numerics.cache_lines import zeros
-from numerics.denormals import flush_tiny, restore_tiny
+from numerics.denormals import flush_denormals, restore_denormals
 from numerics.jit import jitted
 from results.plane import TERMS
 
@@ -59,11 +59,11 @@ def march(
     drive : float array [last - first, h, 3], N and N m, forces on held blocks in each step.
     shake : float array [last - first, walls, 2], the velocity of walls in each step, m/s.
     """
-    take = marcher(model, state, samples, steps[1] - steps[0], drive, shake, threads)
+    take = make_stepper(model, state, samples, steps[1] - steps[0], drive, shake, threads)
     take(stride, *steps)
 
 
-def marcher(
+def make_stepper(
     model: PlaneModel,
     state: PlaneState,
     samples: PlaneSamples,
@@ -143,10 +143,10 @@ def motion_of_walls(state: PlaneState, shake: np.ndarray, dt: float) -> np.ndarr
 
 
 @cache
-def loop_for(form: PlaneForm) -> Callable:
+def loop_for(form: KernelFlags) -> Callable:
     """Return the time loop of rock masses with these effects; absent ones are not compiled."""
     step = step_for(form)
-    ledger = form.ledger
+    has_ledger = form.ledger
 
     @jitted
     def loop(given, thread, first, last, stride, keep):
@@ -160,7 +160,7 @@ def loop_for(form: PlaneForm) -> Callable:
         and zero. progress : diagonals that each thread has left behind, as many for each band, and
         how many bands have closed their ledgers.
         """
-        tiny = flush_tiny()
+        setting = flush_denormals()
         (
             pair, table, laws, rules, first_chunk, first_block, inertia, inverse, first_held, block,
             keeps, moves, dashpot, u, v, history, drive, walls, force, first_place, place,
@@ -168,7 +168,7 @@ def loop_for(form: PlaneForm) -> Callable:
             ledgers, buffers, progress, contacts, dt, local, g_x, g_y, depth,
         ) = unpacked(given)  # fmt: skip
         tiles, size, threads = first_chunk.size - 1, inertia.size, progress.size - 1
-        buffer, own = buffers[thread], None
+        buffer, ledger = buffers[thread], None
         diagonals = tiles + depth - 1
         for band in range(thread, (last - first + depth - 1) // depth, threads):
             n = first + band * depth
@@ -180,20 +180,20 @@ def loop_for(form: PlaneForm) -> Callable:
                         give_way()
                 from_step = k - tiles + 1 if k >= tiles else 0
                 for j in range(from_step, steps if steps < k + 1 else k + 1):
-                    if ledger:
-                        own = ledgers[thread * depth + j]
+                    if has_ledger:
+                        ledger = ledgers[thread * depth + j]
                     step(
                         pair, table, laws, rules, first_chunk, first_block, inertia, inverse,
                         first_held, block, keeps, moves, dashpot, u, v, history, drive, walls,
                         force, first_place, place, place_row, first_seen, seen, seen_row,
-                        displacement, velocity, contact, own, buffer, contacts, size, dt, keep,
+                        displacement, velocity, contact, ledger, buffer, contacts, size, dt, keep,
                         local, g_x, g_y, k - j, n + j - first, (n + j) % stride == 0,
                         (n + j) // stride,
                     )  # fmt: skip
                 post(progress, thread, band * diagonals + k + 1)
             while peek(progress, threads) < band:
                 give_way()
-            if ledger:
+            if has_ledger:
                 for j in range(n, n + steps):
                     one = ledgers[thread * depth + j - n]
                     for term in range(sums.size):
@@ -206,6 +206,6 @@ def loop_for(form: PlaneForm) -> Callable:
                         if term * LANES in SUMMED:
                             sums[term] += before + after
             post(progress, threads, band + 1)
-        restore_tiny(tiny)
+        restore_denormals(setting)
 
     return loop

@@ -16,12 +16,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dem.blocks.tiles import LANES, START, Contacts
-from joints.law import Law, Parts
+from joints.law import Law, LawFlags
 from numerics.cache_lines import zeros
 from results.plane import TERMS
 
 
-class PlaneForm(NamedTuple):
+class KernelFlags(NamedTuple):
     """The effects of a rock mass: compile-time constants of its kernel.
 
     parts : of the joint law. points : points of a contact; 0 where joints always hold, which
@@ -32,7 +32,7 @@ class PlaneForm(NamedTuple):
     it can damp their motion, without a place in the ledger.
     """
 
-    parts: Parts
+    parts: LawFlags
     points: int
     mass_damping: bool
     local_damping: bool
@@ -104,7 +104,7 @@ class PlaneModel(NamedTuple):
     shaken.
     """
 
-    form: PlaneForm
+    form: KernelFlags
     blocks: Blocks
     contacts: Contacts
     laws: np.ndarray

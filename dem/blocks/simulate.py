@@ -20,7 +20,7 @@ from dem.blocks.start import start
 from dem.blocks.system import PlaneSystem, prepared
 from numerics.divergence import SPEED, Guard, audit, guard
 from numerics.small_motion import Moved, farthest, matters, overlapping, refuse_large_motion
-from numerics.time_loop import Keeper
+from numerics.time_loop import Checkpointer
 from results.arrays import size_of
 from results.plane import plane_dataset
 
@@ -30,7 +30,7 @@ MOST_OF_DRIVE = 2_000_000  # numbers: forces on held blocks in memory at a time
 def simulate(
     scene: RockMass,
     progress: Callable[[float], None] | None = None,
-    keeper: Keeper | None = None,
+    keeper: Checkpointer | None = None,
     incident: IncidentField | None = None,
 ) -> xr.Dataset:
     """Simulate a rock mass in the plane, three degrees of freedom per block."""

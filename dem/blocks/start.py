@@ -9,7 +9,7 @@ import numpy as np
 
 from cases.material.prestress import refuse_beyond_strength
 from dem.blocks.edges import on_freedoms, resultant
-from dem.blocks.leapfrog import marcher, samples_for
+from dem.blocks.leapfrog import make_stepper, samples_for
 from dem.blocks.model import PlaneState, held_by, state_at_rest
 from dem.blocks.sources import Sources, reactions
 from dem.blocks.stability import critical_plane_step
@@ -130,7 +130,7 @@ class PlaneRelaxation:
         self.count, most = len(own.inertia), STEPS_BETWEEN_LOOKS
         self._drive = np.zeros((most, *self.steady.shape))
         shake = np.zeros((most, model.walls, 2)) if model.form.shaken else None
-        self._take = marcher(
+        self._take = make_stepper(
             self.model, self.state, self.samples, most, self._drive, shake, system.threads
         )
         self.mass = blocks.masses.ravel()

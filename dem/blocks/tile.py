@@ -14,7 +14,7 @@ from collections.abc import Callable
 from math import copysign
 from typing import Any
 
-from dem.blocks.model import PlaneForm
+from dem.blocks.model import KernelFlags
 from dem.blocks.tiles import I_N, I_T, J_N, J_T, LENGTH, N_X, N_Y, START
 from dem.blocks.tiles import LANES as L
 from joints.dilation import lift
@@ -51,16 +51,19 @@ def relative(x, y, turn_i, turn_j, n_x, n_y, i_n, i_t, j_n, j_t):
     return opening, n_x * y - n_y * x + (j_t * turn_j - i_t * turn_i), turn_j - turn_i
 
 
-def step_for(form: PlaneForm) -> Callable:
+def step_for(form: KernelFlags) -> Callable:
     """Return the formula of one step of one tile: what its form lacks is not compiled."""
     parts, points, by_points = form.parts, form.points, form.points > 0
     dashpots, varied, softening = parts.dashpots, parts.varied, parts.softening
-    residual, worn, dilation = parts.residual, parts.path, parts.dilation
-    held, ledger, gravity = form.held, form.ledger, form.gravity
+    residual, path_dependent, dilation = parts.residual, parts.path, parts.dilation
+    held, has_ledger, gravity = form.held, form.ledger, form.gravity
     ruled, stressed, shaken = form.ruled, form.stressed, form.shaken
     mass_damping, local_damping = form.mass_damping or form.relaxed, form.local_damping
-    damped, drags = form.mass_damping or form.local_damping, dashpots and ledger
-    rated, now = dashpots or (by_points and (ledger or worn)), NOW if dashpots else RATE
+    damped, drags = form.mass_damping or form.local_damping, dashpots and has_ledger
+    rated, now = (
+        dashpots or (by_points and (has_ledger or path_dependent)),
+        NOW if dashpots else RATE,
+    )
     remembers, bend = form.rate_rows + form.point_rows > 0, L * form.bend_row
     first_point, point_rows = L * form.rate_rows, L * form.point_rows
     cohesions, paths = (1 + softening) * L, (1 + softening + residual) * L
@@ -74,13 +77,13 @@ def step_for(form: PlaneForm) -> Callable:
     def step(
         pair, table, laws, rules, first_chunk, first_block, inertia, inverse, first_held, block,
         keeps, moves, dashpot, u, v, history, drive, walls, force, first_place, place, place_row,
-        first_seen, seen, seen_row, displacement, velocity, samples, own, q, count, last, dt, keep,
-        local, g_x, g_y, t, n, sampled, s,
+        first_seen, seen, seen_row, displacement, velocity, samples, ledger, q, count, last, dt,
+        keep, local, g_x, g_y, t, n, sampled, s,
     ):  # fmt: skip
         """Advance tile t by a step.
 
         count : of contacts. last : three times the number of blocks. n : of the step in `drive` and
-        `walls`. s : of the sample. own : the ledger of this step. q : a buffer. The rest is what
+        `walls`. s : of the sample. ledger : of this step. q : a buffer. The rest is what
         the loop of `dem.blocks.leapfrog` takes.
         """
         common, still, pushed = law_of(laws, 0), last - 3, 0.5 * dt * (1.0 + keep)
@@ -116,7 +119,7 @@ def step_for(form: PlaneForm) -> Callable:
                     for c in range(r * L, r * L + L):
                         rate, before = q[RATE + c], h[c]
                         if drags:
-                            own[VISCOUS + c - r * L] -= 0.5 * dt * (h[3 * L + c] * rate)
+                            ledger[VISCOUS + c - r * L] -= 0.5 * dt * (h[3 * L + c] * rate)
                         q[NOW + c], h[c] = 1.5 * rate - 0.5 * before, rate
 
             # Forces of points one by one, where joints can fail.
@@ -137,7 +140,7 @@ def step_for(form: PlaneForm) -> Callable:
                             moved = dt * (q[RATE + c] - e * q[RATE + 2 * L + c])
                             slide = dt * q[RATE + L + c]
                         opening, cohesion, path = 0.0, 0.0, 0.0
-                        if worn:
+                        if path_dependent:
                             path = h[past + paths + c]
                         if dilation:
                             gap = gap - lift(law, path)
@@ -151,7 +154,7 @@ def step_for(form: PlaneForm) -> Callable:
                         tau = shear_strength(law, parts, t_n, gap, opening, cohesion, path)
                         slid = h[past + c]
                         ex, old = slip - slid, slip - slid - slide
-                        if worn:
+                        if path_dependent:
                             t_n, tau, further = after_slide(
                                 law, parts, t_n, tau, gap, rate, opening, cohesion, path,
                                 ex, 0.0, slip_rate, 0.0, dt,
@@ -159,8 +162,8 @@ def step_for(form: PlaneForm) -> Callable:
                             h[past + paths + c] = further
                             if dilation:
                                 up = lift(law, further) - lift(law, path)
-                                if ledger:
-                                    own[FRICTION + c] -= share * lift_work(
+                                if has_ledger:
+                                    ledger[FRICTION + c] -= share * lift_work(
                                         law, parts, gap - moved, gap - up, opening, up
                                     )
                                 gap = gap - up
@@ -168,14 +171,14 @@ def step_for(form: PlaneForm) -> Callable:
                         h[past + c] = slip - left if slipped else slid
                         if residual:
                             h[past + cohesions + c] = cohesion_left(law, parts, cohesion, slipped)
-                        if ledger:
+                        if has_ledger:
                             work = friction_work(law, old, 0.0, left, 0.0, slide, 0.0)
-                            own[FRICTION + c] += share * work
+                            ledger[FRICTION + c] += share * work
                             stored = elastic_energy(law, parts, gap, opening, left, 0.0)
-                            own[ELASTIC + c] += weighed * share * stored
+                            ledger[ELASTIC + c] += weighed * share * stored
                             if softening:
                                 spent = fracture_energy_spent(law, opening)
-                                own[FRACTURE + c] += weighed * share * spent
+                                ledger[FRACTURE + c] += weighed * share * spent
                         if drags:  # what is not the springs'
                             spring = spring_traction(law, parts, gap, opening)
                             q[D_N + c] += share * (t_n - spring)
@@ -203,8 +206,8 @@ def step_for(form: PlaneForm) -> Callable:
                         -k_t * length * slip,
                         -k_n * second * turn,
                     )
-                    if ledger and sampled:
-                        own[ELASTIC + c] -= 0.5 * (f_n * gap + f_t * slip + moment * turn)
+                    if has_ledger and sampled:
+                        ledger[ELASTIC + c] -= 0.5 * (f_n * gap + f_t * slip + moment * turn)
                     if dashpots:
                         eta_n, eta_t = law.normal_viscosity, law.shear_viscosity
                         d_n, d_t = -eta_n * length * q[NOW + c], -eta_t * length * q[NOW + L + c]
@@ -220,7 +223,7 @@ def step_for(form: PlaneForm) -> Callable:
             if drags:
                 for r in range(3):
                     for c in range(r * L, r * L + L):
-                        own[VISCOUS + c - r * L] -= 0.5 * dt * (q[D_N + c] * q[RATE + c])
+                        ledger[VISCOUS + c - r * L] -= 0.5 * dt * (q[D_N + c] * q[RATE + c])
                         h[3 * L + c] = q[D_N + c]
             lanes = count - g * L
             for c in range(lanes if lanes < L else L):
@@ -232,11 +235,11 @@ def step_for(form: PlaneForm) -> Callable:
                     force[j] += q[F_X + c]
                     force[j + 1] += q[F_Y + c]
                     force[j + 2] += q[ON_J + c]
-                elif shaken and ledger:  # what moves a wall works against the joints
+                elif shaken and has_ledger:  # what moves a wall works against the joints
                     for r in range(2):
                         f, w = 0.5 * dt * q[F_X + r * L + c], j - still + r
-                        own[WORK + c] -= f * walls[n, 1, w]
-                        own[WORK + AFTER + c] -= f * walls[n + 1, 1, w]
+                        ledger[WORK + c] -= f * walls[n, 1, w]
+                        ledger[WORK + AFTER + c] -= f * walls[n + 1, 1, w]
             if sampled:
                 for r in range(first_seen[t], first_seen[t + 1]):
                     c, row = seen[r] - g * L, seen_row[r]
@@ -260,8 +263,8 @@ def step_for(form: PlaneForm) -> Callable:
             for i in range(begin, end, 3):
                 w_x, w_y = inertia[i] * g_x, inertia[i] * g_y
                 force[i], force[i + 1] = force[i] + w_x, force[i + 1] + w_y
-                if ledger and sampled:
-                    own[GRAVITY] -= w_x * u[i] + w_y * u[i + 1]
+                if has_ledger and sampled:
+                    ledger[GRAVITY] -= w_x * u[i] + w_y * u[i + 1]
         if held:
             for r in range(first_held[t], first_held[t + 1]):
                 for a in range(3):
@@ -273,11 +276,11 @@ def step_for(form: PlaneForm) -> Callable:
             if local_damping:  # less by local |gain| along v
                 gain = gain - local * copysign(abs(gain), old) if old != 0.0 else gain
             new = (keep * old if mass_damping else old) + gain * inverse[i]
-            if ledger:
+            if has_ledger:
                 q[BEFORE + i - begin] = old
             v[i] = new
             u[i] += dt * new
-            if not ledger:
+            if not has_ledger:
                 force[i] = 0.0
         if held:  # what dashpots take of the velocity without them
             for r in range(first_held[t], first_held[t + 1]):
@@ -289,7 +292,7 @@ def step_for(form: PlaneForm) -> Callable:
                     new += moves[r, a, 0] * x + moves[r, a, 1] * y + moves[r, a, 2] * turn
                     u[i + a] += dt * (new - v[i + a])
                     v[i + a] = new
-        if ledger:
+        if has_ledger:
             if held:
                 for r in range(first_held[t], first_held[t + 1]):
                     i = 3 * block[r]
@@ -299,19 +302,19 @@ def step_for(form: PlaneForm) -> Callable:
                             both = 0.5 * (q[BEFORE + i + m - begin] + v[i + m])
                             taken += 0.5 * dt * (dashpot[r, a, m] * both)
                         given = 0.5 * dt * drive[n, r, a]
-                        own[BOUNDARY] += taken * old
-                        own[BOUNDARY + AFTER] += taken * new
-                        own[WORK] += given * old
-                        own[WORK + AFTER] += given * new
+                        ledger[BOUNDARY] += taken * old
+                        ledger[BOUNDARY + AFTER] += taken * new
+                        ledger[WORK] += given * old
+                        ledger[WORK + AFTER] += given * new
                         force[i + a] -= 2.0 * taken / dt
             for i in range(begin, end):
                 old, new = q[BEFORE + i - begin], v[i]
                 if damped:  # what is missing in the block's momentum
                     lost = inertia[i] * (new - old) - dt * force[i]
-                    own[VISCOUS] -= 0.5 * lost * old
-                    own[VISCOUS + AFTER] -= 0.5 * lost * new
+                    ledger[VISCOUS] -= 0.5 * lost * old
+                    ledger[VISCOUS + AFTER] -= 0.5 * lost * new
                 if sampled:
-                    own[KINETIC] += 0.5 * inertia[i] * (old * new)
+                    ledger[KINETIC] += 0.5 * inertia[i] * (old * new)
                 force[i] = 0.0
         if sampled:
             for r in range(first_place[t], first_place[t + 1]):

@@ -15,7 +15,7 @@ from dem.spatial.layout import (
     LEDGER,
     STRIDE,
     TERMS,
-    Form,
+    KernelFlags,
     packed,
     tile_count,
 )
@@ -33,9 +33,9 @@ def build_model(scene: Scene, p: Properties, time: Clock) -> RowModel:
     block, terms = build_block(scene, p, time.dt, points), energy_terms(scene, p)
     ends, kinds = build_ends(scene, p, block), (scene.ends.start, scene.ends.end)
     start, end = (k != "free" or e[STEADY].any() for k, e in zip(kinds, ends, strict=True))
-    form = Form(
+    form = KernelFlags(
         parts=parts_of(joints),
-        points=points_looked_after(scene, p) > 0,
+        points=points_with_history(scene, p) > 0,
         turns=scene.motion.rotation != "none",
         finite=scene.motion.rotation == "finite",
         mass_damping=bool(p.mass_damping),
@@ -89,7 +89,7 @@ def _is_nonlinear(p: Properties) -> bool:
     return not p.tension.all() or bool(p.given)
 
 
-def points_looked_after(scene: Scene, p: Properties) -> int:
+def points_with_history(scene: Scene, p: Properties) -> int:
     """Return how many points of a joint are looked after one by one; 0 where their sum will do."""
     if _is_nonlinear(p) or scene.motion.rotation == "finite":
         return contact_points(scene).shape[1]

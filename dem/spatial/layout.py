@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from joints.law import Parts
+from joints.law import LawFlags
 from numerics.cache_lines import zeros
 
 LANES = 64  # blocks in a tile
@@ -63,7 +63,7 @@ TERMS = {
 }
 
 
-class Form(NamedTuple):
+class KernelFlags(NamedTuple):
     """Which effects a row has: the constants of its compiled kernel.
 
     parts : of the joint law. points : whether the law acts at every contact point, else over the
@@ -73,7 +73,7 @@ class Form(NamedTuple):
     ledger.
     """
 
-    parts: Parts
+    parts: LawFlags
     points: bool
     turns: bool
     finite: bool

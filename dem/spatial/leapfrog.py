@@ -78,7 +78,7 @@ from dem.spatial.layout import (
     SLIDING,
     VISCOUS,
     WORK,
-    Form,
+    KernelFlags,
     X,
     Y,
     Z,
@@ -101,12 +101,12 @@ NORMAL, SHEAR = L * Law._fields.index("normal_stiffness"), L * Law._fields.index
 DASHPOT = L * Law._fields.index("normal_viscosity") - NORMAL
 
 
-def contacts_for(form: Form) -> Callable:
+def contacts_for(form: KernelFlags) -> Callable:
     """Return the formula of the law at the contact points of a tile's joints."""
-    parts, turns, finite, ledger = form.parts, form.turns, form.finite, form.ledger
+    parts, turns, finite, has_ledger = form.parts, form.turns, form.finite, form.ledger
     dashpots, varied, limited = parts.dashpots, parts.varied, parts.limited
     softening, residual, drags = parts.softening, parts.residual, parts.dashpots and form.ledger
-    worn, dilation, returns = parts.path, parts.dilation, parts.dashpots or form.ledger
+    path_dependent, dilation, returns = parts.path, parts.dilation, parts.dashpots or form.ledger
     first_point, point_rows = form.rate_rows * L, form.point_rows * L
     cohesions, paths = (2 + softening) * L, (2 + softening + residual) * L
     kinds = 2 if drags else 1
@@ -127,7 +127,7 @@ def contacts_for(form: Form) -> Callable:
             q[X + i], q[Y + i], q[Z + i] = t_x, t_y, t_z
 
     @formula
-    def contacts(b, law, laws, points, count, h, q, own, n, slides):
+    def contacts(b, law, laws, points, count, h, q, ledger, n, slides):
         """Sum the forces of n joints; return how many points are beyond their shear strength.
 
         slides : whether those are brought back to it, which needs a root, and remember what has
@@ -154,7 +154,7 @@ def contacts_for(form: Form) -> Callable:
                 if dashpots:
                     rate, rate_x, rate_z = at_point(q, CENTRED + i, x, z)
                 here = gap
-                if worn:
+                if path_dependent:
                     path = h[past + paths + i]
                 if dilation:
                     here = gap - lift(law, path)
@@ -174,7 +174,7 @@ def contacts_for(form: Form) -> Callable:
                         moved, dx, dz = at_point(q, RATE + i, x, z)
                         dx, dz = b.dt * dx, b.dt * dz
                         old_x, old_z = ex - dx, ez - dz
-                    if worn:
+                    if path_dependent:
                         t_n, tau, further = after_slide(
                             law, parts, t_n, tau, here, rate, opening, cohesion, path,
                             ex, ez, rate_x, rate_z, b.dt,
@@ -182,8 +182,8 @@ def contacts_for(form: Form) -> Callable:
                         h[past + paths + i] = further
                         if dilation:
                             up = lift(law, further) - lift(law, path)
-                            if ledger:
-                                own[FRICTION + i] -= area * lift_work(
+                            if has_ledger:
+                                ledger[FRICTION + i] -= area * lift_work(
                                     law, parts, here - b.dt * moved, here - up, opening, up
                                 )
                             here = here - up
@@ -194,8 +194,10 @@ def contacts_for(form: Form) -> Callable:
                     h[past + L + i] = slip_z - ez if slipped else own_z
                     if residual:
                         h[past + cohesions + i] = cohesion_left(law, parts, cohesion, slipped)
-                    if ledger:
-                        own[FRICTION + i] += area * friction_work(law, old_x, old_z, ex, ez, dx, dz)
+                    if has_ledger:
+                        ledger[FRICTION + i] += area * friction_work(
+                            law, old_x, old_z, ex, ez, dx, dz
+                        )
                 else:
                     t_x, t_z = shear_traction(law, parts, ex, ez, rate_x, rate_z)
                     if limited:
@@ -213,7 +215,7 @@ def contacts_for(form: Form) -> Callable:
 
 
 @cache
-def at_point_for(form: Form) -> tuple[Callable, Callable]:
+def at_point_for(form: KernelFlags) -> tuple[Callable, Callable]:
     """Return the formulas of the relative motion at a contact point, and of its area."""
     turns, finite = form.turns, form.finite
 
@@ -243,17 +245,20 @@ def at_point_for(form: Form) -> tuple[Callable, Callable]:
     return at_point, contact_area
 
 
-def step_for(form: Form) -> Callable:
+def step_for(form: KernelFlags) -> Callable:
     """Return the formula of one step of one tile: what its form lacks is not compiled."""
     parts, by_points, turns, finite = form.parts, form.points, form.turns, form.finite
-    dashpots, varied, limited, ledger = parts.dashpots, parts.varied, parts.limited, form.ledger
+    dashpots, varied, limited, has_ledger = parts.dashpots, parts.varied, parts.limited, form.ledger
     softening, dilation = parts.softening, parts.dilation
     gravity, local_damping, shaken = form.gravity, form.local_damping, form.base
     mass_damping, damped = form.mass_damping or form.relaxed, form.mass_damping or local_damping
-    has_start, has_end = form.start or ledger, form.end  # a ledger needs the loaded face's velocity
-    held, drags = has_start or has_end, dashpots and ledger
+    has_start, has_end = (
+        form.start or has_ledger,
+        form.end,
+    )  # a ledger needs the loaded face's velocity
+    held, drags = has_start or has_end, dashpots and has_ledger
     kinds = 2 if drags else 1  # of forces: all, and the dashpots' share
-    history_kept, rated = form.rate_rows + form.point_rows > 0, dashpots or ledger
+    history_kept, rated = form.rate_rows + form.point_rows > 0, dashpots or has_ledger
     velocity, rows = form.freedoms * R, form.motion_rows
     first_point, point_rows = form.rate_rows * L, form.point_rows * L
     paths = (2 + softening + parts.residual) * L
@@ -294,11 +299,11 @@ def step_for(form: Form) -> Callable:
         return right[0] + left[0], right[1] + left[1], right[2] + left[2]
 
     @formula
-    def dissipate(own, i, before, after):
+    def dissipate(ledger, i, before, after):
         """Enter into the ledger the work of an impulse that damps block i, taken as a force over
         the half step before it and over the one after it, J."""
-        own[VISCOUS + i] -= 0.5 * before
-        own[VISCOUS + AFTER + i] -= 0.5 * after
+        ledger[VISCOUS + i] -= 0.5 * before
+        ledger[VISCOUS + AFTER + i] -= 0.5 * after
 
     @formula
     def add_at_face(b, q, i, side, factor, f):
@@ -340,12 +345,12 @@ def step_for(form: Form) -> Callable:
     @formula
     def step(
         constants, counts, table, points, drive, ends, places, motion, history, end_states,
-        force, speed, displacement, q, carry, own, t, n, limit, found,
+        force, speed, displacement, q, carry, ledger, t, n, limit, found,
     ):  # fmt: skip
         """Advance tile t by step n.
 
         q : its buffer. carry : where in it the force of the left neighbour's last joint lies, then
-        that of its own. own : the ledger of this step. The rest is what `march` takes.
+        that of its own. ledger : of this step. The rest is what `march` takes.
         """
         count, tiles, stride, contacts = counts[0], counts[1], counts[2], counts[3]
         receivers, per_face, loaded, sides = counts[4], counts[5], counts[6], counts[9]
@@ -382,7 +387,7 @@ def step_for(form: Form) -> Callable:
                 at, share = NORMAL if k % 2 else SHEAR, b.rows[FACE, k]
                 for i in range(joints):
                     g, rate = relative(m, i, k, arm, about), 0.0
-                    if by_points or ledger:
+                    if by_points or has_ledger:
                         q[RELATIVE + k * R + i] = g
                     if dashpots or (by_points and rated):
                         rate = relative(m, velocity + i, k, arm, about)
@@ -399,7 +404,7 @@ def step_for(form: Form) -> Callable:
                         if dashpots:
                             d = -laws[j + DASHPOT] * share * rate
                             f = f + d
-                            if ledger:
+                            if has_ledger:
                                 q[DRAG + k * R + i + 1] = d
                         q[k * R + i + 1] = f
 
@@ -410,9 +415,11 @@ def step_for(form: Form) -> Callable:
             # Where no point slid in the last step, none is taken to slide until one does; friction
             # that depends on the rate ages where nothing slides.
             if not parts.rate_state and (beyond == 0 or not limited):
-                beyond = contact_forces(b, law, laws, points, per_face, h, q, own, joints, False)
+                beyond = contact_forces(b, law, laws, points, per_face, h, q, ledger, joints, False)
             if parts.rate_state or (limited and beyond > 0):
-                m[SLIDING] = contact_forces(b, law, laws, points, per_face, h, q, own, joints, True)
+                m[SLIDING] = contact_forces(
+                    b, law, laws, points, per_face, h, q, ledger, joints, True
+                )
         if finite:
             for i in range(joints):
                 to_centroids(b, m, q, FORCE, i)
@@ -480,7 +487,7 @@ def step_for(form: Form) -> Callable:
                             speed[p - contacts, k, s] = 0.5 * m[velocity + k * R + i]
                     if finite and p >= contacts:
                         displacement[p - contacts, 6, s] = m[QUATERNION + i]
-            if ledger:  # what joints and blocks store, and what softening has spent
+            if has_ledger:  # what joints and blocks store, and what softening has spent
                 if by_points:
                     for p in range(per_face):
                         x, z, area = points[0, p], points[1, p], points[2, p]
@@ -496,20 +503,20 @@ def step_for(form: Form) -> Callable:
                                 gap = gap - lift(law, h[past + paths + i])
                             if softening:
                                 opening = h[past + 2 * L + i]
-                                own[FRACTURE + i] += share * fracture_energy_spent(law, opening)
+                                ledger[FRACTURE + i] += share * fracture_energy_spent(law, opening)
                             ex, ez = slip_x - h[past + i], slip_z - h[past + L + i]
                             stored = elastic_energy(law, parts, gap, opening, ex, ez)
-                            own[ELASTIC + i] += share * stored
+                            ledger[ELASTIC + i] += share * stored
                 else:
                     for k in range(b.freedoms):
                         at, share = NORMAL if k % 2 else SHEAR, 0.5 * b.rows[FACE, k]
                         for i in range(joints):
                             stiffness, g = laws[at + i if varied else at], q[RELATIVE + k * R + i]
-                            own[ELASTIC + i] += share * stiffness * g * g
+                            ledger[ELASTIC + i] += share * stiffness * g * g
                 if gravity:
                     x, y, z = b.rows[WEIGHT, 0], b.rows[WEIGHT, 1], b.rows[WEIGHT, 2]
                     for i in range(blocks):
-                        own[GRAVITY + i] -= x * m[X + i] + y * m[Y + i] + z * m[Z + i]
+                        ledger[GRAVITY + i] -= x * m[X + i] + y * m[Y + i] + z * m[Z + i]
 
         # Motion, and the work of what damps blocks and joints.
         for k in range(b.freedoms // 2 if finite else b.freedoms):
@@ -524,14 +531,14 @@ def step_for(form: Form) -> Callable:
                 new = advanced(b, old, gain)
                 m[velocity + at] = new
                 m[at] += b.dt * new
-                if ledger:
+                if has_ledger:
                     q[BEFORE + at] = old
-                if damped and ledger:
+                if damped and has_ledger:
                     lost = inertia * (new - old) - (b.dt * net + impulse)
-                    dissipate(own, i, lost * old, lost * new)
+                    dissipate(ledger, i, lost * old, lost * new)
                 if drags:
                     lost = b.dt * drag
-                    dissipate(own, i, lost * old, lost * new)
+                    dissipate(ledger, i, lost * old, lost * new)
         if finite:
             kick = b.rows[PUSH, 0] * b.mass  # dt, less by mass-proportional damping
             for i in range(blocks):
@@ -541,20 +548,20 @@ def step_for(form: Form) -> Callable:
                     advanced(b, momentum[1], kick * torque[1]),
                     advanced(b, momentum[2], kick * torque[2]),
                 )
-                if ledger:
+                if has_ledger:
                     spun = angular_velocity(b, m, i)
                     put_three(q, BEFORE + ABOUT_X + i, spun)
                 put_three(m, velocity + ABOUT_X + i, turned)
                 turn_by_momentum(b, m, i, turned)
-                if drags or (damped and ledger):
+                if drags or (damped and has_ledger):
                     spin = angular_velocity(b, m, i)
-                if damped and ledger:
+                if damped and has_ledger:
                     added = b.dt * torque[0], b.dt * torque[1], b.dt * torque[2]
                     taken = less(less(turned, momentum), added)
-                    dissipate(own, i, dot(taken, spun), dot(taken, spin))
+                    dissipate(ledger, i, dot(taken, spun), dot(taken, spin))
                 if drags:
                     torque = moments(q, DRAG, i)
-                    dissipate(own, i, b.dt * dot(torque, spun), b.dt * dot(torque, spin))
+                    dissipate(ledger, i, b.dt * dot(torque, spun), b.dt * dot(torque, spin))
 
         if limit is not None and (n + 1) % CHECK == 0:
             for k in range(b.freedoms):
@@ -576,26 +583,26 @@ def step_for(form: Form) -> Callable:
                     for k in range(b.freedoms):
                         base = moving * end[BASE, k]
                         w[k] = end[DECAY, k] * w[k] + end[GAIN, k] * new[k] - base
-                    if ledger:  # what the wall of a base takes is less by its work
+                    if has_ledger:  # what the wall of a base takes is less by its work
                         for k in range(b.freedoms):
                             given = 0.5 * b.dt * (start * b.rows[DIRECTION, k] + end[STEADY, k])
                             taken, base = 0.5 * b.dt * r[k], 0.5 * r[k] * end[BASE, k]
-                            own[WORK] += given * old[k] + base * moved
-                            own[WORK + AFTER] += given * new[k] + base * moving
-                            own[BOUNDARY] += base * moved - taken * old[k]
-                            own[BOUNDARY + AFTER] += base * moving - taken * new[k]
+                            ledger[WORK] += given * old[k] + base * moved
+                            ledger[WORK + AFTER] += given * new[k] + base * moving
+                            ledger[BOUNDARY] += base * moved - taken * old[k]
+                            ledger[BOUNDARY + AFTER] += base * moving - taken * new[k]
         if sampled:
             for p in range(contacts, receivers):
                 if places[0, p] == t:
                     for k in range(b.freedoms):
                         speed[p - contacts, k, s] += 0.5 * m[velocity + k * R + places[1, p]]
 
-        if ledger and sampled:
+        if has_ledger and sampled:
             for k in range(b.freedoms):
                 inertia = 0.5 if finite and k > 2 else 0.5 * b.rows[INERTIA, k]
                 at = KINETIC if k < 3 else ROTATION
                 for i in range(blocks):
-                    own[at + i] += inertia * (q[BEFORE + k * R + i] * m[velocity + k * R + i])
+                    ledger[at + i] += inertia * (q[BEFORE + k * R + i] * m[velocity + k * R + i])
         for kind in range(kinds):
             for k in range(b.freedoms):
                 q[carry + 6 * kind + k] = q[kind * DRAG + k * R + L]

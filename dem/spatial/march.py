@@ -13,13 +13,23 @@ from functools import cache
 
 import numpy as np
 
-from dem.spatial.layout import AFTER, BUFFER, CARRY, FRICTION, KINETIC, LANES, LEDGER, TERMS, Form
+from dem.spatial.layout import (
+    AFTER,
+    BUFFER,
+    CARRY,
+    FRICTION,
+    KINETIC,
+    LANES,
+    LEDGER,
+    TERMS,
+    KernelFlags,
+)
 from dem.spatial.leapfrog import step_for
 from dem.spatial.model import Buffers, RowModel, RowSamples, RowState
 from joints.formula import formula
 from numerics.arguments import Packed, unpacked
 from numerics.atomic import give_way, peek, post
-from numerics.denormals import flush_tiny, restore_tiny
+from numerics.denormals import flush_denormals, restore_denormals
 from numerics.divergence import ENERGY, EVERY, gains_energy, note
 from numerics.jit import jitted
 
@@ -28,10 +38,10 @@ RUN = 16  # diagonals of tiles between two checks of the others' progress
 
 
 @cache
-def march_for(form: Form) -> Callable:
+def march_for(form: KernelFlags) -> Callable:
     """Return the kernel that takes steps of rows with these effects."""
     step = step_for(form)
-    ledger = form.ledger
+    has_ledger = form.ledger
 
     @formula
     def diagonals(
@@ -39,16 +49,16 @@ def march_for(form: Form) -> Callable:
         force, speed, displacement, buffer, ledgers, thread, begin, end, n, steps, limit, found,
     ):  # fmt: skip
         """Take the steps n .. n + steps - 1 on the diagonals begin .. end - 1."""
-        tiles, depth, own = counts[1], counts[7], None
+        tiles, depth, ledger = counts[1], counts[7], None
         for k in range(begin, end):
             from_step = k - tiles + 1 if k >= tiles else 0
             for j in range(from_step, steps if steps < k + 1 else k + 1):
-                if ledger:
-                    own = ledgers[thread * depth + j]
+                if has_ledger:
+                    ledger = ledgers[thread * depth + j]
                 step(
                     constants, counts, table, points, drive, ends, places, motion,
                     history, end_states, force, speed, displacement, buffer,
-                    BUFFER + CARRY * j, own, k - j, n + j, limit, found,
+                    BUFFER + CARRY * j, ledger, k - j, n + j, limit, found,
                 )  # fmt: skip
 
     def march(given, thread, first, last):
@@ -61,7 +71,7 @@ def march_for(form: Form) -> Callable:
         given : of `arguments`. progress : B runs + r when r runs of band B are left behind, for
         each thread, and how many bands have closed their ledgers.
         """
-        tiny = flush_tiny()
+        setting = flush_denormals()
         (
             counts, constants, table, points, drive, ends, places, motion, history, end_states,
             sums, force, speed, displacement, energy, tile, ledgers, limit, peak, found, progress,
@@ -88,7 +98,7 @@ def march_for(form: Form) -> Callable:
                 post(progress, thread, band * runs + run + 1)
             while peek(progress, threads) < band:
                 give_way()
-            if ledger:
+            if has_ledger:
                 for j in range(n, n + steps):
                     one, s = ledgers[thread * depth + j - n], j // stride
                     for i in range(AFTER):
@@ -106,12 +116,12 @@ def march_for(form: Form) -> Callable:
                     for i in range(LEDGER):
                         one[i] = 0.0
             post(progress, threads, band + 1)
-        restore_tiny(tiny)
+        restore_denormals(setting)
 
     return jitted(march)
 
 
-def marcher(
+def make_stepper(
     model: RowModel, state: RowState, buffers: Buffers, samples: RowSamples
 ) -> Callable[[int, int], None]:
     """Return a function that takes the steps first .. last - 1 on the threads of the buffers."""

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem.spatial.layout import Form
+from dem.spatial.layout import KernelFlags
 from joints.formula import formula
 
 
@@ -105,7 +105,7 @@ class RowModel(NamedTuple):
     where both are free. stride : steps between samples.
     """
 
-    form: Form
+    form: KernelFlags
     block: Block
     block_count: int
     table: np.ndarray

@@ -20,7 +20,7 @@ from dem.spatial.build import (
     samples_for,
 )
 from dem.spatial.layout import LANES, STRIDE, TERMS, unpacked
-from dem.spatial.march import marcher
+from dem.spatial.march import make_stepper
 from dem.spatial.model import RowModel, RowSamples, RowState
 from dem.static import since_prestress
 from numerics.divergence import guard
@@ -88,7 +88,7 @@ def capturing(
         twin, found = copied(state), samples_for(everywhere, 2)
         # A guard that finds nothing, as the run has one: the same kernel.
         buffers = buffers_for(everywhere, threads, guard([np.inf] * model.form.freedoms))
-        marcher(everywhere, twin, buffers, found)(n, n + 1)
+        make_stepper(everywhere, twin, buffers, found)(n, n + 1)
         force, velocity, displacement = (x[..., min(n, 1)] for x in found[:3])
         return BlockFrame(force[:, 1] / p.area, displacement, velocity)
 

@@ -18,13 +18,13 @@ from dem.snapshots import BlockRecorder
 from dem.spatial.build import (
     buffers_for,
     build_model,
-    points_looked_after,
+    points_with_history,
     samples_for,
     state_at_rest,
 )
 from dem.spatial.ends import contact_points, face_of
 from dem.spatial.layout import LANES, STRIDE, unpacked
-from dem.spatial.march import marcher
+from dem.spatial.march import make_stepper
 from dem.spatial.model import RowModel, RowState
 from dem.spatial.record import capturing, ledger_of, waveforms, with_breaks
 from dem.spatial.stability import critical_spatial_step, highest_speeds
@@ -33,7 +33,7 @@ from dem.static import stiffest
 from dem.time_loop import Run, followed, refuse_beyond_bounds, thread_count, versions
 from numerics.divergence import guard, look
 from numerics.small_motion import Moved, matters, refuse_large_motion
-from numerics.time_loop import Keeper
+from numerics.time_loop import Checkpointer
 from results.arrays import changed, size_of
 from results.dataset import dataset
 
@@ -54,7 +54,7 @@ def prepare(scene: Scene) -> Prepared:
     p, numerics = calibrate(scene), scene.numerics.dem
     critical = critical_step_of(scene, p)
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
-    refuse_large(scene, time, points=points_looked_after(scene, p))
+    refuse_large(scene, time, points=points_with_history(scene, p))
     return Prepared(p, build_model(scene, p, time), time, critical)
 
 
@@ -66,7 +66,9 @@ def critical_step_of(scene: Scene, p: Properties) -> float:
 
 
 def simulate(
-    scene: Scene, progress: Callable[[float], None] | None = None, keeper: Keeper | None = None
+    scene: Scene,
+    progress: Callable[[float], None] | None = None,
+    keeper: Checkpointer | None = None,
 ) -> xr.Dataset:
     """Simulate a scene of motion in space, three or six degrees of freedom per block."""
     began = perf_counter()
@@ -75,11 +77,11 @@ def simulate(
     built = perf_counter()
     threads = thread_count(scene.numerics.dem.threads, p.block_count)
     unheld = guard([np.inf] * model.form.freedoms)
-    marcher(model, state, buffers_for(model, threads, unheld), samples)(0, 0)
+    make_stepper(model, state, buffers_for(model, threads, unheld), samples)(0, 0)
     compiled = perf_counter()
     rest = start(scene, p, model, state)
     held = guard(highest_speeds(scene, p, model, state, time))
-    march = marcher(model, state, buffers_for(model, threads, held), samples)
+    march = make_stepper(model, state, buffers_for(model, threads, held), samples)
     recorder = _recorder(scene, p, model, state, threads, time.dt)
     ready = perf_counter()
 

@@ -15,7 +15,7 @@ from dem.spatial.build import (
 )
 from dem.spatial.ends import CLOSURE, STEADY, STIFFNESS, contact_points, face_of, lever_matrix
 from dem.spatial.layout import LANES, STRIDE, packed, unpacked
-from dem.spatial.march import marcher
+from dem.spatial.march import make_stepper
 from dem.spatial.model import Load, RowModel, RowState
 from dem.spatial.stability import critical_spatial_step
 from dem.static import (
@@ -129,7 +129,7 @@ class RowRelaxation:
     def advance(self, steps: int, alpha: float) -> None:
         """Take steps under mass-proportional damping alpha, 1/s."""
         # From step 1: only step 0 would be a sample.
-        march = marcher(self._damped(alpha), self.state, self.buffers, self.samples)
+        march = make_stepper(self._damped(alpha), self.state, self.buffers, self.samples)
         march(1, 1 + steps)
 
     def unbalanced(self) -> np.ndarray:

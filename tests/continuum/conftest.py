@@ -217,5 +217,5 @@ def plain(monkeypatch):
     monkeypatch.setattr(march, "leapfrog_for", python_for)
     for function in (multiply, multiply_stencils, add_transposed):
         monkeypatch.setattr(leapfrog, function.__name__, function)
-    monkeypatch.setattr(leapfrog, "flush_tiny", lambda: 0)
-    monkeypatch.setattr(leapfrog, "restore_tiny", lambda old: None)
+    monkeypatch.setattr(leapfrog, "flush_denormals", lambda: 0)
+    monkeypatch.setattr(leapfrog, "restore_denormals", lambda old: None)

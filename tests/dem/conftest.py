@@ -35,7 +35,7 @@ def plain(monkeypatch):
     monkeypatch.setattr(leapfrog, "loop_for", in_python(leapfrog.loop_for))
     monkeypatch.setattr(march, "march_for", in_python(march.march_for))
     for module in (leapfrog, march):
-        monkeypatch.setattr(module, "flush_tiny", lambda: 0)
-        monkeypatch.setattr(module, "restore_tiny", lambda old: None)
+        monkeypatch.setattr(module, "flush_denormals", lambda: 0)
+        monkeypatch.setattr(module, "restore_denormals", lambda old: None)
     monkeypatch.setattr(march, "peek", lambda counters, i: counters[i])
     monkeypatch.setattr(march, "post", lambda counters, i, value: counters.__setitem__(i, value))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from numerics.atomic import give_way, peek, post
-from numerics.denormals import ARM, X86, flush_tiny, restore_tiny
+from numerics.denormals import ARM, X86, flush_denormals, restore_denormals
 from numerics.jit import jitted
 
 
@@ -18,10 +18,10 @@ def halve(x, out):
 
 @jitted
 def halve_flushed(x, out):
-    old = flush_tiny()
+    old = flush_denormals()
     for i in range(x.size):
         out[i] = x[i] * 0.5
-    restore_tiny(old)
+    restore_denormals(old)
 
 
 @pytest.mark.skipif(not (X86 or ARM), reason="tiny numbers stay on this kind of processor")

@@ -20,7 +20,7 @@ from results.netcdf import load_netcdf
 
 
 class RunKeeper:
-    """Keeps one run, see `numerics.time_loop.Keeper`.
+    """Keeps one run, see `numerics.time_loop.Checkpointer`.
 
     done : number of samples in its newest checkpoint, 0 for a new run.
     every : interval between checkpoints in wall time, s; 0: none.

@@ -8,10 +8,10 @@ import dem
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from dem.axial.build import build, build_model
-from dem.axial.leapfrog import arguments, loop_for, march, marcher
+from dem.axial.leapfrog import arguments, loop_for, make_stepper, march
 from dem.axial.samples import buffers
 from dem.axial.state import state_at_rest
-from joints.law import Law, Parts
+from joints.law import Law, LawFlags
 from results.arrays import copied
 
 COMPRESSION = {"load": {"shape": "step", "amplitude": 1e6}, "time__duration": 0.03}
@@ -163,7 +163,7 @@ def test_blocks_with_masses_of_their_own_that_are_alike_change_no_bit(pillar):
     found = []
     for each, at in ((model, copied(state)), (twin, copied(state))):
         samples = buffers(each, at, time.samples)
-        marcher(each, at, samples, time.stride)(0, time.samples)
+        make_stepper(each, at, samples, time.stride)(0, time.samples)
         found.append([samples.stress, samples.velocity, samples.energy])
     assert model.blocks is None
     for one, other in zip(*found, strict=True):
@@ -213,7 +213,7 @@ def test_every_effect_is_a_flag(pillar):
         **SHAKEN,
     )
     effects = build(scene)[0].effects
-    along = Parts(
+    along = LawFlags(
         dashpots=True, no_tension=True, softening=False, varied=True,
         shear=False, slip=False, residual=False, limited=False, closure=False,
         weakening=False, dilation=False, rate_state=False, path=False,

@@ -15,7 +15,7 @@ from dem.axial.fourth_order import (
     build,
     compose,
     half_trace,
-    marcher,
+    make_stepper,
     stability_limit,
 )
 from dem.axial.samples import buffers
@@ -66,7 +66,7 @@ def stepped(scene, dt):
     steps = steps._replace(loads=np.zeros((0, 4)), impulses=np.zeros((0, 5)))
 
     def advance(count):
-        marcher(steps, model, state, buffers(model, state, count), 1)(0, count)
+        make_stepper(steps, model, state, buffers(model, state, count), 1)(0, count)
 
     return model, state, advance
 

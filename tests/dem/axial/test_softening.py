@@ -7,7 +7,7 @@ import dem
 from cases.material.calibrate import calibrate
 from closed_forms.spall import lattice_spall
 from dem.axial.build import build
-from dem.axial.leapfrog import march, marcher
+from dem.axial.leapfrog import make_stepper, march
 from dem.axial.samples import buffers, terms
 from results.dataset import energy_residual
 
@@ -50,7 +50,7 @@ def test_ledger_closes_but_for_the_corners_of_the_law(pillar, ratio):
     scene = pillar(joints={"tensile_strength": STRENGTH / 2, "fracture_energy": 50.0, **changes})
     model, state, time, _ = build(scene)
     samples, gaps = buffers(model, state, time.steps), np.zeros((time.steps, len(state.opening)))
-    take = marcher(model, state, samples, 1)
+    take = make_stepper(model, state, samples, 1)
     for n in range(time.steps):
         gaps[n] = np.diff(state.u)
         take(n, n + 1)

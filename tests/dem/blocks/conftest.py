@@ -9,7 +9,7 @@ from cases.material.contact_points import points_of
 from cases.validate import validated
 from dem.blocks.model import (
     Blocks,
-    PlaneForm,
+    KernelFlags,
     PlaneModel,
     held_by,
 )
@@ -126,7 +126,7 @@ def _lattice(
     held = form.pop("held", None)
     held = held and held_by(*held, inertia, dt)
     effects = drag > 0, local > 0, any(gravity), held is not None
-    form = PlaneForm(parts_of(law), points, *effects, ledger)
+    form = KernelFlags(parts_of(law), points, *effects, ledger)
     model = PlaneModel(
         form, blocks, contacts, table_of(law), rule[None], held,
         np.array(places, dtype=np.int64), np.zeros(0, dtype=np.int64),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dem import simulate
-from dem.blocks.leapfrog import march, marcher, samples_for
+from dem.blocks.leapfrog import make_stepper, march, samples_for
 from dem.blocks.model import state_at_rest
 from dem.blocks.system import prepared
 from dem.static import NEVER
@@ -66,7 +66,7 @@ def test_steps_in_parts_by_one_marcher_change_no_bit(threads, rock_mass, joint, 
     for state in (whole, parts):
         state.v[:] = 0.1 * np.random.default_rng(1).normal(size=state.v.shape)
     march(model, whole, samples_for(model, 0), NEVER, (1, 21), shake=shake)
-    take = marcher(model, parts, samples_for(model, 0), 8, shake=shake[:8], threads=threads)
+    take = make_stepper(model, parts, samples_for(model, 0), 8, shake=shake[:8], threads=threads)
     for first, last in ((1, 9), (9, 17), (17, 21)):
         take(NEVER, first, last)
     assert (whole.u == parts.u).all() and (whole.v == parts.v).all()

@@ -11,7 +11,7 @@ from cases.sampling import Clock
 from dem.spatial.build import buffers_for, build_model, samples_for, state_at_rest
 from dem.spatial.ends import CLOSURE
 from dem.spatial.layout import LANES, STRIDE, TERMS, packed, unpacked
-from dem.spatial.march import marcher
+from dem.spatial.march import make_stepper
 from dem.spatial.simulate import prepare
 from numerics.divergence import guard
 
@@ -40,7 +40,7 @@ class Row(NamedTuple):
         which a row that was put in motion after its first sample cannot have."""
         unheld = guard([np.inf] * self.model.form.freedoms) if guarded else None
         buffers = buffers_for(self.model, 1, unheld)
-        marcher(self.model, self.state, buffers, self.samples)(first, last)
+        make_stepper(self.model, self.state, buffers, self.samples)(first, last)
 
     @property
     def motion(self) -> np.ndarray:

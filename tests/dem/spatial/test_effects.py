@@ -5,7 +5,7 @@ import pytest
 
 import dem
 from dem.spatial.build import buffers_for
-from dem.spatial.layout import LANES, Form
+from dem.spatial.layout import LANES, KernelFlags
 from dem.spatial.march import arguments, march_for
 from numerics.cache_lines import CACHE_LINE
 
@@ -65,7 +65,7 @@ def test_absent_effects_leave_no_array(row, at_rest):
     assert (state.history, state.ends, state.sums) == (None,) * 3
     assert (model.ends, model.load.base) == (None,) * 2
     assert buffers_for(model, 1).ledgers is None and blocks.samples.energy is None
-    assert form == Form(parts=form.parts, turns=True, **dict.fromkeys(ABSENT, False))
+    assert form == KernelFlags(parts=form.parts, turns=True, **dict.fromkeys(ABSENT, False))
     assert [name for name, there in form.parts._asdict().items() if there] == ["shear"]
     assert form.motion_rows == 12 and len(model.table) == 1
 

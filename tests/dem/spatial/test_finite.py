@@ -9,7 +9,7 @@ from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from dem.spatial.build import buffers_for, build_model, samples_for, state_at_rest
 from dem.spatial.layout import LANES, STRIDE
-from dem.spatial.march import marcher
+from dem.spatial.march import make_stepper
 from results.dataset import energy_residual
 
 DT = 2e-5
@@ -36,7 +36,7 @@ class Row:
         self.model = model._replace(load=still, form=form, stride=1 << 40)
         self.state = state_at_rest(self.model)
         self.rows = self.state.motion.reshape(len(self.state.motion), -1, STRIDE)[:, :, :LANES]
-        self.march = marcher(
+        self.march = make_stepper(
             self.model, self.state, buffers_for(self.model, 1), samples_for(self.model, 1)
         )
         self.y = self.p.spacing * (np.arange(self.p.block_count) + 0.5)

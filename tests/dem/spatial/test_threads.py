@@ -7,7 +7,7 @@ import pytest
 
 from dem.spatial.build import buffers_for, samples_for, state_at_rest
 from dem.spatial.layout import LANES
-from dem.spatial.march import marcher
+from dem.spatial.march import make_stepper
 from dem.spatial.simulate import prepare
 from dem.time_loop import ENOUGH_BLOCKS, thread_count
 
@@ -50,7 +50,7 @@ def outcome(prepared, threads, depth):
     velocities = state.motion[:, state.motion.shape[1] // 2 :]
     velocities[:] = np.random.default_rng(1).uniform(-1e-3, 1e-3, velocities.shape)
     buffers = buffers_for(model, threads)._replace(depth=depth)
-    marcher(model, state, buffers, samples)(0, STEPS)
+    make_stepper(model, state, buffers, samples)(0, STEPS)
     return [*samples, *state.ends, state.motion, state.history, state.sums]
 
 
