@@ -12,10 +12,8 @@ from continuum.space.operator import (
     layout,
     operator,
     spread,
-    tile_widths,
     without_round_off,
 )
-from continuum.space.simd import WIDTH
 from numerics.cache_lines import zeros
 
 multiply = numba.njit(lambda *arguments: formulas.multiply(*arguments))
@@ -69,18 +67,6 @@ def test_every_block_gets_its_own_product(parts, factor):
     assert not y[left].any()
 
 
-@pytest.mark.parametrize("count", [1, 3, 100, 100_000])
-def test_alike_blocks_move_alike(count):
-    """The same values give the same product in every lane of every tile."""
-    matrix = symmetric(12)
-    where = layout([count], [12])
-    values = np.random.default_rng(2).standard_normal(12)
-    x, y = spread(where, [values]), zeros(where.length)
-    multiply(*operator(where, [matrix]), x, y, 1.0)
-    product = y[where.first[:, None] + where.stride[:, None] * np.arange(12)]
-    assert (product == product[0]).all() and product.any()
-
-
 def test_a_large_block():
     """A thousand rows, and more entries than one row of lanes holds, against scipy.
 
@@ -96,41 +82,6 @@ def test_a_large_block():
     entries = np.diff(matrix.indptr).max()
     bound = 2 * entries * np.finfo(float).eps * (abs(matrix) @ np.abs(values))
     assert (np.abs(got - matrix @ values) <= bound).all()
-
-
-@given(st.lists(st.tuples(st.integers(1, 300), st.integers(1, 50)), min_size=1, max_size=5))
-def test_every_value_has_a_place_of_its_own(parts):
-    """No two values share one; tiles start on whole registers and follow one another."""
-    counts, sizes = zip(*parts, strict=True)
-    where = layout(counts, sizes)
-    places = np.concatenate([index for _, index in places_of(where, sizes, counts)])
-    assert np.unique(places).size == places.size == np.dot(counts, sizes)
-    assert places.min() >= 0 and places.max() < where.length
-    assert not (where.offset % WIDTH).any()
-    ends = where.offset + where.width * np.array(sizes)[where.part]
-    assert (ends <= np.append(where.offset[1:], where.length)).all()
-
-
-@given(st.integers(1, 100_000))
-def test_tiles_hold_what_they_must_and_little_more(count):
-    """Less than one register of padding; no tile so wide that it leaves the nearest cache, none
-    narrow where there are many copies; a single copy has no padding at all."""
-    widths = tile_widths(count)
-    if count == 1:
-        assert widths.tolist() == [1]
-        return
-    assert count <= widths.sum() < count + WIDTH
-    assert not (widths % WIDTH).any() and np.ptp(widths) <= WIDTH
-    assert widths.max() <= 5 * WIDTH
-    assert count <= 2 * WIDTH or widths.min() >= 3 * WIDTH
-
-
-def test_spread_fills_the_padding():
-    """So that nothing divides by a mass of zero there."""
-    where = layout([3, 1], [2, 3])
-    vector = spread(where, [np.array([1.0, 2.0]), np.array([3.0, 4.0, 5.0])])
-    assert vector[:16].tolist() == [1.0] * 8 + [2.0] * 8
-    assert vector[16:19].tolist() == [3.0, 4.0, 5.0]
 
 
 def test_round_off_is_told_from_small_entries():

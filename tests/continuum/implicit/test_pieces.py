@@ -6,22 +6,8 @@ import pytest
 from cases.errors import SceneError, StoppedError
 from cases.sampling import Clock
 from continuum.build import build_model, discretise
-from continuum.implicit.balance import implicit_matrices, trial_forces
-from continuum.implicit.pattern import System
 from continuum.implicit.static import settle_static
-from continuum.implicit.substeps import (
-    UNLOADED,
-    Applied,
-    applied_at,
-    end_resistance,
-    fixed_motion,
-    move,
-    shorter_springs,
-)
-from continuum.model import Fixed, HalfJoints, Quiet
-from continuum.space.tractions import NN, XN, XX, XZ, ZN, ZZ
 from continuum.state import state_at_rest
-from joints.ends import half_spring
 
 FEW = {"pillar__length": 1.5, "record__stress": [0.5], "record__velocity": [1.0]}
 
@@ -37,132 +23,6 @@ def built(pillar):
         return scene, discrete, model, state_at_rest(model, True)
 
     return build
-
-
-@pytest.mark.parametrize("dim", [1, 2, 3])
-def test_joints_on_the_pattern_are_the_product_of_matrices(built, dim):
-    """B^T D B: a traction along the joint answers the gap, and not the other way about."""
-    small = {"numerics__continuum__order": 1, "numerics__continuum__elements_across": 1}
-    _, discrete, model, _ = built("jointed", dim, **small)
-    rock, random = implicit_matrices(discrete.body), np.random.default_rng(2)
-    # No two entries alike, as on joints that lie in any direction.
-    joints = model.interfaces._replace(jump=model.interfaces.jump.copy())
-    joints.jump.data *= random.uniform(1, 2, joints.jump.nnz)
-    model = model._replace(interfaces=joints)
-    system = System(model, rock, np.array([0]), [rock.mass])
-    system.tangents[:] = random.uniform(1, 2, system.tangents.shape)
-    values = system.with_joints(0.5 * system.pattern.fixed[0], share=0.25)
-    found = np.zeros((system.free.size, system.free.size))
-    row = np.repeat(np.arange(system.free.size), np.diff(system.pattern.start))
-    found[row, system.pattern.column] = values
-
-    of_point = np.array([[NN, -1, -1], [XN, XX, XZ], [ZN, XZ, ZZ]])[:dim, :dim]
-    jumps = joints.jump.toarray().reshape(dim, joints.area.size, -1)[:, :, system.free]
-    expected = 0.5 * rock.mass.toarray()[np.ix_(system.free, system.free)]
-    for a in range(dim):
-        for b in range(dim):
-            if of_point[a, b] >= 0:
-                d = system.tangents[of_point[a, b]]
-                expected += 0.25 * jumps[a].T @ (d[:, None] * jumps[b])
-    assert 0 not in system.free
-    np.testing.assert_allclose(found, expected, atol=1e-12 * np.abs(expected).max())
-
-
-def test_motion_of_a_base():
-    """1, 3 and 2 mm a step of 0.1 s: at steps 0, 1, 3 mm with what is before and behind each."""
-    fixed = fixed_motion(Fixed(np.array([1]), np.array([-2.0]), 1e-3 * np.array([1, 3, 2])), 0.1)
-    u, v, a = fixed.motion
-    assert u == pytest.approx([0, 1e-3, 4e-3], abs=1e-18)
-    assert v == pytest.approx([5e-3, 0.02, 0.025])
-    assert a == pytest.approx([0.1, 0.2, -0.1])
-    assert fixed_motion(None, 0.1).freedom.size == 0
-
-
-def test_a_base_moves_its_freedoms_alone(built):
-    """To a quarter of the way between steps 1 and 2: times the direction, in u, v and a."""
-    *_, state = built("equivalent", 1)
-    given = fixed_motion(Fixed(np.array([1]), np.array([-2.0]), 1e-3 * np.array([1, 3, 2])), 0.1)
-    acceleration = np.full(state.u.size, 7.0)
-    state.u[:], state.v[:] = 5.0, 6.0
-    move(given, state, acceleration, 1, 0.25)
-    vectors = state.u, state.v, acceleration
-    assert [x[1] for x in vectors] == pytest.approx([-3.5e-3, -0.0425, -0.25])
-    for x, rest in zip(vectors, (5.0, 6.0, 7.0), strict=True):
-        assert (np.delete(x, 1) == rest).all()
-    move(given, state, acceleration, 2, 0.0)
-    assert [x[1] for x in vectors] == pytest.approx([-8e-3, -0.05, 0.2])
-    move(given._replace(motion=None), state, acceleration, 2, 0.0)
-    assert not any(x[1] for x in vectors)
-
-
-def test_pressure_between_steps(built):
-    """Linear: a quarter of the way from 3 to 7 Pa; the last one asks for none behind it."""
-    *_, model, _ = built("equivalent", 1)
-    loaded = model.ends.loaded._replace(pressure=np.array([1.0, 3.0, 7.0]))
-    model = model._replace(ends=model.ends._replace(loaded=loaded))
-    assert [applied_at(model, *at).pressure for at in ((1, 0.25), (0, 1.0), (2, 0.0))] == [
-        4.0,
-        3.0,
-        7.0,
-    ]
-    assert applied_at(model._replace(ends=model.ends._replace(loaded=None)), 2, 0.0) == (0.0, None)
-
-
-@pytest.mark.parametrize("share", [0.5, 0.25])
-def test_half_joints_of_a_shorter_step_are_those_made_for_it(share):
-    springs = [half_spring(3e9, 1e-5, z, dt) for z in (2e6, 5e6) for dt in (1e-3, share * 1e-3)]
-    whole, short = (
-        HalfJoints(*(np.array([getattr(s, k) for s in some]) for k in HalfJoints._fields))
-        for some in (springs[::2], springs[1::2])
-    )
-    for a, b in zip(shorter_springs(whole, share), short, strict=True):
-        np.testing.assert_allclose(a, b, rtol=1e-14)
-
-
-def test_ends_resist_by_dashpots_at_the_rate_and_springs_by_their_gain():
-    """C r, and k times the closure of a unit of displacement in the step, gain / dt."""
-    quiet = Quiet(np.array([4, 7]), np.array([2.0, 3.0]), np.zeros(2))
-    freedom, bare = end_resistance(quiet, 10.0, 0.5)
-    springs = HalfJoints(np.array([8.0, 0.0]), np.zeros(2), np.array([0.25, 0.0]))
-    _, sprung = end_resistance(quiet._replace(springs=springs), 10.0, 0.5)
-    assert freedom.tolist() == [4, 7]
-    assert bare.tolist() == [20.0, 30.0] and sprung.tolist() == [24.0, 30.0]
-
-
-def test_largest_force_of_a_trial(built):
-    """What the tolerance is measured by: of rock, dashpots, weight and load each in its turn."""
-    changes = {
-        "gravity": {"direction": [0, 1, 0], "static": False},
-        "joints__damping_ratio": 0.05,
-        "ends__end": "fixed",
-    }
-    _, discrete, model, now = built("equivalent", 1, **changes)
-    rock, tangents = implicit_matrices(discrete.body), np.zeros((6, 0))
-    trial = state_at_rest(model, True)
-    weight = np.abs(model.weight).max()
-    assert weight > 0 and model.rock.viscosity is not None
-
-    def size(u=0.0, v=0.0, pressure=0.0):
-        trial.u[:], trial.v[:] = 0.0, 0.0
-        trial.u[1], trial.v[1] = u, v
-        return trial_forces(model, rock, now, trial, tangents)(Applied(pressure, None))
-
-    k, c = (np.abs(m.toarray()[:, 1]).max() for m in (rock.stiffness, rock.viscosity))
-    share = np.abs(model.ends.loaded.share).max()
-    assert size() == pytest.approx(weight, rel=1e-14)
-    assert size(u=10 * weight / k) == pytest.approx(10 * weight, rel=1e-12)
-    assert size(v=10 * weight / c) == pytest.approx(10 * weight, rel=1e-12)
-    assert size(pressure=-10 * weight / share) == pytest.approx(10 * weight, rel=1e-12)
-
-
-def test_a_trial_starts_from_the_ledger_before_it(built):
-    """However often it is tried."""
-    _, discrete, model, now = built("equivalent", 1)
-    trial, rock = state_at_rest(model, True), implicit_matrices(discrete.body)
-    now.ledger[:] = 1.0, 2.0, 3.0, 4.0
-    trial.ledger[:] = 5.0
-    trial_forces(model, rock, now, trial, np.zeros((6, 0)))(UNLOADED)
-    assert trial.ledger.tolist() == [1.0, 2.0, 3.0, 4.0]
 
 
 def test_a_shaken_base_goes_its_way_and_does_all_the_work(implicit, pillar):

@@ -6,13 +6,10 @@ import pytest
 
 import dem
 from cases.material.calibrate import calibrate
-from cases.sampling import Clock
-from dem.axial.build import build, build_model
-from dem.axial.leapfrog import arguments, loop_for, make_stepper, march
+from dem.axial.build import build
+from dem.axial.leapfrog import arguments, loop_for
 from dem.axial.samples import buffers
-from dem.axial.state import state_at_rest
-from joints.law import Law, LawFlags
-from results.arrays import copied
+from joints.law import Law
 
 COMPRESSION = {"load": {"shape": "step", "amplitude": 1e6}, "time__duration": 0.03}
 
@@ -59,21 +56,6 @@ def test_idle_effect_changes_no_bit(pillar, idle):
     assert (waveforms(without) == waveforms(with_idle)).all()
 
 
-def test_idle_quiet_end_changes_no_bit(pillar):
-    """A dashpot of zero impedance on the end block is a free end."""
-    free, quiet = pillar(), pillar(ends__end="quiet")
-    p, clock = calibrate(free), Clock(1e-5, 1, 4001)
-    ends = []
-    for scene in (free, quiet):
-        model = build_model(scene, p, clock)
-        idle = model.chain.end._replace(viscosity=0.0)
-        model = model._replace(chain=model.chain._replace(end=idle))
-        state = state_at_rest(model.effects, p.block_count, False)
-        march(model, state, 0, clock.steps)
-        ends.append(state.u)
-    assert (ends[0] == ends[1]).all()
-
-
 def test_base_that_stands_is_a_wall(pillar):
     """A base shaken by nothing changes no bit against the fixed start it moves."""
     standing = {"ends__start": "fixed", "gravity": {"direction": [0, 1, 0]}}
@@ -81,19 +63,6 @@ def test_base_that_stands_is_a_wall(pillar):
     wall = dem.simulate(pillar(load=still, **standing))
     base = dem.simulate(pillar(load={**still, "quantity": "velocity"}, **standing))
     assert (waveforms(wall) == waveforms(base)).all()
-
-
-def test_idle_damping_of_blocks_changes_no_bit(pillar):
-    """Keeping all of a velocity and braking none of its gain is no damping."""
-    scene = pillar(**COMPRESSION)
-    p, clock = calibrate(scene), Clock(1e-5, 1, 2001)
-    model, u = build_model(scene, p, clock), []
-    damped = model.effects._replace(mass_damping=True, local_damping=True)
-    for effects in (model.effects, damped):
-        state = state_at_rest(effects, p.block_count, True)
-        march(model._replace(effects=effects), state, 0, clock.steps)
-        u.append(state.u)
-    assert (u[0] == u[1]).all()
 
 
 def test_absent_effects_leave_no_array(pillar):
@@ -107,21 +76,6 @@ def test_absent_effects_leave_no_array(pillar):
     present = {name for name, array in state._asdict().items() if array is not None}
     assert present == {"u", "v", "force", "start", "end"}
     assert state.start.tolist() == state.end.tolist() == [0.0, 0.0]
-
-
-@pytest.mark.parametrize(
-    ("damping", "kept"),
-    [
-        ({}, (None, None, None)),
-        ({"joints__damping_ratio": 0.02}, (100, None, 99)),
-        ({"damping__mass_proportional": 10.0}, (100, 100, None)),
-        ({"damping__local": 0.5}, (100, 100, None)),
-    ],
-)
-def test_the_ledger_keeps_what_damping_calls_for(pillar, damping, kept):
-    _, state, _, _ = build(pillar(**damping))
-    rows = state.viscous, state.behind, state.dashpot_force
-    assert tuple(None if row is None else row.size for row in rows) == kept
 
 
 SOFTENING = {"joints__tensile_strength": 1e6, "joints__fracture_energy": 500.0}
@@ -151,23 +105,6 @@ def counted(pillar, instructions, monkeypatch):
         return instructions(loop, (given, 0, 1, 0, 1), kind)
 
     return count
-
-
-def test_blocks_with_masses_of_their_own_that_are_alike_change_no_bit(pillar):
-    scene = pillar(ends__end="matched", **COMPRESSION)
-    model, state, time, _ = build(scene)
-    count, own = state.u.size, [model.chain.mass, model.chain.impulse_to_speed]
-    twin = model._replace(
-        blocks=np.tile(own, (count, 1)), effects=model.effects._replace(masses=True)
-    )
-    found = []
-    for each, at in ((model, copied(state)), (twin, copied(state))):
-        samples = buffers(each, at, time.samples)
-        make_stepper(each, at, samples, time.stride)(0, time.samples)
-        found.append([samples.stress, samples.velocity, samples.energy])
-    assert model.blocks is None
-    for one, other in zip(*found, strict=True):
-        assert (one == other).all()
 
 
 @pytest.mark.parametrize(("kind", "changes"), ADDED.values(), ids=ADDED)
@@ -200,22 +137,3 @@ def test_a_key_that_calls_for_nothing_is_not_compiled(counted, pillar, nothing):
     assert build(pillar(**nothing))[0].effects == build(pillar())[0].effects
     for kind in ("fadd", "fmul", "fdiv", "fcmp", "load", "call", "phi"):
         assert counted(kind, **nothing) == counted(kind)
-
-
-def test_every_effect_is_a_flag(pillar):
-    """What a scene calls for is what its kernel is compiled for."""
-    scene = pillar(
-        joints__damping_ratio=0.02,
-        soft_layers=[{"y": 20.0, "tension": False}],
-        ends={"start": "fixed", "end": "quiet"},
-        damping={"mass_proportional": 1.0, "local": 0.1},
-        gravity={"direction": [0, 1, 0], "static": False},
-        **SHAKEN,
-    )
-    effects = build(scene)[0].effects
-    along = LawFlags(
-        dashpots=True, no_tension=True, softening=False, varied=True,
-        shear=False, slip=False, residual=False, limited=False, closure=False,
-        weakening=False, dilation=False, rate_state=False, path=False,
-    )  # fmt: skip
-    assert effects == (along, False, True, True, True, True, True, True, 0, False)

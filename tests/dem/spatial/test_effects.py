@@ -7,7 +7,6 @@ import dem
 from dem.spatial.build import buffers_for
 from dem.spatial.layout import LANES, KernelFlags
 from dem.spatial.march import arguments, march_for
-from numerics.cache_lines import CACHE_LINE
 
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
 ABSENT = ("points", "finite", "mass_damping", "local_damping", "gravity", "base", "start", "end")
@@ -68,16 +67,6 @@ def test_absent_effects_leave_no_array(row, at_rest):
     assert form == KernelFlags(parts=form.parts, turns=True, **dict.fromkeys(ABSENT, False))
     assert [name for name, there in form.parts._asdict().items() if there] == ["shear"]
     assert form.motion_rows == 12 and len(model.table) == 1
-
-
-def test_every_tile_starts_on_a_cache_line(row, at_rest):
-    """And so does every row of it: no register of lanes straddles two lines."""
-    damped = {"damping_ratio": 0.1, "friction_angle": 30.0, "cohesion": 1e5}
-    blocks = at_rest(row(joints=damped, soft_layers=[{"y": 1.0, "damping_ratio": 0.2}]))
-    buffers, table = buffers_for(blocks.model, 2), blocks.model.table
-    state = blocks.state
-    for tiles in (state.motion, state.history, state.sums, table, buffers.tile, buffers.ledgers):
-        assert not any(tile.ctypes.data % CACHE_LINE for tile in np.atleast_2d(tiles))
 
 
 def test_blocks_that_do_not_turn_have_three_freedoms(row, at_rest):
