@@ -49,8 +49,6 @@ def test_pieces_that_no_group_joins_are_refused(kind, drawn, column):
     assert f"{count} facets coincide with others" in str(error.value)
 
 
-CONSISTENT = dict(numerics__continuum__mass="consistent", numerics__continuum__cell="simplex")
-
 MISTAKES = {
     "too short": (dict(length=1.4), ["spans y = 0 to 1.4 m, the pillar 0 to 1.5 m"]),
     "too wide": (dict(side=0.5), ["spans x = -0.25 to 0.25 m, the pillar -0.2 to 0.2 m"]),

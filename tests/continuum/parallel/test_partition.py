@@ -7,11 +7,9 @@ from hypothesis import strategies as st
 from scipy.sparse import coo_matrix, csr_matrix, diags, identity, kron
 
 from cases.errors import SceneError
-from continuum.mesh.description import Joints, Mesh, Part, Side
+from continuum.mesh.description import Joints, Mesh, Part
 from continuum.parallel.graph import halved
 from continuum.parallel.partition import WHOLE, copies_of, ranks_of_cells, restrict
-
-NOBODY = Side(np.zeros(0, dtype=np.int64), np.zeros((0, 1, 1)))
 
 
 def bar(counts: list[tuple[int, int]]) -> Mesh:
