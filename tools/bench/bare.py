@@ -6,8 +6,6 @@ No receivers, no ledger, no ends, no other effects, one set of numbers for all j
 import numba
 import numpy as np
 
-import numerics.jit  # noqa: F401  # before numba looks at the machine: vectors as wide for all
-
 LANES, ROW = 64, 72
 
 
