@@ -10,8 +10,6 @@ from cases.sampling import Clock
 from compare.exact.blocks import lattice, no_tension
 from compare.misfit.metrics import misfit
 from dem.axial.fourth_order import (
-    DRIFTS,
-    KICKS,
     build,
     compose,
     half_trace,
@@ -131,19 +129,6 @@ def test_beats_leapfrog_at_equal_work(fourth):
     assert misfit(found, exact) < 1e-3 * misfit(leapfrog, exact)
 
 
-@pytest.mark.parametrize(
-    "changes", [CHAINS[key] for key in ("free", "soft layer")], ids=("free", "soft layer")
-)
-def test_step_is_symplectic(fourth, changes):
-    """S^T J S = J of one step near the critical one, to round-off."""
-    scene = fourth(0.9, pillar__length=25.0, **changes)
-    critical = build(scene)[3]
-    S = step_matrix(scene, 0.9 * critical)
-    n = len(S) // 2
-    J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
-    assert np.abs(S.T @ J @ S - J).max() < 1e-12
-
-
 def test_energy_has_no_trend_in_a_hundred_thousand_steps(fourth):
     """The energy's error swings, at most as far at the end as at the beginning."""
     probe = fourth(0.9)
@@ -201,13 +186,6 @@ def test_every_shorter_step_is_stable():
     assert limit / 2 == pytest.approx(1.494725, abs=1e-6)
     assert np.abs(trace(np.linspace(0, limit, 100_001) ** 2)).max() <= 1 + 1e-12
     assert abs(trace((1.0001 * limit) ** 2)) > 1
-
-
-def test_weights_sum_to_one_step():
-    """Drifts and kicks each add up to the step, and both are symmetric."""
-    for weights in (DRIFTS, KICKS):
-        assert sum(weights) == pytest.approx(1.0, abs=1e-15)
-        assert weights == weights[::-1]
 
 
 def test_ledger_closes_to_fourth_order(fourth):

@@ -79,17 +79,12 @@ def rock_mass():
 @pytest.fixture
 def lattice():
     """Return a function that gives a periodic patch of square blocks, or of bricks of a length, a
-    height and an offset, with all joints alike, the cell of each block [N, 2], and the rotation
-    [2, 2] by which the patch is turned."""
+    height and an offset, with all joints alike, and the cell of each block [N, 2]."""
     return _lattice
 
 
-def _lattice(
-    law=None, points=0, ledger=False, turned=0.0, shifted=(0.0, 0.0), places=(), brick=None, **form
-):
+def _lattice(law=None, points=0, ledger=False, brick=None, **form):
     law = law or Law(normal_stiffness=K_N, shear_stiffness=K_S)
-    c, s = np.cos(turned), np.sin(turned)
-    turn = np.array([[c, -s], [s, c]])
     length, height, offset = brick or (SIDE, SIDE, 0.0)
     vectors = np.array([[length, 0.0], [offset * length, height]])
     at = np.stack(np.meshgrid(*map(np.arange, NUMBER), indexing="ij"), axis=-1).reshape(-1, 2)
@@ -110,12 +105,11 @@ def _lattice(
         for end, corner in zip(ends, corners, strict=True):
             end.append(at @ vectors + np.array(corner) * (length, height))
     pairs, normal, near, far = map(np.concatenate, (pairs, normal, near, far))
-    ends = [np.concatenate(end) @ turn.T + shifted for end in ends]
+    ends = [np.concatenate(end) for end in ends]
     rule = np.array(points_of("gauss", points or 2))
     rule[0] -= 0.5
-    beside = near @ turn.T + shifted, far @ turn.T + shifted
     second = None if points else rule[1] @ rule[0] ** 2
-    contacts = contacts_of(pairs, *ends, normal @ turn.T, beside, len(at), second=second)
+    contacts = contacts_of(pairs, *ends, normal, (near, far), len(at), second=second)
     mass = DENSITY * length * height
     inertia = np.tile([mass, mass, mass * (length**2 + height**2) / 12], (len(at), 1))
     omega = np.sqrt(4 * (K_N + K_S) * max(length, height) / mass)
@@ -127,8 +121,6 @@ def _lattice(
     held = held and held_by(*held, inertia, dt)
     effects = drag > 0, local > 0, any(gravity), held is not None
     form = KernelFlags(parts_of(law), points, *effects, ledger)
-    model = PlaneModel(
-        form, blocks, contacts, table_of(law), rule[None], held,
-        np.array(places, dtype=np.int64), np.zeros(0, dtype=np.int64),
-    )  # fmt: skip
-    return model, at, turn
+    none = np.zeros(0, dtype=np.int64)
+    model = PlaneModel(form, blocks, contacts, table_of(law), rule[None], held, none, none)
+    return model, at

@@ -50,7 +50,7 @@ def test_plane_waves_are_exact_in_every_branch_and_direction(wave, branch, point
     step's rotation, and its square root of sums."""
     number = 2 * np.pi * np.array(wave) / NUMBER
     squares, shapes = modes(number)
-    check(*lattice(points=points)[:2], number, np.sqrt(squares[branch]), shapes[:, branch])
+    check(*lattice(points=points), number, np.sqrt(squares[branch]), shapes[:, branch])
 
 
 @pytest.mark.parametrize("points", [0, 2], ids=["whole contacts", "by points"])
@@ -64,7 +64,7 @@ def test_plane_waves_in_brickwork_are_those_of_its_bloch_problem(
     cell = brickwork(0.8, 0.5, offset, DENSITY, (K_N, K_S), (K_N, K_S))
     number = 2 * np.pi * np.array(wave) / NUMBER
     omega, shapes = bloch_modes(cell, np.linalg.solve(cell.vectors, number))
-    model, at, _ = lattice(points=points, brick=(0.8, 0.5, offset))
+    model, at = lattice(points=points, brick=(0.8, 0.5, offset))
     check(model, at, number, omega[branch], shapes[:, branch])
 
 

@@ -5,7 +5,7 @@ import pytest
 
 import dem
 from dem.spatial.build import buffers_for
-from dem.spatial.layout import LANES, KernelFlags
+from dem.spatial.layout import KernelFlags
 from dem.spatial.march import arguments, march_for
 
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
@@ -69,38 +69,6 @@ def test_absent_effects_leave_no_array(row, at_rest):
     assert form.motion_rows == 12 and len(model.table) == 1
 
 
-def test_blocks_that_do_not_turn_have_three_freedoms(row, at_rest):
-    """No rotation, one contact point, six rows of motion."""
-    still = at_rest(row(motion__rotation="none", load__at=[0.0, 0.0], record__energy=False))
-    assert still.model.form.motion_rows == 6 and not still.model.form.turns
-    assert still.model.points.shape == (3, 1)
-
-
-def test_only_what_slides_or_softens_is_remembered(row, at_rest):
-    """A point has two slides, an opening with softening, a cohesion that slip may weaken, and the
-    path that weakens its friction."""
-    slip = {"friction_angle": 20.0, "cohesion": 1e4}
-    soft = {"tensile_strength": 1e5, "fracture_energy": 50.0}
-
-    def kept(**joints):
-        blocks = at_rest(row(joints=joints))
-        form, history = blocks.model.form, blocks.state.history
-        rows = form.rate_rows + form.point_rows * blocks.model.points.shape[1]
-        assert rows == (0 if history is None else history.shape[1] // LANES)
-        return form.rate_rows, form.point_rows
-
-    assert kept() == (0, 0)
-    assert kept(damping_ratio=0.1) == (6, 0)
-    assert kept(**slip) == (0, 2)
-    assert kept(**slip, **soft) == (0, 3)
-    assert kept(**slip, residual_cohesion=1e3, damping_ratio=0.1) == (6, 3)
-    weakens = {"dynamic_friction_angle": 10.0, "weakening_distance": 1e-3}
-    assert kept(**slip, **weakens, residual_cohesion=1e3) == (0, 4)
-    dilates = {"dilation_angle": 5.0, "dilation_distance": 1e-2}
-    assert kept(**slip, **dilates) == (0, 3) and kept(**slip, **weakens, **dilates) == (0, 3)
-    assert kept(**slip, contact_points=3) == (0, 2)
-
-
 def test_absent_effects_leave_no_instruction(row, at_rest, instructions):
     """No comparison, division or root in an elastic row; friction brings all three. Both work on
     several blocks at once."""
@@ -121,19 +89,3 @@ def test_absent_effects_leave_no_instruction(row, at_rest, instructions):
     assert min(slip[:3]) > 0 and slip[3] > elastic[3]
     assert elastic[4] > 0 and min(slip[4:]) > 0
     assert count(motion__rotation="none", load__at=[0.0, 0.0])[3] < elastic[3]
-
-
-@pytest.mark.parametrize("blocks", [64, 65, 129])
-def test_a_tile_without_a_joint_has_a_law_all_the_same(row, at_rest, blocks):
-    """The last block of 64 n + 1 has a tile to itself: tables and cohesions cover it too."""
-    layer = {"y": 2.0, "cohesion": 2e5}
-    joints = {"friction_angle": 20.0, "cohesion": 1e5, "residual_cohesion": 0.0}
-    scene = row(pillar__length=0.5 * blocks, joints=joints, soft_layers=[layer])
-    built = at_rest(scene)
-    assert len(built.model.table) == len(built.state.motion) == -(-blocks // 64)
-    kept = built.state.history.reshape(len(built.state.history), -1, 64)
-    kept = kept[:, built.model.form.cohesions]
-    assert kept.shape[1] == 4
-    of_joints = kept.transpose(1, 0, 2).reshape(4, -1)[:, : blocks - 1]
-    expected = np.where(np.arange(blocks - 1) == 3, 2e5, 1e5)
-    assert (of_joints == expected).all()

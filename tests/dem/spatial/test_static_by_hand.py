@@ -7,9 +7,6 @@ import pytest
 
 import dem
 from cases.material.calibrate import calibrate
-from dem.spatial.layout import STRIDE, packed, unpacked
-from dem.spatial.simulate import prepare
-from dem.spatial.start import RowRelaxation
 
 pytestmark = pytest.mark.usefixtures("plain")
 
@@ -97,26 +94,6 @@ def test_weight_under_a_prestress_counts_from_the_prestressed_state(row):
     assert result.displacement.values[:, 0, 1] == pytest.approx(moved, rel=1e-6)
     carried = 2e6 + np.array([0, 1, 2]) * W / p.area
     assert result.stress.values[:, 0] == pytest.approx(carried, abs=1e-6 * W / p.area)
-
-
-@pytest.mark.parametrize("rotation", ["small", "finite"])
-def test_forces_out_of_balance_are_those_at_rest(row, rotation):
-    """The weight alone where nothing is strained, however fast blocks move, which stays as it is;
-    stopped, they have turned and moved as before."""
-    scene = row(
-        **PAIR, motion__rotation=rotation, ends__end="fixed", gravity={"direction": [0.6, 0.8, 0.0]}
-    )
-    system = RowRelaxation(scene, calibrate(scene), prepare(scene).model, weighed=True)
-    rows = unpacked(system.state.motion, STRIDE, 2).copy()
-    rows[6:12] = np.random.default_rng(1).uniform(-1, 1, (6, 2))
-    system.state.motion[:] = packed(rows, STRIDE)
-    weight = 9.81 * calibrate(scene).block_mass * np.array([0.6, 0.8, 0.0])
-    expected = np.repeat([*weight, 0.0, 0.0, 0.0], 2)
-    assert system.unbalanced() == pytest.approx(expected, abs=1e-9 * weight.max())
-    assert (unpacked(system.state.motion, STRIDE, 2) == rows).all()
-    system.stop()
-    rows[6:12] = 0.0
-    assert (unpacked(system.state.motion, STRIDE, 2) == rows).all()
 
 
 def test_seconds_add_up_to_what_it_took(row):
