@@ -16,7 +16,7 @@ from compare.scenes import find
 from dem.axial.samples import buffers
 from dem.axial.simulate import scheme_of
 from dem.spatial.build import buffers_for, samples_for, state_at_rest
-from dem.spatial.march import marcher
+from dem.spatial.march import make_stepper
 from dem.spatial.simulate import prepare
 
 BLOCK_STEPS = 5_000_000  # of one call, at most, unless it has a single sample
@@ -57,7 +57,7 @@ def _along_axis(scene: Scene) -> Stretch:
     model, state, time, _ = scheme.build(scene)
     count = _samples(time, state.u.size, BLOCK_STEPS)
     samples = buffers(model, state, count)
-    march = scheme.marcher(scene, time)(model, state, samples, time.stride, None)
+    march = scheme.make_stepper(scene, time)(model, state, samples, time.stride, None)
     return lambda: march(0, count), count * time.stride * state.u.size
 
 
@@ -65,7 +65,7 @@ def _in_space(scene: Scene, threads: int) -> Stretch:
     p, model, time, _ = prepare(scene)
     count = _samples(time, p.block_count, BLOCK_STEPS_IN_SPACE)
     state, samples, steps = state_at_rest(model), samples_for(model, count), count * time.stride
-    march = marcher(model, state, buffers_for(model, threads, None), samples)
+    march = make_stepper(model, state, buffers_for(model, threads, None), samples)
     march(0, 0)
     return lambda: march(0, steps), steps * p.block_count
 
