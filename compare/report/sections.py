@@ -7,11 +7,11 @@ from typing import Any
 import pandas as pd
 
 from compare.engines import Progress
-from compare.experiments.ablation import runner as effects
-from compare.experiments.ablation.summary import summarise as summarise_effects
-from compare.experiments.scattering import summary as scattering
 from compare.figures.snapshots import make_snapshots
+from compare.studies import effects, scattering
+from compare.studies.effects_summary import summarise as summarise_effects
 from compare.studies.hard_cases import make_study as make_hard_cases
+from compare.studies.scattering_summary import make_study as make_joints
 from compare.studies.store import Pool
 from compare.studies.study import load
 from compare.studies.summary import Summary
@@ -32,7 +32,7 @@ def sections(
     """
     folder, done = out / "studies", 0.0
     for name in scattering.TITLES:
-        found = scattering.make_study(name, folder, None, True, pool)
+        found = make_joints(name, folder, None, True, pool)
         yield section("joints", found, f"jointwave study {name}")
     progress(done := done + PARTS["joints"])
     for i, name in enumerate(REPORTED, start=1):

@@ -10,10 +10,8 @@ from typing import Any
 from cases.effects import active_effects
 from cases.errors import SceneError
 from cases.kinds import AnyScene
-from compare.experiments.ablation import runner as ablation
-from compare.experiments.scattering import points as scattering
 from compare.solvers.dem import DEM
-from compare.studies import hard_cases, work_precision
+from compare.studies import effects, hard_cases, scattering, work_precision
 from compare.studies.forecast import Part, Run, all_runs, part
 from compare.studies.store import Store
 from compare.studies.study import StudyPoint, load
@@ -39,7 +37,7 @@ def of_study(name: str, out: Path) -> list[Part]:
     ]
 
 
-def of_effects(wanted: Sequence[ablation.Variant], out: Path) -> list[Part]:
+def of_effects(wanted: Sequence[effects.Variant], out: Path) -> list[Part]:
     """Return the variants whose effects would be measured: a run with all, one without each."""
     return [
         _part(f"{one.name} {one.scene.name}".strip(), [one], lambda x: x.key, _of_effects, out)
@@ -58,7 +56,7 @@ def of_report(scenes: Iterable[Sequence[AnyScene]], out: Path | None) -> list[Pa
     found += [one for name in work_precision.REPORTED for one in of_study(name, studies)]
     found += [_joints(name, studies, brief=True) for name in scattering.SOLVERS]
     found.append(_hard_cases(studies))
-    cases = ablation.reported()
+    cases = effects.reported()
     return [*found, _part("effects", cases, lambda x: x.key, _of_effects, out / "effects")]
 
 
@@ -92,7 +90,7 @@ def _of_point(point: StudyPoint) -> list[Run]:
         return []  # it fails before its first step
 
 
-def _of_effects(one: ablation.Variant) -> list[Run]:
+def _of_effects(one: effects.Variant) -> list[Run]:
     return [("", one.scene, DEM.name)] * (1 + len(active_effects(one.scene)))
 
 

@@ -182,7 +182,7 @@ SOLVERS = (
     "compare.runs.run.execute",
     "compare.runs.comparison.compare",
     "compare.studies.sweep.run",
-    "compare.experiments.ablation.runner.run",
+    "compare.studies.effects.run",
     "compare.studies.plan.plan",
     "compare.studies.work_precision.run",
     "compare.studies.hard_cases.make_study",

@@ -49,8 +49,8 @@ def effects(
     every shipped pillar. Slow; finished scenes are saved in DIR and not run again.
     """
     from compare.cli.study_view import run_and_show
-    from compare.experiments.ablation import runner
-    from compare.experiments.ablation.summary import summarise
+    from compare.studies.effects import run
+    from compare.studies.effects_summary import summarise
 
     wanted = _cases(scene, changes, variant, strict)
     if dry:
@@ -63,7 +63,7 @@ def effects(
         f"{len(wanted)} variants",
         out,
         workers,
-        lambda pool, advance: summarise(out, runner.run(wanted, out, pool, advance)),
+        lambda pool, advance: summarise(out, run(wanted, out, pool, advance)),
         as_json,
     )
 
@@ -128,9 +128,10 @@ def study(
 
         title, work = hard.TITLE, lambda pool, tell: hard.make_study(out, pool, progress=tell)
     elif name in ("oblique-joint", "parallel-joints"):
-        from compare.experiments.scattering import summary as joints
+        from compare.studies.scattering import TITLES
+        from compare.studies.scattering_summary import make_study
 
-        title, work = joints.TITLES[name], lambda pool, tell: joints.make_study(name, out, tell)
+        title, work = TITLES[name], lambda pool, tell: make_study(name, out, tell, pool=pool)
     else:
         from compare.studies.study import load
         from compare.studies.work_precision import run, summarise
@@ -198,7 +199,7 @@ def report(
 
 def _cases(scene: str | None, changes: list[str], variant: str | None, strict: bool) -> list[Any]:
     """Return the variants whose effects are asked for; without a scene all that are shipped."""
-    from compare.experiments.ablation.runner import Variant, all_shipped
+    from compare.studies.effects import Variant, all_shipped
 
     if scene is not None:
         return [Variant(scene, one) for one in load(scene, changes, variant or "", strict)]

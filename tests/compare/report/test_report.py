@@ -9,11 +9,11 @@ import pytest
 
 import cases
 from cases.effects import active_effects
-from compare.experiments.ablation.runner import reported
 from compare.report.report import build
 from compare.report.scenes import PAPER
 from compare.report.verdict import NOT_CHECKED
 from compare.runs.field_files import read_pvd
+from compare.studies.effects import reported
 from compare.studies.study import load
 from compare.studies.work_precision import REPORTED
 from compare.text import percent

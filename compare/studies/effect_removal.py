@@ -1,11 +1,10 @@
-"""Variants of a scene: without one of its effects, or with only one."""
+"""Scenes without one of their effects."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from cases.effects import active_effects
 from cases.errors import SceneError
 from cases.kinds import AnyScene, Either, checked
 from cases.material.strength import SLIP
@@ -14,12 +13,7 @@ from cases.schema.damping import Attenuating
 from cases.schema.joint import PARTS
 from cases.schema.scene import Scene
 
-if TYPE_CHECKING:
-    Change = Callable[[Any], Any]  # from a scene to one of its kind
-
-
-#: Effects that require another one.
-NEEDS: dict[str | None, str] = {part.name: "slip" for part in PARTS if part.along}
+Change = Callable[[Any], Any]  # from a scene to one of its kind
 
 
 def left_out(scene: Either, name: str) -> Either:
@@ -27,25 +21,6 @@ def left_out(scene: Either, name: str) -> Either:
     if name not in WITHOUT:
         raise SceneError(scene.where, name, None, "is the subject of the scene")
     return checked(WITHOUT[name](scene))
-
-
-def only(scene: Either, name: str | None) -> Either:
-    """Return a scene with only one of its effects, or none, besides those required by it or by that
-    effect.
-
-    Raises SceneError if there is no such scene, or if the effect cannot be left out either.
-    """
-    if name is not None and name in active_effects(only(scene, None)):
-        raise SceneError(scene.where, name, None, "cannot be removed")
-    for other in active_effects(scene):
-        if other not in (name, NEEDS.get(name)) and other in WITHOUT:
-            try:
-                scene = left_out(scene, other)
-            except SceneError:  # an effect that cannot be left out is kept
-                continue
-    if name is not None and name not in active_effects(scene):
-        raise SceneError(scene.where, name, None, "has no effect without the others")
-    return scene
 
 
 def _joints(**values: Any) -> Change:

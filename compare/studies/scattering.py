@@ -1,4 +1,4 @@
-"""Joints under P and SV waves, by every solver: reflection, transmission, and cost of runs.
+"""Reflection and transmission of P and SV waves at joints, by every solver of rock masses.
 
 Joints are horizontal and the wave is rotated, so that all angles have the same blocks and elements.
 The joints' exact field enters through all sides; any error is the solver's own.
@@ -20,9 +20,9 @@ from compare.exact.plane import parallel_joints
 from compare.exact.plane.oblique_joint import Coefficients, Joint
 from compare.exact.plane.pulse import axes_of
 from compare.exact.plane.waves import KINDS, Kind
-from compare.experiments.scattering.extraction import Scattered, scattered
 from compare.studies import store
-from compare.studies.store import FAILURES, Pool, Store, alone, reason_of
+from compare.studies.scattered_waves import Scattered, scattered
+from compare.studies.store import DIED, FAILURES, Pool, Store, alone, reason_of
 
 SCENE = Path(__file__).parent / "joints.toml"
 ANGLES = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0)  # degrees from the joints' normal
@@ -31,6 +31,15 @@ SPACING = 0.960768922830523  # m, a tenth of the P wavelength
 BACK = 6.0  # m that SV waves begin before the domain, ahead of which they make P waves
 COMPILED = 0.05  # s of compiling, above which a run is repeated for timing
 RINGS = 0.012  # s, extension of the record per further joint, for waves between joints
+#: The solvers of each study.
+SOLVERS = {
+    "oblique-joint": ("oblique-joint", "continuum-jointed", "dem"),
+    "parallel-joints": ("parallel-joints", "continuum-jointed", "dem"),
+}
+TITLES = {
+    "oblique-joint": "Reflection and transmission at one joint against the angle",
+    "parallel-joints": "Reflection and transmission of parallel joints at 30 degrees",
+}
 
 
 class JointsPoint(NamedTuple):
@@ -58,25 +67,18 @@ class JointsRow(NamedTuple):
     joints: int
     state: str
     message: str
-    R_p: float
-    R_s: float
-    T_p: float
-    T_s: float
-    exact_R_p: float
-    exact_R_s: float
-    exact_T_p: float
-    exact_T_s: float
-    error: float
-    residual: float
-    freedoms: float
-    cpu: float
-
-
-#: The solvers of each study.
-SOLVERS = {
-    "oblique-joint": ("oblique-joint", "continuum-jointed", "dem"),
-    "parallel-joints": ("parallel-joints", "continuum-jointed", "dem"),
-}
+    R_p: float = nan
+    R_s: float = nan
+    T_p: float = nan
+    T_s: float = nan
+    exact_R_p: float = nan
+    exact_R_s: float = nan
+    exact_T_p: float = nan
+    exact_T_s: float = nan
+    error: float = nan
+    residual: float = nan
+    freedoms: float = nan
+    cpu: float = nan
 
 
 def points(study: str, brief: bool = False) -> list[JointsPoint]:
@@ -87,9 +89,7 @@ def points(study: str, brief: bool = False) -> list[JointsPoint]:
     one = study == "oblique-joint"
     places = [(x, 1) for x in ANGLES] if one else [(AT, count) for count in COUNTS]
     chosen = places[::2] if brief else places
-    return [
-        JointsPoint(name, kind, *p) for name in SOLVERS[study] for kind in KINDS for p in chosen
-    ]
+    return [JointsPoint(name, k, *p) for name in SOLVERS[study] for k in KINDS for p in chosen]
 
 
 def run(
@@ -102,8 +102,11 @@ def run(
     """Return the rows of its points, in order; they are saved in `folder`. Their seconds are CPU
     time: as many points may run at a time as there are cores."""
     rows: Store[JointsRow] = Store(JointsRow, folder)
+    wanted = points(study, brief)
     with alone():
-        return rows.compute(points(study, brief), key, measure, pool, progress)
+        return rows.compute(
+            wanted, key, measure, pool, progress, lost=lambda p: JointsRow(*p, "failed", DIED)
+        )
 
 
 def key(point: JointsPoint) -> str:
@@ -135,25 +138,25 @@ def scene_of(
 def measure(point: JointsPoint) -> JointsRow:
     """Run a point and return its row; a point that fails gives a row with the reason."""
     scene = scene_of(point.incidence, point.angle, point.joints)
-    exact = closed_form(scene)
+    exact = [float(x) for x in closed_form(scene)]
     try:
-        answer = applies(point.solver, scene)
-        if not answer:
-            return _row(point, "failed", answer.reason, exact)
+        if not (answer := applies(point.solver, scene)):
+            return JointsRow(*point, "failed", answer.reason)
         result, cpu = _timed(point.solver, scene)
         if float(result.attrs.get("seconds_compile", 0.0)) > COMPILED:
             result, cpu = _timed(point.solver, scene)
     except FAILURES as error:
-        return _row(point, "failed", reason_of(error), exact)
-    found = amplitudes(scene, result.velocity.values)
+        return JointsRow(*point, "failed", reason_of(error))
+    *found, residual = amplitudes(scene, result.velocity.values)
+    off = max(abs(a - b) for a, b in zip(found, exact, strict=True))
     freedoms = float(result.attrs.get("degrees_of_freedom", nan))
-    return _row(point, "done", "", exact, found, freedoms, cpu)
+    numbers = *found, *exact, off, residual, freedoms, cpu
+    return JointsRow(*point, "done", "", *numbers)
 
 
 def _timed(name: str, scene: RockMass) -> tuple[xr.Dataset, float]:
     began = process_time()
-    result = solve(name, scene)
-    return result, process_time() - began
+    return solve(name, scene), process_time() - began
 
 
 def amplitudes(scene: RockMass, velocity: np.ndarray) -> Scattered:
@@ -174,8 +177,8 @@ def closed_form(scene: RockMass, angle: Values | None = None) -> Coefficients:
     rad, or an array of them, None: that of its wave."""
     wave, rock = scene.waves[0], elastic_rock(scene.rock)
     assert wave.period is not None
-    dip = np.radians(scene.joint_sets[0].dip)
     if angle is None:
+        dip = np.radians(scene.joint_sets[0].dip)
         normal = np.array([-np.sin(dip), np.cos(dip)])
         angle = np.arccos(np.clip(abs(np.array(wave.direction) @ normal), 0, 1))
     joints = [Joint(one.normal_stiffness, one.shear_stiffness) for one in scene.joint_sets]  # type: ignore[arg-type]
@@ -186,19 +189,3 @@ def closed_form(scene: RockMass, angle: Values | None = None) -> Coefficients:
 
 def _kind(scene: RockMass) -> Kind:
     return "P" if scene.waves[0].kind == "P" else "SV"
-
-
-def _row(
-    point: JointsPoint,
-    state: str,
-    message: str,
-    exact: Coefficients,
-    found: Scattered | None = None,
-    freedoms: float = nan,
-    cpu: float = nan,
-) -> JointsRow:
-    values = [nan] * 4 if found is None else [*found[:4]]
-    off = max(abs(a - float(b)) for a, b in zip(values, exact, strict=True))
-    residual = nan if found is None else found.residual
-    numbers = *values, *map(float, exact), off, residual, freedoms, cpu
-    return JointsRow(*point, state, message, *numbers)

@@ -1,1 +1,0 @@
-"""Experiments over many runs: effects of scenes, and waves at joints."""

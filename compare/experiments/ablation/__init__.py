@@ -1,1 +1,0 @@
-"""Ablation: the cost of every effect, and its influence on the result."""

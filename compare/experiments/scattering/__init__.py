@@ -1,1 +1,0 @@
-"""Reflection and transmission at joints by every solver, against the angle."""
