@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
+from cases.scene_type import AnyScene
 from cases.schema.joint import PARTS
 from cases.schema.scene import Scene
 
@@ -83,8 +83,8 @@ def _of_joints(scene: Scene, p: Properties) -> Iterator[Effect]:
     other = parts > 1 and f"{parts} segments"
     yield called_for("segments", other, "no [[segments]]")
     yield called_for("scatter", random and f"seed {random.seed}", "no [scatter]")
-    barred, differ = int((~p.tension).sum()), len(p.soft)
-    whose = barred and f"{barred} of {len(p.tension)} joints"
+    no_tension, differ = int((~p.tension).sum()), len(p.soft)
+    whose = no_tension and f"{no_tension} of {len(p.tension)} joints"
     yield called_for("no tension", whose, carries(p.friction is not None))
     alike = "all joints are equal: scalars, no arrays" if p.is_uniform else "no soft layers"
     yield called_for("joints that differ", differ and f"{differ} soft layers", alike)

@@ -10,7 +10,7 @@ from typing import Any
 
 from cases.errors import SceneError, all_of, nearest
 from cases.files import parse_toml, read_toml
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from cases.schema.values import CONTROL
 from cases.validate import validated
 

@@ -14,7 +14,7 @@ from math import isfinite
 from pathlib import Path
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 
 LIMIT = "JOINTWAVE_MEMORY"  # GB, in the environment: a bound of the user's own
 LARGEST_VARIABLE = 2**31 - 4  # bytes, of a NetCDF 3 file

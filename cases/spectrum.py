@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from cases.histories import LoadHistory, Recorded, periodic
-from cases.kinds import AnyScene
 from cases.loads import history_of
 from cases.material.calibrate import Properties
+from cases.scene_type import AnyScene
 from cases.schema.scene import Scene
 
 if TYPE_CHECKING:

@@ -13,9 +13,9 @@ import numpy as np
 
 from cases.effects import bends, is_spatial
 from cases.histories import Gabor, Ricker, Sine, periodic
-from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
 from cases.material.contact_points import lever
+from cases.scene_type import AnyScene
 from cases.schema.plausible import implausible
 from cases.schema.scene import Scene
 from cases.spectrum import LEAST_BLOCKS, ShortestWave, shortest_wave

@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from cases.size import refuse_beyond_memory, waveform_bytes
 from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from compare.solvers.dem import DEM

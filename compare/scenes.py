@@ -5,7 +5,7 @@ from typing import Any
 
 import cases
 from cases.errors import SceneError, nearest
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare import engines as registry
 
 SHIPPED = Path(cases.__file__).parent

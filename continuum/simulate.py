@@ -26,7 +26,7 @@ from continuum.plane.sides import borne_sides
 from continuum.plane.waveforms import recorded
 from continuum.run import Run, run_of
 from continuum.snapshots import RockRecorder
-from continuum.space import compat
+from continuum.space import basix_versions
 from continuum.space.kinematics import refuse
 from continuum.state import State
 from continuum.validity import applies
@@ -171,7 +171,11 @@ def _recorded(run: Run, times: np.ndarray, about: dict[str, Any]) -> xr.Dataset:
 
 def _about(run: Run) -> dict[str, Any]:
     """Return the attributes of a result about its run."""
-    versions = {"numpy": np.__version__, "numba": numba.__version__, "basix": compat.VERSION}
+    versions = {
+        "numpy": np.__version__,
+        "numba": numba.__version__,
+        "basix": basix_versions.VERSION,
+    }
     return {
         "model": run.rock,
         "scheme": run.choice.scheme,

@@ -12,7 +12,7 @@ from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from continuum.build import Discrete
 from continuum.parallel.serial import Pieces
-from continuum.space import compat
+from continuum.space import basix_versions
 from continuum.space.body import axis
 from continuum.space.evaluation import at_reference, matrix_of
 from continuum.space.receivers import section_tractions
@@ -36,7 +36,7 @@ class RockRecorder(SnapshotRecorder):
         self.discrete, self.state, self.ahead = discrete, state, ahead
         self.freedoms = body.freedom(self.nodes[:, None], np.arange(body.section.components))
         self.parts = linear_cells(
-            body.mesh.cell, compat.reference_element(body.mesh.cell, body.order).points
+            body.mesh.cell, basix_versions.reference_element(body.mesh.cell, body.order).points
         )
         self.axial = isinstance(scene, Scene)
         if isinstance(scene, Scene):
@@ -85,7 +85,7 @@ def axial_stress(discrete: Discrete, cells: np.ndarray, parts: np.ndarray) -> cs
     """Return the stress along the pillar (compression positive) at the centres of the linear cells
     of cells, from the freedoms [cells * parts, freedoms]."""
     body = discrete.body
-    nodes = compat.reference_element(body.mesh.cell, body.order).points
+    nodes = basix_versions.reference_element(body.mesh.cell, body.order).points
     centres = nodes[parts].mean(axis=1)
     cell = np.repeat(cells, len(parts))
     point = at_reference(body, cell, np.tile(centres, (cells.size, 1)))

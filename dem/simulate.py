@@ -9,8 +9,8 @@ import xarray as xr
 
 from cases.effects import is_spatial
 from cases.errors import SceneError
-from cases.kinds import AnyScene
 from cases.material.constant_q import beyond_blocks
+from cases.scene_type import AnyScene
 from cases.schema.scene import Scene
 from dem.axial.simulate import simulate as along_axis
 from dem.spatial.simulate import simulate as in_space

@@ -17,9 +17,9 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
 from cases.material.calibrate import Properties
 from cases.sampling import Interpolation
+from cases.scene_type import AnyScene
 from cases.schema.scene import Scene
 from joints.law import Law, parts_of
 from joints.law import stiffest as stiffest_springs

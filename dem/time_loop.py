@@ -12,8 +12,8 @@ import numpy as np
 import xarray as xr
 
 from cases.errors import StoppedError
-from cases.kinds import AnyScene
 from cases.sampling import Clock
+from cases.scene_type import AnyScene
 from numerics.divergence import ENERGY, Guard
 from numerics.instability import Divergence, stopped
 from numerics.time_loop import Checkpointer, run_in_chunks

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple, overload
 
 import numpy as np
 
-from cases.kinds import AnyScene
 from cases.material.closure import stress_in_reach
+from cases.scene_type import AnyScene
 from joints.closure import closure_stiffness
 from joints.dilation import lift, riding_stiffness
 from joints.formula import formula

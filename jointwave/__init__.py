@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import DataArray, Dataset
 
-    from cases.kinds import AnyScene
     from cases.material.calibrate import Properties
     from cases.material.closure import Closure
+    from cases.scene_type import AnyScene
     from compare.misfit.external import Curves
     from compare.misfit.pairs import Comparison
     from compare.readings import (
@@ -107,8 +107,8 @@ def shipped() -> list[str]:
 
 def properties(scene: AnyScene) -> Properties:
     """Return what follows from a scene: stiffnesses, speeds, impedance, damping, of every joint."""
-    from cases.kinds import pillar_of
     from cases.material.calibrate import calibrate
+    from cases.scene_type import pillar_of
 
     return calibrate(pillar_of(scene, "jointwave.properties"))
 
@@ -172,7 +172,7 @@ def deconvolve(scene: AnyScene, surface: DataArray, water_level: float = 1e-3) -
     frequencies that the joints pass less of are held back. The result begins earlier than the
     record, by the time that intact rock takes. Raises SceneError where the column is not linear.
     """
-    from cases.kinds import pillar_of
+    from cases.scene_type import pillar_of
     from compare.exact.bar import deconvolution
 
     return deconvolution.deconvolve(pillar_of(scene, "deconvolve"), surface, water_level)

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from cases.effects import active_effects
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from cases.schema.scene import Scene
 from cases.warnings import warnings
 from results.labels import label

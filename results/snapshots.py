@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from cases.size import LARGEST_VARIABLE
 from results.arrays import copied
 from results.dataset import labelled

@@ -23,7 +23,7 @@ from hypothesis import settings
 
 import cases
 from cases.errors import InterruptedRun
-from compare.runs.garbage import collect_rarely
+from compare.runs.memory import collect_rarely
 from numerics import jit
 from results.arrays import copied, fill
 
@@ -222,7 +222,7 @@ def _in_a_child(kernel, types):
 COMPILE_FOR, jit.compile_for = jit.compile_for, _in_a_child
 
 
-class Keeper:
+class Checkpointer:
     """Keeps what a run was when some samples were done, and ends it there once."""
 
     def __init__(self, at):
@@ -240,7 +240,7 @@ class Keeper:
 @pytest.fixture(scope="session")
 def keeper_at():
     """Return a function of a count of samples: what ends a run there, and lets it go on."""
-    return Keeper
+    return Checkpointer
 
 
 @pytest.fixture

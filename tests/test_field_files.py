@@ -12,7 +12,7 @@ import dem
 from cases import SceneError
 from compare.runs import field_files
 from compare.runs.field_files import read_pvd, refuse_vtx, write_pvd, write_vtx
-from continuum.space import forms
+from continuum.space import dolfinx_export
 from results.snapshots import snapshots, snapshots_of
 
 SPALL = {
@@ -161,7 +161,7 @@ def test_vtx_needs_snapshots(jointwave, tmp_path):
 
 
 def test_vtx_is_written_where_dolfinx_can_and_refused_where_not(jointwave, tmp_path):
-    can = forms.vtx_writer() is not None
+    can = dolfinx_export.vtx_writer() is not None
     options = ("--variant", "", "--vtx", "--out", tmp_path / "out")
     done = jointwave("run", *SCENE, *FIELDS, *options, code=0 if can else 2)
     if can:
@@ -175,8 +175,8 @@ def test_vtx_is_written_where_dolfinx_can_and_refused_where_not(jointwave, tmp_p
 
 
 def test_vtx_is_refused_where_there_is_no_dolfinx(monkeypatch):
-    monkeypatch.setitem(sys.modules, "continuum.space.forms", None)
-    monkeypatch.delattr("continuum.space.forms", raising=False)
+    monkeypatch.setitem(sys.modules, "continuum.space.dolfinx_export", None)
+    monkeypatch.delattr("continuum.space.dolfinx_export", raising=False)
     with pytest.raises(SceneError, match="--vtx: dolfinx cannot be imported"):
         refuse_vtx()
 
@@ -203,7 +203,7 @@ def test_vtx_gets_every_value_at_its_node(two_cells, kind, tmp_path, monkeypatch
             values = [f.x.array.reshape(-1, 3).copy() for f in self.functions]
             seen.append((time, at, *values))
 
-    monkeypatch.setattr(forms, "vtx_writer", lambda: Recorder)
+    monkeypatch.setattr(dolfinx_export, "vtx_writer", lambda: Recorder)
     monkeypatch.setattr(field_files, "write_folder", lambda path, save: save(tmp_path / "made"))
     write_vtx(tmp_path / "dem.bp", found)
     assert [time for time, *_ in seen] == found.time.tolist()

@@ -9,11 +9,11 @@ from weakref import ref
 
 import numpy as np
 
-from cases.kinds import AnyScene
 from cases.material.dashpots import dashpots
 from cases.material.elastic import joint_stiffness
 from cases.material.stiffness import rock_mass, stiffness
 from cases.material.strength import Strength, strength
+from cases.scene_type import AnyScene
 
 if TYPE_CHECKING:
     from cases.material.constant_q import Mechanisms

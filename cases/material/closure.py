@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.kinds import AnyScene
 from cases.loads import velocity_of
+from cases.scene_type import AnyScene
 from cases.schema.scene import Scene
 
 if TYPE_CHECKING:

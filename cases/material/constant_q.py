@@ -21,8 +21,8 @@ from typing import NamedTuple
 import numpy as np
 
 from cases.effects import is_spatial
-from cases.kinds import AnyScene
 from cases.material.calibrate import calibrate
+from cases.scene_type import AnyScene
 from cases.schema.scene import Scene
 
 SPACING = 0.85  # decades between relaxation frequencies, at most: Q is within 4 % from Q = 5 on

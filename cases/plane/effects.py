@@ -42,9 +42,9 @@ def _of_joints(scene: RockMass) -> Iterator[Effect]:
         yield Effect("dashpots", True, "damping.rayleigh is given")
     else:
         yield _of_sets("dashpots", damped, "damping_ratio is given", "no damping_ratio")
-    barred = [one for one in scene.joint_sets if one.tension is False]
+    no_tension = [one for one in scene.joint_sets if one.tension is False]
     slides = any(one.friction_angle is not None for one in scene.joint_sets)
-    yield _of_sets("no tension", barred, "tension = false", carries(slides))
+    yield _of_sets("no tension", no_tension, "tension = false", carries(slides))
     slips = [s for s in scene.joint_sets if s.friction_angle is not None or s.cohesion is not None]
     yield _of_sets("slip", slips, SLIPS, STICKS)
     for part in PARTS:

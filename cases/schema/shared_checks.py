@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import ceil, floor, log10
 from typing import TYPE_CHECKING
 
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from cases.schema.joint import PARTS
 from cases.schema.pulse import shortest_period
 from cases.schema.values import contradiction

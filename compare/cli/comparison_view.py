@@ -9,7 +9,7 @@ from compare.cli.frames import show_frame
 from compare.cli.terminal import print_json, say, say_warnings, show_table
 from compare.engines import ENGINES
 from compare.figures.tables import alignment_frame, reading_frame
-from compare.misfit.alignment import Beside
+from compare.misfit.alignment import AlignedCurve
 from compare.misfit.differences import STRESS, VELOCITY
 from compare.misfit.metrics import Worst
 from compare.misfit.pairs import GIVEN, Comparison
@@ -203,7 +203,7 @@ def _engine_facts(engine: str, comparison: Comparison) -> dict[str, Any]:
     return held.facts | bounds
 
 
-def _curve_facts(beside: Beside) -> dict[str, Any]:
+def _curve_facts(beside: AlignedCurve) -> dict[str, Any]:
     return {
         "name": beside.curves.name,
         "file": beside.curves.file,

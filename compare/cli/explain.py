@@ -7,9 +7,9 @@ from typing import Any
 
 from cases.effects import effects
 from cases.errors import SceneError
-from cases.kinds import AnyScene
 from cases.material.block_summary import block_summary
 from cases.material.calibrate import calibrate
+from cases.scene_type import AnyScene
 from cases.schema.scene import Scene
 from cases.size import spoken
 from compare.cli.terminal import say, show_table

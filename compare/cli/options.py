@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from cases.errors import SceneError, all_of
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare import scenes
 from compare.cli import completion
 from compare.cli.terminal import say_warnings

@@ -17,7 +17,7 @@ def main() -> None:
     os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")
     _open_streams()
     try:
-        from compare.runs.garbage import collect_rarely
+        from compare.runs.memory import collect_rarely
 
         collect_rarely()  # a third of a short run
         from compare.cli.program import main as run

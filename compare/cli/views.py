@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.cli.terminal import print_json, say, say_warnings, show_numbers, show_table
 
 if TYPE_CHECKING:  # each of them imports what its command runs

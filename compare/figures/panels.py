@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from cases.schema.scene import Scene
 from compare.engines import in_order
 from compare.figures.units import UNITS

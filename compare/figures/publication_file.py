@@ -9,12 +9,12 @@ import matplotlib
 from matplotlib.figure import Figure
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.engines import EXACT, Progress, applies
 from compare.figures import bands
 from compare.figures.export import write_drawing
 from compare.figures.publication import MM, STYLES, draw
-from compare.misfit.alignment import lay_beside
+from compare.misfit.alignment import align_curve
 from compare.misfit.ranking import applicable
 from compare.runs.comparison import solved
 from compare.runs.jobs import names_of
@@ -64,7 +64,7 @@ def make(
     for i, (scene, answers) in enumerate(zip(scenes, asked, strict=True)):
         one = solved(scene, answers, partial(_tell, progress, i, len(scenes)))
         given = [curve for curve in curves if curve.holds_for(scene)]
-        one.besides += [lay_beside(curve, scene, one.results, False) for curve in given]
+        one.besides += [align_curve(curve, scene, one.results, False) for curve in given]
         found.append(one)
     figure = draw(found, appearance, request.columns, request.language)
     return save(figure, request.out, kind, scenes[0].title, appearance.dpi)

@@ -2,8 +2,8 @@
 
 import xarray as xr
 
-from cases.kinds import AnyScene
 from cases.material.calibrate import calibrate
+from cases.scene_type import AnyScene
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, applies, names, solve
 from compare.figures.charts.energy import energy

@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 
 import cases
 import dem
-from cases.kinds import pillar_of
 from cases.material.calibrate import calibrate
+from cases.scene_type import pillar_of
 from cases.schema.scene import Scene
 from compare.figures.animation.bodies import SpaceView
 from compare.figures.animation.frame import colours_of

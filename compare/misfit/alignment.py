@@ -18,8 +18,8 @@ import pandas as pd
 import xarray as xr
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
 from cases.sampling import sample_times
+from cases.scene_type import AnyScene
 from compare.misfit.external import LEAST_SAMPLES, Curves
 from compare.misfit.metrics import Distance, distance, relative_l2, static_state
 from compare.misfit.places import Place
@@ -45,7 +45,7 @@ class Shift:
 
 
 @dataclass(frozen=True)
-class Beside:
+class AlignedCurve:
     """A file's curves compared with the solutions of one scene.
 
     curves : at their own samples, on the shifted clock. shift : None if not requested.
@@ -71,7 +71,7 @@ class Beside:
         return found[~found.index.duplicated()]
 
 
-def lay_beside(curves: Curves, scene: AnyScene, results: Results, align: bool) -> Beside:
+def align_curve(curves: Curves, scene: AnyScene, results: Results, align: bool) -> AlignedCurve:
     """Return a file's curves with all results of a scene; `align` shifts their clock.
 
     Raises SceneError if curve and scene share fewer than three samples.
@@ -86,11 +86,11 @@ def lay_beside(curves: Curves, scene: AnyScene, results: Results, align: bool) -
         missed = max(missed, _missed(*finer, time))
         known.add(place)
     left_out = [place for place in moved.waveforms if place not in known]
-    return Beside(moved, shift, time, own_times, max(0.0, outside), missed, left_out)
+    return AlignedCurve(moved, shift, time, own_times, max(0.0, outside), missed, left_out)
 
 
 def distances(
-    beside: Beside, results: Results, spectral: bool = False
+    beside: AlignedCurve, results: Results, spectral: bool = False
 ) -> Iterator[tuple[str, Place, Distance]]:
     """Yield the distance of every curve from every solution that has a waveform at its place."""
     curves, time = beside.curves, beside.time

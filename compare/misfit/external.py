@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
 from cases.records import Column, Columns, read_columns
+from cases.scene_type import AnyScene
 from cases.units import TIME, UNITS, split_unit
 from cases.warnings import look_like_milliseconds
 from compare.engines import names

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.engines import solver, solvers
-from compare.misfit.alignment import Beside, distances
+from compare.misfit.alignment import AlignedCurve, distances
 from compare.misfit.metrics import Distance, distance, pairings
 from compare.misfit.places import Place, places_of
 from compare.misfit.ranking import kind_of
@@ -93,7 +93,7 @@ class Comparison:
     results: dict[str, xr.Dataset] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
     rows: list[Row] = field(default_factory=list)
-    besides: list[Beside] = field(default_factory=list)
+    besides: list[AlignedCurve] = field(default_factory=list)
 
 
 def measure(
@@ -121,7 +121,7 @@ def measure(
 
 
 def measure_curves(
-    beside: Beside, results: dict[str, xr.Dataset], spectral: bool = False
+    beside: AlignedCurve, results: dict[str, xr.Dataset], spectral: bool = False
 ) -> list[Row]:
     """Return the distances of a file's curves from every solution that has a waveform there."""
     rows = []

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from results.labels import RECEIVERS
 
 if TYPE_CHECKING:

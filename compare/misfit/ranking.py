@@ -11,8 +11,8 @@ error.
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from cases.kinds import AnyScene
 from cases.material.calibrate import calibrate
+from cases.scene_type import AnyScene
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, applies, names, solver
 from compare.exact.conditions import has_thick_layer

@@ -8,12 +8,12 @@ import numpy as np
 from cases.errors import SceneError
 from cases.histories import Gabor, LoadHistory, Ricker, Step
 from cases.incident import WITHIN, plane_wave
-from cases.kinds import AnyScene
 from cases.loads import load_history, velocity_of
 from cases.material.calibrate import calibrate
 from cases.material.quiet_sides import impedances
 from cases.partition.outline import outline_of
 from cases.partition.regions import region_at, rocks_of
+from cases.scene_type import AnyScene
 from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from cases.schema.sources import PlaneLoad

@@ -5,7 +5,7 @@ from math import isnan
 from time import perf_counter
 from typing import Any, NamedTuple
 
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.engines import ENGINES, stepping
 from compare.report.verdict import NOT_CHECKED, EngineScore
 from compare.text import in_seconds, mean_and_worst, times

@@ -12,7 +12,7 @@ import pandas as pd
 
 import cases
 from cases.errors import SceneError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.engines import ENGINES
 from compare.figures.export import Drawn, save
 from compare.figures.figure import SceneFigure

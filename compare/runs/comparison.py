@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from time import perf_counter
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.engines import Progress, solve
-from compare.misfit.alignment import lay_beside
+from compare.misfit.alignment import align_curve
 from compare.misfit.external import Curves
 from compare.misfit.pairs import Comparison, measure, measure_curves
 from compare.misfit.ranking import applicable
@@ -29,7 +29,7 @@ def compare(
     comparison = solved(scene, applicable(scene), progress)
     comparison.rows = measure(comparison.results, spectral, scene)
     for one in (curve for curve in curves if curve.holds_for(scene)):
-        beside = lay_beside(one, scene, comparison.results, align)
+        beside = align_curve(one, scene, comparison.results, align)
         comparison.besides.append(beside)
         comparison.rows += measure_curves(beside, comparison.results, spectral)
     return comparison

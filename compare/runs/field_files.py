@@ -75,22 +75,24 @@ def read_pvd(path: Path) -> Snapshots:
 def refuse_vtx() -> None:
     """Raise SceneError if VTX files cannot be written."""
     try:
-        from continuum.space import forms
+        from continuum.space import dolfinx_export
     except ImportError as error:
         raise SceneError("--vtx", "", None, f"dolfinx cannot be imported ({error})") from None
-    if forms.vtx_writer() is None:
+    if dolfinx_export.vtx_writer() is None:
         allowed = "this dolfinx was built without ADIOS2; the .pvd file needs neither"
         raise SceneError("--vtx", "", None, allowed)
 
 
 def write_vtx(path: Path, s: Snapshots) -> Path:
     """Write displacement (m) and velocity (m/s) of all instants as one ADIOS2 file, NAME.bp."""
-    from continuum.space import forms
+    from continuum.space import dolfinx_export
 
     displacement, velocity, at, nodes = _functions(s)
 
     def save(new: Path) -> None:
-        with forms.vtx_writer()(forms.MPI.COMM_SELF, str(new), [displacement, velocity]) as file:
+        with dolfinx_export.vtx_writer()(
+            dolfinx_export.MPI.COMM_SELF, str(new), [displacement, velocity]
+        ) as file:
             for i, time in enumerate(s.time.tolist()):
                 displacement.x.array.reshape(-1, 3)[at] = s.displacement[i, nodes]
                 velocity.x.array.reshape(-1, 3)[at] = s.velocity[i, nodes]
@@ -102,12 +104,12 @@ def write_vtx(path: Path, s: Snapshots) -> Path:
 def _functions(s: Snapshots) -> tuple[Any, Any, np.ndarray, np.ndarray]:
     """Return dolfinx functions for displacement and velocity, and the indices of their values
     [cells, corners] with those of the corresponding nodes [cells, corners]."""
-    from continuum.space import forms
+    from continuum.space import dolfinx_export
 
     cells = s.cells[:, TENSOR_ORDER.get(s.kind, slice(None))].astype(np.int64)
-    domain = forms.cell_mesh(CELLS.get(s.kind, s.kind), cells, s.points)
-    space = forms.lagrange_space(domain, 1, 3)
-    functions = [forms.fem.Function(space, dtype=np.float64) for _ in range(2)]
+    domain = dolfinx_export.cell_mesh(CELLS.get(s.kind, s.kind), cells, s.points)
+    space = dolfinx_export.lagrange_space(domain, 1, 3)
+    functions = [dolfinx_export.fem.Function(space, dtype=np.float64) for _ in range(2)]
     for function, name in zip(functions, ("displacement", "velocity"), strict=True):
         function.name = name
-    return *functions, forms.cell_nodes(space), cells[forms.input_cells(domain)]
+    return *functions, dolfinx_export.cell_nodes(space), cells[dolfinx_export.input_cells(domain)]

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.engines import ENGINES, applies, selection
 from compare.solvers.record import Solver
 

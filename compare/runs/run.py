@@ -11,7 +11,7 @@ import xarray as xr
 from cases.errors import SceneError, StoppedError
 from compare.engines import Progress, solve, solver
 from compare.runs import timings
-from compare.runs.checkpoint.resume import Keeping, Watch, result_of, watch
+from compare.runs.checkpoint.resume import CheckpointSettings, ResumableRun, result_of, resumable
 from compare.runs.jobs import Job
 from compare.runs.output import write_dataset
 from compare.runs.processes import ALONE, Processes
@@ -42,20 +42,20 @@ def execute(
     progress: Progress,
     vtx: bool = False,
     processes: Processes = ALONE,
-    keeping: Keeping | None = None,
+    settings: CheckpointSettings | None = None,
 ) -> list[Done]:
     """Run the jobs one after the other and write each result; `vtx`: snapshots as VTX too.
 
     processes : share the runs of the continuum. The first of them does the other runs, writes all
         files, and is the only one to return what was done.
-    keeping : checkpoint settings of the runs; None: no checkpoints.
+    settings : checkpoint settings of the runs; None: no checkpoints.
     Raises SceneError if a run fails, its file or a VTX file cannot be written, or its checkpoint
     cannot be used; InterruptedRun if a signal has stopped a run.
     """
     done: list[Done] = []
     if vtx:
         _refuse_vtx(jobs)
-    watches = [_watch(job, keeping, processes) for job in jobs]
+    watches = [_resumable(job, settings, processes) for job in jobs]
 
     def part_of(i: int) -> Progress:
         return lambda fraction: progress((i + fraction) / len(jobs))
@@ -63,23 +63,25 @@ def execute(
     for i, (job, watched) in enumerate(zip(jobs, watches, strict=True)):
         done += _made(job, watched, part_of(i), vtx, processes)
         progress((i + 1) / len(jobs))
-        if keeping is not None and processes.is_first:
-            keeping.signals.act()
+        if settings is not None and processes.is_first:
+            settings.signals.act()
     return done
 
 
-def _watch(job: Job, keeping: Keeping | None, processes: Processes) -> Watch | None:
+def _resumable(
+    job: Job, settings: CheckpointSettings | None, processes: Processes
+) -> ResumableRun | None:
     """Return the checkpoints of a job on the processes that share it, None on others.
 
     Raises SceneError if its result could not be written in the end.
     """
 
-    def by(who: Processes) -> Watch:
+    def by(who: Processes) -> ResumableRun:
         if job.path.is_dir():
             raise SceneError(str(job.path), "", None, "is a folder, must be a file")
         if job.path.exists() and not os.access(job.path, os.W_OK):
             raise SceneError(str(job.path), "", None, "is write-protected")
-        return watch(job.scene, job.name, job.path, keeping, who)
+        return resumable(job.scene, job.name, job.path, settings, who)
 
     return by(processes) if _is_shared(job) else processes.by_first(lambda: by(ALONE))
 
@@ -90,7 +92,7 @@ def _is_shared(job: Job) -> bool:
 
 
 def _made(
-    job: Job, watched: Watch | None, progress: Progress, vtx: bool, processes: Processes
+    job: Job, watched: ResumableRun | None, progress: Progress, vtx: bool, processes: Processes
 ) -> list[Done]:
     """Run a job and write its result; return what was done, empty except on the first process."""
     if watched is None:  # only the first process runs it
@@ -107,7 +109,7 @@ def _made(
     return [] if done is None else [done]
 
 
-def _run(job: Job, watched: Watch, progress: Progress, processes: Processes) -> xr.Dataset:
+def _run(job: Job, watched: ResumableRun, progress: Progress, processes: Processes) -> xr.Dataset:
     try:
         return solve(job.name, job.scene, progress, processes.comm, watched.keeper)
     except StoppedError as error:
@@ -133,7 +135,7 @@ def _stopped(job: Job) -> Path:
     return job.path.with_suffix(".stopped.nc")
 
 
-def _written(job: Job, watched: Watch, result: xr.Dataset, vtx: bool) -> Done:
+def _written(job: Job, watched: ResumableRun, result: xr.Dataset, vtx: bool) -> Done:
     """Write a result with its snapshots and remove the run's checkpoints."""
     signed = watched.signed(result)
     write_dataset(job.path, signed)
@@ -144,7 +146,7 @@ def _written(job: Job, watched: Watch, result: xr.Dataset, vtx: bool) -> Done:
     return _finished(job, watched, vtx, signed)
 
 
-def _finished(job: Job, watched: Watch, vtx: bool, result: xr.Dataset | None = None) -> Done:
+def _finished(job: Job, watched: ResumableRun, vtx: bool, result: xr.Dataset | None = None) -> Done:
     """Write the snapshots of a result, by default that of an earlier command."""
     if result is None:
         result = result_of(job.path, watched.signature)

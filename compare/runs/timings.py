@@ -14,7 +14,7 @@ from typing import Any
 
 from cases.effects import active_effects
 from cases.files import read_json
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.engines import ENGINES
 from compare.runs.output import write_text
 from compare.runs.processes import started

@@ -11,7 +11,7 @@ from threading import Lock
 from types import TracebackType
 from typing import Any
 
-from compare.runs.garbage import collect_rarely
+from compare.runs.memory import collect_rarely
 
 STARTING = Lock()  # held while a worker may start: the environment is that of the whole process
 

@@ -92,9 +92,9 @@ def prepare(scene: Scene, model: str) -> Prepared:
 
 def libraries() -> dict[str, str]:
     """Return the version of basix."""
-    from continuum.space import compat
+    from continuum.space import basix_versions
 
-    return {"basix": compat.VERSION}
+    return {"basix": basix_versions.VERSION}
 
 
 def _of(model: str, **about: Any) -> Solver:

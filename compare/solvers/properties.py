@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from cases.effects import bends
-from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
 from cases.material.contact_points import lever
 from cases.material.effective_medium import compliant, stiffness
@@ -19,6 +18,7 @@ from cases.material.rigid_blocks import long_wave_stiffness
 from cases.material.rock import elastic_rock
 from cases.partition.lattice import further_sets
 from cases.partition.regions import within
+from cases.scene_type import AnyScene
 from cases.schema.joint import Joints
 from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from cases.size import waveform_bytes
 
 if TYPE_CHECKING:

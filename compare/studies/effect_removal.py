@@ -6,9 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene, Either, checked
 from cases.material.strength import SLIP
 from cases.plane.effects import SIDES
+from cases.scene_type import AnyScene, Either, checked
 from cases.schema.damping import Attenuating
 from cases.schema.joint import PARTS
 from cases.schema.scene import Scene

@@ -15,7 +15,7 @@ import xarray as xr
 
 import cases
 from cases.effects import active_effects
-from cases.kinds import AnyScene, pillar_of
+from cases.scene_type import AnyScene, pillar_of
 from cases.schema.scene import Scene
 from compare.engines import Progress, applies, solve
 from compare.misfit.metrics import pairings, rms

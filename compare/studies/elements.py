@@ -4,9 +4,9 @@ from math import ceil
 from typing import Any, NamedTuple
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene, checked
 from cases.material.effective_medium import slowest
 from cases.sampling import sample_times
+from cases.scene_type import AnyScene, checked
 from cases.schema.pulse import shortest_period
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, applies, solver

@@ -15,7 +15,7 @@ import pandas as pd
 import xarray as xr
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.figures import bands
 from compare.figures.export import save
 from compare.figures.figure import SceneFigure

@@ -14,7 +14,7 @@ from scipy.stats import qmc
 from scipy.stats import t as student
 
 from cases.errors import SceneError, StoppedError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.engines import Progress
 from compare.misfit.external import Curves
 from compare.misfit.places import Place

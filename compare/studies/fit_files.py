@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import cases
 from cases.errors import SceneError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from cases.schema.scene import Scene
 from compare.figures.export import blank, save
 from compare.figures.style import style

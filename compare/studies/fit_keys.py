@@ -10,7 +10,7 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene, Either, checked
+from cases.scene_type import AnyScene, Either, checked
 from cases.schema.keys import model_in
 
 CLOCK = "clock"  # shift added to the times of the files, s

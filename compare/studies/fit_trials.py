@@ -9,12 +9,12 @@ from lmfit import Parameters, minimize
 from scipy.interpolate import CubicSpline
 
 from cases.errors import SceneError, UnstableError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from cases.schema.pulse import shortest_period
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, Progress, applies, solve
 from compare.exact.blocks import lattice
-from compare.misfit.alignment import INSTANT, lay_beside, static_level
+from compare.misfit.alignment import INSTANT, align_curve, static_level
 from compare.misfit.external import Curves, is_recorded
 from compare.misfit.metrics import rms
 from compare.misfit.places import Place
@@ -143,7 +143,7 @@ def started(clock: FreeKey, scene: AnyScene, solver: str, curves: list[Curves]) 
     first file to the solution, and with bounds within its reach."""
     start, reach = clock.start, _clock_reach(scene)
     if np.isnan(start):
-        found = lay_beside(curves[0], scene, {solver: solve(solver, scene)}, align=True).shift
+        found = align_curve(curves[0], scene, {solver: solve(solver, scene)}, align=True).shift
         start = found.seconds if found else 0.0
     if not clock.low <= start <= clock.high:
         start = (clock.low + clock.high) / 2

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.engines import applies, names, solver
 from compare.runs import timings
 

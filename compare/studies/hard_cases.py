@@ -25,7 +25,7 @@ import xarray as xr
 import cases
 from cases.effects import active_effects
 from cases.errors import SceneError, UnstableError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from cases.schema.pulse import shortest_period
 from compare.engines import ENGINES, Progress, applies, solve, solver
 from compare.figures.export import blank, save

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import xarray as xr
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene, pillar_of
+from cases.scene_type import AnyScene, pillar_of
 from compare.engines import applies, solve, solver
 from compare.solvers.record import Answer
 from compare.studies.methods import METHODS

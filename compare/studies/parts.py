@@ -9,7 +9,7 @@ from typing import Any
 
 from cases.effects import active_effects
 from cases.errors import SceneError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.solvers.dem import DEM
 from compare.studies import effects, hard_cases, scattering, work_precision
 from compare.studies.forecast import Part, Run, all_runs, part

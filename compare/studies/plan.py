@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import xarray as xr
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.engines import ENGINES, Progress, solve
 from compare.misfit import ranking
 from compare.misfit.metrics import JUDGED, misfit, worst

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.engines import ENGINES, EXACT, applies, solve, solver
 from compare.misfit.metrics import Pairing, pairings, relative_l2, worst
 from compare.misfit.ranking import applicable, finest, own_exact

@@ -6,7 +6,7 @@ from statistics import median
 from typing import NamedTuple
 
 import cases
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, solve, solver
 from compare.runs import timings

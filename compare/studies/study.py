@@ -21,7 +21,7 @@ from pydantic import (
 import cases
 from cases.errors import SceneError, nearest
 from cases.files import read_toml
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.engines import names, solvers
 from compare.scenes import find
 from compare.studies import IN_CODE, SHIPPED

@@ -18,8 +18,8 @@ import numpy as np
 import xarray as xr
 
 from cases.errors import InterruptedRun, SceneError
-from cases.kinds import AnyScene
 from cases.read import parse_override
+from cases.scene_type import AnyScene
 from compare.engines import Progress, applies, names
 from compare.figures.comparison import write_comparisons
 from compare.misfit.external import Curves

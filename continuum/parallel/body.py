@@ -16,7 +16,7 @@ from continuum.parallel.partition import Share, cells_enough, copies_of, ranks_o
 from continuum.space.body import Body, build_body, cell_geometry
 from continuum.space.elasticity import Material, Rock, Section
 from continuum.space.interface import Jumps, jumps
-from numerics.waiting import arrive
+from numerics.mpi_barrier import arrive
 
 NOTHING = Material(0.0, 0.0, 0.0)  # material of ghost cells
 

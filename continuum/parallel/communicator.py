@@ -14,7 +14,7 @@ from continuum.parallel.exchange import TAG, add_shares, connect, release
 from continuum.parallel.identity import Border, joined
 from continuum.parallel.serial import Pieces, Serial, T
 from numerics.divergence import EVERY
-from numerics.waiting import arrive
+from numerics.mpi_barrier import arrive
 
 
 class Communicator(Serial):

@@ -14,7 +14,7 @@ from continuum.mesh.description import Side
 from continuum.plane.discrete import stress_of
 from continuum.plane.drive import Push
 from continuum.plane.sides import outward, points_on
-from continuum.space import compat
+from continuum.space import basix_versions
 from continuum.space.body import Body
 from continuum.space.evaluation import cells_at, on_freedoms, places_in
 
@@ -71,7 +71,7 @@ def on_side(
     """Return the force (N/m) on every freedom of a traction [facets, 2] (Pa) on the facets of a
     side; part : from where to where along each, of its length [facets, 2], None: all of it."""
     low, high = (part if part is not None else np.tile([0.0, 1.0], (len(side.cell), 1))).T
-    at, weight = compat.quadrature("interval", 2 * body.order)
+    at, weight = basix_versions.quadrature("interval", 2 * body.order)
     place = low[:, None] + (high - low)[:, None] * at[:, 0]
     along = side.corners[:, 1] - side.corners[:, 0]
     x = (side.corners[:, :1] + place[..., None] * along[:, None]).reshape(-1, 2)

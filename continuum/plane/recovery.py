@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from continuum.space import compat
+from continuum.space import basix_versions
 from continuum.space.body import Body
 from continuum.space.elasticity import TENSOR, PlaneRock, elastic_moduli
 from continuum.space.evaluation import at_reference, matrix_of, reference_points
@@ -74,7 +74,7 @@ def _pieces(body: Body) -> np.ndarray:
 def _points(body: Body) -> np.ndarray:
     """Return the places in the reference cell where the stress is most accurate [m, 2]."""
     degree = 2 * body.order - 1 if body.mesh.cell in TENSOR else max(2 * body.order - 2, 1)
-    return compat.quadrature(body.mesh.cell, degree)[0]
+    return basix_versions.quadrature(body.mesh.cell, degree)[0]
 
 
 def _patch(
@@ -91,7 +91,7 @@ def _patch(
     patch = np.flatnonzero(near & (piece == piece[own[0]]))
     cells, at = np.repeat(patch, len(rule)), np.tile(rule, (len(patch), 1))
     corners = body.corners[cells]
-    x = np.einsum("nv,nvd->nd", compat.tabulate(body.mesh.cell, 1, at)[0], corners)
+    x = np.einsum("nv,nvd->nd", basix_versions.tabulate(body.mesh.cell, 1, at)[0], corners)
     size = np.sqrt(np.ptp(body.corners[own], axis=1).prod(axis=1).mean())
     s = (x - place) / size
     powers = [(i, n - i) for n in range(body.order + 2) for i in range(n + 1)]

@@ -19,7 +19,7 @@ from scipy.sparse import csr_matrix, kron
 from cases.material.effective_medium import tensor
 from continuum.mesh.description import Part
 from continuum.mesh.facets import row_numbers
-from continuum.space import compat
+from continuum.space import basix_versions
 from continuum.space.nodes import nodes_of
 from continuum.space.operator import without_round_off
 
@@ -163,8 +163,8 @@ def _alike(part: Part) -> tuple[np.ndarray, np.ndarray]:
 
 def _stiffness(cell: str, order: int, corners: np.ndarray, moduli: np.ndarray) -> np.ndarray:
     """Return the stiffness of cells with these corners, per unit extent [cells, n, n]."""
-    at, weight = compat.quadrature(cell, *stiffness_rule(cell, order))
-    _, local = compat.tabulate(cell, order, at)
+    at, weight = basix_versions.quadrature(cell, *stiffness_rule(cell, order))
+    _, local = basix_versions.tabulate(cell, order, at)
     found = []
     for some in np.array_split(np.arange(len(corners)), 1 + len(corners) // AT_ONCE):
         jacobian = _jacobians(cell, corners[some], at)
@@ -181,13 +181,15 @@ def _stiffness(cell: str, order: int, corners: np.ndarray, moduli: np.ndarray) -
 
 def _jacobians(cell: str, corners: np.ndarray, at: np.ndarray) -> np.ndarray:
     """Return dx/dX [cells, q, dim, dim] at points [q, dim] of the reference cell."""
-    return np.einsum("cvi,qvr->cqir", corners, compat.tabulate(cell, 1, at)[1])
+    return np.einsum("cvi,qvr->cqir", corners, basix_versions.tabulate(cell, 1, at)[1])
 
 
 def _mass(cell, order, corners, density, nodes, kind) -> tuple[np.ndarray, csr_matrix | None]:
     """Return the diagonal of the mass of nodes, kg, and of simplices the whole matrix."""
-    at, weight = compat.quadrature(cell, *(mass_rule(order) if cell in TENSOR else (2 * order,)))
-    basis, _ = compat.tabulate(cell, order, at)
+    at, weight = basix_versions.quadrature(
+        cell, *(mass_rule(order) if cell in TENSOR else (2 * order,))
+    )
+    basis, _ = basix_versions.tabulate(cell, order, at)
     volume = np.abs(np.linalg.det(_jacobians(cell, corners, at)))
     share = density[:, None] * weight * volume
     if cell in TENSOR:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from continuum.space import compat
+from continuum.space import basix_versions
 from continuum.space.body import Body
 
 INSIDE = 1e-7  # how far outside the reference cell a point on its face may come out
@@ -33,7 +33,7 @@ def places_in(body: Body, cell: np.ndarray, x: np.ndarray) -> Places:
 
 def at_reference(body: Body, cell: np.ndarray, at: np.ndarray) -> Places:
     """Return points that are given in reference coordinates [n, dim] of the cells [n]."""
-    basis, gradient = compat.tabulate(body.mesh.cell, body.order, at)
+    basis, gradient = basix_versions.tabulate(body.mesh.cell, body.order, at)
     inverse = np.linalg.inv(jacobians(body.mesh.cell, body.corners[cell], at))
     basis = np.where(np.abs(basis) > NOTHING, basis, 0.0)
     return Places(cell, basis, np.einsum("nkd,nde->nke", gradient, inverse))
@@ -43,10 +43,10 @@ def quadrature_in(
     body: Body, cells: np.ndarray, degree: int, lobatto: bool = False
 ) -> tuple[Places, np.ndarray, np.ndarray]:
     """Return the quadrature points of cells, where they are [n, dim] (m), and volumes [n] (m3)."""
-    at, weight = compat.quadrature(body.mesh.cell, degree, lobatto)
+    at, weight = basix_versions.quadrature(body.mesh.cell, degree, lobatto)
     cell, at = np.repeat(cells, len(at)), np.tile(at, (cells.size, 1))
     corners = body.corners[cell]
-    x = np.einsum("nv,nvd->nd", compat.tabulate(body.mesh.cell, 1, at)[0], corners)
+    x = np.einsum("nv,nvd->nd", basix_versions.tabulate(body.mesh.cell, 1, at)[0], corners)
     size = np.abs(np.linalg.det(jacobians(body.mesh.cell, corners, at)))
     return at_reference(body, cell, at), x, body.section.extent * size * np.tile(weight, cells.size)
 
@@ -54,7 +54,7 @@ def quadrature_in(
 def jacobians(cell: str, corners: np.ndarray, at: np.ndarray) -> np.ndarray:
     """Return dx/dX [n, dim, dim] of cells with these corners [n, corners, dim] at points [n, dim]
     of the reference cell."""
-    _, gradient = compat.tabulate(cell, 1, at)
+    _, gradient = basix_versions.tabulate(cell, 1, at)
     return np.einsum("nvd,nve->nde", corners, gradient)
 
 
@@ -62,7 +62,7 @@ def reference_points(cell: str, corners: np.ndarray, x: np.ndarray) -> np.ndarra
     """Return reference coordinates [n, dim] of points x in cells; Newton, one step where affine."""
     at = np.full_like(x, 0.3)
     for _ in range(ROUNDS):
-        basis, _ = compat.tabulate(cell, 1, at)
+        basis, _ = basix_versions.tabulate(cell, 1, at)
         missing = x - np.einsum("nv,nvd->nd", basis, corners)
         step = np.linalg.solve(jacobians(cell, corners, at), missing[..., None])[..., 0]
         at = at + step

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from continuum.space import compat
+from continuum.space import basix_versions
 from continuum.space.body import Body, along
 from continuum.space.evaluation import matrix_of, places_in
 from continuum.space.stencils import distinct
@@ -66,8 +66,8 @@ def facet_points(body: Body, corners: np.ndarray, degree: int | None = None) -> 
     if degree is None:
         at, weight = _rule(facet, body.mesh.cell, body.order)
     else:
-        at, weight = compat.quadrature(facet, degree)
-    basis, gradient = compat.tabulate(facet, 1, at)
+        at, weight = basix_versions.quadrature(facet, degree)
+    basis, gradient = basix_versions.tabulate(facet, 1, at)
     x = np.einsum("qv,fvd->fqd", basis, corners)
     tangents = np.einsum("qvt,fvd->fqtd", gradient, corners)
     if dim == 2:
@@ -81,10 +81,10 @@ def facet_points(body: Body, corners: np.ndarray, degree: int | None = None) -> 
 def _rule(facet: str, cell: str, order: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the points and weights on a reference facet."""
     if cell in ("quadrilateral", "hexahedron") or facet == "interval":
-        return compat.quadrature(facet, max(2 * order - 1, 1), lobatto=True)
+        return basix_versions.quadrature(facet, max(2 * order - 1, 1), lobatto=True)
     if order == 1:  # the corners, so that linear tetrahedra do not couple their own nodes either
         return np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), np.full(3, 1 / 6)
-    return compat.quadrature(facet, 2 * order)
+    return basix_versions.quadrature(facet, 2 * order)
 
 
 def lever(cell: str, order: int, across: int = 1) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from continuum.mesh.description import Part
 from continuum.mesh.facets import row_numbers
-from continuum.space import compat
+from continuum.space import basix_versions
 
 SAME = 1e-9  # of the pillar's size: nodes that are at one height
 STEPS = 1_000_000  # of a place between vertices: nodes are much farther apart than one of them
@@ -17,7 +17,7 @@ STEPS = 1_000_000  # of a place between vertices: nodes are much farther apart t
 
 def corner_shares(cell: str, order: int) -> np.ndarray:
     """Return how much each corner of a cell counts in the place of each node [nodes, corners]."""
-    return compat.tabulate(cell, 1, compat.reference_element(cell, order).points)[0]
+    return basix_versions.tabulate(cell, 1, basix_versions.reference_element(cell, order).points)[0]
 
 
 def node_numbers(

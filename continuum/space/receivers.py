@@ -6,7 +6,7 @@ import numpy as np
 from numpy.polynomial import polynomial as poly
 from scipy.sparse import csr_matrix, vstack
 
-from continuum.space import compat
+from continuum.space import basix_versions
 from continuum.space.body import Body, axis
 from continuum.space.elasticity import (
     TENSOR,
@@ -139,7 +139,7 @@ def _by_momentum(
     cell, order = body.mesh.cell, body.order
     y = body.corners[layer][:, :, axis(body.dim)]
     near, thickness = y.min(), np.ptp(y)
-    levels = np.sort(compat.quadrature("interval", *mass_rule(order))[0][:, 0])
+    levels = np.sort(basix_versions.quadrature("interval", *mass_rule(order))[0][:, 0])
     basis = poly.polyfit(levels, np.eye(levels.size), order)
     point, x, volume = quadrature_in(body, layer, *stiffness_rule(cell, order))
     local = (x[:, axis(body.dim)] - near) / thickness

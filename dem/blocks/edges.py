@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from cases.material.block_stiffness import jump
 from cases.material.contact_points import points_of
-from cases.material.rigid_step import jump
 from cases.partition.blocks import BoundaryEdges, Partition
 
 #: Rows of the resultants of tractions on a block: the force, and the sums of arm times force,

@@ -1,8 +1,8 @@
 """The critical step of a rock mass of rigid blocks.
 
 The critical step, with dashpots and what holds the sides, follows from the bound of
-`cases.material.rigid_step`, block by block, on stiffness and damping together. Slip and opening
-only take stiffness away; joints that stiffen are as stiff as in the stiffest state in reach, and
+`cases.material.block_stiffness`, block by block, on stiffness and damping together. Slip and
+opening only take stiffness away; joints that stiffen are as stiff as in the stiffest state in reach, and
 joints that dilate as in `joints.dilation.riding_stiffness`. Dashpots of quiet sides take the mean
 velocity of a step and change no bound, nor does mass-proportional damping; local damping alpha
 makes forces that turn a velocity round 1 + alpha times as large.
@@ -14,8 +14,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from cases.material.block_stiffness import block_stiffness
 from cases.material.contact_points import ContactPoints
-from cases.material.rigid_step import block_stiffness
 from cases.material.rock_mass import Inertia, Stiffness
 from cases.partition.blocks import Contacts
 from dem.blocks.joints import Columns

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 import cases
 from continuum.mesh.description import Part
-from continuum.space import forms
+from continuum.space import dolfinx_export
 from continuum.space.body import whole
 from continuum.space.elasticity import Material, Section, discretise, lame_constants
 
@@ -89,12 +89,12 @@ def test_lumped_mass_of_simplices_has_the_proportions_of_the_consistent_diagonal
 def moduli_of(domain, part, rock, dim):
     """Return lambda and G (Pa) as functions that are constant in each cell; in dim 1 E and G."""
     constants = [(m.modulus, m.shear_modulus) if dim == 1 else lame_constants(m, dim) for m in rock]
-    space = getattr(forms.fem, "functionspace", None) or forms.fem.FunctionSpace
+    space = getattr(dolfinx_export.fem, "functionspace", None) or dolfinx_export.fem.FunctionSpace
     found = []
     for values in np.array(constants).T:
-        function = forms.fem.Function(space(domain, ("DG", 0)), dtype=np.float64)
-        where = forms.cell_nodes(function.function_space)[:, 0]
-        function.x.array[where] = values[part.material[forms.input_cells(domain)]]
+        function = dolfinx_export.fem.Function(space(domain, ("DG", 0)), dtype=np.float64)
+        where = dolfinx_export.cell_nodes(function.function_space)[:, 0]
+        function.x.array[where] = values[part.material[dolfinx_export.input_cells(domain)]]
         found.append(function)
     return found
 
@@ -112,10 +112,10 @@ def by_dolfinx(part, kind, order, rock):
         if (kind, order) == ("hexahedron", 1)
         else at_nodes
     )
-    domain = forms.cell_mesh(kind, part.cells, part.x)
+    domain = dolfinx_export.cell_mesh(kind, part.cells, part.x)
     one, two = moduli = moduli_of(domain, part, rock, dim)
-    density = forms.fem.Constant(domain, 0.0)
-    space = forms.lagrange_space(domain, order, dim if dim > 1 else None)
+    density = dolfinx_export.fem.Constant(domain, 0.0)
+    space = dolfinx_export.lagrange_space(domain, order, dim if dim > 1 else None)
     u, w = ufl.TrialFunction(space), ufl.TestFunction(space)
     if dim == 1:
         stress = one * ufl.grad(u)
@@ -123,11 +123,11 @@ def by_dolfinx(part, kind, order, rock):
         strain = ufl.sym(ufl.grad(u))
         stress = one * ufl.tr(strain) * ufl.Identity(dim) + 2 * two * strain
     both = ufl.inner(stress, ufl.grad(w)) * dx + density * ufl.inner(u, w) * at_nodes
-    stiffness = forms.matrix(both).toarray()
+    stiffness = dolfinx_export.matrix(both).toarray()
     for modulus in moduli:
         modulus.x.array[:] = 0.0
     density.value = 1.0
-    mass = forms.matrix(both).toarray()
+    mass = dolfinx_export.matrix(both).toarray()
     for c in range(1, dim):
         assert (mass[c::dim, c::dim] == mass[::dim, ::dim]).all()
     return stiffness, mass[::dim, ::dim], space.tabulate_dof_coordinates()[:, :dim]

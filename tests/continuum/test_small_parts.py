@@ -10,7 +10,7 @@ from scipy.sparse import csr_matrix
 from cases.material.calibrate import calibrate
 from continuum.explicit.critical import critical_step
 from continuum.joints import RIGID, resolved_joints
-from continuum.space import compat
+from continuum.space import basix_versions
 from continuum.space.nodes import levels
 
 
@@ -48,8 +48,8 @@ def test_heights_are_numbered_from_zero_upwards():
 
 @pytest.mark.parametrize("cell, dim", [("interval", 1), ("triangle", 2), ("hexahedron", 3)])
 def test_no_points_have_no_values(cell, dim):
-    basis, gradient = compat.tabulate(cell, 2, np.zeros((0, dim)))
-    nodes = len(compat.reference_element(cell, 2).points)
+    basis, gradient = basix_versions.tabulate(cell, 2, np.zeros((0, dim)))
+    nodes = len(basix_versions.reference_element(cell, 2).points)
     assert basis.shape == (0, nodes) and gradient.shape == (0, nodes, dim)
 
 
@@ -78,7 +78,7 @@ def test_layer_in_homogenised_rock_has_what_it_yields_more_than_a_joint(pillar):
 def test_the_form_compiler_leaves_logging_as_it_was():
     """Its handlers and its level are taken away again, and what it reports is hidden meanwhile."""
     pytest.importorskip("dolfinx")
-    from continuum.space.forms import quiet_logging
+    from continuum.space.dolfinx_export import quiet_logging
 
     root, was = logging.getLogger(), logging.root.manager.disable
     before = list(root.handlers), root.level

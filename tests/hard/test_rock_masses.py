@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from cases.loads import history_of, step_means
+from cases.material.block_stiffness import jump
 from cases.material.contact_points import contact_points
 from cases.material.rigid_blocks import rigid_joints
-from cases.material.rigid_step import jump
 from cases.material.rock import elastic_rock
 from cases.partition.locate import block_at
 from cases.partition.scene import partition_of

@@ -15,7 +15,7 @@ from continuum.implicit.static import settle_static
 from continuum.mesh.session import gmsh_session
 from continuum.plane.sides import outward
 from continuum.run import run_of
-from continuum.space import compat
+from continuum.space import basix_versions
 from continuum.space.evaluation import on_freedoms, places_in
 
 HOLE = Kirsch(radius=1.0, stress=(10e6, 4e6), modulus=5e10, poisson=0.25)
@@ -89,7 +89,7 @@ def _written(gmsh, path):
 
 def beyond(body):
     """Return the forces of what Kirsch's solution adds to the in-situ stress at the sides."""
-    found, (at, weight) = 0.0, compat.quadrature("interval", 8)
+    found, (at, weight) = 0.0, basix_versions.quadrature("interval", 8)
     for side in (body.mesh.sides[name] for name in SIDES):
         along = np.diff(side.corners, axis=1)
         x = (side.corners[:, :1] + at * along).reshape(-1, 2)

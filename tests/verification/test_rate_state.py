@@ -18,7 +18,7 @@ from compare.exact.joint.rate_state_joint import RateJoint, RateStateWave
 from compare.misfit.metrics import relative_l2
 from compare.scenes import SHIPPED
 from results.dataset import energy_residual
-from tests.verification.test_worn_joint import (
+from tests.verification.test_slip_weakening import (
     FAULT,
     IN_THE_PLANE,
     JOINT,

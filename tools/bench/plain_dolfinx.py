@@ -12,7 +12,7 @@ import numpy as np
 import ufl
 from dolfinx import fem
 
-from continuum.space import forms
+from continuum.space import dolfinx_export
 
 
 class Pillar(NamedTuple):
@@ -46,7 +46,7 @@ class Steps:
         self.block = block_of_nodes(pillar, space)
         along = ufl.as_vector([1.0, 0.0, 0.0])
         work = pillar.density * ufl.inner(along, ufl.TestFunction(space)) * at_nodes(pillar)
-        mass = forms.vector(work)[::3]
+        mass = dolfinx_export.vector(work)[::3]
         self.step_over_mass = pillar.dt / np.repeat(mass, 3)
         # Of an end node's mass, the share of the face: h / p (p + 1) is Lobatto's weight in y.
         depth = pillar.d / pillar.n / (pillar.p * (pillar.p + 1))
@@ -95,7 +95,7 @@ def assembled(pillar: Pillar) -> Steps:
 def compiled(form: ufl.Form):
     """Return a form compiled with -O2 and nothing else."""
     key = "jit_params" if "jit_params" in inspect.signature(fem.form).parameters else "jit_options"
-    with forms.quiet_logging():
+    with dolfinx_export.quiet_logging():
         options = {"cffi_extra_compile_args": ["-O2"]}
         return fem.form(form, dtype=np.float64, **{key: options})
 
@@ -112,10 +112,10 @@ def vector_space(pillar: Pillar):
     of_block = np.arange(pillar.blocks)[:, None, None]
     vertices = cube + of_block * np.array([0.0, pillar.d, 0.0])
     numbers = cells + of_block * len(cube)
-    domain = forms.cell_mesh(
+    domain = dolfinx_export.cell_mesh(
         "hexahedron", numbers.reshape(-1, 8).astype(np.int64), vertices.reshape(-1, 3)
     )
-    return forms.lagrange_space(domain, pillar.p, 3)
+    return dolfinx_export.lagrange_space(domain, pillar.p, 3)
 
 
 def internal_work(pillar: Pillar, space, u) -> ufl.Form:
@@ -137,8 +137,8 @@ def at_nodes(pillar: Pillar) -> ufl.Measure:
 def block_of_nodes(pillar: Pillar, space) -> np.ndarray:
     """Return for each node the block that it belongs to."""
     block = np.empty(len(space.tabulate_dof_coordinates()), dtype=np.int64)
-    cells = forms.input_cells(space.mesh) // pillar.n**3
-    block[forms.cell_nodes(space)] = cells[:, None]
+    cells = dolfinx_export.input_cells(space.mesh) // pillar.n**3
+    block[dolfinx_export.cell_nodes(space)] = cells[:, None]
     return block
 
 

@@ -6,14 +6,16 @@ import ufl
 from plain_dolfinx import Pillar, Steps
 from scipy.sparse import csr_matrix
 
-from continuum.space import forms
+from continuum.space import dolfinx_export
 from continuum.space.operator import without_round_off
 
 
 def stiffness(pillar: Pillar) -> csr_matrix:
     """Return the stiffness of all blocks as dolfinx assembles it, N/m."""
     space = plain_dolfinx.vector_space(pillar)
-    return forms.matrix(plain_dolfinx.internal_work(pillar, space, ufl.TrialFunction(space)))
+    return dolfinx_export.matrix(
+        plain_dolfinx.internal_work(pillar, space, ufl.TrialFunction(space))
+    )
 
 
 def without_zeros(pillar: Pillar) -> csr_matrix:

@@ -7,8 +7,8 @@ from typing import Any
 
 import cases
 from cases.effects import is_spatial
-from cases.kinds import pillar_of
 from cases.sampling import Clock
+from cases.scene_type import pillar_of
 from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from cases.validate import validated

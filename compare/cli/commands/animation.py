@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.cli import terminal
 from compare.cli.options import (
     JsonOption,

@@ -91,7 +91,7 @@ def run(
     from compare.cli import views
     from compare.runs import jobs
     from compare.runs import run as runs
-    from compare.runs.checkpoint.resume import Keeping
+    from compare.runs.checkpoint.resume import CheckpointSettings
 
     wanted = jobs.wanted([e.value for e in engine], model or [])
     if swept or members:
@@ -109,10 +109,13 @@ def run(
         show_runs([("", job.scene, job.name) for job in asked], as_json)
         return
     processes = started()
-    folders, keeping = {job.path.parent for job in asked}, Keeping(every, resume, watched())
+    folders, settings = (
+        {job.path.parent for job in asked},
+        CheckpointSettings(every, resume, watched()),
+    )
     with ExitStack() as held, terminal.progress(f"{len(asked)} runs") as advance:
         processes.by_first(lambda: held.enter_context(locked(out, *folders)))
-        done = runs.execute(asked, advance, vtx, processes, keeping)
+        done = runs.execute(asked, advance, vtx, processes, settings)
     processes.by_first(lambda: views.show_runs(done, as_json))
 
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 import typer
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.cli import terminal
 from compare.cli.options import (
     CORES,

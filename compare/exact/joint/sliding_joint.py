@@ -10,8 +10,8 @@ and a joint as stiff as the others is rigid before it slips: s = sigma_I, clippe
 Bull. Seism. Soc. Am. 68, 1978, for the harmonic wave). s leaves the linear solution only where it
 reaches tau while |sigma_I| > tau, once between two crossings of sigma_I with +-tau, and stays at
 tau until the next; between crossings it is integrated exactly. Where slip weakens the
-joint, `compare.exact.joint.worn_joint` integrates it, and `compare.exact.joint.rate_state_joint`
-where its friction depends on the rate of slip.
+joint, `compare.exact.joint.slip_weakening` integrates it; where its friction depends on the rate
+of slip, `compare.exact.joint.rate_state_joint` does.
 
 Valid for blocks that do not rotate, a load across the axis, absorbing ends, one joint with cohesion
 or with friction under the prestress, and all else elastic and undamped.
@@ -138,25 +138,25 @@ def _snaps(scene: Scene, p: Properties) -> bool:
 def solve(scene: Scene) -> xr.Dataset:
     """Return shear, velocity and displacement on both sides of the joint that slips."""
     p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
-    from compare.exact.joint import worn_joint
+    from compare.exact.joint import slip_weakening
 
     joint, enters = the_joint(scene, p), ENTERS[scene.ends.start]
     scaled = joint.scaled(enters)
-    is_worn = isfinite(joint.distance) or joint.dilation > 0
+    is_path_dependent = isfinite(joint.distance) or joint.dilation > 0
     rated = None
     if p.direct_effect is not None:
         j, pressure = int(np.flatnonzero(_slips(p))[0]), static_stress(scene)
         rated = rate_state_joint.rate_joint(p, j, pressure, joint.compliance).scaled(enters)
 
     def waveforms(parts: int) -> dict[str, Any]:
-        worn, tolerance = None, TOLERANCES[parts - 1]
+        weakened, tolerance = None, TOLERANCES[parts - 1]
         if rated is not None:
             rest = joint.y / p.shear_speed
             passed: Any = rate_state_joint.RateStateWave(
                 rated, p.shear_impedance, load, times[-1], tolerance, rest
             )
-        elif is_worn:
-            passed = worn = worn_joint.Passed(
+        elif is_path_dependent:
+            passed = weakened = slip_weakening.Passed(
                 scaled, p.shear_impedance, load, times[-1], tolerance, p.impedance
             )
         else:
@@ -173,7 +173,7 @@ def solve(scene: Scene) -> xr.Dataset:
         there, back = waves(scene.record.velocity)
         velocity, displacement = (there - back)[..., None] / p.shear_impedance * load_axis(scene)
         own = {"shear": shear, "velocity": velocity, "displacement": displacement}
-        return own if worn is None else own | _lifted(scene, p, joint.y, worn, enters, own)
+        return own if weakened is None else own | _lifted(scene, p, joint.y, weakened, enters, own)
 
     found, twin = waveforms(1), waveforms(2)
     errors = {name: _bound(found[name], twin[name]) for name in found}
@@ -184,7 +184,7 @@ def solve(scene: Scene) -> xr.Dataset:
 
 
 def _lifted(
-    scene: Scene, p: Properties, joint_y: float, worn: Any, enters: float, waves: dict
+    scene: Scene, p: Properties, joint_y: float, weakened: Any, enters: float, waves: dict
 ) -> dict[str, np.ndarray]:
     """Return stress, velocity and displacement with the pressure waves that the joint radiates
     along the axis on both sides as it dilates; waves : those of the shear wave."""
@@ -192,7 +192,7 @@ def _lifted(
 
     def pressure(places: list[float]) -> np.ndarray:
         late = np.abs(np.array(places)[:, None] - joint_y) / p.bar_speed
-        return enters * np.array(worn.pressure(times - joint_y / p.shear_speed - late))
+        return enters * np.array(weakened.pressure(times - joint_y / p.shear_speed - late))
 
     found = {key: waves[key].copy() for key in ("velocity", "displacement")}
     side = np.sign(np.array(scene.record.velocity) - joint_y)[:, None] / p.impedance

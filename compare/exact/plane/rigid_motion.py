@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import bmat, csr_array, identity
 
+from cases.material.block_stiffness import jump
 from cases.material.contact_points import ContactPoints, points_of
-from cases.material.rigid_step import jump
 from cases.material.rock_mass import Stiffness
 from cases.partition.blocks import Contacts
 

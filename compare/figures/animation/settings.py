@@ -7,8 +7,8 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from cases.effects import is_spatial
-from cases.kinds import AnyScene
 from cases.material.calibrate import calibrate
+from cases.scene_type import AnyScene
 from cases.schema.scene import Scene
 from results.snapshots import Snapshots
 

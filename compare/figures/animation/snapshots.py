@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from cases.errors import SceneError
-from cases.kinds import AnyScene, checked
+from cases.scene_type import AnyScene, checked
 from cases.schema.tables import Time
 from compare.engines import ENGINES, Progress, applies, solve
 from compare.figures.units import UNITS

@@ -11,7 +11,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from compare.engines import ENGINES, in_order
 from compare.figures.charts.axes import Legend, chart, set_heading, share
 from compare.figures.panels import Panel, panels

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import xarray as xr
 
 from cases.errors import InterruptedRun, printable
-from cases.kinds import AnyScene
 from cases.sampling import sample_times
+from cases.scene_type import AnyScene
 from compare.engines import ENGINES
 from compare.runs.checkpoint.files import Checkpoints
 from compare.runs.checkpoint.signals import Signals, exit_code, word
@@ -19,7 +19,7 @@ from compare.runs.processes import Processes
 from results.netcdf import load_netcdf
 
 
-class RunKeeper:
+class RunCheckpointer:
     """Keeps one run, see `numerics.time_loop.Checkpointer`.
 
     done : number of samples in its newest checkpoint, 0 for a new run.
@@ -96,7 +96,7 @@ class RunKeeper:
 ATTRIBUTE = "signature"  # of a result: everything that determines its bits, as JSON
 
 
-class Keeping(NamedTuple):
+class CheckpointSettings(NamedTuple):
     """Checkpoint settings of a command's runs.
 
     every : interval between checkpoints in wall time, s; 0: none. resume : continue the runs of an
@@ -108,7 +108,7 @@ class Keeping(NamedTuple):
     signals: Signals
 
 
-class Watch(NamedTuple):
+class ResumableRun(NamedTuple):
     """One run with its checkpoints.
 
     is_made : whether its result already exists and need not be recomputed.
@@ -118,16 +118,20 @@ class Watch(NamedTuple):
     signature: Signature
     checkpoints: Checkpoints
     is_made: bool
-    keeper: RunKeeper | None
+    keeper: RunCheckpointer | None
 
     def signed(self, result: xr.Dataset) -> xr.Dataset:
         """Return a result with the signature of everything that determines its bits."""
         return result.assign_attrs({ATTRIBUTE: json.dumps(self.signature)})
 
 
-def watch(
-    scene: AnyScene, name: str, path: Path, keeping: Keeping | None, processes: Processes
-) -> Watch:
+def resumable(
+    scene: AnyScene,
+    name: str,
+    path: Path,
+    settings: CheckpointSettings | None,
+    processes: Processes,
+) -> ResumableRun:
     """Return a run with its checkpoints; called on all `processes` that share it.
 
     name : of the solver. path : of the result.
@@ -135,13 +139,17 @@ def watch(
     """
     about = signature(scene, name, processes.size)
     files = Checkpoints(path, about, processes)
-    if keeping is None:
-        return Watch(about, files, False, None)
-    is_made = keeping.resume and processes.told_by_first(lambda: result_of(path, about) is not None)
+    if settings is None:
+        return ResumableRun(about, files, False, None)
+    is_made = settings.resume and processes.told_by_first(
+        lambda: result_of(path, about) is not None
+    )
     if is_made or name not in ENGINES:
-        return Watch(about, files, is_made, None)
-    done = files.newest() if keeping.resume else 0
-    return Watch(about, files, False, RunKeeper(scene, files, done, keeping.every, keeping.signals))
+        return ResumableRun(about, files, is_made, None)
+    done = files.newest() if settings.resume else 0
+    return ResumableRun(
+        about, files, False, RunCheckpointer(scene, files, done, settings.every, settings.signals)
+    )
 
 
 def result_of(path: Path, about: Signature) -> xr.Dataset | None:

@@ -7,7 +7,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import cases
-from cases.kinds import AnyScene
+from cases.scene_type import AnyScene
 from cases.schema.scene import Scene
 from compare.engines import solver
 from results.dataset import scene_hash

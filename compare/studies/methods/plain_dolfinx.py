@@ -126,19 +126,19 @@ def _bar(scene: Scene) -> PlainBar:
     from dolfinx import fem
 
     from continuum.build import elements_for
-    from continuum.space import forms
+    from continuum.space import dolfinx_export
 
     p, order = calibrate(scene), scene.numerics.continuum.order
     per_block = scene.numerics.continuum.elements_per_block
     count = p.block_count * (per_block or elements_for(scene, p, str(EQUIVALENT_ROCK.model)))
     y = np.linspace(0.0, scene.pillar.length, count + 1)[:, None]
     cells = np.arange(count)[:, None] + np.arange(2)
-    space = forms.lagrange_space(forms.cell_mesh("interval", cells, y), order)
+    space = dolfinx_export.lagrange_space(dolfinx_export.cell_mesh("interval", cells, y), order)
     w, motion = ufl.TestFunction(space), fem.Function(space, dtype=np.float64)
     stiffness = p.modulus * ufl.inner(ufl.grad(ufl.TrialFunction(space)), ufl.grad(w)) * ufl.dx
     rule = {"quadrature_rule": "GLL", "quadrature_degree": max(2 * order - 1, 1)}
-    mass = forms.vector(p.density * w * ufl.dx(metadata=rule))
-    with forms.quiet_logging():
+    mass = dolfinx_export.vector(p.density * w * ufl.dx(metadata=rule))
+    with dolfinx_export.quiet_logging():
         form = fem.form(-ufl.action(stiffness, motion), dtype=np.float64)
     at = space.tabulate_dof_coordinates()[:, 0]
     places = (scene.ends.start, int(at.argmin())), (scene.ends.end, int(at.argmax()))
@@ -147,7 +147,7 @@ def _bar(scene: Scene) -> PlainBar:
         dashpot[freedom] = p.impedance if kind in ("quiet", "matched") else 0.0
     held = [freedom for kind, freedom in places if kind == "fixed"]
     eta = p.time_constant or 0.0
-    critical = _critical(forms.matrix(stiffness), mass, eta)
+    critical = _critical(dolfinx_export.matrix(stiffness), mass, eta)
     return PlainBar(space, form, motion, mass, dashpot, int(at.argmin()), held, eta, critical)
 
 
@@ -165,9 +165,9 @@ def _critical(stiffness, mass: np.ndarray, eta: float) -> float:
 
 
 def _row(bar: PlainBar, y: float, derivative: int) -> np.ndarray:
-    from continuum.space import compat, forms
+    from continuum.space import basix_versions, dolfinx_export
 
-    nodes = forms.cell_nodes(bar.space)
+    nodes = dolfinx_export.cell_nodes(bar.space)
     at = bar.space.tabulate_dof_coordinates()[:, 0][nodes]
     low, length = at.min(axis=1), np.ptp(at, axis=1)
     local = (y - low) / length
@@ -175,7 +175,7 @@ def _row(bar: PlainBar, y: float, derivative: int) -> np.ndarray:
     order, row = nodes.shape[1] - 1, np.zeros(len(bar.mass))
     for cell in cells:
         # The reference cell's first corner is the lower one: cells are given so.
-        found = compat.tabulate("interval", order, np.array([[local[cell]]]))
+        found = basix_versions.tabulate("interval", order, np.array([[local[cell]]]))
         weight = found[1][0, :, 0] / length[cell] if derivative else found[0][0]
         row[nodes[cell]] += weight / cells.size
     return row

@@ -8,8 +8,8 @@ from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigh
 
+from cases.material.block_stiffness import block_stiffness, jump
 from cases.material.contact_points import contact_points, points_of
-from cases.material.rigid_step import block_stiffness, jump
 from cases.material.rock_mass import Stiffness, constrained_modulus, inertia
 from cases.partition.periodic import periodic_contacts
 from cases.partition.scene import cut

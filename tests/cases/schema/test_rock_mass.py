@@ -9,8 +9,8 @@ import sys
 import pytest
 
 from cases.errors import SceneError
-from cases.kinds import pillar_of
 from cases.read import load, load_variant
+from cases.scene_type import pillar_of
 from cases.schema.rock_mass import RockMass
 
 GOOD = """\

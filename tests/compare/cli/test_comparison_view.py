@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from compare.cli.comparison_view import MOST_LINES, in_percent, show_comparisons
-from compare.misfit.alignment import Beside
+from compare.misfit.alignment import AlignedCurve
 from compare.misfit.metrics import Worst
 from compare.misfit.pairs import Comparison, measure, measure_curves
 from compare.report.verdict import engine_scores
@@ -82,7 +82,7 @@ def curve(tmp_path):
         wave = factor * np.sin(np.linspace(0, 9, 200))
         np.savetxt(file, np.column_stack([time, wave]), delimiter=",")
         (curves,) = read_curves([f"{file}:stress@20"], [comparison.scene])
-        beside = Beside(curves, None, time, True, 0.0, 0.0, [])
+        beside = AlignedCurve(curves, None, time, True, 0.0, 0.0, [])
         comparison.besides.append(beside)
         comparison.rows += measure_curves(beside, comparison.results)
 

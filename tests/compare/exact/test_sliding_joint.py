@@ -11,7 +11,7 @@ from closed_forms.one_joint import slip_coefficients
 from compare.exact.bar import images
 from compare.exact.joint import one_joint, sliding_joint
 from compare.exact.joint.sliding_joint import SlipJoint, transmitted
-from compare.exact.joint.worn_joint import Passed
+from compare.exact.joint.slip_weakening import Passed
 
 Z = 2400.0 * 800.0
 OMEGA = 2 * np.pi / 0.01

@@ -10,7 +10,7 @@ from cases.read import load_tables
 from compare.cli.comparison_view import show_comparisons
 from compare.engines import solve
 from compare.figures.tables import READINGS, reading_frame
-from compare.misfit.alignment import lay_beside
+from compare.misfit.alignment import align_curve
 from compare.misfit.external import Curves
 from compare.misfit.pairs import Comparison, measure
 from compare.misfit.places import Place
@@ -56,7 +56,7 @@ def test_curves_of_others_stand_below_the_solutions(compared, tmp_path):
     time = np.array([0.0, 0.01, 0.02, 0.025, 0.03])
     places = [Place("velocity", "y", (10.0,)), Place("stress", "", (10.0,))]
     curves = Curves("gauge.csv", "gauge.csv", time, dict.fromkeys(places, np.sin(100 * time)))
-    beside = lay_beside(curves, compared.scene, compared.results, align=False)
+    beside = align_curve(curves, compared.scene, compared.results, align=False)
     with_curve = Comparison(compared.scene, compared.results, {}, compared.rows, [beside])
     frame = reading_frame([with_curve])
     assert list(frame["solution"]) == ["images", "images", "gauge.csv"]

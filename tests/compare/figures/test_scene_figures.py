@@ -7,7 +7,7 @@ from compare.engines import solve
 from compare.figures.charts.waveforms import waveforms
 from compare.figures.scene_figures import figures_of, recorded_along
 from compare.figures.style import GIVEN
-from compare.misfit.alignment import lay_beside
+from compare.misfit.alignment import align_curve
 from compare.misfit.external import Curves
 from compare.misfit.places import Place
 
@@ -89,7 +89,7 @@ def test_curves_of_others_stand_beside_at_their_own_times(pillar, compared):
     time = np.array([0.0, 0.011, 0.017, 0.029])
     place = Place("stress", "", (20.0,))
     given = Curves("lab.csv", "lab.csv", time, {place: np.array([0.0, 1e5, 8e5, -2e5])})
-    comparison.besides.append(lay_beside(given, comparison.scene, comparison.results, False))
+    comparison.besides.append(align_curve(given, comparison.scene, comparison.results, False))
     (picture,) = waveforms("fig", [comparison])
     (line,) = (x for x in picture.figure.axes[0].lines if x.get_gid() == "0-0-given-0")
     np.testing.assert_allclose(line.get_xdata(), 1e3 * time)

@@ -15,7 +15,7 @@ from compare.figures.charts.waveforms import draw_solutions
 from compare.figures.comparison import write_comparisons
 from compare.figures.export import DIGITS, write_csv
 from compare.figures.panels import curve_table, panels
-from compare.misfit.alignment import distance_at, distances, lay_beside
+from compare.misfit.alignment import align_curve, distance_at, distances
 from compare.misfit.external import read_curves
 from compare.misfit.pairs import Comparison, measure_curves
 from compare.misfit.places import Place
@@ -64,7 +64,7 @@ def the_distance(file, scene, align=False):
     """Return the one distance of a file's curve from the exact solution, and how it was laid."""
     (curves,) = read_curves([str(file)], [scene])
     results = {"lattice": lattice.solve(scene)}
-    beside = lay_beside(curves, scene, results, align)
+    beside = align_curve(curves, scene, results, align)
     ((name, place, found),) = distances(beside, results)
     assert (name, place) == ("lattice", AT_20)
     return found, beside
@@ -219,7 +219,7 @@ def test_result_in_space_is_its_own_curve(pillar, tmp_path):
     result.to_netcdf(tmp_path / "run.nc")
     (curves,) = read_curves([str(tmp_path / "run.nc")], [scene])
     results = {"spatial-lattice": result}
-    rows = measure_curves(lay_beside(curves, scene, results, align=False), results)
+    rows = measure_curves(align_curve(curves, scene, results, align=False), results)
     motion = [q for q in ("velocity", "displacement", "rotation") if q in result]
     places = {"stress", "shear x", "shear z"} | {f"{q} {a}" for q in motion for a in "xyz"}
     assert {row.quantity for row in rows} == places
@@ -325,7 +325,7 @@ def test_clock_is_moved_onto_the_solution_that_fits_best(scene, tmp_path):
     other["stress"] = other.stress.shift(time=40, fill_value=0.0) + 1e5
     time, stress = sampled(scene, scene.interval)
     (curves,) = read_curves([save(tmp_path / "late.csv", time + 1e-3, stress)], [scene])
-    beside = lay_beside(curves, scene, {"dem": other, "lattice": ours}, align=True)
+    beside = align_curve(curves, scene, {"dem": other, "lattice": ours}, align=True)
     assert beside.shift.onto == "lattice"
     assert beside.shift.seconds == pytest.approx(-1e-3, abs=0.1 * scene.interval)
 
@@ -364,7 +364,7 @@ def test_solution_named_file_stays_a_file(scene, tmp_path):
 def test_scene_without_the_solution_has_no_rows(scene, tmp_path):
     """Where nothing solved the scene there is nothing to hold a curve against."""
     (curves,) = read_curves([save(tmp_path / "c.csv", TIME, STRESS)], [scene])
-    beside = lay_beside(curves, scene, {}, align=True)
+    beside = align_curve(curves, scene, {}, align=True)
     assert measure_curves(beside, {}) == [] and Comparison(scene, besides=[beside]).rows == []
 
 

@@ -1,4 +1,4 @@
-"""Ctrl-C and similar signals end every command cleanly, keeping completed results."""
+"""Ctrl-C and similar signals end every command cleanly, settings completed results."""
 
 import os
 import signal

@@ -17,7 +17,7 @@ from cases.histories import Ricker
 from cases.validate import validated
 from compare.exact.joint import sliding_joint
 from compare.exact.joint.sliding_joint import SlipJoint
-from compare.exact.joint.worn_joint import Passed
+from compare.exact.joint.slip_weakening import Passed
 from compare.misfit.metrics import relative_l2
 from compare.scenes import SHIPPED
 from results.dataset import energy_residual

@@ -1,6 +1,6 @@
 """Elements and quadrature of basix 0.5 to 0.11, told apart by what they offer.
 
-basix is dolfinx's library of elements; what dolfinx compiles, `continuum.space.forms` has.
+basix is dolfinx's library of elements; what dolfinx compiles, `continuum.space.dolfinx_export` has.
 """
 
 from functools import cache
