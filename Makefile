@@ -1,6 +1,7 @@
 # `make help` lists the targets. Everything runs in .venv, which `make setup` makes and every target asks for.
 MAKEFLAGS += --no-print-directory
 RUN := tools/run.sh
+PARTS := cases results numerics joints dem continuum compare
 # Reports and tests start Python many times: none compiles the sources anew, whatever the environment says.
 export PYTHONDONTWRITEBYTECODE :=
 # Each process takes neighbouring tests, which share kernels and fixtures. Scenes come last: else those of large elements run beside those
@@ -8,7 +9,7 @@ export PYTHONDONTWRITEBYTECODE :=
 TESTS := $(RUN) python -m pytest -n auto --maxprocesses 8 --dist worksteal --junitxml out/tests.xml
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-all docs check fuzz bench bench-peers lock test-lowest test-wheel clean distclean
+.PHONY: help setup demo test test-all docs check types fuzz bench bench-peers lock test-lowest test-wheel clean distclean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -38,8 +39,13 @@ fuzz: setup  ## bad scenes, loads, curves, studies, meshes and commands, twenty 
 check: setup  ## lint, formatting, types, and the direction of imports
 	@$(RUN) ruff check
 	@$(RUN) ruff format --check
-	@$(RUN) mypy
-	@$(RUN) lint-imports
+	@$(MAKE) types
+
+# Both tools look for packages in folders: they read a copy of the tree as it is installed.
+types:
+	@rm -rf out/tree && mkdir -p out/tree && cp -r jointwave out/tree && cp -r $(PARTS) out/tree/jointwave
+	@MYPYPATH=out/tree $(RUN) mypy
+	@cd out/tree && ../../$(RUN) lint-imports --config ../../pyproject.toml
 
 bench: setup  ## both engines: start-up, kernels compared with bare loops and other solvers, threads, MPI, memory
 	@$(RUN) python tools/bench
@@ -66,7 +72,7 @@ test-wheel:  ## the wheel in an empty environment of $PYTHON (default python3): 
 
 clean:  ## remove reports and caches
 	rm -rf report site build dist *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache
-	find cases results numerics joints dem continuum compare tests -name __pycache__ -prune -exec rm -rf {} +
+	find $(PARTS) tests -name __pycache__ -prune -exec rm -rf {} +
 
 distclean: clean  ## remove .venv and the other codes too
 	rm -rf .venv .lowest .uv .peers

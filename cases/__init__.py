@@ -6,11 +6,11 @@ What validates it is imported when it is asked for: a shell's completion needs n
 
 from typing import TYPE_CHECKING, Any
 
-from cases.errors import SceneError, UnstableError
+from jointwave.cases.errors import SceneError, UnstableError
 
 if TYPE_CHECKING:
-    from cases.read import load, load_variant
-    from cases.schema.scene import Scene
+    from jointwave.cases.read import load, load_variant
+    from jointwave.cases.schema.scene import Scene
 
 __all__ = ["Scene", "SceneError", "UnstableError", "load", "load_variant"]
 
@@ -18,11 +18,11 @@ __all__ = ["Scene", "SceneError", "UnstableError", "load", "load_variant"]
 def __getattr__(name: str) -> Any:
     """Return the class of scenes, or a function that reads them."""
     if name in ("load", "load_variant"):
-        from cases import read
+        from jointwave.cases import read
 
         return getattr(read, name)
     if name == "Scene":
-        from cases.schema.scene import Scene
+        from jointwave.cases.schema.scene import Scene
 
         return Scene
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

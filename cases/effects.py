@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from cases.material.calibrate import Properties, calibrate
-from cases.scene_type import AnyScene
-from cases.schema.joint import PARTS
-from cases.schema.scene import Scene
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.joint import PARTS
+from jointwave.cases.schema.scene import Scene
 
 NO_SHEAR = "the joints carry no shear"
 SLIPS = "friction_angle or cohesion is given"
@@ -35,7 +35,7 @@ def is_spatial(scene: Scene) -> bool:
 def effects(scene: AnyScene) -> list[Effect]:
     """Return every effect that this version knows of this kind of scene, in the order of cost."""
     if not isinstance(scene, Scene):
-        from cases.plane.effects import effects_in_plane
+        from jointwave.cases.plane.effects import effects_in_plane
 
         return effects_in_plane(scene)
     p = calibrate(scene)

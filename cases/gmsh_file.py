@@ -8,7 +8,7 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from cases.size import memory, require, within
+from jointwave.cases.size import memory, require, within
 
 #: How to get gmsh itself, and what its wheel loads of the system.
 INSTALL = (

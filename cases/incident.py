@@ -13,13 +13,13 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.histories import LoadHistory
-from cases.loads import history_of
-from cases.material.rock import ElasticRock, elastic_rock
-from cases.partition.regions import region_at, rocks_of
-from cases.schema.rock_mass import RockMass
-from cases.schema.sources import Wave
+from jointwave.cases.errors import SceneError
+from jointwave.cases.histories import LoadHistory
+from jointwave.cases.loads import history_of
+from jointwave.cases.material.rock import ElasticRock, elastic_rock
+from jointwave.cases.partition.regions import region_at, rocks_of
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.sources import Wave
 
 AT_ONCE = 16  # points whose tractions are found together, in the cache
 BEYOND = 20  # samples on either side of the requested times

@@ -7,10 +7,18 @@ their place.
 
 import numpy as np
 
-from cases.histories import Integrated, LoadHistory, Recorded, Shape, Step, periodic, triangle
-from cases.sampling import Interpolation
-from cases.schema.pulse import Pulse
-from cases.schema.scene import Scene
+from jointwave.cases.histories import (
+    Integrated,
+    LoadHistory,
+    Recorded,
+    Shape,
+    Step,
+    periodic,
+    triangle,
+)
+from jointwave.cases.sampling import Interpolation
+from jointwave.cases.schema.pulse import Pulse
+from jointwave.cases.schema.scene import Scene
 
 
 def load_history(scene: Scene) -> LoadHistory:
@@ -25,7 +33,7 @@ def load_history(scene: Scene) -> LoadHistory:
     amplitude = load.amplitude / load.scale
     if not load.is_motion or scene.shakes_base:
         return history_of(load, amplitude * (2 if load.quantity == "incident-stress" else 1))
-    from cases.material.calibrate import calibrate
+    from jointwave.cases.material.calibrate import calibrate
 
     p = calibrate(scene).at_start
     return velocity_of(load, 2 * amplitude * (p.shear_impedance if load.is_across else p.impedance))

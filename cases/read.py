@@ -8,11 +8,11 @@ from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
-from cases.errors import SceneError, all_of, nearest
-from cases.files import parse_toml, read_toml
-from cases.scene_type import AnyScene
-from cases.schema.values import CONTROL
-from cases.validate import validated
+from jointwave.cases.errors import SceneError, all_of, nearest
+from jointwave.cases.files import parse_toml, read_toml
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.values import CONTROL
+from jointwave.cases.validate import validated
 
 LARGEST_FILE = 10_000_000  # bytes; a scene is a page of text
 #: It names a folder, next to the names of the scene's own results.

@@ -19,11 +19,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.errors import printable
-from cases.files import beside, is_number, read_bytes
-from cases.histories import Recorded
-from cases.seismogram import FORMATS, format_of, read_traces
-from cases.units import KNOWN, TIME, UNITS, split_unit
+from jointwave.cases.errors import printable
+from jointwave.cases.files import beside, is_number, read_bytes
+from jointwave.cases.histories import Recorded
+from jointwave.cases.seismogram import FORMATS, format_of, read_traces
+from jointwave.cases.units import KNOWN, TIME, UNITS, split_unit
 
 LARGEST_FILE = 200_000_000  # bytes; some ten million samples
 SPREAD = 16  # bytes of memory for each of a file's: `0,0` as two numbers, compressed samples

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
 
 MOST_STEPS = 1e12  # some five hours for a hundred rigid blocks; beyond it a mistake
 

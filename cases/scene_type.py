@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
-from cases.errors import SceneError
+from jointwave.cases.errors import SceneError
 
 if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.scene import Scene
+    from jointwave.cases.schema.rock_mass import RockMass
+    from jointwave.cases.schema.scene import Scene
 
 AnyScene: TypeAlias = "Scene | RockMass"  # a text: to import it costs nothing
 Either = TypeVar("Either", bound="AnyScene")
@@ -19,14 +19,16 @@ def checked(scene: Either) -> Either:
     together any more."""
     from pydantic_core import PydanticCustomError
 
-    from cases.schema import consistency
-    from cases.schema.scene import Scene
+    from jointwave.cases.schema import consistency
+    from jointwave.cases.schema.scene import Scene
 
     try:
         if isinstance(scene, Scene):
             consistency.check(scene)
         else:
-            from cases.schema import rock_mass_checks  # with shapely, which no pillar needs
+            from jointwave.cases.schema import (
+                rock_mass_checks,  # with shapely, which no pillar needs
+            )
 
             rock_mass_checks.check(scene)
     except PydanticCustomError as error:
@@ -41,7 +43,7 @@ def pillar_of(scene: AnyScene, what: str = "this") -> Scene:
 
     what : accepts pillars only, in words.
     """
-    from cases.schema.scene import Scene
+    from jointwave.cases.schema.scene import Scene
 
     if isinstance(scene, Scene):
         return scene

@@ -13,8 +13,8 @@ from functools import cache
 from math import isfinite
 from pathlib import Path
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
 
 LIMIT = "JOINTWAVE_MEMORY"  # GB, in the environment: a bound of the user's own
 LARGEST_VARIABLE = 2**31 - 4  # bytes, of a NetCDF 3 file
@@ -135,7 +135,7 @@ def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
     Raises SceneError where one of them would not fit a file.
     """
     record, axes = scene.record, 3 if spatial else 1
-    from cases.schema.tables import Record
+    from jointwave.cases.schema.tables import Record
 
     if isinstance(record, Record):
         across, of_point = max(axes - 1, 1), axes * (3 if spatial else 2)

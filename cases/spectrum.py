@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.histories import LoadHistory, Recorded, periodic
-from cases.loads import history_of
-from cases.material.calibrate import Properties
-from cases.scene_type import AnyScene
-from cases.schema.scene import Scene
+from jointwave.cases.histories import LoadHistory, Recorded, periodic
+from jointwave.cases.loads import history_of
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
 
 if TYPE_CHECKING:
-    from cases.schema.pulse import Pulse
+    from jointwave.cases.schema.pulse import Pulse
 
 #: Part below its highest frequency of a load's energy, the integral of its square over time.
 #: A single sine cycle ends at 1.50 / T, a Ricker wavelet at 1.67 / T.

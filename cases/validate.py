@@ -7,8 +7,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from cases.errors import SceneError, all_of, nearest
-from cases.schema.scene import Scene
+from jointwave.cases.errors import SceneError, all_of, nearest
+from jointwave.cases.schema.scene import Scene
 
 PLACE = re.compile(r"\.\d+(?=\.)")  # in a list of tables, as in `waves.0.file`
 
@@ -58,7 +58,7 @@ def _model_of(table: dict[str, Any], where: str) -> Any:
         return Scene
     if "pillar" in table:
         raise SceneError(where, "pillar", None, "give [pillar] or [domain], not both")
-    from cases.schema.rock_mass import RockMass  # with shapely, which no pillar needs
+    from jointwave.cases.schema.rock_mass import RockMass  # with shapely, which no pillar needs
 
     return RockMass
 

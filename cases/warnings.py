@@ -11,18 +11,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.effects import bends, is_spatial
-from cases.histories import Gabor, Ricker, Sine, periodic
-from cases.material.calibrate import Properties, calibrate
-from cases.material.contact_points import lever
-from cases.scene_type import AnyScene
-from cases.schema.plausible import implausible
-from cases.schema.scene import Scene
-from cases.spectrum import LEAST_BLOCKS, ShortestWave, shortest_wave
+from jointwave.cases.effects import bends, is_spatial
+from jointwave.cases.histories import Gabor, Ricker, Sine, periodic
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.material.contact_points import lever
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.plausible import implausible
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.spectrum import LEAST_BLOCKS, ShortestWave, shortest_wave
 
 if TYPE_CHECKING:
-    from cases.schema.joint import Joints
-    from cases.schema.pulse import Pulse
+    from jointwave.cases.schema.joint import Joints
+    from jointwave.cases.schema.pulse import Pulse
 
 MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
 SHORTENED = 1.5  # a step shortened by less than this factor is not reported
@@ -42,7 +42,7 @@ Rule = Callable[[Scene, Properties, ShortestWave | None], Iterator[str]]
 def warnings(scene: AnyScene) -> list[str]:
     """Return warnings of probable mistakes in a scene, one line each."""
     if not isinstance(scene, Scene):
-        from cases.plane.warnings import warnings_in_plane
+        from jointwave.cases.plane.warnings import warnings_in_plane
 
         return warnings_in_plane(scene)
     p = calibrate(scene)

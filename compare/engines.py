@@ -7,17 +7,17 @@ from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
-from cases.size import refuse_beyond_memory, waveform_bytes
-from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
-from compare.solvers.dem import DEM
-from compare.solvers.record import HEADINGS, Answer, Solver, no
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.size import refuse_beyond_memory, waveform_bytes
+from jointwave.compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
+from jointwave.compare.solvers.dem import DEM
+from jointwave.compare.solvers.record import HEADINGS, Answer, Solver, no
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from numerics.time_loop import Checkpointer
+    from jointwave.numerics.time_loop import Checkpointer
 
 #: The engines by name; their packages are imported when they run.
 ENGINES: dict[str, Solver] = {one.name: one for one in (DEM, JOINTED_ROCK, EQUIVALENT_ROCK)}

@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import Any
 
-import cases
-from cases.errors import SceneError, nearest
-from cases.scene_type import AnyScene
-from compare import engines as registry
+from jointwave import cases
+from jointwave.cases.errors import SceneError, nearest
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare import engines as registry
 
 SHIPPED = Path(cases.__file__).parent
 MOST = 1000  # files of a folder that a name is looked for among

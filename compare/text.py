@@ -3,7 +3,7 @@
 from math import isfinite
 from typing import Any
 
-from compare.misfit.differences import PeakDifference
+from jointwave.compare.misfit.differences import PeakDifference
 
 NONE = "–"  # where there is no number
 

@@ -1,6 +1,6 @@
 """Deformable rock by dolfinx's elements, with the joints as cohesive interfaces."""
 
-from continuum.simulate import simulate
-from continuum.validity import applies
+from jointwave.continuum.simulate import simulate
+from jointwave.continuum.validity import applies
 
 __all__ = ["applies", "simulate"]

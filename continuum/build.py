@@ -8,28 +8,28 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, diags, identity, kron
 
-from cases.errors import SceneError
-from cases.material.calibrate import Properties, calibrate, mechanisms_of
-from cases.material.constant_q import Mechanisms
-from cases.sampling import Clock
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from continuum.ends import build_ends, end_stiffness, fixed_ends
-from continuum.explicit.critical import any_motion
-from continuum.joints import interfaces, joint_law, resolved_joints
-from continuum.mesh.description import Mesh
-from continuum.mesh.given import given_mesh
-from continuum.mesh.pillar import elements_in_block, pillar_mesh
-from continuum.model import Fixed, Interfaces, Model, Receivers, RockOperators, memory_of
-from continuum.plane.discrete import PlaneDiscrete
-from continuum.size import refuse_large_file, refuse_large_mesh, resolved_period
-from continuum.space.assembly import body_and_jumps
-from continuum.space.body import Body, rock_matrices
-from continuum.space.elasticity import Material
-from continuum.space.interface import Jumps
-from continuum.space.kinematics import Kinematics, kinematics, layer_thickness, materials
-from continuum.space.receivers import points, sections
-from numerics.cache_lines import zeros
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import Properties, calibrate, mechanisms_of
+from jointwave.cases.material.constant_q import Mechanisms
+from jointwave.cases.sampling import Clock
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.ends import build_ends, end_stiffness, fixed_ends
+from jointwave.continuum.explicit.critical import any_motion
+from jointwave.continuum.joints import interfaces, joint_law, resolved_joints
+from jointwave.continuum.mesh.description import Mesh
+from jointwave.continuum.mesh.given import given_mesh
+from jointwave.continuum.mesh.pillar import elements_in_block, pillar_mesh
+from jointwave.continuum.model import Fixed, Interfaces, Model, Receivers, RockOperators, memory_of
+from jointwave.continuum.plane.discrete import PlaneDiscrete
+from jointwave.continuum.size import refuse_large_file, refuse_large_mesh, resolved_period
+from jointwave.continuum.space.assembly import body_and_jumps
+from jointwave.continuum.space.body import Body, rock_matrices
+from jointwave.continuum.space.elasticity import Material
+from jointwave.continuum.space.interface import Jumps
+from jointwave.continuum.space.kinematics import Kinematics, kinematics, layer_thickness, materials
+from jointwave.continuum.space.receivers import points, sections
+from jointwave.numerics.cache_lines import zeros
 
 
 class Discrete(NamedTuple):

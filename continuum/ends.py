@@ -6,17 +6,17 @@ from math import isfinite
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
-from cases.loads import base_steps, load_history, step_means
-from cases.material.calibrate import Properties
-from cases.sampling import Clock
-from cases.schema.scene import Scene
-from continuum.mesh.description import Side
-from continuum.model import Ends, Fixed, HalfJoints, Loaded, Quiet
-from continuum.space.body import Body, along
-from continuum.space.evaluation import Places, on_freedoms, places_in
-from continuum.space.interface import Facets, facet_points
-from continuum.space.kinematics import impedances
-from joints.ends import HalfSpring, half_spring
+from jointwave.cases.loads import base_steps, load_history, step_means
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.sampling import Clock
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.mesh.description import Side
+from jointwave.continuum.model import Ends, Fixed, HalfJoints, Loaded, Quiet
+from jointwave.continuum.space.body import Body, along
+from jointwave.continuum.space.evaluation import Places, on_freedoms, places_in
+from jointwave.continuum.space.interface import Facets, facet_points
+from jointwave.continuum.space.kinematics import impedances
+from jointwave.joints.ends import HalfSpring, half_spring
 
 
 def build_ends(

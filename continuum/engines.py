@@ -7,13 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from continuum.implicit.balance import implicit_matrices
-from continuum.implicit.run import Implicit
-from continuum.model import Model
-from continuum.monitor import Monitor
-from continuum.run import Run
-from continuum.space.body import Body
-from continuum.state import State
+from jointwave.continuum.implicit.balance import implicit_matrices
+from jointwave.continuum.implicit.run import Implicit
+from jointwave.continuum.model import Model
+from jointwave.continuum.monitor import Monitor
+from jointwave.continuum.run import Run
+from jointwave.continuum.space.body import Body
+from jointwave.continuum.state import State
 
 IMPLICIT_WORK = 100  # some corrections, each a triangular solve and often a factorisation
 

@@ -7,14 +7,14 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, vstack
 
-from cases.material.calibrate import Properties
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from continuum.model import Interfaces
-from continuum.space.interface import Jumps
-from continuum.space.stencils import stencils
-from joints.law import Law, law, parts_of, stiffest, table_of
-from joints.shear import UNLIMITED
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.model import Interfaces
+from jointwave.continuum.space.interface import Jumps
+from jointwave.continuum.space.stencils import stencils
+from jointwave.joints.law import Law, law, parts_of, stiffest, table_of
+from jointwave.joints.shear import UNLIMITED
 
 #: Over an ordinary joint: the stiffness of one that differs from it in strength alone, where the
 #: homogenised bar holds it already. It makes the rock softer by a tenth of one joint.

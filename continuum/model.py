@@ -14,10 +14,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from cases.material.constant_q import Mechanisms
-from continuum.space.operator import Operator
-from continuum.space.stencils import Stencils
-from joints.law import Law, LawFlags
+from jointwave.cases.material.constant_q import Mechanisms
+from jointwave.continuum.space.operator import Operator
+from jointwave.continuum.space.stencils import Stencils
+from jointwave.joints.law import Law, LawFlags
 
 
 class Memory(NamedTuple):

@@ -4,11 +4,11 @@ No node can be faster than all forces together can make it, and no energy come f
 
 import numpy as np
 
-from continuum.plane.discrete import blocks_of, motion_of_blocks, prestressed
-from continuum.run import Run
-from numerics.divergence import ENERGY, EVERY, audit, guard, look, speed_that
-from numerics.instability import Divergence, stopped
-from numerics.small_motion import (
+from jointwave.continuum.plane.discrete import blocks_of, motion_of_blocks, prestressed
+from jointwave.continuum.run import Run
+from jointwave.numerics.divergence import ENERGY, EVERY, audit, guard, look, speed_that
+from jointwave.numerics.instability import Divergence, stopped
+from jointwave.numerics.small_motion import (
     LARGEST,
     Moved,
     farthest,

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from cases.incident import IncidentField
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from continuum.build import build_model, critical_step_of, discretise
-from continuum.model import Model
-from continuum.parallel.serial import Serial
-from continuum.plane import run as rock_mass
-from continuum.scheme import Choice, choose
-from continuum.size import refuse_large_run
-from continuum.state import Samples, State, empty_samples, state_at_rest
+from jointwave.cases.incident import IncidentField
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.build import build_model, critical_step_of, discretise
+from jointwave.continuum.model import Model
+from jointwave.continuum.parallel.serial import Serial
+from jointwave.continuum.plane import run as rock_mass
+from jointwave.continuum.scheme import Choice, choose
+from jointwave.continuum.size import refuse_large_run
+from jointwave.continuum.state import Samples, State, empty_samples, state_at_rest
 
 
 class Run(NamedTuple):

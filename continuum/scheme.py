@@ -9,13 +9,13 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from cases.errors import SceneError
-from cases.sampling import MOST_STEPS, Clock, clock, sample_times
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from continuum.build import Discrete, operators
-from continuum.plane.discrete import PlaneDiscrete
-from continuum.size import resolved_period
+from jointwave.cases.errors import SceneError
+from jointwave.cases.sampling import MOST_STEPS, Clock, clock, sample_times
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.build import Discrete, operators
+from jointwave.continuum.plane.discrete import PlaneDiscrete
+from jointwave.continuum.size import resolved_period
 
 #: How many explicit steps one implicit step must replace before its cost is looked into: it solves
 #: an equation with several times the entries of the stiffness, and is not vectorised over blocks.

@@ -12,28 +12,28 @@ import numpy as np
 import xarray as xr
 from scipy.sparse import csr_matrix
 
-from cases.errors import SceneError, StoppedError
-from cases.incident import IncidentField
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from continuum.build import weight_of
-from continuum.ends import borne_ends
-from continuum.engines import Engine, explicit_engine, implicit_engine
-from continuum.implicit.static import elastic_rest, holding, settle_static
-from continuum.model import Model
-from continuum.monitor import Monitor
-from continuum.plane.sides import borne_sides
-from continuum.plane.waveforms import recorded
-from continuum.run import Run, run_of
-from continuum.snapshots import RockRecorder
-from continuum.space import basix_versions
-from continuum.space.kinematics import refuse
-from continuum.state import State
-from continuum.validity import applies
-from continuum.waveforms import energy_terms, waveforms
-from numerics.time_loop import Checkpointer, run_in_chunks
-from results.arrays import changed, copied, fill, size_of
-from results.dataset import dataset
+from jointwave.cases.errors import SceneError, StoppedError
+from jointwave.cases.incident import IncidentField
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.build import weight_of
+from jointwave.continuum.ends import borne_ends
+from jointwave.continuum.engines import Engine, explicit_engine, implicit_engine
+from jointwave.continuum.implicit.static import elastic_rest, holding, settle_static
+from jointwave.continuum.model import Model
+from jointwave.continuum.monitor import Monitor
+from jointwave.continuum.plane.sides import borne_sides
+from jointwave.continuum.plane.waveforms import recorded
+from jointwave.continuum.run import Run, run_of
+from jointwave.continuum.snapshots import RockRecorder
+from jointwave.continuum.space import basix_versions
+from jointwave.continuum.space.kinematics import refuse
+from jointwave.continuum.state import State
+from jointwave.continuum.validity import applies
+from jointwave.continuum.waveforms import energy_terms, waveforms
+from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
+from jointwave.results.arrays import changed, copied, fill, size_of
+from jointwave.results.dataset import dataset
 
 FREEDOM_STEPS_AT_ONCE = 10_000_000  # some 0.1 s: often enough for a progress bar
 LEAST_STRETCHES = 20  # however short the run

@@ -8,17 +8,17 @@ import numpy as np
 import xarray as xr
 from scipy.sparse import csr_matrix
 
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from continuum.build import Discrete
-from continuum.parallel.serial import Pieces
-from continuum.space import basix_versions
-from continuum.space.body import axis
-from continuum.space.evaluation import at_reference, matrix_of
-from continuum.space.receivers import section_tractions
-from continuum.state import State
-from results.snapshots import SnapshotRecorder, Snapshots, snapshots, with_snapshots
-from results.subcells import KINDS, linear_cells
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.build import Discrete
+from jointwave.continuum.parallel.serial import Pieces
+from jointwave.continuum.space import basix_versions
+from jointwave.continuum.space.body import axis
+from jointwave.continuum.space.evaluation import at_reference, matrix_of
+from jointwave.continuum.space.receivers import section_tractions
+from jointwave.continuum.state import State
+from jointwave.results.snapshots import SnapshotRecorder, Snapshots, snapshots, with_snapshots
+from jointwave.results.subcells import KINDS, linear_cells
 
 
 class RockRecorder(SnapshotRecorder):

@@ -4,10 +4,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from continuum.model import Model
-from continuum.space.simd import WIDTH
-from joints.law import Law, parts_of
-from numerics.cache_lines import zeros
+from jointwave.continuum.model import Model
+from jointwave.continuum.space.simd import WIDTH
+from jointwave.joints.law import Law, parts_of
+from jointwave.numerics.cache_lines import zeros
 
 
 class Places(NamedTuple):

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from cases.material.calibrate import Properties, calibrate
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from continuum.joints import resolved_joints
-from continuum.plane.validity import applies as of_rock_mass
-from continuum.space.kinematics import holds, kinematics
-from joints.shear import UNLIMITED
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.joints import resolved_joints
+from jointwave.continuum.plane.validity import applies as of_rock_mass
+from jointwave.continuum.space.kinematics import holds, kinematics
+from jointwave.joints.shear import UNLIMITED
 
 
 def applies(scene: Scene | RockMass, model: str = "jointed", dim: int | None = None) -> str:

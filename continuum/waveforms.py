@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 
-from cases.schema.scene import Scene
-from continuum.build import Discrete
-from continuum.model import Model
-from continuum.parallel.serial import SERIAL, Serial
-from continuum.space.receivers import is_on_joint
-from continuum.state import TERMS, Samples
-from results.dataset import ALL_TERMS
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.build import Discrete
+from jointwave.continuum.model import Model
+from jointwave.continuum.parallel.serial import SERIAL, Serial
+from jointwave.continuum.space.receivers import is_on_joint
+from jointwave.continuum.state import TERMS, Samples
+from jointwave.results.dataset import ALL_TERMS
 
 
 def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, Any]:

@@ -1,5 +1,5 @@
 """Rigid blocks joined by springs and dashpots: the model of Guo & Li (2002)."""
 
-from dem.simulate import simulate
+from jointwave.dem.simulate import simulate
 
 __all__ = ["simulate"]

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cases.material.calibrate import Properties
-from results.labels import label
+from jointwave.cases.material.calibrate import Properties
+from jointwave.results.labels import label
 
 
 def fragments(p: Properties, broken: np.ndarray, velocity: np.ndarray) -> list[dict[str, Any]]:

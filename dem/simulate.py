@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from cases.effects import is_spatial
-from cases.errors import SceneError
-from cases.material.constant_q import beyond_blocks
-from cases.scene_type import AnyScene
-from cases.schema.scene import Scene
-from dem.axial.simulate import simulate as along_axis
-from dem.spatial.simulate import simulate as in_space
-from numerics.time_loop import Checkpointer
+from jointwave.cases.effects import is_spatial
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.constant_q import beyond_blocks
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
+from jointwave.dem.axial.simulate import simulate as along_axis
+from jointwave.dem.spatial.simulate import simulate as in_space
+from jointwave.numerics.time_loop import Checkpointer
 
 if TYPE_CHECKING:
-    from cases.incident import IncidentField
+    from jointwave.cases.incident import IncidentField
 
 
 def simulate(
@@ -39,7 +39,9 @@ def simulate(
     if (quality := scene.rock.quality_factor) is not None and (reason := beyond_blocks(scene)):
         raise SceneError(scene.where, "rock.quality_factor", quality, reason)
     if not isinstance(scene, Scene):
-        from dem.blocks.simulate import simulate as in_plane  # with shapely, which no pillar needs
+        from jointwave.dem.blocks.simulate import (
+            simulate as in_plane,  # with shapely, which no pillar needs
+        )
 
         return in_plane(scene, progress, keeper, incident)
     if is_spatial(scene):

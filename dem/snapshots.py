@@ -8,13 +8,13 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.loads import with_load_itself
-from cases.material.calibrate import Properties
-from cases.sampling import interpolation
-from cases.schema.scene import Scene
-from dem.static import prestressed
-from results.snapshots import SnapshotRecorder, in_space, snapshots, with_snapshots
-from results.subcells import CORNERS
+from jointwave.cases.loads import with_load_itself
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.sampling import interpolation
+from jointwave.cases.schema.scene import Scene
+from jointwave.dem.static import prestressed
+from jointwave.results.snapshots import SnapshotRecorder, in_space, snapshots, with_snapshots
+from jointwave.results.subcells import CORNERS
 
 CORNERS_OF_A_BLOCK = 8
 

@@ -16,14 +16,14 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.material.calibrate import Properties
-from cases.sampling import Interpolation
-from cases.scene_type import AnyScene
-from cases.schema.scene import Scene
-from joints.law import Law, parts_of
-from joints.law import stiffest as stiffest_springs
-from joints.normal import gap_under
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.sampling import Interpolation
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
+from jointwave.joints.law import Law, parts_of
+from jointwave.joints.law import stiffest as stiffest_springs
+from jointwave.joints.normal import gap_under
 
 STEPS_BETWEEN_LOOKS = 10
 STEP_FRACTION = 0.9  # of the critical step: only the final state matters

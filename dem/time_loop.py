@@ -11,13 +11,13 @@ import numba
 import numpy as np
 import xarray as xr
 
-from cases.errors import StoppedError
-from cases.sampling import Clock
-from cases.scene_type import AnyScene
-from numerics.divergence import ENERGY, Guard
-from numerics.instability import Divergence, stopped
-from numerics.time_loop import Checkpointer, run_in_chunks
-from results.snapshots import SnapshotRecorder
+from jointwave.cases.errors import StoppedError
+from jointwave.cases.sampling import Clock
+from jointwave.cases.scene_type import AnyScene
+from jointwave.numerics.divergence import ENERGY, Guard
+from jointwave.numerics.instability import Divergence, stopped
+from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
+from jointwave.results.snapshots import SnapshotRecorder
 
 BLOCK_STEPS_AT_ONCE = 20_000_000  # some 10 ms to 1 s: often enough for a progress bar
 ENOUGH_BLOCKS = 20_000  # from which a second thread gains more than synchronisation costs

@@ -18,7 +18,7 @@ initially where it would close beyond d_m.
 
 from math import log1p, sqrt
 
-from joints.formula import formula
+from jointwave.joints.formula import formula
 
 FACES = 1e-6  # of the joint's own compliance: the remainder when it is closed
 SMALL = 1e-3  # traction over s_m below which the energy is a series: its terms cancel

@@ -12,7 +12,7 @@ part t_n w' goes into the rock and the springs; the rest is dissipated, and is n
 tan(psi) is at most the friction.
 """
 
-from joints.formula import formula
+from jointwave.joints.formula import formula
 
 
 @formula

@@ -1,8 +1,8 @@
 """The energy that a joint stores and dissipates, per unit area (J/m2)."""
 
-from joints.closure import closure_energy
-from joints.formula import formula
-from joints.normal import spring_traction
+from jointwave.joints.closure import closure_energy
+from jointwave.joints.formula import formula
+from jointwave.joints.normal import spring_traction
 
 
 @formula

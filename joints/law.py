@@ -12,14 +12,14 @@ from typing import Any, NamedTuple, overload
 
 import numpy as np
 
-from cases.material.closure import stress_in_reach
-from cases.scene_type import AnyScene
-from joints.closure import closure_stiffness
-from joints.dilation import lift, riding_stiffness
-from joints.formula import formula
-from joints.normal import normal_traction
-from joints.shear import UNLIMITED, cohesion_left, shear_return, shear_strength
-from joints.slide import after_slide
+from jointwave.cases.material.closure import stress_in_reach
+from jointwave.cases.scene_type import AnyScene
+from jointwave.joints.closure import closure_stiffness
+from jointwave.joints.dilation import lift, riding_stiffness
+from jointwave.joints.formula import formula
+from jointwave.joints.normal import normal_traction
+from jointwave.joints.shear import UNLIMITED, cohesion_left, shear_return, shear_strength
+from jointwave.joints.slide import after_slide
 
 
 class Law(NamedTuple):

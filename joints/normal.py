@@ -1,9 +1,9 @@
 """Normal traction of a joint: spring, dashpot, softening, no tension."""
 
-from joints.closure import closure_stiffness, closure_traction, closure_under
-from joints.formula import formula
-from joints.shear import UNLIMITED
-from joints.softening import stiffness_left, strength_left, strength_loss
+from jointwave.joints.closure import closure_stiffness, closure_traction, closure_under
+from jointwave.joints.formula import formula
+from jointwave.joints.shear import UNLIMITED
+from jointwave.joints.softening import stiffness_left, strength_left, strength_loss
 
 
 @formula

@@ -26,7 +26,7 @@ not as long as a step slides by less than D_c a / b.
 
 from math import asinh, exp, expm1, log, log1p, sqrt
 
-from joints.formula import formula
+from jointwave.joints.formula import formula
 
 MOST = 80  # Newton steps, safeguarded by bisection of a bracket
 SETTLED, ROUND_OFF = 1e-12, 1e-15  # of ln V, and of the traction to be carried

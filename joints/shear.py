@@ -8,9 +8,9 @@ and de/dt taken over the step, e is where spring and dashpot together carry exac
 
 from math import copysign, sqrt
 
-from joints.formula import formula
-from joints.softening import is_broken, strength_left
-from joints.weakening import friction_left
+from jointwave.joints.formula import formula
+from jointwave.joints.softening import is_broken, strength_left
+from jointwave.joints.weakening import friction_left
 
 # Pa; above any strength, and finite when squared.
 UNLIMITED = 1e100

@@ -12,12 +12,12 @@ the slip under rate-dependent friction.
 
 from math import sqrt
 
-from joints.dilation import lift, lift_rate
-from joints.formula import formula
-from joints.normal import normal_tangent, normal_traction
-from joints.rate_state import slide_at_rate
-from joints.shear import resistance, shear_strength, shear_traction
-from joints.weakening import friction_left, strength_fall, weakened
+from jointwave.joints.dilation import lift, lift_rate
+from jointwave.joints.formula import formula
+from jointwave.joints.normal import normal_tangent, normal_traction
+from jointwave.joints.rate_state import slide_at_rate
+from jointwave.joints.shear import resistance, shear_strength, shear_traction
+from jointwave.joints.weakening import friction_left, strength_fall, weakened
 
 MOST = 60  # Newton steps, safeguarded by bisection of a bracket
 SETTLED = 1e-14  # convergence, over the longest possible slip

@@ -9,7 +9,7 @@ Below k it unloads and reloads through the origin with the secant stiffness s(k)
 Hillerborg, Modeer & Petersson (1976); Camacho & Ortiz (1996).
 """
 
-from joints.formula import formula
+from jointwave.joints.formula import formula
 
 
 @formula

@@ -13,14 +13,14 @@ closed, one at its largest opening unloads, shear on the strength has not slippe
 from math import inf, sqrt
 from typing import NamedTuple
 
-from joints.dilation import lift, lift_rate
-from joints.formula import formula
-from joints.normal import normal_tangent, normal_traction
-from joints.rate_state import resistance_to_sliding
-from joints.shear import UNLIMITED, resistance, shear_strength, shear_traction
-from joints.slide import after_slide, pressing, resistance_to_slide
-from joints.softening import strength_loss
-from joints.weakening import friction_left
+from jointwave.joints.dilation import lift, lift_rate
+from jointwave.joints.formula import formula
+from jointwave.joints.normal import normal_tangent, normal_traction
+from jointwave.joints.rate_state import resistance_to_sliding
+from jointwave.joints.shear import UNLIMITED, resistance, shear_strength, shear_traction
+from jointwave.joints.slide import after_slide, pressing, resistance_to_slide
+from jointwave.joints.softening import strength_loss
+from jointwave.joints.weakening import friction_left
 
 
 class Tangent(NamedTuple):

@@ -16,7 +16,7 @@ or, where that is beyond D, carry tau(D). For a <= h friction falls faster than 
 unloads: it snaps to mu_d within the step.
 """
 
-from joints.formula import formula
+from jointwave.joints.formula import formula
 
 
 @formula

@@ -16,16 +16,19 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+# Loaded first: later imports of the package leave its name to the function below.
+import jointwave.compare  # noqa: F401
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import DataArray, Dataset
 
-    from cases.material.calibrate import Properties
-    from cases.material.closure import Closure
-    from cases.scene_type import AnyScene
-    from compare.misfit.external import Curves
-    from compare.misfit.pairs import Comparison
-    from compare.readings import (
+    from jointwave.cases.material.calibrate import Properties
+    from jointwave.cases.material.closure import Closure
+    from jointwave.cases.scene_type import AnyScene
+    from jointwave.compare.misfit.external import Curves
+    from jointwave.compare.misfit.pairs import Comparison
+    from jointwave.compare.readings import (
         arias_intensity,
         dispersion,
         dispersion_theory,
@@ -37,9 +40,9 @@ if TYPE_CHECKING:
         transfer_function,
         wave_speed,
     )
-    from compare.report.verdict import VariantScore
-    from compare.studies.fit import Fit
-    from compare.studies.plan import Plan
+    from jointwave.compare.report.verdict import VariantScore
+    from jointwave.compare.studies.fit import Fit
+    from jointwave.compare.studies.plan import Plan
 
 __all__ = [
     "arias_intensity",
@@ -83,8 +86,8 @@ def load(
 
     Raises jointwave.SceneError, a line a mistake with file, key, value and what is allowed.
     """
-    from cases.read import load_tables
-    from compare.scenes import known, load_variant
+    from jointwave.cases.read import load_tables
+    from jointwave.compare.scenes import known, load_variant
 
     if isinstance(scene, dict):
         return known(load_tables(scene, variant, changes))
@@ -93,22 +96,22 @@ def load(
 
 def load_variants(scene: str | Path, changes: dict[str, Any] | None = None) -> list[AnyScene]:
     """Return a scene and all its variants, each as `load` does."""
-    from compare import scenes
+    from jointwave.compare import scenes
 
     return scenes.load(_file(scene), changes)
 
 
 def shipped() -> list[str]:
     """Return the names of the scenes that come along."""
-    from compare.scenes import names
+    from jointwave.compare.scenes import names
 
     return names()
 
 
 def properties(scene: AnyScene) -> Properties:
     """Return what follows from a scene: stiffnesses, speeds, impedance, damping, of every joint."""
-    from cases.material.calibrate import calibrate
-    from cases.scene_type import pillar_of
+    from jointwave.cases.material.calibrate import calibrate
+    from jointwave.cases.scene_type import pillar_of
 
     return calibrate(pillar_of(scene, "jointwave.properties"))
 
@@ -119,7 +122,7 @@ def bandis_closure(roughness: float, wall_strength: float, rock_strength: float)
 
     Raises ValueError beyond what Bandis et al. (1983) measured.
     """
-    from cases.material import closure
+    from jointwave.cases.material import closure
 
     return closure.bandis_closure(roughness, wall_strength, rock_strength)
 
@@ -127,7 +130,7 @@ def bandis_closure(roughness: float, wall_strength: float, rock_strength: float)
 def solvers(scene: AnyScene) -> dict[str, str]:
     """Return all engines and exact solutions of a scene's kind by name, with the reason why one
     does not hold for it; an empty one where it does."""
-    from compare.misfit.ranking import applicable
+    from jointwave.compare.misfit.ranking import applicable
 
     return {name: answer.reason for name, answer in applicable(scene).items()}
 
@@ -143,7 +146,7 @@ def simulate(
 
     Raises SceneError where the solver does not hold, UnstableError where a run loses its bound.
     """
-    from compare.engines import solve
+    from jointwave.compare.engines import solve
 
     return solve(solver, scene, progress, **options)
 
@@ -158,7 +161,7 @@ def compare(
 
     curves : of others, as `read_curves` returns them; align : whether their clocks are moved.
     """
-    from compare.runs import comparison
+    from jointwave.compare.runs import comparison
 
     return comparison.compare(scene, progress, curves=curves, align=align)
 
@@ -172,8 +175,8 @@ def deconvolve(scene: AnyScene, surface: DataArray, water_level: float = 1e-3) -
     frequencies that the joints pass less of are held back. The result begins earlier than the
     record, by the time that intact rock takes. Raises SceneError where the column is not linear.
     """
-    from cases.scene_type import pillar_of
-    from compare.exact.bar import deconvolution
+    from jointwave.cases.scene_type import pillar_of
+    from jointwave.compare.exact.bar import deconvolution
 
     return deconvolution.deconvolve(pillar_of(scene, "deconvolve"), surface, water_level)
 
@@ -182,7 +185,7 @@ def misfit(one: Dataset, other: Dataset) -> float:
     """Return the relative L2 misfit of two results of a scene: that of the waveform, one component
     of one quantity at one receiver less its static state, which is furthest off, of those that
     carry at least 5 % of their quantity's motion at the receiver."""
-    from compare.misfit import metrics
+    from jointwave.compare.misfit import metrics
 
     return metrics.misfit(one, other)
 
@@ -191,7 +194,7 @@ def verdicts(comparison: Comparison) -> dict[str, VariantScore]:
     """Return the verdict on each engine of a comparison by name: `total`, its worst misfit from the
     reference `against`, `peaks`, the differences in PPV and peak stress, mean and worst over the
     receivers, and `own`, its numerical error; `facts` has all as plain numbers and words."""
-    from compare.report.verdict import ENGINES, score
+    from jointwave.compare.report.verdict import ENGINES, score
 
     return {name: score(name, comparison) for name in ENGINES if name in comparison.results}
 
@@ -199,7 +202,7 @@ def verdicts(comparison: Comparison) -> dict[str, VariantScore]:
 def read_curves(files: Sequence[str], scenes: Sequence[AnyScene]) -> list[Curves]:
     """Return waveforms of another code, a figure or an experiment: FILE, FILE:stress@20 or
     FILE:COLUMN=stress@20 each, a table, a seismogram or NetCDF."""
-    from compare.misfit import external as curves
+    from jointwave.compare.misfit import external as curves
 
     return curves.read_curves(list(files), list(scenes))
 
@@ -218,7 +221,7 @@ def fit(
 
     Raises SceneError for what cannot be fitted, StoppedError where the search does not converge.
     """
-    from compare.studies import fit as fitting
+    from jointwave.compare.studies import fit as fitting
 
     return fitting.fit(scene, curves, free, solver, progress)
 
@@ -231,7 +234,7 @@ def plan(
 
     Raises SceneError where nothing exact is known of the scene, and no run converges in reach.
     """
-    from compare.studies import plan as plans
+    from jointwave.compare.studies import plan as plans
 
     return plans.plan(scene, misfit, seconds, progress)
 
@@ -247,13 +250,13 @@ def figure(
     columns : of the page, 1 or 2. style : "journal" or "screen".
     language : "en" or "zh". Raises SceneError where it would be taller than a page.
     """
-    from compare.figures.publication import STYLES, draw
+    from jointwave.compare.figures.publication import STYLES, draw
 
     return draw(list(comparisons), STYLES[style], columns, language)
 
 
 def _file(scene: str | Path) -> Path:
-    from compare.scenes import find
+    from jointwave.compare.scenes import find
 
     return find(str(scene))
 
@@ -262,15 +265,15 @@ def __getattr__(name: str) -> Any:
     """Return the exceptions, the class of scenes and what is read off results, imported when they
     are asked for."""
     if name in ("SceneError", "StoppedError", "UnstableError"):
-        from cases import errors
+        from jointwave.cases import errors
 
         return getattr(errors, name)
     if name == "Scene":
-        from cases.schema.scene import Scene
+        from jointwave.cases.schema.scene import Scene
 
         return Scene
     if name in __all__:
-        from compare import readings
+        from jointwave.compare import readings
 
         return getattr(readings, name)
     raise AttributeError(f"module 'jointwave' has no attribute {name!r}")

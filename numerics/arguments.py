@@ -20,7 +20,7 @@ from numba.core.typing.templates import AbstractTemplate, infer_global, signatur
 from numba.extending import NativeValue, lower_builtin, models, register_model, unbox
 from numba.np.numpy_support import from_dtype
 
-from numerics.pointers import Pointer
+from jointwave.numerics.pointers import Pointer
 
 INT = IntType(64)
 

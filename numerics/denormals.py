@@ -12,7 +12,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from joints.formula import formula
+from jointwave.joints.formula import formula
 
 MACHINE = platform.machine().lower()
 X86 = MACHINE in ("x86_64", "amd64")

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from joints.formula import formula
+from jointwave.joints.formula import formula
 
 EVERY = 96  # steps, at most, between two checks of the speeds
 RUNAWAY = 100.0  # over the speed that forces can cause: leapfrog overshoots at the critical step

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from cases.errors import StoppedError
-from cases.sampling import Clock
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
+from jointwave.cases.errors import StoppedError
+from jointwave.cases.sampling import Clock
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
 
 HUGE = 1e100  # an amplitude whose square overflows
 

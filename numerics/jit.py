@@ -11,7 +11,7 @@ from typing import Any
 
 import numba
 
-from numerics.cache import cache_directory, make, mark_used
+from jointwave.numerics.cache import cache_directory, make, mark_used
 
 WAIT = 0.5  # s, after which compiling is announced: cached kernels load in less
 

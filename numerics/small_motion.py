@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.errors import StoppedError
-from cases.partition.blocks import Partition
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
+from jointwave.cases.errors import StoppedError
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
 
 LARGEST = 0.02  # of the smaller block
 OVERLAP = 0.01  # of its area: corners that touch at the start overlap by its square

@@ -1,6 +1,6 @@
 """Sums over blocks or degrees of freedom."""
 
-from joints.formula import formula
+from jointwave.joints.formula import formula
 
 
 @formula

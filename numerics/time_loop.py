@@ -10,7 +10,7 @@ from collections.abc import Callable
 from itertools import pairwise
 from typing import Any, Protocol
 
-from cases.errors import InterruptedRun
+from jointwave.cases.errors import InterruptedRun
 
 
 class SnapshotRecorder(Protocol):

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cases.effects import active_effects
-from cases.scene_type import AnyScene
-from cases.schema.scene import Scene
-from cases.warnings import warnings
-from results.labels import label
+from jointwave.cases.effects import active_effects
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.warnings import warnings
+from jointwave.results.labels import label
 
 #: All terms of an energy ledger, and those of axial motion with joints that do not break.
 ALL_TERMS = (

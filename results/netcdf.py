@@ -6,7 +6,7 @@ from typing import Any
 
 import xarray as xr
 
-from cases.size import memory, require, within
+from jointwave.cases.size import memory, require, within
 
 COPIES = 3  # of a variable: as it is stored, decoded, and in double precision
 LIBRARIES = 300_000_000  # bytes of address space for the reading libraries

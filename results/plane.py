@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cases.schema.rock_mass import RockMass
-from results.dataset import assemble, attributes_of
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.results.dataset import assemble, attributes_of
 
 #: Dimensions of each quantity except time, its receivers or the terms of the ledger first.
 DIMENSIONS: dict[str, tuple[str, ...]] = {

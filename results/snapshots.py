@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
-from cases.size import LARGEST_VARIABLE
-from results.arrays import copied
-from results.dataset import labelled
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.size import LARGEST_VARIABLE
+from jointwave.results.arrays import copied
+from jointwave.results.dataset import labelled
 
 AXES = {1: [1], 2: [0, 1], 3: [0, 1, 2]}  # of x, y, z, by the number of components
 DIMENSIONS = {

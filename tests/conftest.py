@@ -21,11 +21,11 @@ import numba
 import pytest
 from hypothesis import settings
 
-import cases
-from cases.errors import InterruptedRun
-from compare.runs.memory import collect_rarely
-from numerics import jit
-from results.arrays import copied, fill
+from jointwave import cases
+from jointwave.cases.errors import InterruptedRun
+from jointwave.compare.runs.memory import collect_rarely
+from jointwave.numerics import jit
+from jointwave.results.arrays import copied, fill
 
 # The first example compiles a kernel, which no deadline foresees. Every run has the same examples;
 # `make fuzz` looks for others of bad input.
@@ -247,7 +247,7 @@ def keeper_at():
 def jointwave(monkeypatch, capsys):
     """Return a function that runs the command in this process, checks its exit status, and returns
     what it has printed: `out` and `err`."""
-    from compare.cli.program import main
+    from jointwave.compare.cli.program import main
 
     def run(*arguments, code=0):
         monkeypatch.setattr(sys, "argv", ["jointwave", *map(str, arguments)])

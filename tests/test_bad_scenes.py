@@ -13,8 +13,8 @@ from unittest.mock import patch
 
 import pytest
 
-from cases import load
-from compare.cli.program import main
+from jointwave.cases import load
+from jointwave.compare.cli.program import main
 
 GOOD = """\
 title = "good"
@@ -862,7 +862,7 @@ def test_bad_override_on_the_command_line(name, tmp_path, jointwave, without_war
 def test_mistake_on_the_command_line(tmp_path):
     """As a user meets it, in a process of its own."""
     scene, out = write(tmp_path / "scene.toml", mistaken("not TOML")), tmp_path / "out"
-    command = [sys.executable, "-m", "compare", "run", str(scene), "--out", str(out)]
+    command = [sys.executable, "-m", "jointwave", "run", str(scene), "--out", str(out)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=600)
     assert done.returncode == 2 and done.stdout == "" and not out.exists()
     (line,) = done.stderr.splitlines()

@@ -1,13 +1,13 @@
 """What the shipped scenes are; what they find is tested beside their pairs of [expect], by
 `tests/theory/shipped_scenes.py`."""
 
-import cases
-from cases.effects import is_spatial
-from cases.schema.scene import Scene
-from compare.engines import applies, names, solve
-from compare.exact.blocks import lattice
-from compare.misfit.metrics import misfit
-from compare.scenes import SHIPPED, shipped
+from jointwave import cases
+from jointwave.cases.effects import is_spatial
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import applies, names, solve
+from jointwave.compare.exact.blocks import lattice
+from jointwave.compare.misfit.metrics import misfit
+from jointwave.compare.scenes import SHIPPED, shipped
 
 
 def test_no_solution_of_axial_motion_claims_a_spatial_scene():

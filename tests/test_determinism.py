@@ -8,9 +8,9 @@ import sys
 import pytest
 import xarray as xr
 
-from cases import load_variant
-from compare.engines import solve
-from compare.scenes import find
+from jointwave.cases import load_variant
+from jointwave.compare.engines import solve
+from jointwave.compare.scenes import find
 
 SCENE = "guo-li-2002/fig-03"
 SHORT = {"time.duration": 2e-3, "record.interval": 1e-4, "pillar.length": 10.0}

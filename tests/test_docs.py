@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from cases.schema.keys import field_comments, in_words
-from cases.schema.keys import keys as all_keys
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
+from jointwave.cases.schema.keys import field_comments, in_words
+from jointwave.cases.schema.keys import keys as all_keys
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -62,7 +62,7 @@ def test_python_of_a_page_runs(page, folder):
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_scenes_of_a_page_are_scenes(page, folder):
     """Every TOML file that a page shows is one that can be simulated, with the files beside it."""
-    import cases
+    from jointwave import cases
 
     for _, title, text in blocks(page):
         if title:
@@ -111,7 +111,7 @@ def test_a_check_without_words_is_refused():
 
 def test_every_exact_solution_is_explained():
     """Theory has a heading for each exact solution, by the name that users type."""
-    from compare.engines import EXACT
+    from jointwave.compare.engines import EXACT
 
     headings = re.findall(r"^#+ .*", (DOCS / "theory" / "exact.md").read_text(), re.MULTILINE)
     assert not [name for name in EXACT if not any(f"`{name}`" in h for h in headings)]
@@ -119,7 +119,7 @@ def test_every_exact_solution_is_explained():
 
 def test_every_term_and_quantity_of_a_result_is_explained():
     """The page on results names all terms of the ledger."""
-    from results.dataset import ALL_TERMS
+    from jointwave.results.dataset import ALL_TERMS
 
     page = (DOCS / "reference" / "result.md").read_text(encoding="utf-8")
     assert not [term for term in ALL_TERMS if f"`{term}`" not in page]

@@ -8,12 +8,12 @@ import meshio
 import numpy as np
 import pytest
 
-import dem
-from cases import SceneError
-from compare.runs import field_files
-from compare.runs.field_files import read_pvd, refuse_vtx, write_pvd, write_vtx
-from continuum.space import dolfinx_export
-from results.snapshots import snapshots, snapshots_of
+from jointwave import dem
+from jointwave.cases import SceneError
+from jointwave.compare.runs import field_files
+from jointwave.compare.runs.field_files import read_pvd, refuse_vtx, write_pvd, write_vtx
+from jointwave.continuum.space import dolfinx_export
+from jointwave.results.snapshots import snapshots, snapshots_of
 
 SPALL = {
     "pillar__length": 8.0,
@@ -175,8 +175,8 @@ def test_vtx_is_written_where_dolfinx_can_and_refused_where_not(jointwave, tmp_p
 
 
 def test_vtx_is_refused_where_there_is_no_dolfinx(monkeypatch):
-    monkeypatch.setitem(sys.modules, "continuum.space.dolfinx_export", None)
-    monkeypatch.delattr("continuum.space.dolfinx_export", raising=False)
+    monkeypatch.setitem(sys.modules, "jointwave.continuum.space.dolfinx_export", None)
+    monkeypatch.delattr("jointwave.continuum.space.dolfinx_export", raising=False)
     with pytest.raises(SceneError, match="--vtx: dolfinx cannot be imported"):
         refuse_vtx()
 

@@ -3,18 +3,17 @@
 import numpy as np
 import pytest
 
-import continuum
-import dem
-from cases.errors import StoppedError
-from cases.material.calibrate import calibrate
-from continuum.run import discrete_and_steps
-from dem.axial.build import build
-from dem.axial.leapfrog import make_stepper
-from dem.axial.samples import buffers
-from dem.axial.simulate import scheme_of
-from dem.axial.stability import highest_speed
-from dem.spatial.simulate import critical_step_of
-from numerics.divergence import ENERGY, EVERY, RUNAWAY, SPEED, guard
+from jointwave import continuum, dem
+from jointwave.cases.errors import StoppedError
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.continuum.run import discrete_and_steps
+from jointwave.dem.axial.build import build
+from jointwave.dem.axial.leapfrog import make_stepper
+from jointwave.dem.axial.samples import buffers
+from jointwave.dem.axial.simulate import scheme_of
+from jointwave.dem.axial.stability import highest_speed
+from jointwave.dem.spatial.simulate import critical_step_of
+from jointwave.numerics.divergence import ENERGY, EVERY, RUNAWAY, SPEED, guard
 
 ABOVE = 1.001  # of the critical step: (x + sqrt(x^2 - 1))^2 = 1.09 times as large in every step
 ACROSS = {"load__direction": [0.6, 0.8, 0.0], "joints__friction_angle": 30.0}

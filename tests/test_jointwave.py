@@ -6,12 +6,12 @@ import sys
 import numpy as np
 import pytest
 
-import cases
 import jointwave as jw
-from compare.misfit.external import Curves
-from compare.misfit.metrics import misfit
-from compare.misfit.places import Place
-from compare.scenes import find
+from jointwave import cases
+from jointwave.compare.misfit.external import Curves
+from jointwave.compare.misfit.metrics import misfit
+from jointwave.compare.misfit.places import Place
+from jointwave.compare.scenes import find
 
 TABLES = {
     "title": "made of tables",

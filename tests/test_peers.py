@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from closed_forms.leapfrog import displacements
-from compare.engines import solve
-from compare.exact.schemes.leapfrog import modes, of_modes
-from compare.misfit.metrics import relative_l2
-from compare.report.peers import read, summarise
-from compare.runs.output import write_csv
+from jointwave.compare.engines import solve
+from jointwave.compare.exact.schemes.leapfrog import modes, of_modes
+from jointwave.compare.misfit.metrics import relative_l2
+from jointwave.compare.report.peers import read, summarise
+from jointwave.compare.runs.output import write_csv
 
 TOOLS = Path(__file__).parents[1] / "tools" / "peers"
 #: Positions near 50 m are known to some 1e-14 m, their gaps of 1e-5 m to 1e-9; steps add to it.
@@ -111,7 +111,7 @@ def test_load_that_stays_is_given_for_all_steps(peers, pillar):
 
 
 def test_scene_without_one_stress_at_a_joint_is_refused(peers, pillar):
-    from cases.errors import SceneError
+    from jointwave.cases.errors import SceneError
 
     for places in ([20.1], [10.0, 20.0], []):
         scene = pillar(record={"stress": places, "velocity": [20.0]})

@@ -47,9 +47,9 @@ joints.tension = false
 @pytest.fixture(scope="module")
 def warm(tmp_path_factory):
     """Import what the engines need: pytester forgets after each run what was imported in it."""
-    from cases import load
-    from compare.engines import solve
-    from compare.misfit.metrics import misfit
+    from jointwave.cases import load
+    from jointwave.compare.engines import solve
+    from jointwave.compare.misfit.metrics import misfit
 
     path = tmp_path_factory.mktemp("warm") / "scene.toml"
     path.write_text(scene() + VARIANT)
@@ -102,7 +102,7 @@ def test_a_scene_is_warned_of_and_refused_where_warnings_are_errors(run):
     result.assert_outcomes(passed=1, warnings=1)
     line = r"SceneWarning:\s+\S*scene\.toml: load\.period = 0\.011 s is longer"
     assert re.search(line, result.stdout.str())  # pytest 8 breaks it
-    strict = "-W", "error::compare.cli.pytest_plugin.SceneWarning"
+    strict = "-W", "error::jointwave.compare.cli.pytest_plugin.SceneWarning"
     result = run(*strict, scene=late)
     result.assert_outcomes(failed=1)
     result.stdout.re_match_lines([r"\S+scene.toml: load.period = 0.011 s is longer"])
@@ -127,13 +127,11 @@ def test_each_variant_is_held_to_the_pairs_that_apply_to_it(run):
 
 def test_scene_that_leaves_its_axis_is_held_by_its_shear(run, monkeypatch):
     """Without any normal stress, a shear that is 1 % off is 1 % of misfit."""
-    import compare.engines
+    from jointwave.compare import engines
 
     off = {"dem": 1.01, "spatial-lattice": 1.0}
-    solve = compare.engines.solve
-    monkeypatch.setattr(
-        compare.engines, "solve", lambda name, s: solve("spatial-lattice", s) * off[name]
-    )
+    solve = engines.solve
+    monkeypatch.setattr(engines, "solve", lambda name, s: solve("spatial-lattice", s) * off[name])
     sheared = scene("dem ~ spatial-lattice", 0.02).replace(
         "period = 0.01", "period = 0.01\ndirection = [1.0, 0.0, 0.0]"
     )
@@ -183,12 +181,12 @@ def test_other_toml_files_are_left_alone(run):
 
 
 def test_every_engine_runs_once_for_each_variant(run, monkeypatch):
-    import compare.engines
+    from jointwave.compare import engines
 
     solved = []
-    solve = compare.engines.solve
+    solve = engines.solve
     monkeypatch.setattr(
-        compare.engines, "solve", lambda name, scene: solved.append(name) or solve(name, scene)
+        engines, "solve", lambda name, scene: solved.append(name) or solve(name, scene)
     )
     run(scene=scene() + '"dem ~ equivalent-bar" = 1.0\n').assert_outcomes(passed=2)
     assert sorted(solved) == ["dem", "equivalent-bar", "lattice"]
@@ -200,9 +198,9 @@ def test_workers_share_what_one_of_them_has_solved(run, pytester, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(folder))
     pytester.makeconftest(
         """
-        import compare.engines
+        from jointwave.compare import engines
 
-        solve = compare.engines.solve
+        solve = engines.solve
 
         def noted(name, scene):
             with open("solved", "a") as file:
@@ -211,7 +209,7 @@ def test_workers_share_what_one_of_them_has_solved(run, pytester, monkeypatch):
 
         def pytest_sessionstart(session):
             if hasattr(session.config, "workerinput"):  # not in the process of the test itself
-                compare.engines.solve = noted
+                engines.solve = noted
         """
     )
     pair = scene("lattice ~ equivalent-bar")
@@ -226,7 +224,7 @@ def test_a_run_without_scenes_imports_nothing_heavy(pytester):
         import sys
 
         def test_nothing_heavy_is_there():
-            assert "compare.cli.pytest_plugin" in sys.modules
+            assert "jointwave.compare.cli.pytest_plugin" in sys.modules
             heavy = {"numpy", "numba", "xarray", "pydantic", "dolfinx", "matplotlib", "cases"}
             assert not heavy & set(sys.modules)
         """

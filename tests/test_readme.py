@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-import cases
-from compare.engines import solve
-from compare.misfit.metrics import misfit
-from compare.studies.findings import judged, orders
-from compare.studies.study import load
-from compare.studies.work_precision import run
+from jointwave import cases
+from jointwave.compare.engines import solve
+from jointwave.compare.misfit.metrics import misfit
+from jointwave.compare.studies.findings import judged, orders
+from jointwave.compare.studies.study import load
+from jointwave.compare.studies.work_precision import run
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -17,18 +17,18 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
-import cases
-from cases.errors import SceneError, printable
-from cases.files import is_number
-from cases.read import load, load_variant
-from cases.records import read_columns
-from cases.schema.values import CONTROL
-from compare.cli import program, start, terminal
-from compare.figures.export import save
-from compare.runs.checkpoint.lock import locked
-from compare.runs.jobs import plan
-from compare.runs.output import refuse_foreign, write, write_csv, write_folder
-from compare.studies.study import load as load_study
+from jointwave import cases
+from jointwave.cases.errors import SceneError, printable
+from jointwave.cases.files import is_number
+from jointwave.cases.read import load, load_variant
+from jointwave.cases.records import read_columns
+from jointwave.cases.schema.values import CONTROL
+from jointwave.compare.cli import program, start, terminal
+from jointwave.compare.figures.export import save
+from jointwave.compare.runs.checkpoint.lock import locked
+from jointwave.compare.runs.jobs import plan
+from jointwave.compare.runs.output import refuse_foreign, write, write_csv, write_folder
+from jointwave.compare.studies.study import load as load_study
 
 ROOT = Path(cases.__file__).parents[1]
 PACKAGES = ("cases", "results", "numerics", "joints", "dem", "continuum", "compare")
@@ -265,7 +265,7 @@ def test_a_file_that_is_no_result_is_not_replaced(scene, tmp_path, kind):
 
 def test_a_result_and_a_link_are_replaced_but_not_what_it_leads_to(scene, tmp_path):
     """What is written goes to the name; a link there is replaced, and its target stays."""
-    from compare.runs.output import write
+    from jointwave.compare.runs.output import write
 
     diary, link = tmp_path / "diary", tmp_path / "dem.nc"
     diary.write_text("my diary")
@@ -456,7 +456,7 @@ STREAMS = {
 def test_streams_that_take_nothing_are_no_fault(name, tmp_path):
     """What is written must not go into a file that was opened in a closed stream's place."""
     how, code = STREAMS[name]
-    command = f"set -o pipefail; {sys.executable} -m compare list {how}"
+    command = f"set -o pipefail; {sys.executable} -m jointwave list {how}"
     error = subprocess.PIPE if "2>" not in how else None
     done = subprocess.run(["bash", "-c", command], stdout=subprocess.PIPE, stderr=error, text=True)
     assert done.returncode == code and not done.stdout
@@ -469,7 +469,7 @@ def test_a_locale_without_the_letters_spells_them(scene, without_warnings, utf8)
     path = scene()
     path.write_text(path.read_text() + '[[variants]]\nname = "\u00b5 = 0.5 \u2013 \u7075"\n')
     locale = {"LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": utf8}
-    command = [sys.executable, "-m", "compare", "run", str(path), "--out", str(path.parent / "o")]
+    command = [sys.executable, "-m", "jointwave", "run", str(path), "--out", str(path.parent / "o")]
     environment = os.environ | locale | {"PYTHONIOENCODING": "ascii"}
     done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
     if utf8 == "1":

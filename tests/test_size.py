@@ -14,22 +14,22 @@ import numpy as np
 import pytest
 import xarray as xr
 
-import cases
-from cases.errors import SceneError
-from cases.gmsh_file import read_tagged
-from cases.records import read_columns, read_history
-from cases.size import LIMIT, memory, refuse_beyond_memory, waveform_bytes
-from compare.engines import solve
-from compare.exact.bar import images
-from compare.misfit.external_netcdf import read_netcdf
-from compare.misfit.places import COMPONENT_DIMENSIONS, QUANTITIES
-from compare.report import peers
-from compare.runs.checkpoint.files import Checkpoints
-from compare.runs.checkpoint.resume import result_of
-from compare.runs.output import read_kept
-from compare.runs.processes import ALONE
-from compare.studies.measure import PointRow
-from results.labels import RECEIVERS
+from jointwave import cases
+from jointwave.cases.errors import SceneError
+from jointwave.cases.gmsh_file import read_tagged
+from jointwave.cases.records import read_columns, read_history
+from jointwave.cases.size import LIMIT, memory, refuse_beyond_memory, waveform_bytes
+from jointwave.compare.engines import solve
+from jointwave.compare.exact.bar import images
+from jointwave.compare.misfit.external_netcdf import read_netcdf
+from jointwave.compare.misfit.places import COMPONENT_DIMENSIONS, QUANTITIES
+from jointwave.compare.report import peers
+from jointwave.compare.runs.checkpoint.files import Checkpoints
+from jointwave.compare.runs.checkpoint.resume import result_of
+from jointwave.compare.runs.output import read_kept
+from jointwave.compare.runs.processes import ALONE
+from jointwave.compare.studies.measure import PointRow
+from jointwave.results.labels import RECEIVERS
 
 AT_ONCE = 200e6  # bytes: what reading a scene of ten million blocks takes, not one run refused here
 
@@ -136,9 +136,9 @@ def test_a_run_within_the_memory_is_made(pillar, limit, solver, changes, size):
 CHILD = """
 import sys
 from pathlib import Path
-import cases
-from compare.runs.output import write_dataset
-from dem import simulate
+from jointwave import cases
+from jointwave.compare.runs.output import write_dataset
+from jointwave.dem import simulate
 
 
 def highest():

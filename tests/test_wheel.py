@@ -100,7 +100,7 @@ def test_the_command_compares_a_shipped_scene(site):
 
 def test_scenes_are_tests(site):
     (site.parent / "scenes").mkdir()
-    shipped = site / "jointwave" / "_lib" / "cases" / "guo-li-2002" / "fig-03.toml"
+    shipped = site / "jointwave" / "cases" / "guo-li-2002" / "fig-03.toml"
     text = shipped.read_text().partition("[expect]")[0] + '[expect]\n"series ~ images" = 1e-3\n'
     (site.parent / "scenes" / "bar.toml").write_text(text)
     plugin = ("-p", "jointwave.pytest_plugin", "-p", "no:cacheprovider", "--rootdir", "scenes")

@@ -94,7 +94,7 @@ install_project() {  # with these extras
 base_key() { echo "$PWD $(python3 -c 'import sys; print(sys.executable, sys.version)' 2>/dev/null || echo none)"; }
 key() { echo "$(base_key) $locked $(cat pyproject.toml constraints.txt tools/setup.sh | cksum)"; }
 
-if [ "$(cat .venv/.setup-done 2>/dev/null)" = "$(key)" ] && .venv/bin/python -c "$find; assert f('dolfinx') and f('compare')" 2>/dev/null; then
+if [ "$(cat .venv/.setup-done 2>/dev/null)" = "$(key)" ] && .venv/bin/python -c "$find; assert f('dolfinx') and f('jointwave')" 2>/dev/null; then
     say ".venv is up to date"
 else
     if [ "$(cat .venv/.setup-base 2>/dev/null)" != "$(base_key)" ] || ! imports_dolfinx .venv/bin/python; then
@@ -106,7 +106,7 @@ else
     extras=test,check
     if ! has dolfinx || has dolfinx_solver; then extras=$extras,continuum; fi
     install_project "$extras"
-    .venv/bin/python -c "$dolfinx, numba, compare" && key >.venv/.setup-done || fail ".venv does not import dolfinx, numba and compare"
+    .venv/bin/python -c "$dolfinx, numba, jointwave.compare" && key >.venv/.setup-done || fail ".venv does not import dolfinx, numba and compare"
     say "done: .venv/bin/jointwave, or activate it by: . .venv/bin/activate"
 fi
 case "${1:-}" in

@@ -13,9 +13,9 @@ fastest it is equal to it.
 
 import numpy as np
 
-from cases.material.contact_points import ContactPoints
-from cases.material.rock_mass import Stiffness
-from cases.partition.blocks import Contacts
+from jointwave.cases.material.contact_points import ContactPoints
+from jointwave.cases.material.rock_mass import Stiffness
+from jointwave.cases.partition.blocks import Contacts
 
 
 def block_stiffness(

@@ -4,16 +4,16 @@ from typing import Any
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.material.rigid_blocks import rigid_joints
-from cases.material.rock import elastic_rock
-from cases.partition.blocks import Partition
-from cases.partition.lattice import further_sets
-from cases.partition.regions import rocks_of
-from cases.partition.scene import partition_bytes, partition_of
-from cases.partition.subdivision import NO_SET
-from cases.schema.region import REST
-from cases.schema.rock_mass import RockMass
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.rigid_blocks import rigid_joints
+from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.partition.lattice import further_sets
+from jointwave.cases.partition.regions import rocks_of
+from jointwave.cases.partition.scene import partition_bytes, partition_of
+from jointwave.cases.partition.subdivision import NO_SET
+from jointwave.cases.schema.region import REST
+from jointwave.cases.schema.rock_mass import RockMass
 
 
 def block_summary(scene: RockMass) -> dict[str, Any]:

@@ -9,15 +9,15 @@ from weakref import ref
 
 import numpy as np
 
-from cases.material.dashpots import dashpots
-from cases.material.elastic import joint_stiffness
-from cases.material.stiffness import rock_mass, stiffness
-from cases.material.strength import Strength, strength
-from cases.scene_type import AnyScene
+from jointwave.cases.material.dashpots import dashpots
+from jointwave.cases.material.elastic import joint_stiffness
+from jointwave.cases.material.stiffness import rock_mass, stiffness
+from jointwave.cases.material.strength import Strength, strength
+from jointwave.cases.scene_type import AnyScene
 
 if TYPE_CHECKING:
-    from cases.material.constant_q import Mechanisms
-    from cases.schema.scene import Scene
+    from jointwave.cases.material.constant_q import Mechanisms
+    from jointwave.cases.schema.scene import Scene
 
 #: Times that intact rock may be stiffer than rock with joints where it joins an end block to a
 #: wall: stiffer yet it would but shorten the step, of a half block that is rigid beside the joints.
@@ -243,7 +243,7 @@ def calibrate(scene: Scene) -> Properties:
 
 def _calibrated(scene: Scene) -> Properties:
     if not scene.is_uniform:
-        from cases.material.layered import calibrate_layered
+        from jointwave.cases.material.layered import calibrate_layered
 
         return calibrate_layered(scene)
     pillar, density = scene.pillar, scene.rock.density
@@ -291,6 +291,6 @@ def mechanisms_of(scene: AnyScene, model: str) -> Mechanisms | None:
     None, and nothing imported, without a quality factor."""
     if scene.rock.quality_factor is None:
         return None
-    from cases.material.constant_q import mechanisms
+    from jointwave.cases.material.constant_q import mechanisms
 
     return mechanisms(scene, model)

@@ -16,14 +16,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.loads import velocity_of
-from cases.scene_type import AnyScene
-from cases.schema.scene import Scene
+from jointwave.cases.loads import velocity_of
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
 
 if TYPE_CHECKING:
-    from cases.schema.plane import StressInPlane
-    from cases.schema.pulse import Pulse
-    from cases.schema.rock_mass import RockMass
+    from jointwave.cases.schema.plane import StressInPlane
+    from jointwave.cases.schema.pulse import Pulse
+    from jointwave.cases.schema.rock_mass import RockMass
 
 SAMPLES = 10_001  # of a pulse, for its peak, in addition to its breaks
 
@@ -112,14 +112,14 @@ def _stress_of(pulse: Pulse, scene: AnyScene) -> float:
     if pulse.quantity == "stress":
         return 1.0
     if isinstance(scene, Scene):
-        from cases.material.calibrate import calibrate
+        from jointwave.cases.material.calibrate import calibrate
 
         p = calibrate(scene).at_start
         return sqrt((p.intact_modulus or p.modulus) * p.density)
     if pulse.quantity == "force":
         return 1 / _least_spacing(scene)
-    from cases.material.rock import elastic_rock
-    from cases.partition.regions import rocks_of
+    from jointwave.cases.material.rock import elastic_rock
+    from jointwave.cases.partition.regions import rocks_of
 
     return max(float(elastic_rock(one).p_impedance) for one in rocks_of(scene))
 

@@ -20,10 +20,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.effects import is_spatial
-from cases.material.calibrate import calibrate
-from cases.scene_type import AnyScene
-from cases.schema.scene import Scene
+from jointwave.cases.effects import is_spatial
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
 
 SPACING = 0.85  # decades between relaxation frequencies, at most: Q is within 4 % from Q = 5 on
 BEYOND = 0.1  # decades that they go beyond the band

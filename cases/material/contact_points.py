@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.partition.blocks import Contacts, Partition
-from cases.partition.subdivision import NO_SET
-from cases.schema.joint_set import JointSet
+from jointwave.cases.partition.blocks import Contacts, Partition
+from jointwave.cases.partition.subdivision import NO_SET
+from jointwave.cases.schema.joint_set import JointSet
 
 #: Rule and number of points of a cut through intact rock.
 CUT = ("gauss", 2)

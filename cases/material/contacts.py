@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cases.schema.scene import Scene
-from cases.schema.segment import Region, regions
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.schema.segment import Region, regions
 
 SPREAD = 3**0.5  # half the width of a uniform distribution, in standard deviations
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.scene import Scene
+    from jointwave.cases.schema.rock_mass import RockMass
+    from jointwave.cases.schema.scene import Scene
 
 
 class Dashpots(NamedTuple):
@@ -58,8 +58,8 @@ def set_time_constants(scene: RockMass) -> np.ndarray | None:
     The mass in c_n = 2 zeta sqrt(m k_n) is that of the rock from joint to joint: its density times
     the spacing, or half of the domain's extent across a joint that is alone.
     """
-    from cases.partition.joints import direction_of
-    from cases.partition.regions import rocks_beside
+    from jointwave.cases.partition.joints import direction_of
+    from jointwave.cases.partition.regions import rocks_beside
 
     sets = scene.joint_sets
     if scene.damping.rayleigh is not None:

@@ -20,11 +20,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.material.rock import ElasticRock, elastic_rock
-from cases.partition.joints import direction_of
-from cases.partition.regions import within
-from cases.schema import joint_set as schema
-from cases.schema.rock_mass import RockMass
+from jointwave.cases.material.rock import ElasticRock, elastic_rock
+from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.regions import within
+from jointwave.cases.schema import joint_set as schema
+from jointwave.cases.schema.rock_mass import RockMass
 
 DIRECTIONS = 36  # in which speeds are looked at
 RIGID = 1e-9  # of the largest compliance: what bodies without any have

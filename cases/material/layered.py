@@ -17,12 +17,12 @@ from typing import Any
 
 import numpy as np
 
-from cases.material.calibrate import Properties, calibrate
-from cases.material.contacts import contacts, drawn, welds
-from cases.material.strength import strength_of
-from cases.schema.joint import JointLaw
-from cases.schema.scene import Scene
-from cases.schema.segment import alone, regions
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.material.contacts import contacts, drawn, welds
+from jointwave.cases.material.strength import strength_of
+from jointwave.cases.schema.joint import JointLaw
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.schema.segment import alone, regions
 
 
 def calibrate_layered(scene: Scene) -> Properties:

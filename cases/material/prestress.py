@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.partition.joints import direction_of
+from jointwave.cases.errors import SceneError
+from jointwave.cases.partition.joints import direction_of
 
 if TYPE_CHECKING:
-    from cases.schema.joint_set import JointSet
-    from cases.schema.plane import StressInPlane
-    from cases.schema.rock_mass import RockMass
+    from jointwave.cases.schema.joint_set import JointSet
+    from jointwave.cases.schema.plane import StressInPlane
+    from jointwave.cases.schema.rock_mass import RockMass
 
 SLACK = 1e-9  # of the stress: tractions that are at a limit
 

@@ -6,11 +6,11 @@ a lattice has them at its sides, else those of the effective medium of the joint
 
 import numpy as np
 
-from cases.material.effective_medium import compliant, speeds, stiffness
-from cases.material.rock import elastic_rock
-from cases.partition.regions import within
-from cases.schema.rock_mass import RockMass
-from cases.schema.tables import LEAN
+from jointwave.cases.material.effective_medium import compliant, speeds, stiffness
+from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.partition.regions import within
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.tables import LEAN
 
 
 def impedances(scene: RockMass, normals: np.ndarray, region: np.ndarray) -> np.ndarray:

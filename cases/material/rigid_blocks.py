@@ -15,21 +15,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.material import effective_medium
-from cases.material.effective_medium import compliant, intact, joints_alone
-from cases.material.elastic import shear_modulus
-from cases.material.rigid_fit import nearest_stiffness
-from cases.material.rock import elastic_rock
-from cases.material.rock_mass import Stiffness, constrained_modulus
-from cases.partition.blocks import Partition
-from cases.partition.joints import direction_of
-from cases.partition.lattice import by_direction
-from cases.partition.regions import rocks_of, within
-from cases.schema.joint_set import JointSet
-from cases.schema.plane import IntactRock
-from cases.schema.rock_mass import RockMass
-from cases.spectrum import LEAST_BLOCKS, highest_frequency
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material import effective_medium
+from jointwave.cases.material.effective_medium import compliant, intact, joints_alone
+from jointwave.cases.material.elastic import shear_modulus
+from jointwave.cases.material.rigid_fit import nearest_stiffness
+from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.lattice import by_direction
+from jointwave.cases.partition.regions import rocks_of, within
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.plane import IntactRock
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.spectrum import LEAST_BLOCKS, highest_frequency
 
 #: Sine of the angle up to which a contact lies along joints.
 PARALLEL = 1e-9

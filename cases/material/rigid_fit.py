@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.material.effective_medium import JointSet, opening, sliding
+from jointwave.cases.material.effective_medium import JointSet, opening, sliding
 
 LEAST = 1e-7  # weight of the fit's own norm
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.material.elastic import speeds_from_modulus
+from jointwave.cases.material.elastic import speeds_from_modulus
 
 if TYPE_CHECKING:
-    from cases.schema.plane import IntactRock
+    from jointwave.cases.schema.plane import IntactRock
 
 Values = float | np.ndarray
 

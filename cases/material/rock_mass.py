@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.partition.blocks import Partition
-from cases.schema.plane import IntactRock
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.schema.plane import IntactRock
 
 
 class Inertia(NamedTuple):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.material.elastic import (
+from jointwave.cases.material.elastic import (
     equivalent_modulus,
     joint_stiffness,
     modulus_from_speeds,
@@ -13,8 +13,8 @@ from cases.material.elastic import (
     rigid_block_stiffness,
     shear_modulus,
 )
-from cases.schema.scene import Scene
-from cases.schema.tables import Rock
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.schema.tables import Rock
 
 
 class RockMass(NamedTuple):

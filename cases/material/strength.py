@@ -6,9 +6,9 @@ from functools import reduce
 
 import numpy as np
 
-from cases.schema.joint import PARTS, UNLIMITED, JointLaw
-from cases.schema.law_part import tangent
-from cases.schema.scene import Scene
+from jointwave.cases.schema.joint import PARTS, UNLIMITED, JointLaw
+from jointwave.cases.schema.law_part import tangent
+from jointwave.cases.schema.scene import Scene
 
 #: The keys of slip: without them no joint has that effect.
 SLIP = ("friction_angle", "cohesion", "residual_cohesion")

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.partition.blocks import BoundaryEdges, Contacts
-from cases.partition.polygons import moments
-from cases.partition.subdivision import OUTSIDE, NonConvex, Subdivision
+from jointwave.cases.partition.blocks import BoundaryEdges, Contacts
+from jointwave.cases.partition.polygons import moments
+from jointwave.cases.partition.subdivision import OUTSIDE, NonConvex, Subdivision
 
 #: Sine of the angle between edges below which they are one side of a block.
 STRAIGHT = 1e-9

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.gmsh_file import MeshError, read_tagged
-from cases.partition.subdivision import NO_SET, OUTSIDE, Subdivision
+from jointwave.cases.gmsh_file import MeshError, read_tagged
+from jointwave.cases.partition.subdivision import NO_SET, OUTSIDE, Subdivision
 
 PREFIX = "joint"
 SAME = 1e-9  # of the mesh: vertices that are one

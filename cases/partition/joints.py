@@ -6,11 +6,11 @@ from math import cos, inf, radians, sin
 
 import numpy as np
 
-from cases.partition.lines import Lines
-from cases.partition.split import split
-from cases.partition.subdivision import OUTSIDE, PartitionError, Subdivision
-from cases.schema.joint_set import JointSet
-from cases.schema.region import REST, Region
+from jointwave.cases.partition.lines import Lines
+from jointwave.cases.partition.split import split
+from jointwave.cases.partition.subdivision import OUTSIDE, PartitionError, Subdivision
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.region import REST, Region
 
 #: Of the sets that one ends at, the signed number of the joint below each cell.
 Stops = dict[str, np.ndarray]

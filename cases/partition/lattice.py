@@ -16,15 +16,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.partition.joints import direction_of
-from cases.partition.outline import SIDES, Outline, corners_of, outline_of
-from cases.partition.regions import on_boundary, shapes, within
-from cases.schema.joint_set import JointSet
-from cases.schema.region import REST
+from jointwave.cases.errors import SceneError
+from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.outline import SIDES, Outline, corners_of, outline_of
+from jointwave.cases.partition.regions import on_boundary, shapes, within
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.region import REST
 
 if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
+    from jointwave.cases.schema.rock_mass import RockMass
 
 #: Blocks from a side to the nearest line, by the side's boundary condition.
 AT_SIDE = {"quiet": 0.5, "periodic": 0.0, "free": 1.0, "fixed": 1.0}

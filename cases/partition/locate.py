@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 import shapely
 
-from cases.partition.blocks import Partition
-from cases.partition.outline import TOLERANCE
-from cases.partition.polygons import owner
-from cases.partition.subdivision import OUTSIDE
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.partition.outline import TOLERANCE
+from jointwave.cases.partition.polygons import owner
+from jointwave.cases.partition.subdivision import OUTSIDE
 
 
 def block_at(partition: Partition, points: np.ndarray) -> np.ndarray:

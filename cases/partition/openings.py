@@ -4,10 +4,10 @@ of one block are joined again as far as they stay convex."""
 import numpy as np
 import shapely
 
-from cases.partition.convex import ConvexPieces
-from cases.partition.lines import one_line
-from cases.partition.split import split
-from cases.partition.subdivision import (
+from jointwave.cases.partition.convex import ConvexPieces
+from jointwave.cases.partition.lines import one_line
+from jointwave.cases.partition.split import split
+from jointwave.cases.partition.subdivision import (
     NO_SET,
     OUTSIDE,
     Halves,

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from cases.partition.subdivision import PartitionError
-from cases.schema.domain import Domain
+from jointwave.cases.partition.subdivision import PartitionError
+from jointwave.cases.schema.domain import Domain
 
 SIDES = ("left", "right", "bottom", "top", "outline")
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from cases.partition.blocks import Partition
-from cases.partition.outline import Outline, outline_of
-from cases.schema.domain import Domain
-from cases.schema.rock_mass import RockMass
-from cases.schema.sources import PlaneLoad
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.partition.outline import Outline, outline_of
+from jointwave.cases.schema.domain import Domain
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.sources import PlaneLoad
 
 #: Of the domain's size: tolerated distance of an edge from its line.
 BESIDE = 1e-6

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.partition.blocks import BoundaryEdges, Contacts, Partition
-from cases.partition.subdivision import NO_SET, PartitionError
+from jointwave.cases.partition.blocks import BoundaryEdges, Contacts, Partition
+from jointwave.cases.partition.subdivision import NO_SET, PartitionError
 
 if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
+    from jointwave.cases.schema.rock_mass import RockMass
 
 #: The sides that a periodic domain joins, and the axis across them.
 PAIRS = {"left": ("right", 0), "bottom": ("top", 1)}

@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from cases.partition.joints import direction_of
-from cases.partition.lines import one_line
-from cases.partition.openings import passed_by
-from cases.partition.outline import corners_of
-from cases.partition.split import split
-from cases.partition.subdivision import Subdivision
-from cases.schema.region import REST
+from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.lines import one_line
+from jointwave.cases.partition.openings import passed_by
+from jointwave.cases.partition.outline import corners_of
+from jointwave.cases.partition.split import split
+from jointwave.cases.partition.subdivision import Subdivision
+from jointwave.cases.schema.region import REST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from cases.partition.outline import Outline
-    from cases.schema.joint_set import JointSet
-    from cases.schema.plane import IntactRock
-    from cases.schema.region import Region
-    from cases.schema.rock_mass import RockMass
+    from jointwave.cases.partition.outline import Outline
+    from jointwave.cases.schema.joint_set import JointSet
+    from jointwave.cases.schema.plane import IntactRock
+    from jointwave.cases.schema.region import Region
+    from jointwave.cases.schema.rock_mass import RockMass
 
 ROCK = -1  #: in place of a region: rock outside all regions
 FAR = 4.0  #: sizes of a domain: beyond all of it

@@ -6,23 +6,23 @@ from itertools import combinations
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.partition import assemble
-from cases.partition.blocks import BoundaryEdges, Partition
-from cases.partition.given import subdivision_of
-from cases.partition.joints import cut_by_sets, direction_of
-from cases.partition.openings import check_convex, taken_out
-from cases.partition.outline import SIDES, Outline, outline_of
-from cases.partition.periodic import across_periodic
-from cases.partition.polygons import moments
-from cases.partition.regions import cut_into_regions
-from cases.partition.slivers import without_slivers
-from cases.partition.subdivision import PartitionError, Sliver, Subdivision
-from cases.schema.domain import Domain
-from cases.schema.joint_set import JointSet
-from cases.schema.region import Region
-from cases.schema.rock_mass import RockMass
-from cases.size import LIMIT, memory, spoken
+from jointwave.cases.errors import SceneError
+from jointwave.cases.partition import assemble
+from jointwave.cases.partition.blocks import BoundaryEdges, Partition
+from jointwave.cases.partition.given import subdivision_of
+from jointwave.cases.partition.joints import cut_by_sets, direction_of
+from jointwave.cases.partition.openings import check_convex, taken_out
+from jointwave.cases.partition.outline import SIDES, Outline, outline_of
+from jointwave.cases.partition.periodic import across_periodic
+from jointwave.cases.partition.polygons import moments
+from jointwave.cases.partition.regions import cut_into_regions
+from jointwave.cases.partition.slivers import without_slivers
+from jointwave.cases.partition.subdivision import PartitionError, Sliver, Subdivision
+from jointwave.cases.schema.domain import Domain
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.region import Region
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.size import LIMIT, memory, spoken
 
 #: Default least width of a block over the smallest spacing, or the size of the domain without one.
 THIN = 1e-2

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from cases.partition.assemble import Rings, rings
-from cases.partition.convex import union_is_convex
-from cases.partition.lines import one_line
-from cases.partition.polygons import least_angles, widths
-from cases.partition.split import split
-from cases.partition.subdivision import OUTSIDE, Sliver, Subdivision, joined
+from jointwave.cases.partition.assemble import Rings, rings
+from jointwave.cases.partition.convex import union_is_convex
+from jointwave.cases.partition.lines import one_line
+from jointwave.cases.partition.polygons import least_angles, widths
+from jointwave.cases.partition.split import split
+from jointwave.cases.partition.subdivision import OUTSIDE, Sliver, Subdivision, joined
 
 #: Cuts of a sliver, at most: parts that made slivers of neighbours could pass round for ever.
 PARTS = 4

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.partition.lines import Lines
-from cases.partition.subdivision import NO_SET, OUTSIDE, Sliver, Subdivision
+from jointwave.cases.partition.lines import Lines
+from jointwave.cases.partition.subdivision import NO_SET, OUTSIDE, Sliver, Subdivision
 
 
 class Pieces(NamedTuple):

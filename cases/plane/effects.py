@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from cases.effects import (
+from jointwave.cases.effects import (
     SLIPS,
     STICKS,
     Effect,
@@ -15,11 +15,11 @@ from cases.effects import (
     of_fields,
     of_ledger,
 )
-from cases.schema.joint import PARTS
+from jointwave.cases.schema.joint import PARTS
 
 if TYPE_CHECKING:
-    from cases.schema.joint_set import JointSet
-    from cases.schema.rock_mass import RockMass
+    from jointwave.cases.schema.joint_set import JointSet
+    from jointwave.cases.schema.rock_mass import RockMass
 
 SIDES = ("quiet", "fixed", "periodic")
 

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
-from cases.schema.discretisation import check_discretisation, check_scheme
-from cases.schema.joint import ACROSS, JointLaw
-from cases.schema.plausible import INTACT, meant
-from cases.schema.segment import Segment, alone, check_segments, regions
-from cases.schema.shared_checks import (
+from jointwave.cases.schema.discretisation import check_discretisation, check_scheme
+from jointwave.cases.schema.joint import ACROSS, JointLaw
+from jointwave.cases.schema.plausible import INTACT, meant
+from jointwave.cases.schema.segment import Segment, alone, check_segments, regions
+from jointwave.cases.schema.shared_checks import (
     SNAP,
     check_fields,
     check_quality,
@@ -18,11 +18,11 @@ from cases.schema.shared_checks import (
     check_time,
     rounded_up,
 )
-from cases.schema.tables import PAIRS, check_given_once
-from cases.schema.values import check_all, contradiction, is_extreme
+from jointwave.cases.schema.tables import PAIRS, check_given_once
+from jointwave.cases.schema.values import check_all, contradiction, is_extreme
 
 if TYPE_CHECKING:
-    from cases.schema.scene import Scene
+    from jointwave.cases.schema.scene import Scene
 
 
 def check(scene: Scene) -> None:
@@ -33,7 +33,7 @@ def check(scene: Scene) -> None:
 def _check_layers(scene: Scene) -> None:
     if not scene.soft_layers:
         return
-    from cases.material.contacts import contacts
+    from jointwave.cases.material.contacts import contacts
 
     pillar, seen, joints = scene.pillar, set(), contacts(scene)[1:-1]
     for i, layer in enumerate(scene.soft_layers):
@@ -67,7 +67,7 @@ def _check_receivers(scene: Scene) -> None:
 
 
 def _check_rock(scene: Scene) -> None:
-    from cases.material.stiffness import equivalent_constants
+    from jointwave.cases.material.stiffness import equivalent_constants
 
     check_given_once("rock", scene.rock, "joints", scene.joints)
     intact, given = scene.rock.intact_modulus, equivalent_constants(scene.rock)
@@ -181,7 +181,7 @@ def _check_fracture(scene: Scene) -> None:
     laws = [scene.joints, *scene.layers]
     if all(law.tensile_strength is None for law in laws):
         return
-    from cases.material.calibrate import calibrate
+    from jointwave.cases.material.calibrate import calibrate
 
     p = calibrate(scene)
     for i, (law, stiffness) in enumerate(

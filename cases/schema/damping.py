@@ -6,8 +6,8 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from cases.schema.pulse import Pulse, shortest_period
-from cases.schema.values import NonNegative, Positive, Table, contradiction
+from jointwave.cases.schema.pulse import Pulse, shortest_period
+from jointwave.cases.schema.values import NonNegative, Positive, Table, contradiction
 
 WIDEST = 1e4  # of a band: its ends, one over the other
 

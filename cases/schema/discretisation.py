@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cases.schema.joint import PARTS
-from cases.schema.values import contradiction
+from jointwave.cases.schema.joint import PARTS
+from jointwave.cases.schema.values import contradiction
 
 if TYPE_CHECKING:
-    from cases.schema.joint import SoftLayer
-    from cases.schema.scene import Scene
+    from jointwave.cases.schema.joint import SoftLayer
+    from jointwave.cases.schema.scene import Scene
 
 
 #: Forces that depend on velocity or history, for which drifts backwards in time are wrong, and
@@ -31,7 +31,7 @@ def check_scheme(scene: Scene) -> None:
     """Raise the first contradiction between the scheme and the effects of the scene."""
     if scene.numerics.dem.scheme == "leapfrog":
         return
-    from cases.effects import active_effects  # it needs the Scene, which needs this check
+    from jointwave.cases.effects import active_effects  # it needs the Scene, which needs this check
 
     for name in active_effects(scene):
         if name in BEYOND:

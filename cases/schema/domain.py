@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
-from cases.schema.values import Point, Positive, Table, contradiction, named_file
+from jointwave.cases.schema.values import Point, Positive, Table, contradiction, named_file
 
 if TYPE_CHECKING:
-    from cases.partition.given import GivenRock
+    from jointwave.cases.partition.given import GivenRock
 
 
 class Domain(Table):
@@ -45,8 +45,8 @@ class Domain(Table):
         return self
 
     def _read(self) -> "GivenRock":
-        from cases.gmsh_file import MeshError
-        from cases.partition.given import read_rock
+        from jointwave.cases.gmsh_file import MeshError
+        from jointwave.cases.partition.given import read_rock
 
         assert self._mesh_path is not None
         try:

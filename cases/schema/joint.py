@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from cases.schema.law_part import LawPart, tangent
-from cases.schema.values import NonNegative, Positive, Table, contradiction
+from jointwave.cases.schema.law_part import LawPart, tangent
+from jointwave.cases.schema.values import NonNegative, Positive, Table, contradiction
 
 OF_ALL_JOINTS = ("contact_points", "point_rule")
 #: Strength (Pa) and opening (m) of a joint that never fails beside joints that do, and closure (m)

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from cases.schema.joint import Joints
-from cases.schema.shared_checks import SNAP, check_strength, rounded_up
-from cases.schema.values import Point, Positive, Words, contradiction
+from jointwave.cases.schema.joint import Joints
+from jointwave.cases.schema.shared_checks import SNAP, check_strength, rounded_up
+from jointwave.cases.schema.values import Point, Positive, Words, contradiction
 
 if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
+    from jointwave.cases.schema.rock_mass import RockMass
 
 
 class JointSet(Joints):
@@ -34,7 +34,7 @@ class JointSet(Joints):
 
 def check_sets(scene: RockMass) -> None:
     """Raise the first contradiction of the joint sets."""
-    from cases.partition.joints import in_order
+    from jointwave.cases.partition.joints import in_order
 
     sets = scene.joint_sets
     for i, one in enumerate(sets):

@@ -9,9 +9,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from cases.schema.pulse import Load
-from cases.schema.tables import CONSTANTS, SPEEDS
-from cases.schema.values import contradiction
+from jointwave.cases.schema.pulse import Load
+from jointwave.cases.schema.tables import CONSTANTS, SPEEDS
+from jointwave.cases.schema.values import contradiction
 
 BLOCKS = 40  # a wavelength of the load's highest frequency, where no block size is given
 WITHOUT_LOAD = 100  # blocks of the pillar where nothing acts
@@ -84,7 +84,7 @@ def _whole(length: float, block: float) -> float:
 
 def _block(scene: dict[str, Any], speed: float, context: Any) -> float:
     """Return the block size that resolves the load in rock of this bar speed (m/s), m."""
-    from cases.spectrum import frequency_of
+    from jointwave.cases.spectrum import frequency_of
 
     try:
         load = Load.model_validate(scene.get("load"), context=context)

@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_ori
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from cases.schema.scene import Scene
+from jointwave.cases.schema.scene import Scene
 
 NOT_A_KEY = {"name"}  # of a scene: only [[variants]] have one
 

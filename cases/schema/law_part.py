@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
-    from cases.schema.joint import JointLaw
+    from jointwave.cases.schema.joint import JointLaw
 
 
 class LawPart(NamedTuple):

@@ -4,8 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from cases.schema.damping import Attenuating
-from cases.schema.values import (
+from jointwave.cases.schema.damping import Attenuating
+from jointwave.cases.schema.values import (
     DirectionInPlane,
     NonNegative,
     Number,

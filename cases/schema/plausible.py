@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from math import atan, degrees, inf, radians
 from typing import Any, NamedTuple
 
-from cases.scene_type import AnyScene
+from jointwave.cases.scene_type import AnyScene
 
 #: Other units in which values are often given, and their factors to SI.
 Units = tuple[tuple[str, float], ...]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
-from cases.schema.values import (
+from jointwave.cases.schema.values import (
     Amplitude,
     Direction,
     NonNegative,
@@ -20,7 +20,7 @@ from cases.schema.values import (
 )
 
 if TYPE_CHECKING:
-    from cases.histories import Recorded
+    from jointwave.cases.histories import Recorded
 
 
 #: Required and optional keys of each shape.
@@ -76,7 +76,7 @@ class Pulse(Table):
     @model_validator(mode="after")
     def _read_history(self, info: ValidationInfo) -> "Pulse":
         if self.file is not None:
-            from cases.records import read_history  # with numpy
+            from jointwave.cases.records import read_history  # with numpy
 
             folder, anywhere = folder_of(info, self.file_key)
             try:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field, model_validator
 
-from cases.schema.plane import IntactRock
-from cases.schema.values import (
+from jointwave.cases.schema.plane import IntactRock
+from jointwave.cases.schema.values import (
     Point,
     Poisson,
     Positive,
@@ -18,8 +18,8 @@ from cases.schema.values import (
 )
 
 if TYPE_CHECKING:
-    from cases.partition.outline import Outline
-    from cases.schema.rock_mass import RockMass
+    from jointwave.cases.partition.outline import Outline
+    from jointwave.cases.schema.rock_mass import RockMass
 
 #: Name, for joint sets, of rock outside all regions.
 REST = "rock"
@@ -54,7 +54,7 @@ class Region(Table):
 
 def check_regions(scene: RockMass, outline: Outline) -> None:
     """Raise the first contradiction of the regions, and of the joint sets that name them."""
-    from cases.partition.regions import shapes
+    from jointwave.cases.partition.regions import shapes
 
     names = [one.name for one in scene.regions]
     for i, name in enumerate(names):
@@ -102,7 +102,7 @@ def _check_outlines(scene: RockMass, outline: Outline) -> None:
 
 def _check_damping(scene: RockMass) -> None:
     """Refuse dashpots by a damping ratio between blocks of no one density."""
-    from cases.partition.regions import rocks_beside
+    from jointwave.cases.partition.regions import rocks_beside
 
     for i, one in enumerate(scene.joint_sets):
         if one.damping_ratio and len({rock.density for rock in rocks_beside(scene, one)}) > 1:

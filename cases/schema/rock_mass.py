@@ -8,10 +8,10 @@ from typing import ClassVar
 
 from pydantic import PrivateAttr, model_validator
 
-from cases.schema.damping import Damping
-from cases.schema.domain import Domain
-from cases.schema.joint_set import JointSet
-from cases.schema.plane import (
+from jointwave.cases.schema.damping import Damping
+from jointwave.cases.schema.domain import Domain
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.plane import (
     Boundaries,
     GravityInPlane,
     IntactRock,
@@ -19,12 +19,12 @@ from cases.schema.plane import (
     RecordInPlane,
     StressInPlane,
 )
-from cases.schema.pulse import shortest_period
-from cases.schema.region import Region
-from cases.schema.rock_mass_checks import check
-from cases.schema.sources import PlaneLoad, Wave
-from cases.schema.tables import Time
-from cases.schema.values import Pair, Positive, Table, Words
+from jointwave.cases.schema.pulse import shortest_period
+from jointwave.cases.schema.region import Region
+from jointwave.cases.schema.rock_mass_checks import check
+from jointwave.cases.schema.sources import PlaneLoad, Wave
+from jointwave.cases.schema.tables import Time
+from jointwave.cases.schema.values import Pair, Positive, Table, Words
 
 
 class RockMass(Table):

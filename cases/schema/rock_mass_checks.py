@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.schema.joint_set import check_sets
-from cases.schema.region import check_regions
-from cases.schema.shared_checks import check_fields, check_quality, check_time
-from cases.schema.tables import LEAN
-from cases.schema.values import check_all, contradiction
+from jointwave.cases.schema.joint_set import check_sets
+from jointwave.cases.schema.region import check_regions
+from jointwave.cases.schema.shared_checks import check_fields, check_quality, check_time
+from jointwave.cases.schema.tables import LEAN
+from jointwave.cases.schema.values import check_all, contradiction
 
 if TYPE_CHECKING:
-    from cases.partition.outline import Outline
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.sources import PlaneLoad
+    from jointwave.cases.partition.outline import Outline
+    from jointwave.cases.schema.rock_mass import RockMass
+    from jointwave.cases.schema.sources import PlaneLoad
 
 GRAZING = 1e-6  #: cosine below which a wave travels along a side or a joint
 PARTNER = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
@@ -80,8 +80,8 @@ def _check_mesh(scene: RockMass, outline: Outline) -> None:
 
 
 def _outline(scene: RockMass) -> Outline:
-    from cases.partition.outline import outline_of
-    from cases.partition.subdivision import PartitionError
+    from jointwave.cases.partition.outline import outline_of
+    from jointwave.cases.partition.subdivision import PartitionError
 
     try:
         return outline_of(scene.domain)
@@ -92,9 +92,9 @@ def _outline(scene: RockMass) -> Outline:
 def _check_cuts(scene: RockMass, outline: Outline) -> None:
     """Refuse joints that miss the domain. Those of spacings that fit into it do not, and sets that
     end at others are known when they are cut."""
-    from cases.partition.joints import cut_by_sets, direction_of, widest
-    from cases.partition.regions import cut_into_regions
-    from cases.partition.subdivision import PartitionError, Subdivision
+    from jointwave.cases.partition.joints import cut_by_sets, direction_of, widest
+    from jointwave.cases.partition.regions import cut_into_regions
+    from jointwave.cases.partition.subdivision import PartitionError, Subdivision
 
     whole = Subdivision.of_polygon(outline.hull)
     whole = cut_into_regions(whole, scene.regions, outline.tolerance)

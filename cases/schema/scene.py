@@ -9,13 +9,13 @@ from typing import Any, ClassVar
 
 from pydantic import PrivateAttr, ValidationInfo, model_validator
 
-from cases.schema.consistency import check
-from cases.schema.damping import Damping
-from cases.schema.joint import Joints, SoftLayer
-from cases.schema.joints_at_places import spelled_out
-from cases.schema.pulse import NO_LOAD, Load, shortest_period
-from cases.schema.segment import Segment, regions
-from cases.schema.tables import (
+from jointwave.cases.schema.consistency import check
+from jointwave.cases.schema.damping import Damping
+from jointwave.cases.schema.joint import Joints, SoftLayer
+from jointwave.cases.schema.joints_at_places import spelled_out
+from jointwave.cases.schema.pulse import NO_LOAD, Load, shortest_period
+from jointwave.cases.schema.segment import Segment, regions
+from jointwave.cases.schema.tables import (
     LEAN,
     Ends,
     Gravity,
@@ -28,7 +28,7 @@ from cases.schema.tables import (
     Scatter,
     Time,
 )
-from cases.schema.values import Pair, Positive, Table, Words
+from jointwave.cases.schema.values import Pair, Positive, Table, Words
 
 
 class Scene(Table):

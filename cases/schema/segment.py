@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 from pydantic import Field, model_validator
 
-from cases.schema.tables import (
+from jointwave.cases.schema.tables import (
     CONSTANTS,
     MOST_BLOCKS,
     PAIRS,
@@ -18,7 +18,7 @@ from cases.schema.tables import (
     given_pairs,
     wrong_speeds,
 )
-from cases.schema.values import (
+from jointwave.cases.schema.values import (
     NonNegative,
     Poisson,
     Positive,
@@ -29,7 +29,7 @@ from cases.schema.values import (
 )
 
 if TYPE_CHECKING:
-    from cases.schema.scene import Scene
+    from jointwave.cases.schema.scene import Scene
 
 CLOSE = 1e-6  # of a block: rounding of lengths
 #: Keys that an intact segment does not take.
@@ -171,7 +171,7 @@ def check_segments(scene: Scene) -> None:
 
 
 def _check_intact(table: str, one: Segment, scene: Scene) -> None:
-    from cases.material.stiffness import equivalent_constants
+    from jointwave.cases.material.stiffness import equivalent_constants
 
     rock = one.rock(scene.rock)
     if rock.intact_modulus is None:
@@ -186,7 +186,7 @@ def _check_intact(table: str, one: Segment, scene: Scene) -> None:
 
 def _beside(scene: Scene) -> Iterator[tuple[str, object, str]]:
     """Yield the keys that segments exclude: key, value (None if absent), reason."""
-    from cases.effects import off_axis
+    from jointwave.cases.effects import off_axis
 
     numerics, why = scene.numerics, off_axis(scene)
     table, gives = ("segments", len(scene.segments)) if scene.segments else ("scatter", "given")
@@ -206,7 +206,7 @@ def _beside(scene: Scene) -> Iterator[tuple[str, object, str]]:
 
 def _of_layers(scene: Scene) -> Iterator[tuple[str, object, str]]:
     """Yield the same of soft layers, where these are on joints."""
-    from cases.material.contacts import contacts, welds
+    from jointwave.cases.material.contacts import contacts, welds
 
     inner, no_joint = contacts(scene)[1:-1], welds(scene)
     for i, layer in enumerate(scene.soft_layers):

@@ -5,13 +5,13 @@ from __future__ import annotations
 from math import ceil, floor, log10
 from typing import TYPE_CHECKING
 
-from cases.scene_type import AnyScene
-from cases.schema.joint import PARTS
-from cases.schema.pulse import shortest_period
-from cases.schema.values import contradiction
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.joint import PARTS
+from jointwave.cases.schema.pulse import shortest_period
+from jointwave.cases.schema.values import contradiction
 
 if TYPE_CHECKING:
-    from cases.schema.joint import JointLaw
+    from jointwave.cases.schema.joint import JointLaw
 
 MOST_SAMPLES = 10_000_000  # 80 MB for each section, point and energy term
 MOST_SNAPSHOTS = 10_000

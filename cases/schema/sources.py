@@ -4,8 +4,8 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from cases.schema.pulse import Pulse
-from cases.schema.values import DirectionInPlane, Number, Point, contradiction_here
+from jointwave.cases.schema.pulse import Pulse
+from jointwave.cases.schema.values import DirectionInPlane, Number, Point, contradiction_here
 
 Side = Literal["left", "right", "bottom", "top", "outline"]
 

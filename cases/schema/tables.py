@@ -5,8 +5,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
-from cases.schema.damping import Attenuating
-from cases.schema.values import (
+from jointwave.cases.schema.damping import Attenuating
+from jointwave.cases.schema.values import (
     Direction,
     NonNegative,
     Number,

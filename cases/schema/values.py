@@ -8,7 +8,7 @@ from typing import Annotated
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInfo
 from pydantic_core import PydanticCustomError
 
-from cases.files import beside
+from jointwave.cases.files import beside
 
 #: Characters excluded from texts: control characters (C0, DEL, C1), direction marks, and those
 #: invalid in XML. Tabs and line ends are allowed.

@@ -5,21 +5,21 @@ from collections.abc import Iterator
 from math import isnan
 from typing import Any
 
-from compare.cli.frames import show_frame
-from compare.cli.terminal import print_json, say, say_warnings, show_table
-from compare.engines import ENGINES
-from compare.figures.tables import alignment_frame, reading_frame
-from compare.misfit.alignment import AlignedCurve
-from compare.misfit.differences import STRESS, VELOCITY
-from compare.misfit.metrics import Worst
-from compare.misfit.pairs import GIVEN, Comparison
-from compare.misfit.places import Place
-from compare.report.tables import distance_table, reason_table, run_table
-from compare.report.verdict import EngineScore, engine_scores, score
-from compare.solvers.incident import side_error
-from compare.solvers.record import Kind
-from compare.text import in_seconds, mean_and_worst, percent
-from results.dataset import energy_residual, open_ledger
+from jointwave.compare.cli.frames import show_frame
+from jointwave.compare.cli.terminal import print_json, say, say_warnings, show_table
+from jointwave.compare.engines import ENGINES
+from jointwave.compare.figures.tables import alignment_frame, reading_frame
+from jointwave.compare.misfit.alignment import AlignedCurve
+from jointwave.compare.misfit.differences import STRESS, VELOCITY
+from jointwave.compare.misfit.metrics import Worst
+from jointwave.compare.misfit.pairs import GIVEN, Comparison
+from jointwave.compare.misfit.places import Place
+from jointwave.compare.report.tables import distance_table, reason_table, run_table
+from jointwave.compare.report.verdict import EngineScore, engine_scores, score
+from jointwave.compare.solvers.incident import side_error
+from jointwave.compare.solvers.record import Kind
+from jointwave.compare.text import in_seconds, mean_and_worst, percent
+from jointwave.results.dataset import energy_residual, open_ledger
 
 MOST_LINES = 10  # of the answer
 HINT = "all misfits, and solutions that do not apply: --all; as JSON: --json"

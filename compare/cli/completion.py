@@ -11,9 +11,9 @@ from typing import Any, Literal, get_args, get_origin
 
 import typer
 
-from cases.files import read_toml
-from compare.scenes import find, names
-from compare.studies import IN_CODE, SHIPPED
+from jointwave.cases.files import read_toml
+from jointwave.compare.scenes import find, names
+from jointwave.compare.studies import IN_CODE, SHIPPED
 
 LARGEST_FILE = 1_000_000  # bytes: larger files take too long to read at a key press
 
@@ -37,7 +37,7 @@ def variants(context: typer.Context, incomplete: str) -> list[str]:
 
 def settings(incomplete: str) -> list[str]:
     """Return keys of a scene, `KEY=`; once the key is there its values, where they are few."""
-    from cases.schema.keys import keys
+    from jointwave.cases.schema.keys import keys
 
     known = {key: f for key, f in keys() if not key.startswith(("soft_layers.", "segments."))}
     key, equals, _ = incomplete.partition("=")
@@ -50,7 +50,7 @@ def settings(incomplete: str) -> list[str]:
 
 def models(incomplete: str) -> list[str]:
     """Return models of the continuum and exact solutions."""
-    from compare.runs.jobs import models_known
+    from jointwave.compare.runs.jobs import models_known
 
     return _begun(models_known(), incomplete)
 

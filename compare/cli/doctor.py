@@ -15,14 +15,14 @@ from math import nan
 from time import perf_counter
 from typing import NamedTuple
 
-import cases
-from cases.gmsh_file import INSTALL as GMSH
-from compare.cli.terminal import print_json, say, show_table
-from compare.engines import solve
-from compare.misfit.metrics import misfit
-from compare.scenes import SHIPPED
-from compare.solvers.continuum import INSTALL
-from numerics import jit
+from jointwave import cases
+from jointwave.cases.gmsh_file import INSTALL as GMSH
+from jointwave.compare.cli.terminal import print_json, say, show_table
+from jointwave.compare.engines import solve
+from jointwave.compare.misfit.metrics import misfit
+from jointwave.compare.scenes import SHIPPED
+from jointwave.compare.solvers.continuum import INSTALL
+from jointwave.numerics import jit
 
 SCENE = SHIPPED / "guo-li-2002" / "fig-03.toml"
 #: The self-checks: pairs of an engine and its exact solution, with the library that each needs.

@@ -5,21 +5,21 @@ from itertools import pairwise
 from math import isfinite
 from typing import Any
 
-from cases.effects import effects
-from cases.errors import SceneError
-from cases.material.block_summary import block_summary
-from cases.material.calibrate import calibrate
-from cases.scene_type import AnyScene
-from cases.schema.scene import Scene
-from cases.size import spoken
-from compare.cli.terminal import say, show_table
-from compare.engines import ENGINES, solver
-from compare.misfit.ranking import applicable, reference_of
-from compare.readings.entering_wave import entering_waves
-from compare.runs import timings
-from compare.solvers.properties import least_lever, spans, speeds
-from compare.solvers.record import Prepared
-from compare.studies.step_cost import step_costs, with_every_effect
+from jointwave.cases.effects import effects
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.block_summary import block_summary
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.size import spoken
+from jointwave.compare.cli.terminal import say, show_table
+from jointwave.compare.engines import ENGINES, solver
+from jointwave.compare.misfit.ranking import applicable, reference_of
+from jointwave.compare.readings.entering_wave import entering_waves
+from jointwave.compare.runs import timings
+from jointwave.compare.solvers.properties import least_lever, spans, speeds
+from jointwave.compare.solvers.record import Prepared
+from jointwave.compare.studies.step_cost import step_costs, with_every_effect
 
 ROUND_OFF = 1e-6  # of a stiffness that is fitted
 

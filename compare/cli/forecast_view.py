@@ -3,9 +3,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 
-from cases.size import spoken
-from compare.cli.terminal import print_json, progress, say, show_table
-from compare.studies.forecast import UNKNOWN, Forecast, Part, Run, forecasts, total
+from jointwave.cases.size import spoken
+from jointwave.compare.cli.terminal import print_json, progress, say, show_table
+from jointwave.compare.studies.forecast import UNKNOWN, Forecast, Part, Run, forecasts, total
 
 COLUMNS = ["", "variant", "engine", "scheme", "steps", "size", "time", "memory"]
 

@@ -2,8 +2,8 @@
 
 import pandas as pd
 
-from compare.cli.terminal import say, show_numbers, show_table
-from compare.text import table_cell
+from jointwave.compare.cli.terminal import say, show_numbers, show_table
+from jointwave.compare.text import table_cell
 
 LONGEST = 40  # characters of a cell that is not wrapped
 

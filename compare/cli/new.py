@@ -4,10 +4,10 @@ import json
 from pathlib import Path
 from shlex import quote
 
-import cases
-from cases.errors import SceneError
-from compare.runs.output import create
-from compare.scenes import find, load
+from jointwave import cases
+from jointwave.cases.errors import SceneError
+from jointwave.compare.runs.output import create
+from jointwave.compare.scenes import find, load
 
 TEMPLATES = Path(__file__).parent / "templates"
 TITLE = "my-scene"  # of the templates

@@ -9,14 +9,14 @@ from typing import Annotated
 
 import typer
 
-from cases.errors import SceneError, all_of
-from cases.scene_type import AnyScene
-from compare import scenes
-from compare.cli import completion
-from compare.cli.terminal import say_warnings
-from compare.engines import selection
-from compare.runs.processes import started
-from compare.scenes import find
+from jointwave.cases.errors import SceneError, all_of
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare import scenes
+from jointwave.compare.cli import completion
+from jointwave.compare.cli.terminal import say_warnings
+from jointwave.compare.engines import selection
+from jointwave.compare.runs.processes import started
+from jointwave.compare.scenes import find
 
 app = typer.Typer(
     epilog="Start with: jointwave list, jointwave compare guo-li-2002/fig-03, jointwave report",
@@ -125,7 +125,7 @@ def load(
     scene: str, changes: list[str], variant: str | None, strict: bool = False
 ) -> list[AnyScene]:
     """Return a file's variants, or the one that is named, with `--set` applied, warned of."""
-    from cases.read import parse_override
+    from jointwave.cases.read import parse_override
 
     overrides, path = dict(parse_override(text) for text in changes), find(scene)
     if variant is None:
@@ -146,8 +146,8 @@ def warn(
     of : returns the lines of a scene; None: what the scene itself says. Raises SceneError of all
     lines.
     """
-    from cases.warnings import warnings
-    from compare.solvers.incident import side_warnings
+    from jointwave.cases.warnings import warnings
+    from jointwave.compare.solvers.incident import side_warnings
 
     found: dict[str, list[AnyScene]] = {}
     for scene in scenes:

@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from compare.cli.terminal import print_json, say, show_table
-from compare.studies.plan import Plan, PlannedRun
-from compare.studies.reference import Reference
-from compare.text import percent
+from jointwave.compare.cli.terminal import print_json, say, show_table
+from jointwave.compare.studies.plan import Plan, PlannedRun
+from jointwave.compare.studies.reference import Reference
+from jointwave.compare.text import percent
 
 
 def show_plans(found: list[Plan], as_json: bool) -> None:

@@ -7,12 +7,19 @@ from typing import Any
 
 import typer
 
-from cases.errors import InterruptedRun, SceneError, UnstableError, printable
-from compare.cli.commands import animation, experiments, fit, installation, scenes, solutions
-from compare.cli.options import app
-from compare.cli.start import SHOWN, drop_output, fault
-from compare.runs.checkpoint.signals import Ended, exit_code, watched
-from compare.runs.processes import Processes, started
+from jointwave.cases.errors import InterruptedRun, SceneError, UnstableError, printable
+from jointwave.compare.cli.commands import (
+    animation,
+    experiments,
+    fit,
+    installation,
+    scenes,
+    solutions,
+)
+from jointwave.compare.cli.options import app
+from jointwave.compare.cli.start import SHOWN, drop_output, fault
+from jointwave.compare.runs.checkpoint.signals import Ended, exit_code, watched
+from jointwave.compare.runs.processes import Processes, started
 
 #: Their import puts the commands into the app.
 COMMANDS = (scenes, solutions, fit, experiments, animation, installation)

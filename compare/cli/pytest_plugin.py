@@ -41,8 +41,8 @@ def pytest_configure_node(node: Any) -> None:
 
 def _once(file: Path, make: Callable[[], Any]) -> Any:
     """Return the result that the first worker that asks makes and writes, for which others wait."""
-    from compare.runs.output import write_dataset
-    from results.netcdf import load_netcdf
+    from jointwave.compare.runs.output import write_dataset
+    from jointwave.results.netcdf import load_netcdf
 
     with file.with_suffix(".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -96,8 +96,8 @@ class SceneFile(pytest.File):
         self.results.clear()
 
     def collect(self) -> Iterator["PairItem"]:
-        from cases import SceneError
-        from compare.scenes import load
+        from jointwave.cases import SceneError
+        from jointwave.compare.scenes import load
 
         try:
             scenes = load(self.path)
@@ -132,8 +132,8 @@ class PairItem(pytest.Item):
         if self.reason:
             raise Misfit(self.reason)
         self._warn()
-        from cases.errors import SceneError, UnstableError
-        from compare.misfit.metrics import worst
+        from jointwave.cases.errors import SceneError, UnstableError
+        from jointwave.compare.misfit.metrics import worst
 
         try:
             one, other = (self._solved(name) for name in self.pair.split(" ~ "))
@@ -151,16 +151,16 @@ class PairItem(pytest.Item):
 
     def _warn(self) -> None:
         """Warn of what the scene hardly means; an error where pytest takes warnings for errors."""
-        from cases.warnings import warnings
-        from compare.solvers.incident import side_warnings
+        from jointwave.cases.warnings import warnings
+        from jointwave.compare.solvers.incident import side_warnings
 
         for line in [*warnings(self.scene), *side_warnings(self.scene)]:
             warn(SceneWarning(f"{self.scene.where}: {line}"), stacklevel=1)
 
     def _solved(self, name: str):
         """Return a result; each engine runs once for the same scene of a file, in one worker."""
-        from compare.engines import solve
-        from results.dataset import scene_hash
+        from jointwave.compare.engines import solve
+        from jointwave.results.dataset import scene_hash
 
         assert isinstance(self.parent, SceneFile)
         results, key = self.parent.results, (scene_hash(self.scene), name)
@@ -183,7 +183,7 @@ class PairItem(pytest.Item):
 
 
 def _reason(pair: str, scene) -> str:
-    from compare.engines import applies
+    from jointwave.compare.engines import applies
 
     answers = {name: applies(name, scene) for name in pair.split(" ~ ")}
     return "; ".join(f"{name}: {answer.reason}" for name, answer in answers.items() if not answer)

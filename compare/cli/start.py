@@ -17,10 +17,10 @@ def main() -> None:
     os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")
     _open_streams()
     try:
-        from compare.runs.memory import collect_rarely
+        from jointwave.compare.runs.memory import collect_rarely
 
         collect_rarely()  # a third of a short run
-        from compare.cli.program import main as run
+        from jointwave.compare.cli.program import main as run
 
         run()
     except KeyboardInterrupt:  # before the program has begun to watch for signals

@@ -4,17 +4,17 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 
-from compare.cli.forecast_view import show_runs
-from compare.cli.frames import show_frame
-from compare.cli.options import warn
-from compare.cli.terminal import print_json, progress, say
-from compare.engines import Progress
-from compare.runs.checkpoint.lock import locked
-from compare.runs.processes import started
-from compare.studies.store import Pool, on_pool, plain
-from compare.studies.summary import Summary
-from compare.studies.sweep import Sweep, Work, run
-from compare.studies.sweep_table import summarise
+from jointwave.compare.cli.forecast_view import show_runs
+from jointwave.compare.cli.frames import show_frame
+from jointwave.compare.cli.options import warn
+from jointwave.compare.cli.terminal import print_json, progress, say
+from jointwave.compare.engines import Progress
+from jointwave.compare.runs.checkpoint.lock import locked
+from jointwave.compare.runs.processes import started
+from jointwave.compare.studies.store import Pool, on_pool, plain
+from jointwave.compare.studies.summary import Summary
+from jointwave.compare.studies.sweep import Sweep, Work, run
+from jointwave.compare.studies.sweep_table import summarise
 
 
 def run_and_show(

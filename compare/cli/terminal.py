@@ -14,8 +14,8 @@ from threading import TIMEOUT_MAX, Event, Thread
 from time import monotonic
 from typing import Any
 
-from cases.errors import SceneError, printable
-from cases.files import is_number
+from jointwave.cases.errors import SceneError, printable
+from jointwave.cases.files import is_number
 
 EVERY = "JOINTWAVE_PROGRESS"  # in the environment: s from one line to the next, 0 for none
 WIDEST, UNFOLDED = 220, 10_000  # of a pipe, which has no width, and of a table of numbers

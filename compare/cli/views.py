@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cases.scene_type import AnyScene
-from compare.cli.terminal import print_json, say, say_warnings, show_numbers, show_table
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.cli.terminal import print_json, say, say_warnings, show_numbers, show_table
 
 if TYPE_CHECKING:  # each of them imports what its command runs
-    from compare.report.report import Report
-    from compare.runs.run import Done
+    from jointwave.compare.report.report import Report
+    from jointwave.compare.runs.run import Done
 
 MOST_PIECES = 8  # in a line
 

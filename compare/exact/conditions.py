@@ -1,12 +1,12 @@
 """The excitation of a scene, and the physics that an exact solution of it must cover."""
 
-from cases.effects import is_spatial
-from cases.histories import LoadHistory
-from cases.loads import load_history, velocity_of
-from cases.material.calibrate import Properties, calibrate
-from cases.schema.joint import PARTS
-from cases.schema.scene import Scene
-from compare.solvers.record import YES, Answer, no
+from jointwave.cases.effects import is_spatial
+from jointwave.cases.histories import LoadHistory
+from jointwave.cases.loads import load_history, velocity_of
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.schema.joint import PARTS
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.solvers.record import YES, Answer, no
 
 #: Physics in groups, as `holds` names them.
 DAMPED = ("damped joints", "damped rock")

@@ -14,8 +14,8 @@ from math import ceil
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 
-from cases.histories import LoadHistory
-from cases.size import require
+from jointwave.cases.histories import LoadHistory
+from jointwave.cases.size import require
 
 NEGLIGIBLE = 1e-18  # of a propagator whose largest entries are about 1: below round-off
 NOISE = 64 * float(np.finfo(float).eps)  # of the twin, in each interval

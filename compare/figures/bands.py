@@ -9,13 +9,13 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from cases.errors import SceneError
-from compare.engines import in_order
-from compare.figures.export import blank
-from compare.figures.style import RC, WIDTH, style
-from compare.figures.units import UNITS
-from compare.misfit.places import Place, places_of
-from results.netcdf import load_netcdf
+from jointwave.cases.errors import SceneError
+from jointwave.compare.engines import in_order
+from jointwave.compare.figures.export import blank
+from jointwave.compare.figures.style import RC, WIDTH, style
+from jointwave.compare.figures.units import UNITS
+from jointwave.compare.misfit.places import Place, places_of
+from jointwave.results.netcdf import load_netcdf
 
 END = "-ensemble.nc"  # of the files of statistics, after the name of a result
 SEEN = ("stress", "velocity", "traction", "gap", "slip")  # of a result

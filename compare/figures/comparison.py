@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from compare.figures.charts.waveforms import draw_solutions
-from compare.figures.export import save
-from compare.figures.panels import curve_table
-from compare.figures.tables import alignment_frame, distance_frame, reading_frame
-from compare.misfit.pairs import Comparison
-from compare.runs.output import write_csv
+from jointwave.compare.figures.charts.waveforms import draw_solutions
+from jointwave.compare.figures.export import save
+from jointwave.compare.figures.panels import curve_table
+from jointwave.compare.figures.tables import alignment_frame, distance_frame, reading_frame
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.runs.output import write_csv
 
 NAME = "comparison"
 

@@ -11,8 +11,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from pandas import DataFrame
 
-from compare.figures.style import RC, WIDTH
-from compare.runs.output import write, write_csv
+from jointwave.compare.figures.style import RC, WIDTH
+from jointwave.compare.runs.output import write, write_csv
 
 DOTS = 160  # per inch of the PNG, and of images in the SVG and the PDF
 DIGITS = 6  # of the numbers behind a figure

@@ -6,7 +6,7 @@ from functools import cache
 from matplotlib import font_manager
 from matplotlib.ft2font import FT2Font
 
-from cases.errors import SceneError
+from jointwave.cases.errors import SceneError
 
 LATIN = "DejaVu Sans"
 #: Fonts with Chinese characters and TrueType outlines, which can be embedded in every format.

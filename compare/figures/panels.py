@@ -9,15 +9,15 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cases.scene_type import AnyScene
-from cases.schema.scene import Scene
-from compare.engines import in_order
-from compare.figures.units import UNITS
-from compare.misfit.metrics import motion
-from compare.misfit.pairs import Comparison
-from compare.misfit.places import Place, places_of, recorded
-from compare.misfit.ranking import finest
-from compare.misfit.weight import FAINT
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import in_order
+from jointwave.compare.figures.units import UNITS
+from jointwave.compare.misfit.metrics import motion
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.misfit.places import Place, places_of, recorded
+from jointwave.compare.misfit.ranking import finest
+from jointwave.compare.misfit.weight import FAINT
 
 FORCES, MOTION, ROTATION = ("stress", "shear"), ("velocity",), ("rotation",)
 #: Quantities of panels at the receivers of a pillar, by their key of [record]: the first group that

@@ -14,15 +14,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from cases.errors import SceneError
-from compare.engines import in_order, names, solver
-from compare.figures import fonts
-from compare.figures.export import blank
-from compare.figures.panels import Panel, panels
-from compare.figures.style import GIVEN, RC, style
-from compare.figures.units import UNITS, Unit, unit_for
-from compare.figures.words import WORDS, Words
-from compare.misfit.pairs import Comparison
+from jointwave.cases.errors import SceneError
+from jointwave.compare.engines import in_order, names, solver
+from jointwave.compare.figures import fonts
+from jointwave.compare.figures.export import blank
+from jointwave.compare.figures.panels import Panel, panels
+from jointwave.compare.figures.style import GIVEN, RC, style
+from jointwave.compare.figures.units import UNITS, Unit, unit_for
+from jointwave.compare.figures.words import WORDS, Words
+from jointwave.compare.misfit.pairs import Comparison
 
 MM, POINT = 1 / 25.4, 25.4 / 72  # inches; mm
 LETTER, LINE = 0.62, 1.3  # width of a letter on average, and height of a line, over its size

@@ -8,17 +8,17 @@ from typing import Any, NamedTuple
 import matplotlib
 from matplotlib.figure import Figure
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
-from compare.engines import EXACT, Progress, applies
-from compare.figures import bands
-from compare.figures.export import write_drawing
-from compare.figures.publication import MM, STYLES, draw
-from compare.misfit.alignment import align_curve
-from compare.misfit.ranking import applicable
-from compare.runs.comparison import solved
-from compare.runs.jobs import names_of
-from compare.runs.output import refuse_foreign
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import EXACT, Progress, applies
+from jointwave.compare.figures import bands
+from jointwave.compare.figures.export import write_drawing
+from jointwave.compare.figures.publication import MM, STYLES, draw
+from jointwave.compare.misfit.alignment import align_curve
+from jointwave.compare.misfit.ranking import applicable
+from jointwave.compare.runs.comparison import solved
+from jointwave.compare.runs.jobs import names_of
+from jointwave.compare.runs.output import refuse_foreign
 
 #: First bytes of a file of each kind: only such a file is overwritten.
 BEGINS = {"pdf": (b"%PDF",), "svg": (b"<?xml", b"<svg"), "png": (b"\x89PNG",)}

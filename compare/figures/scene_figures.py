@@ -2,21 +2,21 @@
 
 import xarray as xr
 
-from cases.material.calibrate import calibrate
-from cases.scene_type import AnyScene
-from cases.schema.scene import Scene
-from compare.engines import ENGINES, applies, names, solve
-from compare.figures.charts.energy import energy
-from compare.figures.charts.peak_velocities import peak_velocities
-from compare.figures.charts.propagation import propagation
-from compare.figures.charts.spacetime import diagrams_of, space_time
-from compare.figures.charts.spectra import spectra
-from compare.figures.charts.waveforms import waveforms
-from compare.figures.drawing.scene import scene_figure
-from compare.figures.figure import SceneFigure
-from compare.figures.panels import variant_names
-from compare.misfit.pairs import Comparison
-from compare.misfit.ranking import own_exact
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import ENGINES, applies, names, solve
+from jointwave.compare.figures.charts.energy import energy
+from jointwave.compare.figures.charts.peak_velocities import peak_velocities
+from jointwave.compare.figures.charts.propagation import propagation
+from jointwave.compare.figures.charts.spacetime import diagrams_of, space_time
+from jointwave.compare.figures.charts.spectra import spectra
+from jointwave.compare.figures.charts.waveforms import waveforms
+from jointwave.compare.figures.drawing.scene import scene_figure
+from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.panels import variant_names
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.misfit.ranking import own_exact
 
 
 def figures_of(

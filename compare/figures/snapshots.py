@@ -7,20 +7,19 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-import cases
-import dem
-from cases.material.calibrate import calibrate
-from cases.scene_type import pillar_of
-from cases.schema.scene import Scene
-from compare.figures.animation.bodies import SpaceView
-from compare.figures.animation.frame import colours_of
-from compare.figures.animation.polygons import polygons_of
-from compare.figures.animation.settings import settings_for
-from compare.figures.export import Drawn, blank, save
-from compare.figures.style import WIDTH
-from compare.runs.field_files import read_pvd, write_pvd
-from compare.scenes import find
-from results.snapshots import Snapshots, snapshots_of
+from jointwave import cases, dem
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.scene_type import pillar_of
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.figures.animation.bodies import SpaceView
+from jointwave.compare.figures.animation.frame import colours_of
+from jointwave.compare.figures.animation.polygons import polygons_of
+from jointwave.compare.figures.animation.settings import settings_for
+from jointwave.compare.figures.export import Drawn, blank, save
+from jointwave.compare.figures.style import WIDTH
+from jointwave.compare.runs.field_files import read_pvd, write_pvd
+from jointwave.compare.scenes import find
+from jointwave.results.snapshots import Snapshots, snapshots_of
 
 HEAD, STRIP, LEFT = 0.7, 0.95, 0.75  # inches above, of a pillar, and beside it
 

@@ -7,7 +7,7 @@ all kinds of colour blindness.
 
 from typing import Any, NamedTuple
 
-from compare.engines import names, solver
+from jointwave.compare.engines import names, solver
 
 WIDTH = 11.0  # inches of every figure; the page shows it at the width of its column
 

@@ -6,21 +6,21 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cases.records import Column
-from compare.figures.panels import variant_names
-from compare.misfit.differences import peak_ratios
-from compare.misfit.pairs import Comparison, Row
-from compare.misfit.places import Place
-from compare.readings import (
+from jointwave.cases.records import Column
+from jointwave.compare.figures.panels import variant_names
+from jointwave.compare.misfit.differences import peak_ratios
+from jointwave.compare.misfit.pairs import Comparison, Row
+from jointwave.compare.misfit.places import Place
+from jointwave.compare.readings import (
     arias_intensity,
     peak_velocity,
     quality_factor,
     response_spectrum,
     wave_speed,
 )
-from compare.readings.attenuation import sampling, waveforms
-from compare.readings.recordings import dataset_of
-from results.labels import RECEIVERS
+from jointwave.compare.readings.attenuation import sampling, waveforms
+from jointwave.compare.readings.recordings import dataset_of
+from jointwave.results.labels import RECEIVERS
 
 PERIODS, SHORTEST = 60, 8  # of oscillators: how many, and the shortest period in samples
 READINGS = (

@@ -2,9 +2,9 @@
 
 from typing import NamedTuple
 
-from compare.engines import names, solver
-from compare.figures.panels import Panel
-from compare.figures.units import UNITS, unit_for
+from jointwave.compare.engines import names, solver
+from jointwave.compare.figures.panels import Panel
+from jointwave.compare.figures.units import UNITS, unit_for
 
 
 class Words(NamedTuple):

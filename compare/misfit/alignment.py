@@ -17,12 +17,12 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cases.errors import SceneError
-from cases.sampling import sample_times
-from cases.scene_type import AnyScene
-from compare.misfit.external import LEAST_SAMPLES, Curves
-from compare.misfit.metrics import Distance, distance, relative_l2, static_state
-from compare.misfit.places import Place
+from jointwave.cases.errors import SceneError
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.misfit.external import LEAST_SAMPLES, Curves
+from jointwave.compare.misfit.metrics import Distance, distance, relative_l2, static_state
+from jointwave.compare.misfit.places import Place
 
 MOST_SAMPLES = 4_000_000  # of a curve at a scene's interval, when its clock is shifted
 INSTANT = 1e-12  # s, resolution of times, in the tables too

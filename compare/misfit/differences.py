@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from compare.misfit.metrics import Pairing, Worst, pairings, static_state, waveforms
-from compare.misfit.weight import FAINT, UNITS
+from jointwave.compare.misfit.metrics import Pairing, Worst, pairings, static_state, waveforms
+from jointwave.compare.misfit.weight import FAINT, UNITS
 
 VELOCITY, STRESS = "PPV", "peak stress"
 _OF = {"velocity": VELOCITY, "stress": STRESS, "shear": STRESS}

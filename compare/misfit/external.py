@@ -17,15 +17,15 @@ from pathlib import Path
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.records import Column, Columns, read_columns
-from cases.scene_type import AnyScene
-from cases.units import TIME, UNITS, split_unit
-from cases.warnings import look_like_milliseconds
-from compare.engines import names
-from compare.misfit.external_columns import Asked, Heading, asked, heading
-from compare.misfit.external_netcdf import is_netcdf, read_netcdf
-from compare.misfit.places import QUANTITIES, Place, recorded, same
+from jointwave.cases.errors import SceneError
+from jointwave.cases.records import Column, Columns, read_columns
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.units import TIME, UNITS, split_unit
+from jointwave.cases.warnings import look_like_milliseconds
+from jointwave.compare.engines import names
+from jointwave.compare.misfit.external_columns import Asked, Heading, asked, heading
+from jointwave.compare.misfit.external_netcdf import is_netcdf, read_netcdf
+from jointwave.compare.misfit.places import QUANTITIES, Place, recorded, same
 
 LEAST_SAMPLES = 3  # needed for a parabola through the peak of a correlation
 EXAMPLES = "stress@20, -stress@20 [MPa] or velocity_x@20.25 [mm/s]"

@@ -8,9 +8,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-from cases.records import Column
-from cases.units import split_unit
-from compare.misfit.places import WORDS, Place, parsed
+from jointwave.cases.records import Column
+from jointwave.cases.units import split_unit
+from jointwave.compare.misfit.places import WORDS, Place, parsed
 
 PART = " | "  # separator of the parts of jointwave's headers
 TIME = "time"

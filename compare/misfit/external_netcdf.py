@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from cases.errors import printable
-from cases.records import Column, Columns, require_series
-from compare.misfit.places import COMPONENT_DIMENSIONS, QUANTITIES, Place
-from results.labels import RECEIVERS
-from results.netcdf import load_netcdf
+from jointwave.cases.errors import printable
+from jointwave.cases.records import Column, Columns, require_series
+from jointwave.compare.misfit.places import COMPONENT_DIMENSIONS, QUANTITIES, Place
+from jointwave.results.labels import RECEIVERS
+from jointwave.results.netcdf import load_netcdf
 
 MAGIC = (b"CDF", b"\x89HDF")  # what NetCDF 3 and 4 begin with
 

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from compare.misfit.places import Place, places_of
-from compare.misfit.weight import EXCITED, QUANTITIES, UNITS, Weight, weigh
+from jointwave.compare.misfit.places import Place, places_of
+from jointwave.compare.misfit.weight import EXCITED, QUANTITIES, UNITS, Weight, weigh
 
 Reading = Callable[[xr.Dataset, str], np.ndarray]
 JUDGED = 10.0  # times its own error: the smallest misfit that a reference can resolve

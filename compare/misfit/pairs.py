@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from cases.scene_type import AnyScene
-from compare.engines import solver, solvers
-from compare.misfit.alignment import AlignedCurve, distances
-from compare.misfit.metrics import Distance, distance, pairings
-from compare.misfit.places import Place, places_of
-from compare.misfit.ranking import kind_of
-from compare.solvers.record import Kind
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import solver, solvers
+from jointwave.compare.misfit.alignment import AlignedCurve, distances
+from jointwave.compare.misfit.metrics import Distance, distance, pairings
+from jointwave.compare.misfit.places import Place, places_of
+from jointwave.compare.misfit.ranking import kind_of
+from jointwave.compare.solvers.record import Kind
 
 
 class Pair(NamedTuple):

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from cases.scene_type import AnyScene
-from results.labels import RECEIVERS
+from jointwave.cases.scene_type import AnyScene
+from jointwave.results.labels import RECEIVERS
 
 if TYPE_CHECKING:
     import xarray as xr

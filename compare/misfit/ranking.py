@@ -11,12 +11,12 @@ error.
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from cases.material.calibrate import calibrate
-from cases.scene_type import AnyScene
-from cases.schema.scene import Scene
-from compare.engines import ENGINES, applies, names, solver
-from compare.exact.conditions import has_thick_layer
-from compare.solvers.record import Answer, Kind, Rock
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import ENGINES, applies, names, solver
+from jointwave.compare.exact.conditions import has_thick_layer
+from jointwave.compare.solvers.record import Answer, Kind, Rock
 
 
 class Reference(NamedTuple):

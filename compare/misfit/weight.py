@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.misfit.places import Place
+from jointwave.compare.misfit.places import Place
 
 #: Quantities of one unit, whose amplitudes are compared with each other.
 UNITS = (

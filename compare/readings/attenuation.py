@@ -6,10 +6,10 @@ Take records of one passage: `result.sel(time=slice(0, 0.02))` leaves out what i
 import numpy as np
 import xarray as xr
 
-from cases.errors import SceneError
-from compare.misfit.metrics import delay, motion
-from compare.readings.recordings import Recording, recording
-from results.labels import RECEIVERS
+from jointwave.cases.errors import SceneError
+from jointwave.compare.misfit.metrics import delay, motion
+from jointwave.compare.readings.recordings import Recording, recording
+from jointwave.results.labels import RECEIVERS
 
 HEARD = 0.01  # of the largest amplitude of the first record: frequencies that are read
 

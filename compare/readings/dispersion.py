@@ -21,11 +21,11 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from cases.errors import SceneError
-from cases.material.calibrate import Properties, calibrate, mechanisms_of
-from cases.schema.scene import Scene
-from compare.readings.attenuation import known_distances, sampling, variables, waveforms
-from compare.readings.recordings import Recording
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import Properties, calibrate, mechanisms_of
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.readings.attenuation import known_distances, sampling, variables, waveforms
+from jointwave.compare.readings.recordings import Recording
 
 HEARD = 1e-3  # of the largest amplitude: frequencies that are looked at
 FINER = 64  # wavenumbers in the width of a peak

@@ -5,21 +5,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.histories import Gabor, LoadHistory, Ricker, Step
-from cases.incident import WITHIN, plane_wave
-from cases.loads import load_history, velocity_of
-from cases.material.calibrate import calibrate
-from cases.material.quiet_sides import impedances
-from cases.partition.outline import outline_of
-from cases.partition.regions import region_at, rocks_of
-from cases.scene_type import AnyScene
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from cases.schema.sources import PlaneLoad
-from compare.exact.bar.images import ENTERS
-from compare.exact.rock_mass.effective_medium import MediumField
-from compare.exact.rock_mass.field import field_of
+from jointwave.cases.errors import SceneError
+from jointwave.cases.histories import Gabor, LoadHistory, Ricker, Step
+from jointwave.cases.incident import WITHIN, plane_wave
+from jointwave.cases.loads import load_history, velocity_of
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.quiet_sides import impedances
+from jointwave.cases.partition.outline import outline_of
+from jointwave.cases.partition.regions import region_at, rocks_of
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.schema.sources import PlaneLoad
+from jointwave.compare.exact.bar.images import ENTERS
+from jointwave.compare.exact.rock_mass.effective_medium import MediumField
+from jointwave.compare.exact.rock_mass.field import field_of
 
 SAMPLES = 20_000  # of a pulse: its peak to 1e-7, its energy to 1e-6
 SEEN = 0.01  # of the peak of a wavelet, which never quite begins or ends

@@ -11,10 +11,10 @@ from math import pi
 import numpy as np
 import xarray as xr
 
-from cases.errors import SceneError
-from compare.readings.attenuation import sampling
-from compare.readings.oscillators import largest_displacement
-from compare.readings.recordings import Recording, recording
+from jointwave.cases.errors import SceneError
+from jointwave.compare.readings.attenuation import sampling
+from jointwave.compare.readings.oscillators import largest_displacement
+from jointwave.compare.readings.recordings import Recording, recording
 
 GRAVITY = 9.81  # m/s2
 

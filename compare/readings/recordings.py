@@ -6,15 +6,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cases.errors import SceneError
-from cases.records import Column, read_columns
-from cases.units import TIME, UNITS, split_unit
-from compare.misfit.alignment import UNEVEN
-from compare.misfit.external_columns import asked
-from compare.misfit.external_netcdf import is_netcdf
-from compare.misfit.places import LABEL
-from results.labels import RECEIVERS
-from results.netcdf import load_netcdf
+from jointwave.cases.errors import SceneError
+from jointwave.cases.records import Column, read_columns
+from jointwave.cases.units import TIME, UNITS, split_unit
+from jointwave.compare.misfit.alignment import UNEVEN
+from jointwave.compare.misfit.external_columns import asked
+from jointwave.compare.misfit.external_netcdf import is_netcdf
+from jointwave.compare.misfit.places import LABEL
+from jointwave.results.labels import RECEIVERS
+from jointwave.results.netcdf import load_netcdf
 
 #: A result; a file; an array over `time`; or times (s) with values in SI [n] or [receiver, n], and
 #: the receivers' distances along a line (m) where these are known.

@@ -5,10 +5,10 @@ from math import isnan
 from time import perf_counter
 from typing import Any, NamedTuple
 
-from cases.scene_type import AnyScene
-from compare.engines import ENGINES, stepping
-from compare.report.verdict import NOT_CHECKED, EngineScore
-from compare.text import in_seconds, mean_and_worst, times
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import ENGINES, stepping
+from jointwave.compare.report.verdict import NOT_CHECKED, EngineScore
+from jointwave.compare.text import in_seconds, mean_and_worst, times
 
 REPEATS = 5
 LONG = 0.5  # s: a run that has taken so long is not repeated

@@ -8,8 +8,8 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from compare.figures.style import style
-from compare.text import percent, table_cell
+from jointwave.compare.figures.style import style
+from jointwave.compare.text import percent, table_cell
 
 
 def render(page: dict[str, Any], out: Path) -> str:

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from cases.errors import SceneError
-from cases.files import read_text
-from compare.figures.export import Drawn, blank, save
-from compare.studies.summary import Summary
+from jointwave.cases.errors import SceneError
+from jointwave.cases.files import read_text
+from jointwave.compare.figures.export import Drawn, blank, save
+from jointwave.compare.studies.summary import Summary
 
 PLACE = Path("out/peers/points.csv")  # where `make bench-peers` writes
 LARGEST_FILE = 1_000_000  # bytes; the table has a row for each run

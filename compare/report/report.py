@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
-from cases.errors import SceneError
-from compare.engines import Progress
-from compare.report import peers
-from compare.report.overview import RankedScene, overview, seconds_of_stepping
-from compare.report.page import render
-from compare.report.scenes import (
+from jointwave.cases.errors import SceneError
+from jointwave.compare.engines import Progress
+from jointwave.compare.report import peers
+from jointwave.compare.report.overview import RankedScene, overview, seconds_of_stepping
+from jointwave.compare.report.page import render
+from jointwave.compare.report.scenes import (
     ROCK_MASSES,
     SceneRequest,
     SolvedScene,
@@ -24,11 +24,11 @@ from compare.report.scenes import (
     solve,
     without_repeats,
 )
-from compare.report.sections import section, sections
-from compare.runs.output import write_text
-from compare.runs.timings import measured_on
-from compare.studies.store import DIED, alone, in_processes, in_turn
-from compare.text import percent
+from jointwave.compare.report.sections import section, sections
+from jointwave.compare.runs.output import write_text
+from jointwave.compare.runs.timings import measured_on
+from jointwave.compare.studies.store import DIED, alone, in_processes, in_turn
+from jointwave.compare.text import percent
 
 SCENES = 0.4  # of the progress of the paper's page; studies and hard cases are the rest
 PAPERS = (

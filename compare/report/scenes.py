@@ -10,24 +10,24 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
-import cases
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
-from compare.engines import ENGINES
-from compare.figures.export import Drawn, save
-from compare.figures.figure import SceneFigure
-from compare.figures.scene_figures import along_pillar, figures_of
-from compare.figures.tables import distance_frame, reading_frame
-from compare.misfit.pairs import Comparison
-from compare.report import tables
-from compare.report.claims import claims_of
-from compare.report.claims.claim import Claim
-from compare.report.claims.pillar import mostly_dispersion
-from compare.report.verdict import EngineScore, engine_scores
-from compare.runs.comparison import compare
-from compare.runs.output import write_csv
-from compare.scenes import find, load
-from compare.studies.ensemble import ensemble_in
+from jointwave import cases
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import ENGINES
+from jointwave.compare.figures.export import Drawn, save
+from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.scene_figures import along_pillar, figures_of
+from jointwave.compare.figures.tables import distance_frame, reading_frame
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.report import tables
+from jointwave.compare.report.claims import claims_of
+from jointwave.compare.report.claims.claim import Claim
+from jointwave.compare.report.claims.pillar import mostly_dispersion
+from jointwave.compare.report.verdict import EngineScore, engine_scores
+from jointwave.compare.runs.comparison import compare
+from jointwave.compare.runs.output import write_csv
+from jointwave.compare.scenes import find, load
+from jointwave.compare.studies.ensemble import ensemble_in
 
 PAPER = Path(cases.__file__).parent / "guo-li-2002"
 FREE_PILLAR = 3  # the figure that says what the paper's own comparison is made of

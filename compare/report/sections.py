@@ -6,18 +6,18 @@ from typing import Any
 
 import pandas as pd
 
-from compare.engines import Progress
-from compare.figures.snapshots import make_snapshots
-from compare.studies import effects, scattering
-from compare.studies.effects_summary import summarise as summarise_effects
-from compare.studies.hard_cases import make_study as make_hard_cases
-from compare.studies.scattering_summary import make_study as make_joints
-from compare.studies.store import Pool
-from compare.studies.study import load
-from compare.studies.summary import Summary
-from compare.studies.work_precision import REPORTED
-from compare.studies.work_precision import run as run_study
-from compare.studies.work_precision import summarise as summarise_study
+from jointwave.compare.engines import Progress
+from jointwave.compare.figures.snapshots import make_snapshots
+from jointwave.compare.studies import effects, scattering
+from jointwave.compare.studies.effects_summary import summarise as summarise_effects
+from jointwave.compare.studies.hard_cases import make_study as make_hard_cases
+from jointwave.compare.studies.scattering_summary import make_study as make_joints
+from jointwave.compare.studies.store import Pool
+from jointwave.compare.studies.study import load
+from jointwave.compare.studies.summary import Summary
+from jointwave.compare.studies.work_precision import REPORTED
+from jointwave.compare.studies.work_precision import run as run_study
+from jointwave.compare.studies.work_precision import summarise as summarise_study
 
 #: Share of the progress that each part takes.
 PARTS = {"joints": 0.15, "studies": 0.2, "effects": 0.15, "hard cases": 0.5}

@@ -6,14 +6,14 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
-from compare.figures.panels import variant_names
-from compare.figures.tables import rows_of
-from compare.misfit.differences import STRESS, VELOCITY
-from compare.misfit.pairs import Comparison, Row, meaning
-from compare.misfit.places import Place
-from compare.report.verdict import EngineScore
-from compare.text import mean_and_worst
-from results.dataset import energy_residual, open_ledger
+from jointwave.compare.figures.panels import variant_names
+from jointwave.compare.figures.tables import rows_of
+from jointwave.compare.misfit.differences import STRESS, VELOCITY
+from jointwave.compare.misfit.pairs import Comparison, Row, meaning
+from jointwave.compare.misfit.places import Place
+from jointwave.compare.report.verdict import EngineScore
+from jointwave.compare.text import mean_and_worst
+from jointwave.results.dataset import energy_residual, open_ledger
 
 
 def verdict_table(scores: dict[str, EngineScore]) -> pd.DataFrame:

@@ -5,18 +5,18 @@ from math import isfinite, isnan, nan
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from compare.engines import ENGINES
-from compare.figures.panels import variant_names
-from compare.misfit.differences import (
+from jointwave.compare.engines import ENGINES
+from jointwave.compare.figures.panels import variant_names
+from jointwave.compare.misfit.differences import (
     STRESS,
     VELOCITY,
     PeakDifference,
     peak_differences,
     static_difference,
 )
-from compare.misfit.metrics import Worst, worst
-from compare.misfit.pairs import Comparison
-from compare.misfit.ranking import kind_of, own_exact, reference_of
+from jointwave.compare.misfit.metrics import Worst, worst
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.misfit.ranking import kind_of, own_exact, reference_of
 
 
 class Verdict(NamedTuple):

@@ -3,15 +3,15 @@
 from collections.abc import Mapping, Sequence
 from time import perf_counter
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
-from compare.engines import Progress, solve
-from compare.misfit.alignment import align_curve
-from compare.misfit.external import Curves
-from compare.misfit.pairs import Comparison, measure, measure_curves
-from compare.misfit.ranking import applicable
-from compare.runs import timings
-from compare.solvers.record import Answer
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import Progress, solve
+from jointwave.compare.misfit.alignment import align_curve
+from jointwave.compare.misfit.external import Curves
+from jointwave.compare.misfit.pairs import Comparison, measure, measure_curves
+from jointwave.compare.misfit.ranking import applicable
+from jointwave.compare.runs import timings
+from jointwave.compare.solvers.record import Answer
 
 
 def compare(

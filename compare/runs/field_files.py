@@ -10,9 +10,9 @@ from xml.etree import ElementTree
 import meshio
 import numpy as np
 
-from cases.errors import SceneError
-from compare.runs.output import refuse_foreign, write, write_folder
-from results.snapshots import Snapshots
+from jointwave.cases.errors import SceneError
+from jointwave.compare.runs.output import refuse_foreign, write, write_folder
+from jointwave.results.snapshots import Snapshots
 
 #: From VTK's order of corners to dolfinx's tensor-product order.
 TENSOR_ORDER = {"quad": [0, 1, 3, 2], "hexahedron": [0, 1, 3, 2, 4, 5, 7, 6]}
@@ -75,7 +75,7 @@ def read_pvd(path: Path) -> Snapshots:
 def refuse_vtx() -> None:
     """Raise SceneError if VTX files cannot be written."""
     try:
-        from continuum.space import dolfinx_export
+        from jointwave.continuum.space import dolfinx_export
     except ImportError as error:
         raise SceneError("--vtx", "", None, f"dolfinx cannot be imported ({error})") from None
     if dolfinx_export.vtx_writer() is None:
@@ -85,7 +85,7 @@ def refuse_vtx() -> None:
 
 def write_vtx(path: Path, s: Snapshots) -> Path:
     """Write displacement (m) and velocity (m/s) of all instants as one ADIOS2 file, NAME.bp."""
-    from continuum.space import dolfinx_export
+    from jointwave.continuum.space import dolfinx_export
 
     displacement, velocity, at, nodes = _functions(s)
 
@@ -104,7 +104,7 @@ def write_vtx(path: Path, s: Snapshots) -> Path:
 def _functions(s: Snapshots) -> tuple[Any, Any, np.ndarray, np.ndarray]:
     """Return dolfinx functions for displacement and velocity, and the indices of their values
     [cells, corners] with those of the corresponding nodes [cells, corners]."""
-    from continuum.space import dolfinx_export
+    from jointwave.continuum.space import dolfinx_export
 
     cells = s.cells[:, TENSOR_ORDER.get(s.kind, slice(None))].astype(np.int64)
     domain = dolfinx_export.cell_mesh(CELLS.get(s.kind, s.kind), cells, s.points)

@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
-from compare.engines import ENGINES, applies, selection
-from compare.solvers.record import Solver
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import ENGINES, applies, selection
+from jointwave.compare.solvers.record import Solver
 
 
 class Job(NamedTuple):
@@ -45,7 +45,7 @@ def engine_of(model: str) -> str:
 def plan(scenes: list[AnyScene], runs: list[tuple[str, str | None]], out: Path) -> list[Job]:
     """Return the jobs, all of which apply; raises SceneError before any run, also if a file that is
     not a result is in the place of one."""
-    from compare.runs.output import refuse_foreign
+    from jointwave.compare.runs.output import refuse_foreign
 
     jobs = []
     for scene in scenes:

@@ -14,8 +14,8 @@ import pandas as pd
 import xarray as xr
 from pydantic import TypeAdapter
 
-from cases.errors import SceneError, printable
-from cases.files import is_number, read_json
+from jointwave.cases.errors import SceneError, printable
+from jointwave.cases.files import is_number, read_json
 
 T = TypeVar("T")
 

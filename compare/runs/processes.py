@@ -13,8 +13,8 @@ from pathlib import Path
 from time import sleep
 from typing import Any, NoReturn, TextIO, TypeVar
 
-from cases.errors import SceneError
-from numerics.mpi_barrier import arrive
+from jointwave.cases.errors import SceneError
+from jointwave.numerics.mpi_barrier import arrive
 
 #: Number of processes, as set by launchers: Open MPI, MPICH and its relatives, MVAPICH.
 SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE")

@@ -8,14 +8,19 @@ from typing import NamedTuple
 
 import xarray as xr
 
-from cases.errors import SceneError, StoppedError
-from compare.engines import Progress, solve, solver
-from compare.runs import timings
-from compare.runs.checkpoint.resume import CheckpointSettings, ResumableRun, result_of, resumable
-from compare.runs.jobs import Job
-from compare.runs.output import write_dataset
-from compare.runs.processes import ALONE, Processes
-from results.dataset import energy_residual, open_ledger
+from jointwave.cases.errors import SceneError, StoppedError
+from jointwave.compare.engines import Progress, solve, solver
+from jointwave.compare.runs import timings
+from jointwave.compare.runs.checkpoint.resume import (
+    CheckpointSettings,
+    ResumableRun,
+    result_of,
+    resumable,
+)
+from jointwave.compare.runs.jobs import Job
+from jointwave.compare.runs.output import write_dataset
+from jointwave.compare.runs.processes import ALONE, Processes
+from jointwave.results.dataset import energy_residual, open_ledger
 
 
 class Done(NamedTuple):
@@ -166,7 +171,7 @@ def _finished(job: Job, watched: ResumableRun, vtx: bool, result: xr.Dataset | N
 
 
 def _refuse_vtx(jobs: list[Job]) -> None:
-    from compare.runs.field_files import refuse_vtx
+    from jointwave.compare.runs.field_files import refuse_vtx
 
     for job in jobs:
         if job.scene.record.fields is None:
@@ -178,8 +183,8 @@ def _write_snapshots(job: Job, result: xr.Dataset, vtx: bool) -> list[Path]:
     """Write a result's snapshots, if any, beside it; return the files to open."""
     if job.scene.record.fields is None:
         return []
-    from compare.runs.field_files import write_pvd, write_vtx
-    from results.snapshots import snapshots_of
+    from jointwave.compare.runs.field_files import write_pvd, write_vtx
+    from jointwave.results.snapshots import snapshots_of
 
     found = snapshots_of(result)
     if found is None:

@@ -12,16 +12,16 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from cases.effects import active_effects
-from cases.files import read_json
-from cases.scene_type import AnyScene
-from compare.engines import ENGINES
-from compare.runs.output import write_text
-from compare.runs.processes import started
-from compare.solvers.dem import DEM
-from compare.solvers.record import Prepared
-from numerics import jit
-from results.dataset import scene_hash
+from jointwave.cases.effects import active_effects
+from jointwave.cases.files import read_json
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import ENGINES
+from jointwave.compare.runs.output import write_text
+from jointwave.compare.runs.processes import started
+from jointwave.compare.solvers.dem import DEM
+from jointwave.compare.solvers.record import Prepared
+from jointwave.numerics import jit
+from jointwave.results.dataset import scene_hash
 
 LARGEST_FILE = 10_000_000  # bytes
 SHORTEST = 0.01  # s: shorter runs do not replace a known rate

@@ -11,7 +11,7 @@ from threading import Lock
 from types import TracebackType
 from typing import Any
 
-from compare.runs.memory import collect_rarely
+from jointwave.compare.runs.memory import collect_rarely
 
 STARTING = Lock()  # held while a worker may start: the environment is that of the whole process
 

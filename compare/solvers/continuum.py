@@ -7,9 +7,9 @@ from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from cases.size import estimates
-from compare.solvers.incident import incident, note_sides
-from compare.solvers.record import (
+from jointwave.cases.size import estimates
+from jointwave.compare.solvers.incident import incident, note_sides
+from jointwave.compare.solvers.record import (
     BAR,
     JOINTED,
     YES,
@@ -27,8 +27,8 @@ from compare.solvers.record import (
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.scene import Scene
+    from jointwave.cases.schema.rock_mass import RockMass
+    from jointwave.cases.schema.scene import Scene
 
 
 #: How to get what the continuum runs on.
@@ -38,7 +38,7 @@ INSTALL = 'pip install "jointwave[continuum]" (Linux, Python 3.12), or dolfinx b
 def applies(scene: Scene, model: str) -> Answer:
     """Return whether basix is there and the model holds for the scene."""
     try:
-        from continuum import applies as reason_against
+        from jointwave.continuum import applies as reason_against
     except ImportError as error:
         return no(f"FEniCSx cannot be imported ({error}); {INSTALL}")
     reason = reason_against(scene, model)
@@ -49,7 +49,7 @@ def run(
     scene: Scene | RockMass, progress=None, comm=None, keeper=None, *, model: str
 ) -> xr.Dataset:
     """Return the result of a scene; comm : mpi4py's, of processes that share the run."""
-    from continuum import simulate
+    from jointwave.continuum import simulate
 
     about: dict[str, Any] = {"progress": progress, "comm": comm, "keeper": keeper}
     found = simulate(scene, model=model, **about, incident=incident(scene))
@@ -59,7 +59,7 @@ def run(
 
 def again(scene: Scene | RockMass, model: str) -> Callable[[], float]:
     """Return what takes the steps of a scene anew at each call and returns their seconds."""
-    from continuum.simulate import start
+    from jointwave.continuum.simulate import start
 
     begun = start(scene, model, incident=incident(scene))
     begun.engine.compile()
@@ -75,7 +75,7 @@ def again(scene: Scene | RockMass, model: str) -> Callable[[], float]:
 
 def prepare(scene: Scene, model: str) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
-    from continuum.run import discrete_and_steps
+    from jointwave.continuum.run import discrete_and_steps
 
     with estimates() as parts:
         discrete, choice, critical = discrete_and_steps(scene, model)
@@ -92,7 +92,7 @@ def prepare(scene: Scene, model: str) -> Prepared:
 
 def libraries() -> dict[str, str]:
     """Return the version of basix."""
-    from continuum.space import basix_versions
+    from jointwave.continuum.space import basix_versions
 
     return {"basix": basix_versions.VERSION}
 

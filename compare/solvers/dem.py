@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cases.size import estimates
-from compare.solvers.incident import incident, note_sides
-from compare.solvers.record import (
+from jointwave.cases.size import estimates
+from jointwave.compare.solvers.incident import incident, note_sides
+from jointwave.compare.solvers.record import (
     BLOCKS,
     YES,
     Answer,
@@ -22,13 +22,13 @@ from compare.solvers.record import (
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.scene import Scene
+    from jointwave.cases.schema.rock_mass import RockMass
+    from jointwave.cases.schema.scene import Scene
 
 
 def run(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -> xr.Dataset:
     """Return the result of a scene; `comm` is unused, one process runs it."""
-    from dem import simulate
+    from jointwave.dem import simulate
 
     found = simulate(scene, progress, keeper, incident(scene))
     note_sides(found.attrs, scene)
@@ -37,8 +37,8 @@ def run(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -> xr.Da
 
 def prepare(scene: Scene | RockMass) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
-    from cases.effects import is_spatial
-    from cases.schema.scene import Scene
+    from jointwave.cases.effects import is_spatial
+    from jointwave.cases.schema.scene import Scene
 
     with estimates() as parts:
         if isinstance(scene, Scene):
@@ -53,25 +53,25 @@ def prepare(scene: Scene | RockMass) -> Prepared:
 
 def applies(scene: Scene | RockMass) -> Answer:
     """Return whether a scene has blocks that can be rigid."""
-    from cases.schema.scene import Scene
+    from jointwave.cases.schema.scene import Scene
 
     if scene.rock.quality_factor is not None:
-        from cases.material.constant_q import beyond_blocks
+        from jointwave.cases.material.constant_q import beyond_blocks
 
         if beyond := beyond_blocks(scene):
             return no(beyond)
     if isinstance(scene, Scene):
         return YES
-    from cases.material.rigid_blocks import against
+    from jointwave.cases.material.rigid_blocks import against
 
     reason = against(scene)
     return no(f"numerics.dem.block {reason}") if reason else YES
 
 
 def _in_plane(scene: RockMass):
-    from dem.blocks.build import rigid_blocks
-    from dem.blocks.system import clock_of
-    from dem.time_loop import thread_count
+    from jointwave.dem.blocks.build import rigid_blocks
+    from jointwave.dem.blocks.system import clock_of
+    from jointwave.dem.time_loop import thread_count
 
     blocks = rigid_blocks(scene)
     incident(scene)  # which is not known of all waves in layers
@@ -80,15 +80,15 @@ def _in_plane(scene: RockMass):
 
 
 def _axial(scene: Scene):
-    from dem.axial.simulate import scheme_of
+    from jointwave.dem.axial.simulate import scheme_of
 
     _, _, time, critical = scheme_of(scene).build(scene)
     return time, critical, scene.block_count, 1
 
 
 def _spatial(scene: Scene):
-    from dem.spatial import simulate
-    from dem.time_loop import thread_count
+    from jointwave.dem.spatial import simulate
+    from jointwave.dem.time_loop import thread_count
 
     count = scene.block_count
     freedoms = (3 if scene.motion.rotation == "none" else 6) * count

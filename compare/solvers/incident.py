@@ -10,30 +10,30 @@ import json
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from cases.incident import IncidentField
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.scene import Scene
-    from compare.exact.rock_mass.side_error import SideError
+    from jointwave.cases.incident import IncidentField
+    from jointwave.cases.schema.rock_mass import RockMass
+    from jointwave.cases.schema.scene import Scene
+    from jointwave.compare.exact.rock_mass.side_error import SideError
 
 
 def incident(scene: Scene | RockMass) -> IncidentField | None:
     """Return what enters a rock mass through its quiet sides; None for a scene without waves."""
-    from cases.schema.scene import Scene
+    from jointwave.cases.schema.scene import Scene
 
     if isinstance(scene, Scene) or not scene.waves:
         return None
-    from compare.exact.rock_mass.field import field_of
+    from jointwave.compare.exact.rock_mass.field import field_of
 
     return field_of(scene)
 
 
 def side_error(scene: Scene | RockMass) -> SideError | None:
     """Return the error of the quiet sides of a rock mass that its receivers feel, None without."""
-    from cases.schema.scene import Scene
+    from jointwave.cases.schema.scene import Scene
 
     if isinstance(scene, Scene) or not scene.waves:
         return None
-    from compare.exact.rock_mass import side_error
+    from jointwave.compare.exact.rock_mass import side_error
 
     return side_error.side_error(scene)
 

@@ -8,22 +8,22 @@ from typing import Any
 
 import numpy as np
 
-from cases.effects import bends
-from cases.material.calibrate import Properties, calibrate
-from cases.material.contact_points import lever
-from cases.material.effective_medium import compliant, stiffness
-from cases.material.effective_medium import speeds as speeds_of_medium
-from cases.material.elastic import shear_modulus
-from cases.material.rigid_blocks import long_wave_stiffness
-from cases.material.rock import elastic_rock
-from cases.partition.lattice import further_sets
-from cases.partition.regions import within
-from cases.scene_type import AnyScene
-from cases.schema.joint import Joints
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from cases.schema.segment import alone, regions
-from compare.solvers.record import Rock
+from jointwave.cases.effects import bends
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.material.contact_points import lever
+from jointwave.cases.material.effective_medium import compliant, stiffness
+from jointwave.cases.material.effective_medium import speeds as speeds_of_medium
+from jointwave.cases.material.elastic import shear_modulus
+from jointwave.cases.material.rigid_blocks import long_wave_stiffness
+from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.partition.lattice import further_sets
+from jointwave.cases.partition.regions import within
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.joint import Joints
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.schema.segment import alone, regions
+from jointwave.compare.solvers.record import Rock
 
 RIGID = 1e3  #: times the speed of intact rock: no strain at all
 AXES = {"x": [1.0, 0.0], "y": [0.0, 1.0]}
@@ -56,9 +56,9 @@ def least_lever(scene: AnyScene, rock: Rock) -> float | None:
 
 
 def _of_elements(scene: AnyScene) -> float | None:
-    from continuum.mesh.cells import KINDS
-    from continuum.space import interface
-    from continuum.space.kinematics import kinematics
+    from jointwave.continuum.mesh.cells import KINDS
+    from jointwave.continuum.space import interface
+    from jointwave.continuum.space.kinematics import kinematics
 
     numerics: Any = scene.numerics.continuum
     if not isinstance(scene, Scene):

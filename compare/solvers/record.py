@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from cases.scene_type import AnyScene
-from cases.size import waveform_bytes
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.size import waveform_bytes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -212,7 +212,7 @@ class Solver:
         """Return how many of them a run has."""
         if not self.per_block:
             return freedoms
-        from cases.schema.scene import Scene
+        from jointwave.cases.schema.scene import Scene
 
         if isinstance(scene, Scene):
             return scene.block_count

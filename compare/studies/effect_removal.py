@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cases.errors import SceneError
-from cases.material.strength import SLIP
-from cases.plane.effects import SIDES
-from cases.scene_type import AnyScene, Either, checked
-from cases.schema.damping import Attenuating
-from cases.schema.joint import PARTS
-from cases.schema.scene import Scene
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.strength import SLIP
+from jointwave.cases.plane.effects import SIDES
+from jointwave.cases.scene_type import AnyScene, Either, checked
+from jointwave.cases.schema.damping import Attenuating
+from jointwave.cases.schema.joint import PARTS
+from jointwave.cases.schema.scene import Scene
 
 Change = Callable[[Any], Any]  # from a scene to one of its kind
 

@@ -13,21 +13,21 @@ from typing import NamedTuple
 import pandas as pd
 import xarray as xr
 
-import cases
-from cases.effects import active_effects
-from cases.scene_type import AnyScene, pillar_of
-from cases.schema.scene import Scene
-from compare.engines import Progress, applies, solve
-from compare.misfit.metrics import pairings, rms
-from compare.misfit.weight import ROUND_OFF
-from compare.scenes import find, shipped
-from compare.solvers.continuum import JOINTED_ROCK
-from compare.solvers.dem import DEM
-from compare.studies import store
-from compare.studies.effect_removal import left_out
-from compare.studies.step_cost import StepCost, step_costs, with_every_effect
-from compare.studies.store import DIED, FAILURES, Pool, Store, alone, reason_of
-from results.dataset import scene_hash
+from jointwave import cases
+from jointwave.cases.effects import active_effects
+from jointwave.cases.scene_type import AnyScene, pillar_of
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import Progress, applies, solve
+from jointwave.compare.misfit.metrics import pairings, rms
+from jointwave.compare.misfit.weight import ROUND_OFF
+from jointwave.compare.scenes import find, shipped
+from jointwave.compare.solvers.continuum import JOINTED_ROCK
+from jointwave.compare.solvers.dem import DEM
+from jointwave.compare.studies import store
+from jointwave.compare.studies.effect_removal import left_out
+from jointwave.compare.studies.step_cost import StepCost, step_costs, with_every_effect
+from jointwave.compare.studies.store import DIED, FAILURES, Pool, Store, alone, reason_of
+from jointwave.results.dataset import scene_hash
 
 ROCK = JOINTED_ROCK.name
 MISSING = StepCost(nan, nan)  # not timed

@@ -8,9 +8,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from compare.figures.export import blank, save
-from compare.studies.summary import Summary, write_tables
-from compare.text import percent
+from jointwave.compare.figures.export import blank, save
+from jointwave.compare.studies.summary import Summary, write_tables
+from jointwave.compare.text import percent
 
 NAME, TITLE = "effects", "Cost and influence of each effect"
 LEAST_SHARE, LEAST_MISFIT = 0.5, 0.01  # %: smaller ones, and zero, are drawn here

@@ -3,17 +3,17 @@
 from math import ceil
 from typing import Any, NamedTuple
 
-from cases.errors import SceneError
-from cases.material.effective_medium import slowest
-from cases.sampling import sample_times
-from cases.scene_type import AnyScene, checked
-from cases.schema.pulse import shortest_period
-from cases.schema.scene import Scene
-from compare.engines import ENGINES, applies, solver
-from compare.runs import timings
-from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
-from compare.solvers.dem import DEM
-from compare.solvers.record import Prepared
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.effective_medium import slowest
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.scene_type import AnyScene, checked
+from jointwave.cases.schema.pulse import shortest_period
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import ENGINES, applies, solver
+from jointwave.compare.runs import timings
+from jointwave.compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
+from jointwave.compare.solvers.dem import DEM
+from jointwave.compare.solvers.record import Prepared
 
 COARSEST = 0.9  # of the critical step, explicit
 #: Rigid blocks and, by their order, elements in the length of a rock mass's slowest waves, at the

@@ -14,14 +14,14 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
-from compare.figures import bands
-from compare.figures.export import save
-from compare.figures.figure import SceneFigure
-from compare.runs.output import write_csv, write_dataset
-from compare.scenes import find
-from results.netcdf import load_netcdf
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.figures import bands
+from jointwave.compare.figures.export import save
+from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.runs.output import write_csv, write_dataset
+from jointwave.compare.scenes import find
+from jointwave.results.netcdf import load_netcdf
 
 MEMBER = "member"  # the key
 PERCENTILES = (5, 25, 50, 75, 95)

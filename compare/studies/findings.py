@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from compare.misfit.metrics import JUDGED
-from compare.studies.measure import PointRow
-from compare.studies.study import ARGUMENTS, Curve, FineRun, Study
-from compare.text import percent
+from jointwave.compare.misfit.metrics import JUDGED
+from jointwave.compare.studies.measure import PointRow
+from jointwave.compare.studies.study import ARGUMENTS, Curve, FineRun, Study
+from jointwave.compare.text import percent
 
 TARGETS = (0.1, 0.01, 1e-3, 1e-4)
 CLEARLY = 0.9  # of the expected error: a smaller one is due to cancellation

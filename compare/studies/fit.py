@@ -13,13 +13,13 @@ import numpy as np
 from scipy.stats import qmc
 from scipy.stats import t as student
 
-from cases.errors import SceneError, StoppedError
-from cases.scene_type import AnyScene
-from compare.engines import Progress
-from compare.misfit.external import Curves
-from compare.misfit.places import Place
-from compare.studies.fit_keys import CLOCK, FreeKey, changed, free_keys
-from compare.studies.fit_trials import Trials, solver_of, started, trials_of
+from jointwave.cases.errors import SceneError, StoppedError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import Progress
+from jointwave.compare.misfit.external import Curves
+from jointwave.compare.misfit.places import Place
+from jointwave.compare.studies.fit_keys import CLOCK, FreeKey, changed, free_keys
+from jointwave.compare.studies.fit_trials import Trials, solver_of, started, trials_of
 
 POOR = 0.2  # misfit above which other starts are tried
 STARTS, OTHERS = 12, 2  # other starts for each key, and the best of them that are searched from

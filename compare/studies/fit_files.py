@@ -10,15 +10,15 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
-import cases
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
-from cases.schema.scene import Scene
-from compare.figures.export import blank, save
-from compare.figures.style import style
-from compare.runs.output import refuse_foreign, write, write_csv, write_text
-from compare.studies.fit import Fit, Fitted
-from compare.studies.fit_keys import CLOCK
+from jointwave import cases
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.figures.export import blank, save
+from jointwave.compare.figures.style import style
+from jointwave.compare.runs.output import refuse_foreign, write, write_csv, write_text
+from jointwave.compare.studies.fit import Fit, Fitted
+from jointwave.compare.studies.fit_keys import CLOCK
 
 NAME = "fit-waveforms"
 HEIGHT = 2.4  # inches of a waveform and its residual

@@ -9,9 +9,9 @@ from typing import Annotated, Any, NamedTuple
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene, Either, checked
-from cases.schema.keys import model_in
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene, Either, checked
+from jointwave.cases.schema.keys import model_in
 
 CLOCK = "clock"  # shift added to the times of the files, s
 FACTOR = 1000.0  # by which a positive key may change, if nothing else bounds it

@@ -8,18 +8,18 @@ import numpy as np
 from lmfit import Parameters, minimize
 from scipy.interpolate import CubicSpline
 
-from cases.errors import SceneError, UnstableError
-from cases.scene_type import AnyScene
-from cases.schema.pulse import shortest_period
-from cases.schema.scene import Scene
-from compare.engines import ENGINES, Progress, applies, solve
-from compare.exact.blocks import lattice
-from compare.misfit.alignment import INSTANT, align_curve, static_level
-from compare.misfit.external import Curves, is_recorded
-from compare.misfit.metrics import rms
-from compare.misfit.places import Place
-from compare.solvers.dem import DEM
-from compare.studies.fit_keys import CLOCK, ORIGIN, FreeKey, changed
+from jointwave.cases.errors import SceneError, UnstableError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.pulse import shortest_period
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import ENGINES, Progress, applies, solve
+from jointwave.compare.exact.blocks import lattice
+from jointwave.compare.misfit.alignment import INSTANT, align_curve, static_level
+from jointwave.compare.misfit.external import Curves, is_recorded
+from jointwave.compare.misfit.metrics import rms
+from jointwave.compare.misfit.places import Place
+from jointwave.compare.solvers.dem import DEM
+from jointwave.compare.studies.fit_keys import CLOCK, ORIGIN, FreeKey, changed
 
 SHORT = 200  # blocks, up to which matrix exponentials are cheap
 FINER = 4  # samples of the solution per sample of the scene, if the clock is free

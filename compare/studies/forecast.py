@@ -4,10 +4,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
-from compare.engines import applies, names, solver
-from compare.runs import timings
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import applies, names, solver
+from jointwave.compare.runs import timings
 
 UNKNOWN = "no estimate"  # no such run has been timed on this machine
 Run = tuple[str, AnyScene, str]  # the point of a sweep, empty without; the scene; its solver

@@ -22,20 +22,27 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-import cases
-from cases.effects import active_effects
-from cases.errors import SceneError, UnstableError
-from cases.scene_type import AnyScene
-from cases.schema.pulse import shortest_period
-from compare.engines import ENGINES, Progress, applies, solve, solver
-from compare.figures.export import blank, save
-from compare.misfit.metrics import misfit
-from compare.scenes import find, names
-from compare.studies import store
-from compare.studies.hard_map import Column, StabilityMap, columns, computed, draw_map, maps_of
-from compare.studies.store import Pool, Store
-from compare.studies.summary import Summary, frame, number, text_table, write_tables
-from results.dataset import energy_residual, scene_hash
+from jointwave import cases
+from jointwave.cases.effects import active_effects
+from jointwave.cases.errors import SceneError, UnstableError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.pulse import shortest_period
+from jointwave.compare.engines import ENGINES, Progress, applies, solve, solver
+from jointwave.compare.figures.export import blank, save
+from jointwave.compare.misfit.metrics import misfit
+from jointwave.compare.scenes import find, names
+from jointwave.compare.studies import store
+from jointwave.compare.studies.hard_map import (
+    Column,
+    StabilityMap,
+    columns,
+    computed,
+    draw_map,
+    maps_of,
+)
+from jointwave.compare.studies.store import Pool, Store
+from jointwave.compare.studies.summary import Summary, frame, number, text_table, write_tables
+from jointwave.results.dataset import energy_residual, scene_hash
 
 NAME = "stability"
 TITLE = "Hard cases for both engines, and the margin by which they hold"

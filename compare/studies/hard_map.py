@@ -14,12 +14,12 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 
-import cases
-from cases.errors import UnstableError
-from compare.engines import ENGINES, solve
-from compare.figures.style import style
-from compare.scenes import find
-from compare.solvers.record import Solver
+from jointwave import cases
+from jointwave.cases.errors import UnstableError
+from jointwave.compare.engines import ENGINES, solve
+from jointwave.compare.figures.style import style
+from jointwave.compare.scenes import find
+from jointwave.compare.solvers.record import Solver
 
 #: A short pillar with free ends, pushed by a step, in which all modes move.
 SCENE = "hard/short-pillar"

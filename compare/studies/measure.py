@@ -8,14 +8,14 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene, pillar_of
-from compare.engines import applies, solve, solver
-from compare.solvers.record import Answer
-from compare.studies.methods import METHODS
-from compare.studies.reference import UNKNOWN, error, finest_of, known, own_of
-from compare.studies.store import FAILURES
-from compare.studies.study import StudyPoint
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene, pillar_of
+from jointwave.compare.engines import applies, solve, solver
+from jointwave.compare.solvers.record import Answer
+from jointwave.compare.studies.methods import METHODS
+from jointwave.compare.studies.reference import UNKNOWN, error, finest_of, known, own_of
+from jointwave.compare.studies.store import FAILURES
+from jointwave.compare.studies.study import StudyPoint
 
 LONG = 0.1  # s: longer steps are timed once
 

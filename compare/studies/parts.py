@@ -7,14 +7,14 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from cases.effects import active_effects
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
-from compare.solvers.dem import DEM
-from compare.studies import effects, hard_cases, scattering, work_precision
-from compare.studies.forecast import Part, Run, all_runs, part
-from compare.studies.store import Store
-from compare.studies.study import StudyPoint, load
+from jointwave.cases.effects import active_effects
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.solvers.dem import DEM
+from jointwave.compare.studies import effects, hard_cases, scattering, work_precision
+from jointwave.compare.studies.forecast import Part, Run, all_runs, part
+from jointwave.compare.studies.store import Store
+from jointwave.compare.studies.study import StudyPoint, load
 
 
 def of_study(name: str, out: Path) -> list[Part]:

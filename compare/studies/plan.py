@@ -15,13 +15,13 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
-from compare.engines import ENGINES, Progress, solve
-from compare.misfit import ranking
-from compare.misfit.metrics import JUDGED, misfit, worst
-from compare.runs import timings
-from compare.studies.elements import (
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import ENGINES, Progress, solve
+from jointwave.compare.misfit import ranking
+from jointwave.compare.misfit.metrics import JUDGED, misfit, worst
+from jointwave.compare.runs import timings
+from jointwave.compare.studies.elements import (
     COARSEST,
     EXPLICIT,
     Elements,
@@ -33,8 +33,8 @@ from compare.studies.elements import (
     plain,
     rock,
 )
-from compare.studies.reference import Reference
-from compare.studies.store import FAILURES, reason_of
+from jointwave.compare.studies.reference import Reference
+from jointwave.compare.studies.store import FAILURES, reason_of
 
 SHARE = 1 / JUDGED  # of the requested misfit: largest error of a reference
 LONGEST = {"pillar": 20.0, "rock mass": 60.0}  # s of stepping: no run is longer, unless asked for

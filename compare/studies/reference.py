@@ -6,13 +6,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.scene_type import AnyScene
-from compare.engines import ENGINES, EXACT, applies, solve, solver
-from compare.misfit.metrics import Pairing, pairings, relative_l2, worst
-from compare.misfit.ranking import applicable, finest, own_exact
-from compare.studies.methods import METHODS
-from compare.studies.study import FINEST, NONE, FineRun, Study, StudyPoint
-from results.dataset import scene_hash
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import ENGINES, EXACT, applies, solve, solver
+from jointwave.compare.misfit.metrics import Pairing, pairings, relative_l2, worst
+from jointwave.compare.misfit.ranking import applicable, finest, own_exact
+from jointwave.compare.studies.methods import METHODS
+from jointwave.compare.studies.study import FINEST, NONE, FineRun, Study, StudyPoint
+from jointwave.results.dataset import scene_hash
 
 
 class Reference(NamedTuple):

@@ -15,9 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.material.rock import ElasticRock
-from compare.exact.plane.pulse import Axes
-from compare.exact.plane.waves import polarisations, slownesses_across
+from jointwave.cases.material.rock import ElasticRock
+from jointwave.compare.exact.plane.pulse import Axes
+from jointwave.compare.exact.plane.waves import polarisations, slownesses_across
 
 
 class Scattered(NamedTuple):

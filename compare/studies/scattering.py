@@ -12,17 +12,17 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.material.rock import Values, elastic_rock
-from cases.read import load
-from cases.schema.rock_mass import RockMass
-from compare.engines import Progress, applies, solve
-from compare.exact.plane import parallel_joints
-from compare.exact.plane.oblique_joint import Coefficients, Joint
-from compare.exact.plane.pulse import axes_of
-from compare.exact.plane.waves import KINDS, Kind
-from compare.studies import store
-from compare.studies.scattered_waves import Scattered, scattered
-from compare.studies.store import DIED, FAILURES, Pool, Store, alone, reason_of
+from jointwave.cases.material.rock import Values, elastic_rock
+from jointwave.cases.read import load
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.compare.engines import Progress, applies, solve
+from jointwave.compare.exact.plane import parallel_joints
+from jointwave.compare.exact.plane.oblique_joint import Coefficients, Joint
+from jointwave.compare.exact.plane.pulse import axes_of
+from jointwave.compare.exact.plane.waves import KINDS, Kind
+from jointwave.compare.studies import store
+from jointwave.compare.studies.scattered_waves import Scattered, scattered
+from jointwave.compare.studies.store import DIED, FAILURES, Pool, Store, alone, reason_of
 
 SCENE = Path(__file__).parent / "joints.toml"
 ANGLES = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0)  # degrees from the joints' normal

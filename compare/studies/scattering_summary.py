@@ -8,15 +8,15 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from compare.engines import Progress, solver
-from compare.exact.plane.waves import KINDS
-from compare.figures.export import blank, save
-from compare.figures.style import style
-from compare.runs.timings import machine
-from compare.studies.scattering import AT, COUNTS, TITLES, closed_form, run, scene_of
-from compare.studies.store import Pool
-from compare.studies.summary import Summary, write_tables
-from compare.text import percent
+from jointwave.compare.engines import Progress, solver
+from jointwave.compare.exact.plane.waves import KINDS
+from jointwave.compare.figures.export import blank, save
+from jointwave.compare.figures.style import style
+from jointwave.compare.runs.timings import machine
+from jointwave.compare.studies.scattering import AT, COUNTS, TITLES, closed_form, run, scene_of
+from jointwave.compare.studies.store import Pool
+from jointwave.compare.studies.summary import Summary, write_tables
+from jointwave.compare.text import percent
 
 WAVES = {"R_p": ("o", "-"), "R_s": ("s", "--"), "T_p": ("^", "-."), "T_s": ("v", ":")}
 #: The varied column of each study, with its heading.

@@ -5,13 +5,13 @@ from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
-import cases
-from cases.scene_type import AnyScene
-from cases.schema.scene import Scene
-from compare.engines import ENGINES, solve, solver
-from compare.runs import timings
-from compare.solvers.dem import DEM
-from compare.solvers.record import OF_BLOCK_IN_PLANE
+from jointwave import cases
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import ENGINES, solve, solver
+from jointwave.compare.runs import timings
+from jointwave.compare.solvers.dem import DEM
+from jointwave.compare.solvers.record import OF_BLOCK_IN_PLANE
 
 SCENES = Path(__file__).parent / "scenes"
 UNIT_STEPS = 1_000_000  # steps of one block or freedom in a timed run, about

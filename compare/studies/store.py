@@ -20,12 +20,12 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from joblib import Parallel, delayed
 
-from cases.errors import SceneError, UnstableError
-from compare.engines import Progress
-from compare.runs.checkpoint.lock import exclusive
-from compare.runs.checkpoint.signature import program
-from compare.runs.output import read_kept, write_text
-from compare.runs.processes import Processes
+from jointwave.cases.errors import SceneError, UnstableError
+from jointwave.compare.engines import Progress
+from jointwave.compare.runs.checkpoint.lock import exclusive
+from jointwave.compare.runs.checkpoint.signature import program
+from jointwave.compare.runs.output import read_kept, write_text
+from jointwave.compare.runs.processes import Processes
 
 P = TypeVar("P")
 T = TypeVar("T")

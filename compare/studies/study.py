@@ -18,14 +18,14 @@ from pydantic import (
     model_validator,
 )
 
-import cases
-from cases.errors import SceneError, nearest
-from cases.files import read_toml
-from cases.scene_type import AnyScene
-from compare.engines import names, solvers
-from compare.scenes import find
-from compare.studies import IN_CODE, SHIPPED
-from compare.studies.methods import METHODS
+from jointwave import cases
+from jointwave.cases.errors import SceneError, nearest
+from jointwave.cases.files import read_toml
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import names, solvers
+from jointwave.compare.scenes import find
+from jointwave.compare.studies import IN_CODE, SHIPPED
+from jointwave.compare.studies.methods import METHODS
 
 LARGEST_FILE = 1_000_000  # bytes
 MOST_POINTS = 10_000

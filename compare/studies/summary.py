@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import pandas as pd
 import xarray as xr
 
-from compare.figures.export import Drawn
-from compare.runs.output import write_csv, write_dataset
+from jointwave.compare.figures.export import Drawn
+from jointwave.compare.runs.output import write_csv, write_dataset
 
 
 class Summary(NamedTuple):

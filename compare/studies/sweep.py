@@ -17,24 +17,24 @@ import joblib
 import numpy as np
 import xarray as xr
 
-from cases.errors import InterruptedRun, SceneError
-from cases.read import parse_override
-from cases.scene_type import AnyScene
-from compare.engines import Progress, applies, names
-from compare.figures.comparison import write_comparisons
-from compare.misfit.external import Curves
-from compare.misfit.places import Place, places_of
-from compare.runs import comparison
-from compare.runs.jobs import plan
-from compare.runs.output import write_dataset
-from compare.runs.run import Done, execute
-from compare.scenes import find, load, load_variant
-from compare.studies import ensemble, store
-from compare.studies.ensemble import MEMBER
-from compare.studies.store import DIED, FAILURES, Pool, Store
-from compare.studies.sweep_keys import axes
-from results.dataset import scene_hash
-from results.netcdf import load_netcdf
+from jointwave.cases.errors import InterruptedRun, SceneError
+from jointwave.cases.read import parse_override
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import Progress, applies, names
+from jointwave.compare.figures.comparison import write_comparisons
+from jointwave.compare.misfit.external import Curves
+from jointwave.compare.misfit.places import Place, places_of
+from jointwave.compare.runs import comparison
+from jointwave.compare.runs.jobs import plan
+from jointwave.compare.runs.output import write_dataset
+from jointwave.compare.runs.run import Done, execute
+from jointwave.compare.scenes import find, load, load_variant
+from jointwave.compare.studies import ensemble, store
+from jointwave.compare.studies.ensemble import MEMBER
+from jointwave.compare.studies.store import DIED, FAILURES, Pool, Store
+from jointwave.compare.studies.sweep_keys import axes
+from jointwave.results.dataset import scene_hash
+from jointwave.results.netcdf import load_netcdf
 
 LONGEST = 100  # characters of a folder's name
 PEAKS = ("stress", "velocity", "traction")

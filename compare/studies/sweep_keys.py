@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.files import parse_toml
+from jointwave.cases.errors import SceneError
+from jointwave.cases.files import parse_toml
 
 MOST = 10_000  # points
 FORMS = "must be KEY=FROM:TO:COUNT, KEY=log:FROM:TO:COUNT or KEY=A,B,C"

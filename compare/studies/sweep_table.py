@@ -11,13 +11,13 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
-from cases.errors import SceneError
-from compare.misfit.metrics import Distance
-from compare.misfit.places import Place
-from compare.studies import ensemble
-from compare.studies.ensemble import MEMBER
-from compare.studies.summary import Summary, cell, write_tables
-from compare.studies.sweep import Rows, Sweep, SweepOutcome, point_of
+from jointwave.cases.errors import SceneError
+from jointwave.compare.misfit.metrics import Distance
+from jointwave.compare.misfit.places import Place
+from jointwave.compare.studies import ensemble
+from jointwave.compare.studies.ensemble import MEMBER
+from jointwave.compare.studies.summary import Summary, cell, write_tables
+from jointwave.compare.studies.sweep import Rows, Sweep, SweepOutcome, point_of
 
 UNITS = {"x": "m", "y": "m", "time_of_peak": "s", "seconds": "s", "delay": "s"}
 #: Numbers of a run at a receiver, and of a pair of solutions at a receiver.

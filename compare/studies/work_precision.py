@@ -14,16 +14,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from compare.engines import Progress, names
-from compare.figures.export import blank, save
-from compare.figures.style import style
-from compare.runs.timings import machine
-from compare.studies.findings import done, floor, judged, orders, sentences
-from compare.studies.measure import PointRow, measure
-from compare.studies.store import Pool, Store, alone
-from compare.studies.store import key as store_key
-from compare.studies.study import Study, StudyPoint, load
-from compare.studies.summary import Summary, number, text_table, write_tables
+from jointwave.compare.engines import Progress, names
+from jointwave.compare.figures.export import blank, save
+from jointwave.compare.figures.style import style
+from jointwave.compare.runs.timings import machine
+from jointwave.compare.studies.findings import done, floor, judged, orders, sentences
+from jointwave.compare.studies.measure import PointRow, measure
+from jointwave.compare.studies.store import Pool, Store, alone
+from jointwave.compare.studies.store import key as store_key
+from jointwave.compare.studies.study import Study, StudyPoint, load
+from jointwave.compare.studies.summary import Summary, number, text_table, write_tables
 
 #: The studies of the report, in its order.
 REPORTED = ("free-pillar", "convergence", "uniform-chain", "one-joint")

@@ -7,8 +7,8 @@ from scipy.linalg import eigh
 from scipy.sparse import csr_matrix, diags
 from scipy.sparse.linalg import eigsh
 
-from continuum.space.body import Body
-from continuum.space.evaluation import on_freedoms
+from jointwave.continuum.space.body import Body
+from jointwave.continuum.space.evaluation import on_freedoms
 
 FEW = 200  # degrees of freedom up to which the dense solver is the quicker one
 

@@ -10,14 +10,14 @@ leapfrog conserves exactly.
 from functools import cache
 from typing import Any
 
-from continuum.space.operator import multiply
-from continuum.space.stencils import add_transposed, multiply_stencils
-from continuum.space.tractions import joint_energy, joint_loads
-from joints.formula import formula
-from numerics.arguments import unpacked
-from numerics.denormals import flush_denormals, restore_denormals
-from numerics.divergence import EVERY, SPEED
-from numerics.jit import jitted
+from jointwave.continuum.space.operator import multiply
+from jointwave.continuum.space.stencils import add_transposed, multiply_stencils
+from jointwave.continuum.space.tractions import joint_energy, joint_loads
+from jointwave.joints.formula import formula
+from jointwave.numerics.arguments import unpacked
+from jointwave.numerics.denormals import flush_denormals, restore_denormals
+from jointwave.numerics.divergence import EVERY, SPEED
+from jointwave.numerics.jit import jitted
 
 
 @cache
@@ -32,7 +32,7 @@ def leapfrog_for(parts, directions, shared=False):
     send: Any = None
     receive: Any = None
     if shared:
-        from continuum.parallel.exchange import receive, send
+        from jointwave.continuum.parallel.exchange import receive, send
 
     @formula
     def steps(

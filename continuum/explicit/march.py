@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from continuum.explicit.leapfrog import leapfrog_for
-from continuum.model import Memory, Model
-from continuum.state import Samples, State
-from numerics.arguments import Packed
-from numerics.divergence import Guard
+from jointwave.continuum.explicit.leapfrog import leapfrog_for
+from jointwave.continuum.model import Memory, Model
+from jointwave.continuum.state import Samples, State
+from jointwave.numerics.arguments import Packed
+from jointwave.numerics.divergence import Guard
 
 #: A matrix [receivers, fields], and what is added.
 Readings = tuple[csr_matrix, np.ndarray]

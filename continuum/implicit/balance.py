@@ -10,17 +10,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
-from continuum.implicit.substeps import Applied
-from continuum.implicit.vectors import add_transposed, larger, row_times
-from continuum.model import Model
-from continuum.parallel.serial import SERIAL, Serial
-from continuum.space.body import Body, rock_matrices
-from continuum.space.tractions import joint_loads, joint_tangents
-from continuum.state import State
-from joints.formula import formula
-from numerics.arguments import Packed, unpacked
-from numerics.denormals import flush_denormals, restore_denormals
-from numerics.jit import jitted
+from jointwave.continuum.implicit.substeps import Applied
+from jointwave.continuum.implicit.vectors import add_transposed, larger, row_times
+from jointwave.continuum.model import Model
+from jointwave.continuum.parallel.serial import SERIAL, Serial
+from jointwave.continuum.space.body import Body, rock_matrices
+from jointwave.continuum.space.tractions import joint_loads, joint_tangents
+from jointwave.continuum.state import State
+from jointwave.joints.formula import formula
+from jointwave.numerics.arguments import Packed, unpacked
+from jointwave.numerics.denormals import flush_denormals, restore_denormals
+from jointwave.numerics.jit import jitted
 
 
 class Matrices(NamedTuple):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from continuum.parallel.petsc import PETSc
+from jointwave.continuum.parallel.petsc import PETSc
 
 #: Unknowns from which MUMPS outweighs what it costs to call; PETSc's own factors are quicker below.
 LARGE = 20_000

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum.implicit.vectors import largest
-from continuum.parallel.serial import SERIAL, Serial
+from jointwave.continuum.implicit.vectors import largest
+from jointwave.continuum.parallel.serial import SERIAL, Serial
 
 MOST_ITERATIONS = 12
 

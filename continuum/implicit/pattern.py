@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from continuum.implicit.balance import Matrices
-from continuum.implicit.factors import Factors
-from continuum.model import Interfaces, Model
-from continuum.space.tractions import NN, NX, NZ, XN, XX, XZ, ZN, ZZ
+from jointwave.continuum.implicit.balance import Matrices
+from jointwave.continuum.implicit.factors import Factors
+from jointwave.continuum.model import Interfaces, Model
+from jointwave.continuum.space.tractions import NN, NX, NZ, XN, XX, XZ, ZN, ZZ
 
 
 class Entries(NamedTuple):
@@ -99,8 +99,8 @@ class System:
         start, column, communicator = self.pattern.start, self.pattern.column, rock.communicator
         if communicator.size == 1:
             return Factors(start, column)
-        from continuum.parallel.communicator import Communicator
-        from continuum.parallel.factors import SharedFactors
+        from jointwave.continuum.parallel.communicator import Communicator
+        from jointwave.continuum.parallel.factors import SharedFactors
 
         assert isinstance(communicator, Communicator)
         return SharedFactors(start, column, self.free, communicator)

@@ -5,16 +5,16 @@ from functools import cache
 
 import numpy as np
 
-from continuum.explicit.leapfrog import read
-from continuum.explicit.march import Readings
-from continuum.implicit.balance import Matrices, csr
-from continuum.implicit.vectors import row_times
-from continuum.model import Model
-from continuum.space.tractions import joint_energy
-from continuum.state import STATES, Samples, State
-from joints.formula import formula
-from numerics.arguments import Packed, unpacked
-from numerics.jit import jitted
+from jointwave.continuum.explicit.leapfrog import read
+from jointwave.continuum.explicit.march import Readings
+from jointwave.continuum.implicit.balance import Matrices, csr
+from jointwave.continuum.implicit.vectors import row_times
+from jointwave.continuum.model import Model
+from jointwave.continuum.space.tractions import joint_energy
+from jointwave.continuum.state import STATES, Samples, State
+from jointwave.joints.formula import formula
+from jointwave.numerics.arguments import Packed, unpacked
+from jointwave.numerics.jit import jitted
 
 
 def recorder(

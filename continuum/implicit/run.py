@@ -8,17 +8,17 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cases.errors import StoppedError
-from continuum.explicit.march import readings
-from continuum.implicit.balance import Matrices
-from continuum.implicit.newton import Outcome
-from continuum.implicit.record import recorder
-from continuum.implicit.step import Stepper
-from continuum.implicit.substeps import Applied, applied_at, move
-from continuum.model import Model
-from continuum.monitor import Monitor
-from continuum.state import Samples, State
-from results.arrays import arrays, changed, copied, fill
+from jointwave.cases.errors import StoppedError
+from jointwave.continuum.explicit.march import readings
+from jointwave.continuum.implicit.balance import Matrices
+from jointwave.continuum.implicit.newton import Outcome
+from jointwave.continuum.implicit.record import recorder
+from jointwave.continuum.implicit.step import Stepper
+from jointwave.continuum.implicit.substeps import Applied, applied_at, move
+from jointwave.continuum.model import Model
+from jointwave.continuum.monitor import Monitor
+from jointwave.continuum.state import Samples, State
+from jointwave.results.arrays import arrays, changed, copied, fill
 
 HALVINGS = 10
 WHOLE = 1 << HALVINGS

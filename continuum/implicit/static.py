@@ -20,19 +20,19 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from cases.errors import SceneError
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from continuum.implicit.balance import Matrices, implicit_matrices, trial_forces
-from continuum.implicit.newton import Outcome, newton
-from continuum.implicit.pattern import System
-from continuum.implicit.substeps import UNLOADED
-from continuum.model import Ends, Model
-from continuum.space.body import Body
-from continuum.space.tractions import NN, XX, ZZ
-from continuum.state import State
-from joints.law import IN_MOTION
-from results.arrays import copied, fill
+from jointwave.cases.errors import SceneError
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.implicit.balance import Matrices, implicit_matrices, trial_forces
+from jointwave.continuum.implicit.newton import Outcome, newton
+from jointwave.continuum.implicit.pattern import System
+from jointwave.continuum.implicit.substeps import UNLOADED
+from jointwave.continuum.model import Ends, Model
+from jointwave.continuum.space.body import Body
+from jointwave.continuum.space.tractions import NN, XX, ZZ
+from jointwave.continuum.state import State
+from jointwave.joints.law import IN_MOTION
+from jointwave.results.arrays import copied, fill
 
 TOLERANCE = 1e-10  # of the residual, over the largest summed force
 LEAST_PART = 2.0**-4  # of the steady forces

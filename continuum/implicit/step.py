@@ -14,12 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum.explicit.march import mass_damping
-from continuum.implicit.balance import Matrices, trial_forces
-from continuum.implicit.generalised_alpha import scheme
-from continuum.implicit.newton import Outcome, newton
-from continuum.implicit.pattern import System
-from continuum.implicit.substeps import (
+from jointwave.continuum.explicit.march import mass_damping
+from jointwave.continuum.implicit.balance import Matrices, trial_forces
+from jointwave.continuum.implicit.generalised_alpha import scheme
+from jointwave.continuum.implicit.newton import Outcome, newton
+from jointwave.continuum.implicit.pattern import System
+from jointwave.continuum.implicit.substeps import (
     Applied,
     applied_at,
     dashpot_matrix,
@@ -28,11 +28,11 @@ from continuum.implicit.substeps import (
     move,
     shortened,
 )
-from continuum.implicit.vectors import Vectors, differ, move_free, out_of_balance, predict
-from continuum.model import Model
-from continuum.state import State
-from numerics.arguments import Packed
-from results.arrays import copied
+from jointwave.continuum.implicit.vectors import Vectors, differ, move_free, out_of_balance, predict
+from jointwave.continuum.model import Model
+from jointwave.continuum.state import State
+from jointwave.numerics.arguments import Packed
+from jointwave.results.arrays import copied
 
 RESIDUAL = 1e-10  # tolerance over the largest summed force
 #: Of a displacement, and of the prestress that joints carry: what they weigh cannot be balanced.

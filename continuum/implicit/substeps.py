@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from continuum.model import Dashpots, Fixed, HalfJoints, Model, Quiet
-from continuum.state import State
+from jointwave.continuum.model import Dashpots, Fixed, HalfJoints, Model, Quiet
+from jointwave.continuum.state import State
 
 
 class FixedMotion(NamedTuple):

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from joints.formula import formula
-from numerics.arguments import unpacked
-from numerics.jit import jitted
+from jointwave.joints.formula import formula
+from jointwave.numerics.arguments import unpacked
+from jointwave.numerics.jit import jitted
 
 
 class Vectors(NamedTuple):

@@ -6,10 +6,10 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from continuum.mesh.cells import FACETS, oriented
-from continuum.mesh.facets import row_numbers
-from continuum.mesh.segments import Loops, Segments
-from continuum.mesh.templates import ONE, Template, quadrilaterals, triangles
+from jointwave.continuum.mesh.cells import FACETS, oriented
+from jointwave.continuum.mesh.facets import row_numbers
+from jointwave.continuum.mesh.segments import Loops, Segments
+from jointwave.continuum.mesh.templates import ONE, Template, quadrilaterals, triangles
 
 ALIKE = 1e-9  # of the domain: tolerance for equal shapes of blocks
 

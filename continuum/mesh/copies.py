@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from continuum.mesh.description import Part
+from jointwave.continuum.mesh.description import Part
 
 ALIKE = 1e-9  # of the body: tolerance for pieces to be copies of each other
 REPEATED = 6  # least number of copies for SIMD lanes of their own

@@ -4,8 +4,8 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from continuum.mesh.cells import FACETS
-from continuum.mesh.facets import facet_vertices, shared_facets
+from jointwave.continuum.mesh.cells import FACETS
+from jointwave.continuum.mesh.facets import facet_vertices, shared_facets
 
 
 def split(

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from continuum.mesh.cells import FACETS
-from continuum.mesh.description import Joints, Part, Side
+from jointwave.continuum.mesh.cells import FACETS
+from jointwave.continuum.mesh.description import Joints, Part, Side
 
 #: Tolerated distance between coincident facets, relative to that from a facet to the middle of its
 #: cell.

@@ -10,16 +10,16 @@ from pathlib import Path
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.gmsh_file import MeshError, Tagged, read_tagged
-from cases.material.calibrate import Properties
-from cases.schema.scene import Scene
-from continuum.mesh import facets
-from continuum.mesh.cells import DIMENSION, FACETS, jacobians, oriented
-from continuum.mesh.cut import pieces, split
-from continuum.mesh.description import Mesh, Part, Side
-from continuum.mesh.facets import Facets
-from continuum.mesh.paired import paired_joints, place
+from jointwave.cases.errors import SceneError
+from jointwave.cases.gmsh_file import MeshError, Tagged, read_tagged
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.mesh import facets
+from jointwave.continuum.mesh.cells import DIMENSION, FACETS, jacobians, oriented
+from jointwave.continuum.mesh.cut import pieces, split
+from jointwave.continuum.mesh.description import Mesh, Part, Side
+from jointwave.continuum.mesh.facets import Facets
+from jointwave.continuum.mesh.paired import paired_joints, place
 
 PLACE = 1e-6  #: of the pillar's length and side: tolerance of the file's dimensions
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from cases.gmsh_file import MeshError
-from cases.material.calibrate import Properties
-from continuum.mesh import facets
-from continuum.mesh.description import Joints
-from continuum.mesh.facets import Facets
+from jointwave.cases.gmsh_file import MeshError
+from jointwave.cases.material.calibrate import Properties
+from jointwave.continuum.mesh import facets
+from jointwave.continuum.mesh.description import Joints
+from jointwave.continuum.mesh.facets import Facets
 
 ACROSS = 1e-6  #: of the pillar's length: tolerance for a facet to lie across it
 

@@ -6,11 +6,11 @@ from math import ceil
 
 import numpy as np
 
-from cases.material.calibrate import Properties
-from continuum.mesh import facets
-from continuum.mesh.cells import KINDS
-from continuum.mesh.description import Mesh, Part
-from continuum.mesh.extrusion import Column, extruded
+from jointwave.cases.material.calibrate import Properties
+from jointwave.continuum.mesh import facets
+from jointwave.continuum.mesh.cells import KINDS
+from jointwave.continuum.mesh.description import Mesh, Part
+from jointwave.continuum.mesh.extrusion import Column, extruded
 
 #: Of the period: the longest travel time of a wave through one element. A load that starts like a
 #: sine has a kink, which only dashpots smooth as it propagates.

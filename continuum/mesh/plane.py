@@ -10,15 +10,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.partition.blocks import Partition
-from cases.partition.periodic import Across, of_all
-from cases.partition.subdivision import NO_SET
-from continuum.mesh.blocks import BlockEdges, cells_along, has_four_corners, meshed_blocks
-from continuum.mesh.cells import FACETS
-from continuum.mesh.copies import moved_alike, parts_of_pieces
-from continuum.mesh.cut import pieces, split
-from continuum.mesh.description import Joints, Mesh, Side
-from continuum.mesh.segments import Segments, segments_of
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.partition.periodic import Across, of_all
+from jointwave.cases.partition.subdivision import NO_SET
+from jointwave.continuum.mesh.blocks import BlockEdges, cells_along, has_four_corners, meshed_blocks
+from jointwave.continuum.mesh.cells import FACETS
+from jointwave.continuum.mesh.copies import moved_alike, parts_of_pieces
+from jointwave.continuum.mesh.cut import pieces, split
+from jointwave.continuum.mesh.description import Joints, Mesh, Side
+from jointwave.continuum.mesh.segments import Segments, segments_of
 
 
 class PlaneMesh(NamedTuple):

@@ -8,8 +8,8 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from cases.partition.blocks import Partition
-from cases.partition.periodic import Across
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.partition.periodic import Across
 
 SAME = 1e-9  # of the domain: tolerance for coincident points
 STRAIGHT = 1e-6  # largest sine of the angle between collinear edges

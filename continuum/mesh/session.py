@@ -6,7 +6,7 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from cases.gmsh_file import INSTALL
+from jointwave.cases.gmsh_file import INSTALL
 
 
 @contextmanager

@@ -8,15 +8,21 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from continuum.mesh.description import Mesh
-from continuum.parallel.communicator import Communicator
-from continuum.parallel.graph import ranks_by_graph
-from continuum.parallel.identity import Border, border
-from continuum.parallel.partition import Share, cells_enough, copies_of, ranks_of_cells, restrict
-from continuum.space.body import Body, build_body, cell_geometry
-from continuum.space.elasticity import Material, Rock, Section
-from continuum.space.interface import Jumps, jumps
-from numerics.mpi_barrier import arrive
+from jointwave.continuum.mesh.description import Mesh
+from jointwave.continuum.parallel.communicator import Communicator
+from jointwave.continuum.parallel.graph import ranks_by_graph
+from jointwave.continuum.parallel.identity import Border, border
+from jointwave.continuum.parallel.partition import (
+    Share,
+    cells_enough,
+    copies_of,
+    ranks_of_cells,
+    restrict,
+)
+from jointwave.continuum.space.body import Body, build_body, cell_geometry
+from jointwave.continuum.space.elasticity import Material, Rock, Section
+from jointwave.continuum.space.interface import Jumps, jumps
+from jointwave.numerics.mpi_barrier import arrive
 
 NOTHING = Material(0.0, 0.0, 0.0)  # material of ghost cells
 

@@ -9,12 +9,12 @@ import numpy as np
 from mpi4py import MPI
 from scipy.sparse import csr_matrix
 
-from continuum.explicit.march import march
-from continuum.parallel.exchange import TAG, add_shares, connect, release
-from continuum.parallel.identity import Border, joined
-from continuum.parallel.serial import Pieces, Serial, T
-from numerics.divergence import EVERY
-from numerics.mpi_barrier import arrive
+from jointwave.continuum.explicit.march import march
+from jointwave.continuum.parallel.exchange import TAG, add_shares, connect, release
+from jointwave.continuum.parallel.identity import Border, joined
+from jointwave.continuum.parallel.serial import Pieces, Serial, T
+from jointwave.numerics.divergence import EVERY
+from jointwave.numerics.mpi_barrier import arrive
 
 
 class Communicator(Serial):
@@ -166,7 +166,7 @@ class Communicator(Serial):
         return self.degrees_of_freedom
 
     def critical_step(self, *assembled) -> float:
-        from continuum.parallel.critical import shared_critical_step
+        from jointwave.continuum.parallel.critical import shared_critical_step
 
         return shared_critical_step(self, *assembled)
 

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import LinearOperator
 
-from continuum.explicit.critical import critical_step
-from continuum.parallel.communicator import Communicator
+from jointwave.continuum.explicit.critical import critical_step
+from jointwave.continuum.parallel.communicator import Communicator
 
 STOP = -1.0
 

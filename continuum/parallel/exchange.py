@@ -12,8 +12,8 @@ import numpy as np
 from mpi4py import MPI
 from numba import types
 
-from joints.formula import formula
-from numerics.jit import jitted
+from jointwave.joints.formula import formula
+from jointwave.numerics.jit import jitted
 
 TAG = 0x4A57  # of all messages between two processes, which arrive in the order of sending
 

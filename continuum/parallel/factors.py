@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from continuum.implicit.factors import Factors
-from continuum.parallel.communicator import Communicator
-from continuum.parallel.petsc import PETSc
+from jointwave.continuum.implicit.factors import Factors
+from jointwave.continuum.parallel.communicator import Communicator
+from jointwave.continuum.parallel.petsc import PETSc
 
 PACKAGES = ("mumps", "superlu_dist")  # that factorise distributed matrices
 

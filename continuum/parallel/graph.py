@@ -5,10 +5,10 @@ from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
 from scipy.sparse.csgraph import laplacian
 from scipy.sparse.linalg import eigsh
 
-from continuum.mesh.cells import FACETS
-from continuum.mesh.description import Mesh
-from continuum.mesh.facets import shared_facets
-from continuum.parallel.partition import cell_numbers, cells_enough, copies_of
+from jointwave.continuum.mesh.cells import FACETS
+from jointwave.continuum.mesh.description import Mesh
+from jointwave.continuum.mesh.facets import shared_facets
+from jointwave.continuum.parallel.partition import cell_numbers, cells_enough, copies_of
 
 SMALL = 0.02  # of the cells of one process: smaller copies are not divided
 FEW = 100  # vertices of a graph up to which all of its modes are computed

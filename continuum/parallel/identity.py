@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum.mesh.copies import moved_alike, tied_together
-from continuum.mesh.description import Mesh
-from continuum.parallel.partition import Copies, copies_of
-from continuum.parallel.serial import Pieces
-from continuum.space.nodes import corner_shares, levels, node_numbers, numbered
+from jointwave.continuum.mesh.copies import moved_alike, tied_together
+from jointwave.continuum.mesh.description import Mesh
+from jointwave.continuum.parallel.partition import Copies, copies_of
+from jointwave.continuum.parallel.serial import Pieces
+from jointwave.continuum.space.nodes import corner_shares, levels, node_numbers, numbered
 
 
 class Border(NamedTuple):

@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.errors import SceneError
-from continuum.mesh.copies import tied_together
-from continuum.mesh.description import Joints, Mesh, Part
+from jointwave.cases.errors import SceneError
+from jointwave.continuum.mesh.copies import tied_together
+from jointwave.continuum.mesh.description import Joints, Mesh, Part
 
 #: Of the cells of one process: smaller copies are not divided. Many equal blocks share one
 #: operator; half of a block needs its own.

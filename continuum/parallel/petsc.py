@@ -1,6 +1,6 @@
 """PETSc, initialised without its handlers of signals and closed pipes."""
 
-from continuum.space.basix_versions import load_mpi
+from jointwave.continuum.space.basix_versions import load_mpi
 
 load_mpi()
 import petsc4py  # noqa: E402

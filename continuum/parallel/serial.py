@@ -67,7 +67,7 @@ class Serial:
 
     def critical_step(self, *assembled) -> float:
         """Return `critical.critical_time_step` of the matrices assembled by all processes."""
-        from continuum.explicit.critical import critical_time_step
+        from jointwave.continuum.explicit.critical import critical_time_step
 
         return critical_time_step(*assembled)
 
@@ -98,7 +98,7 @@ class Serial:
 
     def leapfrog(self, model, state, samples, stride, limits) -> Callable[[int, int], object]:
         """Return a function of (first, last) that takes steps, as `explicit.march.march` does."""
-        from continuum.explicit.march import march
+        from jointwave.continuum.explicit.march import march
 
         return march(model, state, samples, stride, limits)
 

@@ -4,14 +4,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cases.partition.blocks import Partition
-from cases.partition.periodic import Across, of_all
-from cases.schema.rock_mass import RockMass
-from continuum.model import Interfaces
-from continuum.space.body import Body
-from continuum.space.elasticity import PlaneRock, Section
-from continuum.space.interface import Jumps
-from continuum.space.kinematics import Kinematics
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.partition.periodic import Across, of_all
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.continuum.model import Interfaces
+from jointwave.continuum.space.body import Body
+from jointwave.continuum.space.elasticity import PlaneRock, Section
+from jointwave.continuum.space.interface import Jumps
+from jointwave.continuum.space.kinematics import Kinematics
 
 MOTION = Kinematics(2, Section(2, 1.0), False)
 

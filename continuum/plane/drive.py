@@ -11,16 +11,16 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from cases.errors import SceneError
-from cases.histories import LoadHistory
-from cases.incident import FaceTractions, FreeField, IncidentField, tractions
-from cases.loads import step_means
-from cases.material.quiet_sides import medium_impedances
-from cases.schema.pulse import shortest_period
-from cases.schema.rock_mass import RockMass
-from continuum.parallel.serial import Serial
-from continuum.plane.sides import SidePoints
-from continuum.space.body import Body
+from jointwave.cases.errors import SceneError
+from jointwave.cases.histories import LoadHistory
+from jointwave.cases.incident import FaceTractions, FreeField, IncidentField, tractions
+from jointwave.cases.loads import step_means
+from jointwave.cases.material.quiet_sides import medium_impedances
+from jointwave.cases.schema.pulse import shortest_period
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.continuum.parallel.serial import Serial
+from jointwave.continuum.plane.sides import SidePoints
+from jointwave.continuum.space.body import Body
 
 BUFFER = 500_000  # numbers in the buffer, at most, but for one step
 SAMPLES = 40_000_000  # numbers of a field that is sampled beforehand, at most

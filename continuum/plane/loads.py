@@ -5,18 +5,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from cases.loads import velocity_of
-from cases.material.quiet_sides import base_traction, medium_impedances
-from cases.partition.parts import covered
-from cases.schema.rock_mass import RockMass
-from cases.schema.sources import PlaneLoad
-from continuum.mesh.description import Side
-from continuum.plane.discrete import stress_of
-from continuum.plane.drive import Push
-from continuum.plane.sides import outward, points_on
-from continuum.space import basix_versions
-from continuum.space.body import Body
-from continuum.space.evaluation import cells_at, on_freedoms, places_in
+from jointwave.cases.loads import velocity_of
+from jointwave.cases.material.quiet_sides import base_traction, medium_impedances
+from jointwave.cases.partition.parts import covered
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.sources import PlaneLoad
+from jointwave.continuum.mesh.description import Side
+from jointwave.continuum.plane.discrete import stress_of
+from jointwave.continuum.plane.drive import Push
+from jointwave.continuum.plane.sides import outward, points_on
+from jointwave.continuum.space import basix_versions
+from jointwave.continuum.space.body import Body
+from jointwave.continuum.space.evaluation import cells_at, on_freedoms, places_in
 
 
 def pushes(scene: RockMass, body: Body) -> list[Push]:

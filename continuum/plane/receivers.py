@@ -12,13 +12,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import block_diag, csr_matrix, vstack
 
-from cases.partition.locate import contact_at
-from cases.schema.rock_mass import RockMass
-from continuum.model import Receivers
-from continuum.plane.discrete import PlaneDiscrete, stress_of
-from continuum.plane.recovery import recovered_stress
-from continuum.space.evaluation import cells_at, matrix_of, places_in
-from continuum.space.receivers import per_component, shares_of_pieces
+from jointwave.cases.partition.locate import contact_at
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.continuum.model import Receivers
+from jointwave.continuum.plane.discrete import PlaneDiscrete, stress_of
+from jointwave.continuum.plane.recovery import recovered_stress
+from jointwave.continuum.space.evaluation import cells_at, matrix_of, places_in
+from jointwave.continuum.space.receivers import per_component, shares_of_pieces
 
 
 class JointReaders(NamedTuple):

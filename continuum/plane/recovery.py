@@ -14,11 +14,11 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from continuum.space import basix_versions
-from continuum.space.body import Body
-from continuum.space.elasticity import TENSOR, PlaneRock, elastic_moduli
-from continuum.space.evaluation import at_reference, matrix_of, reference_points
-from continuum.space.receivers import shares_of_pieces
+from jointwave.continuum.space import basix_versions
+from jointwave.continuum.space.body import Body
+from jointwave.continuum.space.elasticity import TENSOR, PlaneRock, elastic_moduli
+from jointwave.continuum.space.evaluation import at_reference, matrix_of, reference_points
+from jointwave.continuum.space.receivers import shares_of_pieces
 
 COMPONENTS = ((0, 0), (1, 1), (0, 1))
 LEAST = 1.5  # points for each coefficient of a polynomial

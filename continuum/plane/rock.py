@@ -8,25 +8,25 @@ from __future__ import annotations
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.material.calibrate import mechanisms_of
-from cases.material.dashpots import set_time_constants
-from cases.material.effective_medium import compliant, stiffness
-from cases.material.rock import elastic_rock
-from cases.material.strength import strength_of
-from cases.partition.blocks import Partition
-from cases.partition.periodic import Across, across_periodic, of_all
-from cases.partition.regions import within
-from cases.partition.scene import partition_of
-from cases.schema.joint_set import JointSet
-from cases.schema.rock_mass import RockMass
-from continuum.joints import interfaces
-from continuum.mesh.plane import plane_mesh
-from continuum.plane.discrete import MOTION, PlaneDiscrete, stress_of
-from continuum.plane.size import element_sizes, refuse_large_mesh
-from continuum.space.assembly import body_and_jumps
-from continuum.space.elasticity import PlaneRock
-from joints.law import Law, law
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import mechanisms_of
+from jointwave.cases.material.dashpots import set_time_constants
+from jointwave.cases.material.effective_medium import compliant, stiffness
+from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.material.strength import strength_of
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.partition.periodic import Across, across_periodic, of_all
+from jointwave.cases.partition.regions import within
+from jointwave.cases.partition.scene import partition_of
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.continuum.joints import interfaces
+from jointwave.continuum.mesh.plane import plane_mesh
+from jointwave.continuum.plane.discrete import MOTION, PlaneDiscrete, stress_of
+from jointwave.continuum.plane.size import element_sizes, refuse_large_mesh
+from jointwave.continuum.space.assembly import body_and_jumps
+from jointwave.continuum.space.elasticity import PlaneRock
+from jointwave.joints.law import Law, law
 
 
 def smeared(scene: RockMass, model: str) -> list[JointSet]:

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from cases.incident import IncidentField, free_field
-from cases.material.calibrate import mechanisms_of
-from cases.material.prestress import refuse_beyond_strength
-from cases.sampling import Clock
-from cases.schema.rock_mass import RockMass
-from cases.size import refuse_beyond_memory, waveform_bytes
-from continuum.build import critical_step, rock_operators, weight_of
-from continuum.model import Ends, Model
-from continuum.plane.discrete import PlaneDiscrete
-from continuum.plane.drive import Drive, Entry
-from continuum.plane.loads import pushes, released
-from continuum.plane.receivers import receivers
-from continuum.plane.rock import discretise
-from continuum.plane.sides import dashpots_on, fixed_sides, points_on, sides_that_are
-from continuum.scheme import Choice, choose
+from jointwave.cases.incident import IncidentField, free_field
+from jointwave.cases.material.calibrate import mechanisms_of
+from jointwave.cases.material.prestress import refuse_beyond_strength
+from jointwave.cases.sampling import Clock
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.size import refuse_beyond_memory, waveform_bytes
+from jointwave.continuum.build import critical_step, rock_operators, weight_of
+from jointwave.continuum.model import Ends, Model
+from jointwave.continuum.plane.discrete import PlaneDiscrete
+from jointwave.continuum.plane.drive import Drive, Entry
+from jointwave.continuum.plane.loads import pushes, released
+from jointwave.continuum.plane.receivers import receivers
+from jointwave.continuum.plane.rock import discretise
+from jointwave.continuum.plane.sides import dashpots_on, fixed_sides, points_on, sides_that_are
+from jointwave.continuum.scheme import Choice, choose
 
 
 def discrete_and_steps(scene: RockMass, rock: str, comm) -> tuple[PlaneDiscrete, Choice, float]:

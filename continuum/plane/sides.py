@@ -12,15 +12,15 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from cases.loads import base_steps
-from cases.material.quiet_sides import borne, medium_impedances
-from cases.sampling import Clock
-from cases.schema.rock_mass import RockMass
-from continuum.mesh.description import Side
-from continuum.model import Dashpots, Fixed
-from continuum.space.body import Body
-from continuum.space.evaluation import places_in
-from continuum.space.interface import facet_points
+from jointwave.cases.loads import base_steps
+from jointwave.cases.material.quiet_sides import borne, medium_impedances
+from jointwave.cases.sampling import Clock
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.continuum.mesh.description import Side
+from jointwave.continuum.model import Dashpots, Fixed
+from jointwave.continuum.space.body import Body
+from jointwave.continuum.space.evaluation import places_in
+from jointwave.continuum.space.interface import facet_points
 
 INSIDE = 1e-7  # of a cell: how far inside it a field is asked for, lest it is beyond a joint
 

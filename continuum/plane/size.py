@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from cases.material.effective_medium import slowest
-from cases.partition.blocks import Partition
-from cases.schema.rock_mass import RockMass
-from cases.size import refuse_beyond_memory, snapshot_bytes
-from continuum.size import ENTRY, FREEDOM, resolved_period
+from jointwave.cases.material.effective_medium import slowest
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.size import refuse_beyond_memory, snapshot_bytes
+from jointwave.continuum.size import ENTRY, FREEDOM, resolved_period
 
 #: Elements in the way of the slowest wave in one period, by their order.
 IN_PERIOD = {1: 40.0, 2: 12.0, 3: 6.0, 4: 4.0}

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cases.schema.joint import PARTS
-from cases.schema.rock_mass import RockMass
-from continuum.plane.rock import smeared
+from jointwave.cases.schema.joint import PARTS
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.continuum.plane.rock import smeared
 
 #: Keys of a joint set that the effective medium does not support.
 NONLINEAR = ("friction_angle", "cohesion", "damping_ratio", *(part.keys[0] for part in PARTS))

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from continuum.run import Run
-from continuum.state import Samples
-from continuum.waveforms import energy_terms, vectors
-from results.plane import plane_dataset
+from jointwave.continuum.run import Run
+from jointwave.continuum.state import Samples
+from jointwave.continuum.waveforms import energy_terms, vectors
+from jointwave.results.plane import plane_dataset
 
 
 def quantities(run: Run, samples: Samples) -> dict[str, np.ndarray]:

@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, kron
 
-from continuum.mesh.description import Mesh, Part
-from continuum.parallel.serial import SERIAL, Serial
-from continuum.space.elasticity import Piece, Rock, Section, discretise
-from continuum.space.nodes import levels, node_numbers
-from continuum.space.operator import Layout, Operator, layout, operator, spread
+from jointwave.continuum.mesh.description import Mesh, Part
+from jointwave.continuum.parallel.serial import SERIAL, Serial
+from jointwave.continuum.space.elasticity import Piece, Rock, Section, discretise
+from jointwave.continuum.space.nodes import levels, node_numbers
+from jointwave.continuum.space.operator import Layout, Operator, layout, operator, spread
 
 
 class Body(NamedTuple):

@@ -29,7 +29,7 @@ def quiet_logging() -> Iterator[None]:
 
 
 with suppress(ImportError):
-    from continuum.parallel import petsc as _  # noqa: F401  before dolfinx starts it in its own way
+    from jointwave.continuum.parallel import petsc as _  # noqa: F401  before dolfinx starts it in its own way
 with quiet_logging():
     import ufl
     from dolfinx import fem, mesh

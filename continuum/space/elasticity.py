@@ -16,12 +16,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, kron
 
-from cases.material.effective_medium import tensor
-from continuum.mesh.description import Part
-from continuum.mesh.facets import row_numbers
-from continuum.space import basix_versions
-from continuum.space.nodes import nodes_of
-from continuum.space.operator import without_round_off
+from jointwave.cases.material.effective_medium import tensor
+from jointwave.continuum.mesh.description import Part
+from jointwave.continuum.mesh.facets import row_numbers
+from jointwave.continuum.space import basix_versions
+from jointwave.continuum.space.nodes import nodes_of
+from jointwave.continuum.space.operator import without_round_off
 
 AT_ONCE = 64  # cells that are integrated together
 ALIKE = 1e-14  # of the piece: what coordinates are rounded to where shapes of cells are compared

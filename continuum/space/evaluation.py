@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from continuum.space import basix_versions
-from continuum.space.body import Body
+from jointwave.continuum.space import basix_versions
+from jointwave.continuum.space.body import Body
 
 INSIDE = 1e-7  # how far outside the reference cell a point on its face may come out
 CLOSE = 1e-12  # of the reference cell: when Newton's iteration has found a point

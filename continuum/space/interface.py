@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from continuum.space import basix_versions
-from continuum.space.body import Body, along
-from continuum.space.evaluation import matrix_of, places_in
-from continuum.space.stencils import distinct
+from jointwave.continuum.space import basix_versions
+from jointwave.continuum.space.body import Body, along
+from jointwave.continuum.space.evaluation import matrix_of, places_in
+from jointwave.continuum.space.stencils import distinct
 
 FACETS = {
     "interval": "point",

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from cases.effects import is_spatial
-from cases.errors import SceneError
-from cases.material.calibrate import Properties, mechanisms_of
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from cases.schema.segment import alone, regions
-from continuum.space.elasticity import Material, Section
+from jointwave.cases.effects import is_spatial
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import Properties, mechanisms_of
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.schema.segment import alone, regions
+from jointwave.continuum.space.elasticity import Material, Section
 
 MODELS = ("jointed", "equivalent")
 

@@ -7,9 +7,9 @@ to be compared, which could not tell the two sides of a joint apart.
 
 import numpy as np
 
-from continuum.mesh.description import Part
-from continuum.mesh.facets import row_numbers
-from continuum.space import basix_versions
+from jointwave.continuum.mesh.description import Part
+from jointwave.continuum.mesh.facets import row_numbers
+from jointwave.continuum.space import basix_versions
 
 SAME = 1e-9  # of the pillar's size: nodes that are at one height
 STEPS = 1_000_000  # of a place between vertices: nodes are much farther apart than one of them

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.sparse import block_diag, coo_matrix, csr_matrix
 
-from continuum.space.simd import WIDTH, multiply_pair, multiply_tile
-from joints.formula import formula
-from numerics.cache_lines import zeros
+from jointwave.continuum.space.simd import WIDTH, multiply_pair, multiply_tile
+from jointwave.joints.formula import formula
+from jointwave.numerics.cache_lines import zeros
 
 TILE = 4  # registers wide; a part's blocks are dealt out evenly, so that tiles have 3 to 5
 ONE, TWO = np.uint64(1), np.uint64(2)

@@ -6,17 +6,23 @@ import numpy as np
 from numpy.polynomial import polynomial as poly
 from scipy.sparse import csr_matrix, vstack
 
-from continuum.space import basix_versions
-from continuum.space.body import Body, axis
-from continuum.space.elasticity import (
+from jointwave.continuum.space import basix_versions
+from jointwave.continuum.space.body import Body, axis
+from jointwave.continuum.space.elasticity import (
     TENSOR,
     Material,
     elastic_moduli,
     mass_rule,
     stiffness_rule,
 )
-from continuum.space.evaluation import Places, cells_at, matrix_of, places_in, quadrature_in
-from continuum.space.interface import Jumps
+from jointwave.continuum.space.evaluation import (
+    Places,
+    cells_at,
+    matrix_of,
+    places_in,
+    quadrature_in,
+)
+from jointwave.continuum.space.interface import Jumps
 
 NEAR = 1e-9  # of the pillar: when a section is on a joint
 PER_SIDE = 8  # Gauss points across a section that the mesh does not follow

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, hstack
 
-from joints.formula import formula
+from jointwave.joints.formula import formula
 
 ONE, TWO = np.uint64(1), np.uint64(2)
 ROUND_OFF = 1e-11  # of coefficients, which are basis functions and of the order of 1

@@ -5,15 +5,15 @@ that the law does not have are None. With the jump operator B (displacements to 
 and the traction t (compression positive, on the far side) the force on the freedoms is B^T W t.
 """
 
-from joints.closure import closure_energy
-from joints.dilation import lift
-from joints.energy import fracture_energy_spent, friction_work, lift_work
-from joints.formula import formula
-from joints.law import History, law_of
-from joints.normal import gap_under, normal_traction, spring_traction
-from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
-from joints.slide import after_slide
-from joints.tangent import tangent
+from jointwave.joints.closure import closure_energy
+from jointwave.joints.dilation import lift
+from jointwave.joints.energy import fracture_energy_spent, friction_work, lift_work
+from jointwave.joints.formula import formula
+from jointwave.joints.law import History, law_of
+from jointwave.joints.normal import gap_under, normal_traction, spring_traction
+from jointwave.joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
+from jointwave.joints.slide import after_slide
+from jointwave.joints.tangent import tangent
 
 #: Rows of the tangents: t_n with the gap; t_x, t_z with it; t_x with x, either with the other, t_z
 #: with z; and, where slip lifts the faces, t_n with x and with z.

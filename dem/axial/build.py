@@ -2,18 +2,18 @@
 
 import numpy as np
 
-from cases.loads import base_steps, load_history, step_means, until_it_ends
-from cases.material.calibrate import Properties, calibrate
-from cases.sampling import Clock, clock, interpolation
-from cases.schema.scene import Scene
-from dem.axial.ends import build_end
-from dem.axial.model import Chain, Effects, Model, Receivers
-from dem.axial.relaxation import relaxation, unrelaxed
-from dem.axial.stability import critical_chain_step
-from dem.axial.state import State, state_at_rest
-from dem.size import refuse_large
-from dem.static import stiffest
-from joints.law import Law, law, parts_of, table_of
+from jointwave.cases.loads import base_steps, load_history, step_means, until_it_ends
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.sampling import Clock, clock, interpolation
+from jointwave.cases.schema.scene import Scene
+from jointwave.dem.axial.ends import build_end
+from jointwave.dem.axial.model import Chain, Effects, Model, Receivers
+from jointwave.dem.axial.relaxation import relaxation, unrelaxed
+from jointwave.dem.axial.stability import critical_chain_step
+from jointwave.dem.axial.state import State, state_at_rest
+from jointwave.dem.size import refuse_large
+from jointwave.dem.static import stiffest
+from jointwave.joints.law import Law, law, parts_of, table_of
 
 
 def build(scene: Scene) -> tuple[Model, State, Clock, float]:

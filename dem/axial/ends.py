@@ -7,9 +7,9 @@ compression.
 from math import inf
 from typing import NamedTuple
 
-from cases.material.calibrate import Properties
-from joints.ends import HalfSpring, half_spring
-from joints.formula import formula
+from jointwave.cases.material.calibrate import Properties
+from jointwave.joints.ends import HalfSpring, half_spring
+from jointwave.joints.formula import formula
 
 
 class End(NamedTuple):

@@ -26,26 +26,26 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from cases.loads import load_history, until_it_ends
-from cases.material.calibrate import calibrate
-from cases.sampling import Clock, clock
-from cases.schema.scene import Scene
-from dem.axial.build import unloaded
-from dem.axial.model import Model
-from dem.axial.samples import Samples
-from dem.axial.springs import spring_forces
-from dem.axial.stability import critical_chain_step
-from dem.axial.state import State, state_at_rest
-from dem.size import refuse_large
-from dem.static import stiffest
-from joints.energy import elastic_energy
-from joints.formula import formula
-from joints.law import law_of
-from numerics.arguments import Packed, unpacked
-from numerics.denormals import flush_denormals, restore_denormals
-from numerics.divergence import EVERY, SPEED, Guard, guard, out_of_bounds
-from numerics.jit import jitted
-from numerics.sums import total_of
+from jointwave.cases.loads import load_history, until_it_ends
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import Clock, clock
+from jointwave.cases.schema.scene import Scene
+from jointwave.dem.axial.build import unloaded
+from jointwave.dem.axial.model import Model
+from jointwave.dem.axial.samples import Samples
+from jointwave.dem.axial.springs import spring_forces
+from jointwave.dem.axial.stability import critical_chain_step
+from jointwave.dem.axial.state import State, state_at_rest
+from jointwave.dem.size import refuse_large
+from jointwave.dem.static import stiffest
+from jointwave.joints.energy import elastic_energy
+from jointwave.joints.formula import formula
+from jointwave.joints.law import law_of
+from jointwave.numerics.arguments import Packed, unpacked
+from jointwave.numerics.denormals import flush_denormals, restore_denormals
+from jointwave.numerics.divergence import EVERY, SPEED, Guard, guard, out_of_bounds
+from jointwave.numerics.jit import jitted
+from jointwave.numerics.sums import total_of
 
 XI, LAMBDA, CHI = 0.1786178958448091, -0.2123418310626054, -0.06626458266981849
 

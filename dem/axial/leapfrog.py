@@ -12,20 +12,28 @@ from math import copysign
 
 import numpy as np
 
-from dem.axial.ends import end_reaction
-from dem.axial.model import Model
-from dem.axial.samples import Samples, buffers
-from dem.axial.state import State
-from joints.energy import elastic_energy, fracture_energy_spent
-from joints.formula import formula
-from joints.law import law_of
-from joints.normal import normal_traction, spring_traction
-from joints.softening import strength_left
-from numerics.arguments import Packed, unpacked
-from numerics.denormals import flush_denormals, restore_denormals
-from numerics.divergence import ENERGY, EVERY, SPEED, Guard, gains_energy, guard, out_of_bounds
-from numerics.jit import jitted
-from numerics.sums import total_of
+from jointwave.dem.axial.ends import end_reaction
+from jointwave.dem.axial.model import Model
+from jointwave.dem.axial.samples import Samples, buffers
+from jointwave.dem.axial.state import State
+from jointwave.joints.energy import elastic_energy, fracture_energy_spent
+from jointwave.joints.formula import formula
+from jointwave.joints.law import law_of
+from jointwave.joints.normal import normal_traction, spring_traction
+from jointwave.joints.softening import strength_left
+from jointwave.numerics.arguments import Packed, unpacked
+from jointwave.numerics.denormals import flush_denormals, restore_denormals
+from jointwave.numerics.divergence import (
+    ENERGY,
+    EVERY,
+    SPEED,
+    Guard,
+    gains_energy,
+    guard,
+    out_of_bounds,
+)
+from jointwave.numerics.jit import jitted
+from jointwave.numerics.sums import total_of
 
 UNGUARDED = guard(0.0)  # placeholder of a loop without a monitor
 

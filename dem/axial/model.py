@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.sampling import Interpolation
-from dem.axial.ends import End
-from dem.axial.relaxation import RelaxingJoints
-from joints.law import LawFlags
+from jointwave.cases.sampling import Interpolation
+from jointwave.dem.axial.ends import End
+from jointwave.dem.axial.relaxation import RelaxingJoints
+from jointwave.joints.law import LawFlags
 
 
 class Receivers(NamedTuple):

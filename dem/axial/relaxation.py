@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.material.calibrate import Properties, mechanisms_of
-from cases.material.constant_q import Mechanisms, in_series
-from cases.schema.scene import Scene
+from jointwave.cases.material.calibrate import Properties, mechanisms_of
+from jointwave.cases.material.constant_q import Mechanisms, in_series
+from jointwave.cases.schema.scene import Scene
 
 
 class RelaxingJoints(NamedTuple):

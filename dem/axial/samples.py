@@ -4,9 +4,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem.axial.model import Effects, Model
-from dem.axial.state import State
-from numerics.cache_lines import zeros
+from jointwave.dem.axial.model import Effects, Model
+from jointwave.dem.axial.state import State
+from jointwave.numerics.cache_lines import zeros
 
 
 class Samples(NamedTuple):

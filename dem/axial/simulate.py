@@ -10,25 +10,25 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.loads import with_load_itself
-from cases.material.calibrate import Properties, calibrate
-from cases.sampling import Clock, interpolation
-from cases.schema.scene import Scene
-from dem import time_loop
-from dem.axial import fourth_order, leapfrog
-from dem.axial.build import build
-from dem.axial.model import Model, Receivers
-from dem.axial.samples import buffers, terms
-from dem.axial.stability import highest_speed
-from dem.axial.start import start
-from dem.axial.state import State
-from dem.fragments import with_fragments
-from dem.snapshots import BlockFrame, BlockRecorder
-from dem.static import since_prestress
-from numerics.divergence import guard, look
-from numerics.time_loop import Checkpointer
-from results.arrays import copied, size_of
-from results.dataset import dataset
+from jointwave.cases.loads import with_load_itself
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.sampling import Clock, interpolation
+from jointwave.cases.schema.scene import Scene
+from jointwave.dem import time_loop
+from jointwave.dem.axial import fourth_order, leapfrog
+from jointwave.dem.axial.build import build
+from jointwave.dem.axial.model import Model, Receivers
+from jointwave.dem.axial.samples import buffers, terms
+from jointwave.dem.axial.stability import highest_speed
+from jointwave.dem.axial.start import start
+from jointwave.dem.axial.state import State
+from jointwave.dem.fragments import with_fragments
+from jointwave.dem.snapshots import BlockFrame, BlockRecorder
+from jointwave.dem.static import since_prestress
+from jointwave.numerics.divergence import guard, look
+from jointwave.numerics.time_loop import Checkpointer
+from jointwave.results.arrays import copied, size_of
+from jointwave.results.dataset import dataset
 
 #: Of (model, state, samples, stride, monitor): a function that takes samples first .. last - 1.
 MakeStepper = Callable[..., Callable[[int, int], None]]

@@ -1,8 +1,8 @@
 """Forces of the joints without dashpots, for states at rest and for steps without damping."""
 
-from joints.formula import formula
-from joints.law import law_of
-from joints.normal import spring_traction
+from jointwave.joints.formula import formula
+from jointwave.joints.law import law_of
+from jointwave.joints.normal import spring_traction
 
 
 @formula

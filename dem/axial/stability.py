@@ -14,13 +14,13 @@ from math import cos, pi, sqrt
 
 import numpy as np
 
-from cases.material.calibrate import Properties
-from cases.sampling import Clock
-from dem.axial.ends import end_stiffness
-from dem.axial.model import Model
-from dem.axial.state import State
-from numerics.critical_step import critical_step, critical_step_of_modes
-from numerics.divergence import speed_that
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.sampling import Clock
+from jointwave.dem.axial.ends import end_stiffness
+from jointwave.dem.axial.model import Model
+from jointwave.dem.axial.state import State
+from jointwave.numerics.critical_step import critical_step, critical_step_of_modes
+from jointwave.numerics.divergence import speed_that
 
 
 def critical_chain_step(p: Properties, start: str, end: str) -> float:

@@ -5,15 +5,15 @@ from functools import cache
 
 import numpy as np
 
-from cases.material.calibrate import Properties, calibrate
-from cases.schema.scene import Scene
-from dem.axial.build import unloaded, with_mass_damping
-from dem.axial.leapfrog import march
-from dem.axial.model import Chain, Model
-from dem.axial.springs import spring_forces
-from dem.axial.stability import critical_chain_step
-from dem.axial.state import State
-from dem.static import (
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.schema.scene import Scene
+from jointwave.dem.axial.build import unloaded, with_mass_damping
+from jointwave.dem.axial.leapfrog import march
+from jointwave.dem.axial.model import Chain, Model
+from jointwave.dem.axial.springs import spring_forces
+from jointwave.dem.axial.stability import critical_chain_step
+from jointwave.dem.axial.state import State
+from jointwave.dem.static import (
     STEP_FRACTION,
     Rest,
     fastest_of_row,
@@ -23,8 +23,8 @@ from dem.static import (
     stiffest,
     undamped,
 )
-from joints.law import LawFlags
-from numerics.jit import jitted
+from jointwave.joints.law import LawFlags
+from jointwave.numerics.jit import jitted
 
 
 def start(scene: Scene, model: Model, state: State) -> tuple[Model, Rest | None]:

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem.axial.model import Effects
-from numerics.cache_lines import zeros
+from jointwave.dem.axial.model import Effects
+from jointwave.numerics.cache_lines import zeros
 
 
 class State(NamedTuple):

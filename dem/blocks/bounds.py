@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from cases.spectrum import highest_frequency
-from dem.blocks.model import PlaneState
-from dem.blocks.shaking import variation
-from dem.blocks.system import PlaneSystem
-from dem.blocks.tile import relative
-from dem.blocks.tiles import LENGTH, START
-from numerics.divergence import speed_that
+from jointwave.cases.spectrum import highest_frequency
+from jointwave.dem.blocks.model import PlaneState
+from jointwave.dem.blocks.shaking import variation
+from jointwave.dem.blocks.system import PlaneSystem
+from jointwave.dem.blocks.tile import relative
+from jointwave.dem.blocks.tiles import LENGTH, START
+from jointwave.numerics.divergence import speed_that
 
 
 def highest_energy(system: PlaneSystem, state: PlaneState) -> float:

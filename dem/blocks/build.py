@@ -6,20 +6,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.material.rigid_blocks import RigidJoints, rigid_joints
-from cases.material.rock_mass import Inertia, inertia
-from cases.partition.blocks import Partition
-from cases.partition.lattice import further_sets
-from cases.partition.regions import rocks_of
-from cases.partition.scene import partition_of
-from cases.schema.rock_mass import RockMass
-from dem.blocks.joints import Columns, columns
-from dem.blocks.links import Links, links_of
-from dem.blocks.model import Blocks, KernelFlags
-from dem.blocks.stability import critical_plane_step
-from dem.blocks.tiles import Contacts, contacts_of
-from joints.law import Law, parts_of
-from joints.normal import gap_under
+from jointwave.cases.material.rigid_blocks import RigidJoints, rigid_joints
+from jointwave.cases.material.rock_mass import Inertia, inertia
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.partition.lattice import further_sets
+from jointwave.cases.partition.regions import rocks_of
+from jointwave.cases.partition.scene import partition_of
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.dem.blocks.joints import Columns, columns
+from jointwave.dem.blocks.links import Links, links_of
+from jointwave.dem.blocks.model import Blocks, KernelFlags
+from jointwave.dem.blocks.stability import critical_plane_step
+from jointwave.dem.blocks.tiles import Contacts, contacts_of
+from jointwave.joints.law import Law, parts_of
+from jointwave.joints.normal import gap_under
 
 
 class RigidBlocks(NamedTuple):

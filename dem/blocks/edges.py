@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.material.block_stiffness import jump
-from cases.material.contact_points import points_of
-from cases.partition.blocks import BoundaryEdges, Partition
+from jointwave.cases.material.block_stiffness import jump
+from jointwave.cases.material.contact_points import points_of
+from jointwave.cases.partition.blocks import BoundaryEdges, Partition
 
 #: Rows of the resultants of tractions on a block: the force, and the sums of arm times force,
 #: whose antisymmetric part is the moment about the centroid.

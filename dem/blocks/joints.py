@@ -7,14 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.material.contact_points import CUT, points_of
-from cases.material.dashpots import set_time_constants
-from cases.material.rigid_blocks import RigidJoints
-from cases.material.rock_mass import Stiffness
-from cases.material.strength import strength_of
-from cases.schema.joint import JointLaw
-from cases.schema.rock_mass import RockMass
-from joints.law import Law, law, stiffest, uniform
+from jointwave.cases.material.contact_points import CUT, points_of
+from jointwave.cases.material.dashpots import set_time_constants
+from jointwave.cases.material.rigid_blocks import RigidJoints
+from jointwave.cases.material.rock_mass import Stiffness
+from jointwave.cases.material.strength import strength_of
+from jointwave.cases.schema.joint import JointLaw
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.joints.law import Law, law, stiffest, uniform
 
 
 class Columns(NamedTuple):

@@ -14,15 +14,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem.blocks.model import KernelFlags, PlaneModel, PlaneState
-from dem.blocks.tile import AFTER, BEFORE, CONTACT_ROWS, SUMMED, step_for
-from dem.blocks.tiles import LANES, depth_of, marks
-from numerics.arguments import Packed, unpacked
-from numerics.atomic import give_way, peek, post
-from numerics.cache_lines import zeros
-from numerics.denormals import flush_denormals, restore_denormals
-from numerics.jit import jitted
-from results.plane import TERMS
+from jointwave.dem.blocks.model import KernelFlags, PlaneModel, PlaneState
+from jointwave.dem.blocks.tile import AFTER, BEFORE, CONTACT_ROWS, SUMMED, step_for
+from jointwave.dem.blocks.tiles import LANES, depth_of, marks
+from jointwave.numerics.arguments import Packed, unpacked
+from jointwave.numerics.atomic import give_way, peek, post
+from jointwave.numerics.cache_lines import zeros
+from jointwave.numerics.denormals import flush_denormals, restore_denormals
+from jointwave.numerics.jit import jitted
+from jointwave.results.plane import TERMS
 
 
 class PlaneSamples(NamedTuple):

@@ -15,10 +15,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem.blocks.tiles import LANES, START, Contacts
-from joints.law import Law, LawFlags
-from numerics.cache_lines import zeros
-from results.plane import TERMS
+from jointwave.dem.blocks.tiles import LANES, START, Contacts
+from jointwave.joints.law import Law, LawFlags
+from jointwave.numerics.cache_lines import zeros
+from jointwave.results.plane import TERMS
 
 
 class KernelFlags(NamedTuple):

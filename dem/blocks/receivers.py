@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.partition.blocks import Partition
-from cases.partition.lattice import squared
-from cases.partition.locate import contact_at, rock_neighbours, sides_at
-from cases.schema.rock_mass import RockMass
-from dem.blocks.links import Links
+from jointwave.cases.errors import SceneError
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.partition.lattice import squared
+from jointwave.cases.partition.locate import contact_at, rock_neighbours, sides_at
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.dem.blocks.links import Links
 
 #: Of the largest singular value of the neighbours' places: below it they lie on a line.
 ON_A_LINE = 0.05

@@ -13,11 +13,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem.blocks.leapfrog import PlaneSamples
-from dem.blocks.links import Links
-from dem.blocks.receivers import BlockReceivers
-from dem.blocks.system import PlaneSystem
-from dem.blocks.tile import ALONG, BEND, FORCE_X, FORCE_Y, GAP, SLIP
+from jointwave.dem.blocks.leapfrog import PlaneSamples
+from jointwave.dem.blocks.links import Links
+from jointwave.dem.blocks.receivers import BlockReceivers
+from jointwave.dem.blocks.system import PlaneSystem
+from jointwave.dem.blocks.tile import ALONG, BEND, FORCE_X, FORCE_Y, GAP, SLIP
 
 #: xx, yy and xy of a tensor.
 COMPONENTS = ((0, 0), (1, 1), (0, 1))

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cases.loads import history_of
-from cases.schema.rock_mass import RockMass
+from jointwave.cases.loads import history_of
+from jointwave.cases.schema.rock_mass import RockMass
 
 #: Of (steps): the velocity of every wall in each [n, walls, 2], m/s.
 Shaking = Callable[[np.ndarray], np.ndarray]

@@ -8,21 +8,27 @@ from time import perf_counter
 import numpy as np
 import xarray as xr
 
-from cases.incident import IncidentField
-from cases.schema.rock_mass import RockMass
-from dem import time_loop
-from dem.blocks.bounds import highest_energy, motion_of_contacts
-from dem.blocks.leapfrog import PlaneSamples, march, samples_for
-from dem.blocks.model import PlaneState, state_at_rest
-from dem.blocks.record import quantities
-from dem.blocks.snapshots import PlaneRecorder
-from dem.blocks.start import start
-from dem.blocks.system import PlaneSystem, prepared
-from numerics.divergence import SPEED, Guard, audit, guard
-from numerics.small_motion import Moved, farthest, matters, overlapping, refuse_large_motion
-from numerics.time_loop import Checkpointer
-from results.arrays import size_of
-from results.plane import plane_dataset
+from jointwave.cases.incident import IncidentField
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.dem import time_loop
+from jointwave.dem.blocks.bounds import highest_energy, motion_of_contacts
+from jointwave.dem.blocks.leapfrog import PlaneSamples, march, samples_for
+from jointwave.dem.blocks.model import PlaneState, state_at_rest
+from jointwave.dem.blocks.record import quantities
+from jointwave.dem.blocks.snapshots import PlaneRecorder
+from jointwave.dem.blocks.start import start
+from jointwave.dem.blocks.system import PlaneSystem, prepared
+from jointwave.numerics.divergence import SPEED, Guard, audit, guard
+from jointwave.numerics.small_motion import (
+    Moved,
+    farthest,
+    matters,
+    overlapping,
+    refuse_large_motion,
+)
+from jointwave.numerics.time_loop import Checkpointer
+from jointwave.results.arrays import size_of
+from jointwave.results.plane import plane_dataset
 
 MOST_OF_DRIVE = 2_000_000  # numbers: forces on held blocks in memory at a time
 

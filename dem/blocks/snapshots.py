@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from cases.partition.blocks import Partition
-from cases.partition.polygons import owner
-from dem.blocks.leapfrog import march, samples_for
-from dem.blocks.model import PlaneState
-from dem.blocks.system import PlaneSystem
-from results.arrays import copied
-from results.snapshots import SnapshotRecorder, snapshots, with_snapshots
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.partition.polygons import owner
+from jointwave.dem.blocks.leapfrog import march, samples_for
+from jointwave.dem.blocks.model import PlaneState
+from jointwave.dem.blocks.system import PlaneSystem
+from jointwave.results.arrays import copied
+from jointwave.results.snapshots import SnapshotRecorder, snapshots, with_snapshots
 
 
 class PlaneRecorder(SnapshotRecorder):

@@ -6,18 +6,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.histories import LoadHistory
-from cases.loads import velocity_of
-from cases.material.quiet_sides import base_traction, impedances
-from cases.partition.blocks import Partition
-from cases.partition.locate import block_at
-from cases.partition.parts import loaded_part
-from cases.sampling import Clock
-from cases.schema.plane import StressInPlane
-from cases.schema.rock_mass import RockMass
-from cases.schema.sources import PlaneLoad
-from dem.blocks.edges import gathered, on_rows, points_on, resultant
-from dem.blocks.waves import Delayed, Sampled
+from jointwave.cases.histories import LoadHistory
+from jointwave.cases.loads import velocity_of
+from jointwave.cases.material.quiet_sides import base_traction, impedances
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.partition.locate import block_at
+from jointwave.cases.partition.parts import loaded_part
+from jointwave.cases.sampling import Clock
+from jointwave.cases.schema.plane import StressInPlane
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.sources import PlaneLoad
+from jointwave.dem.blocks.edges import gathered, on_rows, points_on, resultant
+from jointwave.dem.blocks.waves import Delayed, Sampled
 
 #: Samples times held blocks whose forces are there at once.
 AT_ONCE = 100_000

@@ -2,10 +2,10 @@
 
 The critical step, with dashpots and what holds the sides, follows from the bound of
 `cases.material.block_stiffness`, block by block, on stiffness and damping together. Slip and
-opening only take stiffness away; joints that stiffen are as stiff as in the stiffest state in reach, and
-joints that dilate as in `joints.dilation.riding_stiffness`. Dashpots of quiet sides take the mean
-velocity of a step and change no bound, nor does mass-proportional damping; local damping alpha
-makes forces that turn a velocity round 1 + alpha times as large.
+opening only take stiffness away; joints that stiffen are as stiff as in the stiffest state in
+reach, and joints that dilate as in `joints.dilation.riding_stiffness`. Dashpots of quiet sides
+take the mean velocity of a step and change no bound, nor does mass-proportional damping; local
+damping alpha makes forces that turn a velocity round 1 + alpha times as large.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cases.material.block_stiffness import block_stiffness
-from cases.material.contact_points import ContactPoints
-from cases.material.rock_mass import Inertia, Stiffness
-from cases.partition.blocks import Contacts
-from dem.blocks.joints import Columns
-from dem.blocks.links import Links
-from numerics.critical_step import critical_step
+from jointwave.cases.material.block_stiffness import block_stiffness
+from jointwave.cases.material.contact_points import ContactPoints
+from jointwave.cases.material.rock_mass import Inertia, Stiffness
+from jointwave.cases.partition.blocks import Contacts
+from jointwave.dem.blocks.joints import Columns
+from jointwave.dem.blocks.links import Links
+from jointwave.numerics.critical_step import critical_step
 
 
 def critical_plane_step(links: Links, columns: Columns, inertia: Inertia, local: float) -> float:

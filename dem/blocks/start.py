@@ -7,15 +7,15 @@ from math import ceil
 
 import numpy as np
 
-from cases.material.prestress import refuse_beyond_strength
-from dem.blocks.edges import on_freedoms, resultant
-from dem.blocks.leapfrog import make_stepper, samples_for
-from dem.blocks.model import PlaneState, held_by, state_at_rest
-from dem.blocks.sources import Sources, reactions
-from dem.blocks.stability import critical_plane_step
-from dem.blocks.system import PlaneSystem
-from dem.blocks.tiles import LANES, START, Contacts
-from dem.static import (
+from jointwave.cases.material.prestress import refuse_beyond_strength
+from jointwave.dem.blocks.edges import on_freedoms, resultant
+from jointwave.dem.blocks.leapfrog import make_stepper, samples_for
+from jointwave.dem.blocks.model import PlaneState, held_by, state_at_rest
+from jointwave.dem.blocks.sources import Sources, reactions
+from jointwave.dem.blocks.stability import critical_plane_step
+from jointwave.dem.blocks.system import PlaneSystem
+from jointwave.dem.blocks.tiles import LANES, START, Contacts
+from jointwave.dem.static import (
     NEVER,
     STEP_FRACTION,
     STEPS_BETWEEN_LOOKS,
@@ -24,8 +24,8 @@ from dem.static import (
     Rest,
     settle,
 )
-from joints.law import IN_MOTION, sticking
-from results.arrays import copied, fill
+from jointwave.joints.law import IN_MOTION, sticking
+from jointwave.results.arrays import copied, fill
 
 PARTS = 40  # in which walls of openings are released where joints may slip or open
 RESISTED = 1e-9  # of the largest resistance: below it there is none

@@ -6,20 +6,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.incident import IncidentField, free_field
-from cases.material.quiet_sides import borne, impedances
-from cases.sampling import Clock, clock
-from cases.schema.rock_mass import RockMass
-from cases.size import refuse_beyond_memory, snapshot_bytes, waveform_bytes
-from dem.blocks.build import RigidBlocks, constants, contacts, form_of, rigid_blocks
-from dem.blocks.edges import dashpots, on_freedoms, points_on
-from dem.blocks.model import PlaneModel, held_by
-from dem.blocks.receivers import BlockReceivers, receivers_of
-from dem.blocks.shaking import Shaking, shaking
-from dem.blocks.sources import Sources, load_pattern, on_sides, reactions
-from dem.blocks.waves import incoming
-from dem.time_loop import thread_count
-from joints.law import table_of
+from jointwave.cases.incident import IncidentField, free_field
+from jointwave.cases.material.quiet_sides import borne, impedances
+from jointwave.cases.sampling import Clock, clock
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.size import refuse_beyond_memory, snapshot_bytes, waveform_bytes
+from jointwave.dem.blocks.build import RigidBlocks, constants, contacts, form_of, rigid_blocks
+from jointwave.dem.blocks.edges import dashpots, on_freedoms, points_on
+from jointwave.dem.blocks.model import PlaneModel, held_by
+from jointwave.dem.blocks.receivers import BlockReceivers, receivers_of
+from jointwave.dem.blocks.shaking import Shaking, shaking
+from jointwave.dem.blocks.sources import Sources, load_pattern, on_sides, reactions
+from jointwave.dem.blocks.waves import incoming
+from jointwave.dem.time_loop import thread_count
+from jointwave.joints.law import table_of
 
 #: Bytes a block, with its contacts and all that makes them, and for each of their points.
 OF_BLOCK, OF_POINT = 2000, 60

@@ -14,16 +14,16 @@ from collections.abc import Callable
 from math import copysign
 from typing import Any
 
-from dem.blocks.model import KernelFlags
-from dem.blocks.tiles import I_N, I_T, J_N, J_T, LENGTH, N_X, N_Y, START
-from dem.blocks.tiles import LANES as L
-from joints.dilation import lift
-from joints.energy import elastic_energy, fracture_energy_spent, friction_work, lift_work
-from joints.formula import formula
-from joints.law import law_of
-from joints.normal import normal_traction, spring_traction
-from joints.shear import cohesion_left, planar_return, shear_strength
-from joints.slide import after_slide
+from jointwave.dem.blocks.model import KernelFlags
+from jointwave.dem.blocks.tiles import I_N, I_T, J_N, J_T, LENGTH, N_X, N_Y, START
+from jointwave.dem.blocks.tiles import LANES as L
+from jointwave.joints.dilation import lift
+from jointwave.joints.energy import elastic_energy, fracture_energy_spent, friction_work, lift_work
+from jointwave.joints.formula import formula
+from jointwave.joints.law import law_of
+from jointwave.joints.normal import normal_traction, spring_traction
+from jointwave.joints.shear import cohesion_left, planar_return, shear_strength
+from jointwave.joints.slide import after_slide
 
 #: Rows of a contact's samples: F on block j, M and the sum of e L w t_s, opening and slip.
 FORCE_X, FORCE_Y, BEND, ALONG, GAP, SLIP = range(6)

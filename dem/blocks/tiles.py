@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from numerics.cache_lines import zeros
+from jointwave.numerics.cache_lines import zeros
 
 LANES = 64  # contacts in a chunk
 DEEPEST, CACHE = 16, 3 << 19  # steps, and bytes of a core's own cache, that a pass takes

@@ -8,12 +8,12 @@ from math import inf
 import numpy as np
 from scipy.sparse import csr_array
 
-from cases.histories import LoadHistory, Step
-from cases.incident import FaceTractions, FreeField, IncidentField, tractions
-from cases.sampling import Clock
-from cases.schema.pulse import shortest_period
-from cases.schema.rock_mass import RockMass
-from dem.blocks.edges import EdgePoints, gathered, on_rows, resultant
+from jointwave.cases.histories import LoadHistory, Step
+from jointwave.cases.incident import FaceTractions, FreeField, IncidentField, tractions
+from jointwave.cases.sampling import Clock
+from jointwave.cases.schema.pulse import shortest_period
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.dem.blocks.edges import EdgePoints, gathered, on_rows, resultant
 
 #: Samples of a field in a period of a pulse, where it is not evaluated at every step.
 IN_A_PERIOD = 200

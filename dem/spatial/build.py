@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from cases.loads import base_steps, load_history, step_means
-from cases.material.calibrate import Properties
-from cases.sampling import Clock, Interpolation, interpolation
-from cases.schema.scene import Scene
-from dem.spatial.ends import STEADY, contact_points, end_constants, end_springs, face_of
-from dem.spatial.layout import (
+from jointwave.cases.loads import base_steps, load_history, step_means
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.sampling import Clock, Interpolation, interpolation
+from jointwave.cases.schema.scene import Scene
+from jointwave.dem.spatial.ends import STEADY, contact_points, end_constants, end_springs, face_of
+from jointwave.dem.spatial.layout import (
     AFTER,
     BUFFER,
     CARRY,
@@ -19,10 +19,18 @@ from dem.spatial.layout import (
     packed,
     tile_count,
 )
-from dem.spatial.model import Block, Buffers, Load, RowModel, RowReceivers, RowSamples, RowState
-from joints.law import Law, law, parts_of, table_of
-from numerics.cache_lines import zeros
-from numerics.divergence import Guard
+from jointwave.dem.spatial.model import (
+    Block,
+    Buffers,
+    Load,
+    RowModel,
+    RowReceivers,
+    RowSamples,
+    RowState,
+)
+from jointwave.joints.law import Law, law, parts_of, table_of
+from jointwave.numerics.cache_lines import zeros
+from jointwave.numerics.divergence import Guard
 
 DEPTH = 8  # steps a tile takes while it is in the cache
 

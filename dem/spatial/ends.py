@@ -15,11 +15,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.material.calibrate import Properties
-from cases.material.face import face_points
-from cases.schema.scene import Scene
-from dem.spatial.model import Block
-from joints.ends import half_spring
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.material.face import face_points
+from jointwave.cases.schema.scene import Scene
+from jointwave.dem.spatial.model import Block
+from jointwave.joints.ends import half_spring
 
 # Rows of an end's constants, each for the freedoms x, y, z, about x, about y, about z.
 STIFFNESS, VISCOSITY = 0, 1  # S and C

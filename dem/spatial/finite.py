@@ -14,8 +14,19 @@ A block of square section is a symmetric top, whose free motion is exact: it tur
 first) and the columns of R - 1 are tuples of numbers.
 """
 
-from dem.spatial.layout import ABOUT_X, ABOUT_Y, ABOUT_Z, LANES, LEFT, RELATIVE, STRIDE, X, Y, Z
-from joints.formula import formula
+from jointwave.dem.spatial.layout import (
+    ABOUT_X,
+    ABOUT_Y,
+    ABOUT_Z,
+    LANES,
+    LEFT,
+    RELATIVE,
+    STRIDE,
+    X,
+    Y,
+    Z,
+)
+from jointwave.joints.formula import formula
 
 VELOCITY, MOMENTUM, QUATERNION = 6 * STRIDE, 9 * STRIDE, 12 * STRIDE  # rows of motion
 FIRST, SECOND = 3 * STRIDE, 6 * STRIDE  # columns x and z in the rows of relative motion

@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from joints.law import LawFlags
-from numerics.cache_lines import zeros
+from jointwave.joints.law import LawFlags
+from jointwave.numerics.cache_lines import zeros
 
 LANES = 64  # blocks in a tile
 STRIDE = 72  # lanes in a row of motion: the tile's own, the next one's first, whole cache lines

@@ -27,7 +27,7 @@ from functools import cache
 from math import copysign
 from typing import Any
 
-from dem.spatial.ends import (
+from jointwave.dem.spatial.ends import (
     BASE,
     CLOSURE,
     DECAY,
@@ -40,7 +40,7 @@ from dem.spatial.ends import (
     VELOCITY,
     VISCOSITY,
 )  # fmt: skip
-from dem.spatial.finite import (
+from jointwave.dem.spatial.finite import (
     FIRST,
     QUATERNION,
     SECOND,
@@ -56,7 +56,7 @@ from dem.spatial.finite import (
     to_centroids,
     turn_by_momentum,
 )  # fmt: skip
-from dem.spatial.layout import (
+from jointwave.dem.spatial.layout import (
     ABOUT_X,
     ABOUT_Y,
     ABOUT_Z,
@@ -83,17 +83,17 @@ from dem.spatial.layout import (
     Y,
     Z,
 )  # fmt: skip
-from dem.spatial.layout import LANES as L
-from dem.spatial.layout import STRIDE as R
-from dem.spatial.model import DIRECTION, FACE, FALL, INERTIA, PUSH, WEIGHT, constants_of
-from joints.dilation import lift
-from joints.energy import elastic_energy, fracture_energy_spent, friction_work, lift_work
-from joints.formula import formula
-from joints.law import Law, law_at
-from joints.normal import normal_traction, spring_traction
-from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
-from joints.slide import after_slide
-from numerics.divergence import EVERY, SPEED, note
+from jointwave.dem.spatial.layout import LANES as L
+from jointwave.dem.spatial.layout import STRIDE as R
+from jointwave.dem.spatial.model import DIRECTION, FACE, FALL, INERTIA, PUSH, WEIGHT, constants_of
+from jointwave.joints.dilation import lift
+from jointwave.joints.energy import elastic_energy, fracture_energy_spent, friction_work, lift_work
+from jointwave.joints.formula import formula
+from jointwave.joints.law import Law, law_at
+from jointwave.joints.normal import normal_traction, spring_traction
+from jointwave.joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
+from jointwave.joints.slide import after_slide
+from jointwave.numerics.divergence import EVERY, SPEED, note
 
 CHECK = 64  # steps between two checks of a tile's speeds: others run ahead of it by some more
 #: Rows of the law's table that a face as a whole needs: of its springs, then of its dashpots.

@@ -13,7 +13,7 @@ from functools import cache
 
 import numpy as np
 
-from dem.spatial.layout import (
+from jointwave.dem.spatial.layout import (
     AFTER,
     BUFFER,
     CARRY,
@@ -24,14 +24,14 @@ from dem.spatial.layout import (
     TERMS,
     KernelFlags,
 )
-from dem.spatial.leapfrog import step_for
-from dem.spatial.model import Buffers, RowModel, RowSamples, RowState
-from joints.formula import formula
-from numerics.arguments import Packed, unpacked
-from numerics.atomic import give_way, peek, post
-from numerics.denormals import flush_denormals, restore_denormals
-from numerics.divergence import ENERGY, EVERY, gains_energy, note
-from numerics.jit import jitted
+from jointwave.dem.spatial.leapfrog import step_for
+from jointwave.dem.spatial.model import Buffers, RowModel, RowSamples, RowState
+from jointwave.joints.formula import formula
+from jointwave.numerics.arguments import Packed, unpacked
+from jointwave.numerics.atomic import give_way, peek, post
+from jointwave.numerics.denormals import flush_denormals, restore_denormals
+from jointwave.numerics.divergence import ENERGY, EVERY, gains_energy, note
+from jointwave.numerics.jit import jitted
 
 PLACES = tuple(TERMS.values())
 RUN = 16  # diagonals of tiles between two checks of the others' progress

@@ -4,8 +4,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem.spatial.layout import KernelFlags
-from joints.formula import formula
+from jointwave.dem.spatial.layout import KernelFlags
+from jointwave.joints.formula import formula
 
 
 class Block(NamedTuple):

@@ -6,25 +6,25 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cases.loads import with_load_itself
-from cases.material.calibrate import Properties
-from cases.sampling import Clock, Interpolation
-from cases.schema.scene import Scene
-from dem.fragments import with_fragments
-from dem.snapshots import BlockFrame
-from dem.spatial.build import (
+from jointwave.cases.loads import with_load_itself
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.sampling import Clock, Interpolation
+from jointwave.cases.schema.scene import Scene
+from jointwave.dem.fragments import with_fragments
+from jointwave.dem.snapshots import BlockFrame
+from jointwave.dem.spatial.build import (
     buffers_for,
     build_receivers,
     energy_terms,
     receivers,
     samples_for,
 )
-from dem.spatial.layout import LANES, STRIDE, TERMS, unpacked
-from dem.spatial.march import make_stepper
-from dem.spatial.model import RowModel, RowSamples, RowState
-from dem.static import since_prestress
-from numerics.divergence import guard
-from results.arrays import copied
+from jointwave.dem.spatial.layout import LANES, STRIDE, TERMS, unpacked
+from jointwave.dem.spatial.march import make_stepper
+from jointwave.dem.spatial.model import RowModel, RowSamples, RowState
+from jointwave.dem.static import since_prestress
+from jointwave.numerics.divergence import guard
+from jointwave.results.arrays import copied
 
 
 def waveforms(scene: Scene, p: Properties, samples: RowSamples, time: Clock) -> dict[str, Any]:

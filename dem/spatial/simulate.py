@@ -9,33 +9,33 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.errors import SceneError
-from cases.material.calibrate import Properties, calibrate
-from cases.sampling import Clock, clock
-from cases.schema.scene import Scene
-from dem.size import refuse_large
-from dem.snapshots import BlockRecorder
-from dem.spatial.build import (
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.sampling import Clock, clock
+from jointwave.cases.schema.scene import Scene
+from jointwave.dem.size import refuse_large
+from jointwave.dem.snapshots import BlockRecorder
+from jointwave.dem.spatial.build import (
     buffers_for,
     build_model,
     points_with_history,
     samples_for,
     state_at_rest,
 )
-from dem.spatial.ends import contact_points, face_of
-from dem.spatial.layout import LANES, STRIDE, unpacked
-from dem.spatial.march import make_stepper
-from dem.spatial.model import RowModel, RowState
-from dem.spatial.record import capturing, ledger_of, waveforms, with_breaks
-from dem.spatial.stability import critical_spatial_step, highest_speeds
-from dem.spatial.start import start
-from dem.static import stiffest
-from dem.time_loop import Run, followed, refuse_beyond_bounds, thread_count, versions
-from numerics.divergence import guard, look
-from numerics.small_motion import Moved, matters, refuse_large_motion
-from numerics.time_loop import Checkpointer
-from results.arrays import changed, size_of
-from results.dataset import dataset
+from jointwave.dem.spatial.ends import contact_points, face_of
+from jointwave.dem.spatial.layout import LANES, STRIDE, unpacked
+from jointwave.dem.spatial.march import make_stepper
+from jointwave.dem.spatial.model import RowModel, RowState
+from jointwave.dem.spatial.record import capturing, ledger_of, waveforms, with_breaks
+from jointwave.dem.spatial.stability import critical_spatial_step, highest_speeds
+from jointwave.dem.spatial.start import start
+from jointwave.dem.static import stiffest
+from jointwave.dem.time_loop import Run, followed, refuse_beyond_bounds, thread_count, versions
+from jointwave.numerics.divergence import guard, look
+from jointwave.numerics.small_motion import Moved, matters, refuse_large_motion
+from jointwave.numerics.time_loop import Checkpointer
+from jointwave.results.arrays import changed, size_of
+from jointwave.results.dataset import dataset
 
 MOST_TURN = 0.045  # rad: small rotations then neglect 1 - cos = 1e-3 of a lever
 

@@ -15,16 +15,16 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg import LinAlgError, cholesky_banded
 
-from cases.material.calibrate import Properties
-from cases.sampling import Clock
-from cases.schema.scene import Scene
-from dem.axial.stability import shaking
-from dem.spatial.ends import Face, end_springs, face_stiffness, lever_matrix
-from dem.spatial.layout import STRIDE, unpacked
-from dem.spatial.model import RowModel, RowState
-from joints.dilation import riding_stiffness
-from numerics.critical_step import critical_step
-from numerics.divergence import speed_that
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.sampling import Clock
+from jointwave.cases.schema.scene import Scene
+from jointwave.dem.axial.stability import shaking
+from jointwave.dem.spatial.ends import Face, end_springs, face_stiffness, lever_matrix
+from jointwave.dem.spatial.layout import STRIDE, unpacked
+from jointwave.dem.spatial.model import RowModel, RowState
+from jointwave.joints.dilation import riding_stiffness
+from jointwave.numerics.critical_step import critical_step
+from jointwave.numerics.divergence import speed_that
 
 ENOUGH_BLOCKS = 2000  # of alike joints: no longer row has an eigenvalue larger by 1e-6
 CLOSE_ENOUGH = 1e-12  # relative, to the largest eigenvalue

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from cases.material.calibrate import Properties
-from cases.sampling import Interpolation
-from cases.schema.scene import Scene
-from dem.spatial.build import (
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.sampling import Interpolation
+from jointwave.cases.schema.scene import Scene
+from jointwave.dem.spatial.build import (
     buffers_for,
     build_block,
     build_ends,
@@ -13,12 +13,19 @@ from dem.spatial.build import (
     samples_for,
     state_at_rest,
 )
-from dem.spatial.ends import CLOSURE, STEADY, STIFFNESS, contact_points, face_of, lever_matrix
-from dem.spatial.layout import LANES, STRIDE, packed, unpacked
-from dem.spatial.march import make_stepper
-from dem.spatial.model import Load, RowModel, RowState
-from dem.spatial.stability import critical_spatial_step
-from dem.static import (
+from jointwave.dem.spatial.ends import (
+    CLOSURE,
+    STEADY,
+    STIFFNESS,
+    contact_points,
+    face_of,
+    lever_matrix,
+)
+from jointwave.dem.spatial.layout import LANES, STRIDE, packed, unpacked
+from jointwave.dem.spatial.march import make_stepper
+from jointwave.dem.spatial.model import Load, RowModel, RowState
+from jointwave.dem.spatial.stability import critical_spatial_step
+from jointwave.dem.static import (
     NEVER,
     STEP_FRACTION,
     UNBORNE,
@@ -30,9 +37,9 @@ from dem.static import (
     stiffest,
     undamped,
 )
-from joints.law import IN_MOTION, sticking
-from numerics.divergence import guard
-from results.arrays import copied, fill
+from jointwave.joints.law import IN_MOTION, sticking
+from jointwave.numerics.divergence import guard
+from jointwave.results.arrays import copied, fill
 
 NOWHERE = Interpolation(np.arange(0), np.arange(0), np.zeros(0))
 

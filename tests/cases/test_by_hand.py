@@ -10,18 +10,18 @@ from math import exp, pi, sqrt
 import numpy as np
 import pytest
 
-from cases import SceneError
-from cases.histories import Recorded, Ricker, Sine, Step
-from cases.loads import base_steps, load_history, step_means
-from cases.material.calibrate import calibrate
-from cases.material.elastic import modulus_from_speeds, speeds_from_modulus
-from cases.material.face import face_points
-from cases.records import read_history
-from cases.sampling import clock, interpolation, sample_times
-from cases.schema.damping import Rayleigh
-from cases.schema.pulse import Load
-from cases.schema.scene import Scene
-from results.subcells import linear_cells
+from jointwave.cases import SceneError
+from jointwave.cases.histories import Recorded, Ricker, Sine, Step
+from jointwave.cases.loads import base_steps, load_history, step_means
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.elastic import modulus_from_speeds, speeds_from_modulus
+from jointwave.cases.material.face import face_points
+from jointwave.cases.records import read_history
+from jointwave.cases.sampling import clock, interpolation, sample_times
+from jointwave.cases.schema.damping import Rayleigh
+from jointwave.cases.schema.pulse import Load
+from jointwave.cases.schema.scene import Scene
+from jointwave.results.subcells import linear_cells
 
 ROCK = {
     "density": 2000.0,

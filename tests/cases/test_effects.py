@@ -2,7 +2,7 @@
 
 import pytest
 
-from cases.effects import active_effects, effects, is_spatial
+from jointwave.cases.effects import active_effects, effects, is_spatial
 
 ACROSS = {"load.direction": [1.0, 0.0, 0.0]}
 DOWN = {"direction": [0, -1, 0], "static": False}

@@ -2,7 +2,7 @@
 
 import pickle
 
-from cases import SceneError
+from jointwave.cases import SceneError
 
 
 def test_scene_error_survives_a_worker_process():

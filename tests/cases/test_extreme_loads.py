@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import dem
-from cases.errors import SceneError
-from cases.loads import load_history
-from compare.exact.bar import images
+from jointwave import dem
+from jointwave.cases.errors import SceneError
+from jointwave.cases.loads import load_history
+from jointwave.compare.exact.bar import images
 
 
 @pytest.mark.parametrize("amplitude", [1e-300, -1e200, 1e300])

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cases.incident import free_field, plane_wave, tractions
-from cases.read import load
+from jointwave.cases.incident import free_field, plane_wave, tractions
+from jointwave.cases.read import load
 
 
 def scene_with(tmp_path, wave, kind="quiet"):

@@ -8,10 +8,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-import cases
-from cases.histories import Gabor, Integrated, Recorded, Ricker, Sine, Step, periodic, triangle
-from cases.loads import base_steps, load_history, step_means, until_it_ends
-from cases.records import read_history
+from jointwave import cases
+from jointwave.cases.histories import (
+    Gabor,
+    Integrated,
+    Recorded,
+    Ricker,
+    Sine,
+    Step,
+    periodic,
+    triangle,
+)
+from jointwave.cases.loads import base_steps, load_history, step_means, until_it_ends
+from jointwave.cases.records import read_history
 
 amplitudes = st.floats(-1e7, 1e7).filter(lambda a: abs(a) > 1.0)
 periods = st.floats(1e-4, 1.0)

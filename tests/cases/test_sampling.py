@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cases import SceneError
-from cases.sampling import clock, interpolation, sample_times
+from jointwave.cases import SceneError
+from jointwave.cases.sampling import clock, interpolation, sample_times
 
 fractions = st.floats(0.01, 1.0)
 steps = st.floats(1e-7, 1e-3)

@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.special import gammaincinv
 
-import cases
-from cases.errors import SceneError
-from cases.material.calibrate import calibrate
-from cases.spectrum import SHARE, highest_frequency, shortest_wave
-from cases.warnings import LEAST_BLOCKS, MOST_REFLECTED, SHORTENED, warnings
-from compare.scenes import find, shipped
+from jointwave import cases
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.spectrum import SHARE, highest_frequency, shortest_wave
+from jointwave.cases.warnings import LEAST_BLOCKS, MOST_REFLECTED, SHORTENED, warnings
+from jointwave.compare.scenes import find, shipped
 
 MODULUS, DENSITY = 2400.0 * 1000.0**2, 2400.0  # a bar speed of 1000 m/s
 BAR = {
@@ -222,8 +222,8 @@ TURNING = {"load.direction": [1.0, 0.0, 0.0], "record.velocity": [0.25]}
 )
 def test_an_interval_is_warned_of_only_where_it_shortens_the_step(scene_with, changes, fraction):
     """Against the engine's own critical step, of which the rule's is a lower bound."""
-    from dem.axial.simulate import scheme_of
-    from dem.spatial.simulate import prepare
+    from jointwave.dem.axial.simulate import scheme_of
+    from jointwave.dem.spatial.simulate import prepare
 
     for interval in 1e-3 / 4.0 ** np.arange(10):
         scene = scene_with(

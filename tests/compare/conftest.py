@@ -7,7 +7,7 @@ from itertools import combinations
 import pytest
 from matplotlib.text import Text
 
-from compare.runs import timings
+from jointwave.compare.runs import timings
 
 
 @pytest.fixture(autouse=True)

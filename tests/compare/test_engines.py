@@ -6,11 +6,11 @@ import sys
 
 import pytest
 
-from cases.errors import SceneError
-from cases.read import load_tables
-from compare.engines import ENGINES, EXACT, names, selection, solver, solvers
-from compare.misfit.pairs import pairs
-from compare.solvers.record import HEADINGS, Form
+from jointwave.cases.errors import SceneError
+from jointwave.cases.read import load_tables
+from jointwave.compare.engines import ENGINES, EXACT, names, selection, solver, solvers
+from jointwave.compare.misfit.pairs import pairs
+from jointwave.compare.solvers.record import HEADINGS, Form
 
 
 def test_each_name_is_that_of_its_record():
@@ -65,7 +65,7 @@ def test_names_are_known_without_what_solves():
     for kind in ("pillar", "rock mass"):
         assert set(names(kind)) == {name for name in names() if kind in solver(name).kinds}
     script = (
-        "import sys; from compare.engines import names; names()\n"
+        "import sys; from jointwave.compare.engines import names; names()\n"
         "heavy = {'xarray', 'matplotlib', 'scipy', 'numba', 'dolfinx', 'dem', 'continuum'}\n"
         "print(sorted(heavy & set(sys.modules)), [m for m in sys.modules if '.exact.' in m])"
     )

@@ -6,20 +6,20 @@ import meshio
 import numpy as np
 import pytest
 
-from cases.gmsh_file import FACET_NAMES, FROM_GMSH, KINDS
-from cases.material.calibrate import calibrate
-from cases.sampling import Clock
-from cases.schema.scene import Scene
-from continuum.build import Discrete, build_model, critical_step_of, discretise
-from continuum.explicit import leapfrog, march
-from continuum.explicit.march import march as march_of
-from continuum.mesh.cells import DIMENSION
-from continuum.mesh.pillar import pillar_mesh
-from continuum.space.body import build_body
-from continuum.space.elasticity import Material, Section
-from continuum.state import empty_samples, state_at_rest
-from continuum.waveforms import waveforms
-from numerics.divergence import guard
+from jointwave.cases.gmsh_file import FACET_NAMES, FROM_GMSH, KINDS
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import Clock
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.build import Discrete, build_model, critical_step_of, discretise
+from jointwave.continuum.explicit import leapfrog, march
+from jointwave.continuum.explicit.march import march as march_of
+from jointwave.continuum.mesh.cells import DIMENSION
+from jointwave.continuum.mesh.pillar import pillar_mesh
+from jointwave.continuum.space.body import build_body
+from jointwave.continuum.space.elasticity import Material, Section
+from jointwave.continuum.state import empty_samples, state_at_rest
+from jointwave.continuum.waveforms import waveforms
+from jointwave.numerics.divergence import guard
 
 ROCK = Material(modulus=8.64e10, poisson=0.25, density=2400.0)
 

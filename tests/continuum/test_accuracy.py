@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from compare.exact.bar import equivalent_bar, images, jointed_bar
-from continuum import simulate
+from jointwave.compare.exact.bar import equivalent_bar, images, jointed_bar
+from jointwave.continuum import simulate
 
 LAYER = {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.02}]}
 DAMPED = {"joints__damping_ratio": 0.02}

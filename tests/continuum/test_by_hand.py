@@ -7,8 +7,8 @@ and steps of 0.01 s, of which the first sees half the load.
 
 import numpy as np
 
-import continuum
-from cases.schema.scene import Scene
+from jointwave import continuum
+from jointwave.cases.schema.scene import Scene
 
 
 def run(model, **tables):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.loads import load_history
+from jointwave.cases.loads import load_history
 
 JOINTS = {
     "elastic": {},

@@ -6,21 +6,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
-from cases.loads import load_history
-from cases.material.calibrate import calibrate
-from cases.material.constant_q import fitted
-from cases.schema.rock_mass import RockMass
 from closed_forms.constant_q import ConstantQ
-from compare.engines import applies, names, solve
-from compare.exact.bar import jointed_bar, laplace
-from compare.misfit.metrics import misfit, relative_l2
-from compare.readings.attenuation import quality_factor
-from continuum import applies as reason_against
-from continuum import simulate
-from continuum.build import operators
-from continuum.model import memory_of
-from results.dataset import energy_residual
+from jointwave.cases.errors import SceneError
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.constant_q import fitted
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.compare.engines import applies, names, solve
+from jointwave.compare.exact.bar import jointed_bar, laplace
+from jointwave.compare.misfit.metrics import misfit, relative_l2
+from jointwave.compare.readings.attenuation import quality_factor
+from jointwave.continuum import applies as reason_against
+from jointwave.continuum import simulate
+from jointwave.continuum.build import operators
+from jointwave.continuum.model import memory_of
+from jointwave.results.dataset import energy_residual
 from tests.cases.material.test_constant_q import roots
 from tests.continuum.test_modes import STILL, free_mode
 

@@ -6,10 +6,10 @@ Steps of the bar and in the plane are taken as plain Python.
 import numpy as np
 import pytest
 
-from cases.errors import SceneError, UnstableError
-from cases.material.calibrate import calibrate
-from continuum import simulate
-from continuum.run import discrete_and_steps
+from jointwave.cases.errors import SceneError, UnstableError
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.continuum import simulate
+from jointwave.continuum.run import discrete_and_steps
 
 QUIET = {
     "load__amplitude": 0.0,

@@ -8,7 +8,7 @@ its section. So the discrete systems are the same, and only round-off tells thei
 import numpy as np
 import pytest
 
-from cases.sampling import Clock
+from jointwave.cases.sampling import Clock
 
 ROUND_OFF = 1e-11
 

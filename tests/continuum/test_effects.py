@@ -5,21 +5,21 @@ from functools import partial
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
-from cases.material.calibrate import calibrate
-from continuum import applies, simulate
-from continuum.build import discretise
-from continuum.explicit.leapfrog import leapfrog_for
-from continuum.explicit.march import arguments, readings
-from continuum.implicit.balance import arguments as arguments_of_trials
-from continuum.implicit.balance import forces_for, implicit_matrices
-from continuum.implicit.pattern import empty_tangents
-from continuum.joints import interfaces
-from continuum.model import Quiet
-from continuum.run import discrete_and_steps
-from continuum.state import state_at_rest
-from numerics.divergence import guard
-from results.arrays import copied
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.continuum import applies, simulate
+from jointwave.continuum.build import discretise
+from jointwave.continuum.explicit.leapfrog import leapfrog_for
+from jointwave.continuum.explicit.march import arguments, readings
+from jointwave.continuum.implicit.balance import arguments as arguments_of_trials
+from jointwave.continuum.implicit.balance import forces_for, implicit_matrices
+from jointwave.continuum.implicit.pattern import empty_tangents
+from jointwave.continuum.joints import interfaces
+from jointwave.continuum.model import Quiet
+from jointwave.continuum.run import discrete_and_steps
+from jointwave.continuum.state import state_at_rest
+from jointwave.numerics.divergence import guard
+from jointwave.results.arrays import copied
 
 SUDDEN = {"direction": [0.0, 1.0, 0.0], "static": False}
 SHAKEN = {"shape": "sine", "amplitude": 0.1, "period": 1e-3, "quantity": "velocity"}

@@ -11,11 +11,11 @@ from scipy.linalg import eigh
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-import cases
-from continuum.mesh.description import Part
-from continuum.space import dolfinx_export
-from continuum.space.body import whole
-from continuum.space.elasticity import Material, Section, discretise, lame_constants
+from jointwave import cases
+from jointwave.continuum.mesh.description import Part
+from jointwave.continuum.space import dolfinx_export
+from jointwave.continuum.space.body import whole
+from jointwave.continuum.space.elasticity import Material, Section, discretise, lame_constants
 
 ROCK = Material(modulus=8.64e10, poisson=0.25, density=2400.0)
 UNIT = Material(modulus=1.0, poisson=0.0, density=1.0)
@@ -184,7 +184,7 @@ def test_neither_dolfinx_nor_a_form_compiler_is_needed():
     """Nor MPI, PETSc and gmsh, to step a pillar of quadrilaterals explicitly."""
     program = (
         "import sys, cases\n"
-        "from continuum.run import discrete_and_steps\n"
+        "from jointwave.continuum.run import discrete_and_steps\n"
         "scene = cases.load_variant(sys.argv[1], '', {'variants': []})\n"
         "for dim in (1, 2, 3):\n"
         "    discrete_and_steps(scene, 'jointed', dim)\n"

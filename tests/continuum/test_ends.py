@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
-from cases.sampling import Clock
-from continuum.build import discretise
-from continuum.ends import end_stiffness, fixed_ends, load_on, quiet_ends
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import Clock
+from jointwave.continuum.build import discretise
+from jointwave.continuum.ends import end_stiffness, fixed_ends, load_on, quiet_ends
 
 OBLIQUE, ACROSS = [0.48, 0.6, -0.64], [0.6, 0.8, 0.0]
 LOADS = {

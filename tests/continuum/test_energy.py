@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from continuum import simulate
-from continuum.state import TERMS
-from results.dataset import energy_residual, imbalance
+from jointwave.continuum import simulate
+from jointwave.continuum.state import TERMS
+from jointwave.results.dataset import energy_residual, imbalance
 
 LAYER = {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4.375e8}]}
 DAMPED = {"joints__damping_ratio": 0.05}

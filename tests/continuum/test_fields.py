@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import continuum
-from compare.runs.field_files import read_pvd, write_pvd
-from results.snapshots import snapshots_of
+from jointwave import continuum
+from jointwave.compare.runs.field_files import read_pvd, write_pvd
+from jointwave.results.snapshots import snapshots_of
 
 LENGTH, BLOCK, SIDE = 2.0, 0.5, 0.5
 SHORT = {

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from closed_forms import generalised_alpha as theory
-from continuum.implicit.generalised_alpha import scheme
+from jointwave.continuum.implicit.generalised_alpha import scheme
 
 
 @pytest.mark.parametrize(

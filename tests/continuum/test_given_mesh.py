@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
-from continuum.build import mesh_of
-from continuum.space.kinematics import kinematics
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.continuum.build import mesh_of
+from jointwave.continuum.space.kinematics import kinematics
 
 BLOW = {
     2: {"load__direction": [0.6, 0.8, 0.0], "load__at": [0.1, 0.0]},

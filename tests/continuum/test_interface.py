@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from continuum.mesh.description import Mesh
-from continuum.space.body import Body
-from continuum.space.interface import jumps
+from jointwave.continuum.mesh.description import Mesh
+from jointwave.continuum.space.body import Body
+from jointwave.continuum.space.interface import jumps
 
 CELLS = [
     *[(dim, "hexahedron", order) for dim in (1, 2, 3) for order in (1, 2, 3, 4)],

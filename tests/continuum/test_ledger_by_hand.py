@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from continuum.explicit.leapfrog import add_energy, add_work, read
+from jointwave.continuum.explicit.leapfrog import add_energy, add_work, read
 
 OLD, NEW = np.array([1.0, 2.0, -1.0, 0.5]), np.array([3.0, -2.0, 1.0, 1.5])
 MASS = np.array([2.0, 4.0, 6.0, 8.0])

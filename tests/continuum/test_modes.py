@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from continuum.build import operators
+from jointwave.continuum.build import operators
 
 #: A load that is nothing, but there: its kernel is compiled for other tests too.
 STILL = {"load": {"shape": "step", "amplitude": 1e-30}}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from continuum.space.interface import jumps
+from jointwave.continuum.space.interface import jumps
 
 
 def sheared(slopes):

@@ -7,14 +7,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_matrix, random
 
-from continuum.space import operator as formulas
-from continuum.space.operator import (
+from jointwave.continuum.space import operator as formulas
+from jointwave.continuum.space.operator import (
     layout,
     operator,
     spread,
     without_round_off,
 )
-from numerics.cache_lines import zeros
+from jointwave.numerics.cache_lines import zeros
 
 multiply = numba.njit(lambda *arguments: formulas.multiply(*arguments))
 COUNTS = (1, 2, 7, 8, 9, 17, 25, 33, 40, 41, 48, 100)  # every width of a tile, full and not

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from continuum.state import TERMS
+from jointwave.continuum.state import TERMS
 
 LAYER = [{"y": 1.0, "spacing_stiffness": 4e8, "shear_stiffness": 5e8, "damping_ratio": 0.1}]
 SHAKEN = {"shape": "sine", "amplitude": 0.1, "period": 1e-3, "quantity": "velocity"}

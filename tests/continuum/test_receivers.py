@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from continuum.space.body import Body, axis, whole
-from continuum.space.elasticity import Material
-from continuum.space.interface import jumps
-from continuum.space.receivers import _by_stress, points, sections
+from jointwave.continuum.space.body import Body, axis, whole
+from jointwave.continuum.space.elasticity import Material
+from jointwave.continuum.space.interface import jumps
+from jointwave.continuum.space.receivers import _by_stress, points, sections
 
 ROCK = Material(modulus=8.64e10, poisson=0.25, density=2400.0, time_constant=1e-5)
 HEXAHEDRA = [(dim, "hexahedron", order) for dim in (1, 2, 3) for order in (1, 2, 3, 4)]

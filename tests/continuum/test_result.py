@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from continuum import simulate
+from jointwave.continuum import simulate
 
 
 @pytest.mark.parametrize("dim", [1, 2, 3])

@@ -8,10 +8,10 @@ for nearly each compiles kernels of its own: of the effects one by one, ledgers 
 import numpy as np
 import pytest
 
-import cases
-from compare.scenes import SHIPPED
-from continuum import applies, simulate
-from results.dataset import energy_residual
+from jointwave import cases
+from jointwave.compare.scenes import SHIPPED
+from jointwave.continuum import applies, simulate
+from jointwave.results.dataset import energy_residual
 
 pytestmark = pytest.mark.slow
 SAMPLES = 30

@@ -2,12 +2,11 @@
 
 import numpy as np
 
-import cases
-import dem
-from compare.exact.joint import sliding_joint
-from compare.misfit.metrics import relative_l2
-from compare.scenes import SHIPPED
-from continuum import simulate
+from jointwave import cases, dem
+from jointwave.compare.exact.joint import sliding_joint
+from jointwave.compare.misfit.metrics import relative_l2
+from jointwave.compare.scenes import SHIPPED
+from jointwave.continuum import simulate
 
 SCENE = SHIPPED / "beyond" / "slip-three-cohesions.toml"
 

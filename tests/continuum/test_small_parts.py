@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_matrix
 
-from cases.material.calibrate import calibrate
-from continuum.explicit.critical import critical_step
-from continuum.joints import RIGID, resolved_joints
-from continuum.space import basix_versions
-from continuum.space.nodes import levels
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.continuum.explicit.critical import critical_step
+from jointwave.continuum.joints import RIGID, resolved_joints
+from jointwave.continuum.space import basix_versions
+from jointwave.continuum.space.nodes import levels
 
 
 def test_critical_step_of_one_freedom():
@@ -78,7 +78,7 @@ def test_layer_in_homogenised_rock_has_what_it_yields_more_than_a_joint(pillar):
 def test_the_form_compiler_leaves_logging_as_it_was():
     """Its handlers and its level are taken away again, and what it reports is hidden meanwhile."""
     pytest.importorskip("dolfinx")
-    from continuum.space.dolfinx_export import quiet_logging
+    from jointwave.continuum.space.dolfinx_export import quiet_logging
 
     root, was = logging.getLogger(), logging.root.manager.disable
     before = list(root.handlers), root.level

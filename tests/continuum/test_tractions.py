@@ -6,10 +6,10 @@ Jumps are of 0.1 mm: open and closed points, ones that slip and ones that stick.
 import numpy as np
 import pytest
 
-from continuum.space.tractions import joint_energy, joint_loads, joint_tangents
-from joints.dilation import lift
-from joints.energy import fracture_energy_spent
-from joints.law import History, Law, law_of, parts_of, table_of, traction
+from jointwave.continuum.space.tractions import joint_energy, joint_loads, joint_tangents
+from jointwave.joints.dilation import lift
+from jointwave.joints.energy import fracture_energy_spent
+from jointwave.joints.law import History, Law, law_of, parts_of, table_of, traction
 
 POINTS, DT, RATE, PRESTRESS = 12, 1e-3, 2e3, (3e4, 5e3, -2e3)
 HELD = {"normal_stiffness": 1e9, "shear_stiffness": 4e8}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from continuum import simulate
+from jointwave.continuum import simulate
 
 STILL = {"load": {"shape": "step", "amplitude": 0.0}}
 RECORD = {"stress": [0.1, 0.5, 1.3], "velocity": [0.0, 0.7]}

@@ -2,8 +2,8 @@
 
 import pytest
 
-from dem.axial import leapfrog
-from dem.spatial import march
+from jointwave.dem.axial import leapfrog
+from jointwave.dem.spatial import march
 
 
 @pytest.fixture(scope="module")

@@ -10,10 +10,10 @@ from math import sqrt
 import numpy as np
 import pytest
 
-import dem
-from cases.schema.scene import Scene
-from cases.schema.tables import Motion
-from dem.spatial import simulate as row
+from jointwave import dem
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.schema.tables import Motion
+from jointwave.dem.spatial import simulate as row
 
 TERMS = ("kinetic", "elastic", "viscous", "boundary", "work")
 

@@ -6,13 +6,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-import cases
-import dem
-from cases.loads import load_history
-from cases.material.calibrate import calibrate
 from closed_forms.spall import lattice_spall
-from compare.scenes import SHIPPED
-from dem.fragments import fragments
+from jointwave import cases, dem
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.compare.scenes import SHIPPED
+from jointwave.dem.fragments import fragments
 
 FREE = {"ends.start": "free", "load.quantity": "stress"}
 

@@ -6,9 +6,9 @@ import sys
 import numpy as np
 import pytest
 
-import dem
-from cases import SceneError
-from results.snapshots import snapshots_of
+from jointwave import dem
+from jointwave.cases import SceneError
+from jointwave.results.snapshots import snapshots_of
 
 BLOCKS, SPACING, SIDE = 16, 0.5, 0.5
 CENTRES = [SPACING * (i + 0.5) for i in range(BLOCKS)]
@@ -229,10 +229,10 @@ def test_too_many_snapshots_of_too_many_blocks_are_refused(pillar, monkeypatch):
 def test_a_run_without_snapshots_imports_nothing_for_them(tmp_path):
     code = (
         "import sys; sys.argv = ['jointwave', 'run', '%s', '--out', %r, %s]\n"
-        "from compare.cli.program import main\n"
+        "from jointwave.compare.cli.program import main\n"
         "try: main()\n"
         "except SystemExit as end: assert end.code == 0, end.code\n"
-        "mine = {'compare.runs.field_files', 'meshio'}\n"
+        "mine = {'jointwave.compare.runs.field_files', 'meshio'}\n"
         "print(sorted(mine & set(sys.modules)))"
     )
     scene = "guo-li-2002/fig-03"

@@ -18,10 +18,10 @@ import pytest
 from scipy.optimize import brentq, linprog
 
 import jointwave as jw
-from cases.errors import SceneError
-from cases.material.contact_points import lever
-from cases.read import load_tables
-from cases.warnings import warnings
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.contact_points import lever
+from jointwave.cases.read import load_tables
+from jointwave.cases.warnings import warnings
 
 RADIUS, VOUSSOIRS, FRICTION = 10.0, 11, 80.0  # m, degrees
 ANGLES = np.pi * np.arange(VOUSSOIRS + 1) / VOUSSOIRS

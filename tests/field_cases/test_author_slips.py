@@ -8,7 +8,7 @@ values beside them are silent.
 import pytest
 
 import jointwave as jw
-from cases.warnings import warnings
+from jointwave.cases.warnings import warnings
 
 PILLAR = {
     "title": "slips",

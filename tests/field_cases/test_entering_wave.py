@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import jointwave as jw
-from cases.errors import SceneError
-from cases.warnings import warnings
-from compare.cli.new import starter
-from compare.readings.entering_wave import entering_waves
+from jointwave.cases.errors import SceneError
+from jointwave.cases.warnings import warnings
+from jointwave.compare.cli.new import starter
+from jointwave.compare.readings.entering_wave import entering_waves
 
 DENSITY, MODULUS = 2400.0, 2400.0 * 1350.0**2
 PRESSURE = {"shape": "half-sine", "amplitude": 1e6, "period": 0.02}

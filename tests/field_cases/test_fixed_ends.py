@@ -8,8 +8,8 @@ frequency of 20 blocks was 2.4 % off, and its distance fell with the size alone.
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
 from jointwave import load, misfit, simulate
+from jointwave.cases.material.calibrate import calibrate
 
 L, RHO, E, G = 10.0, 2400.0, 8.64e10, 8.64e10 / 2.5
 PILLAR = {

@@ -11,8 +11,8 @@ Z (v + g t) meets R - Z v.
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
 from jointwave import load, simulate
+from jointwave.cases.errors import SceneError
 
 RHO, G, H = 2500.0, 9.81, 20.0
 WEIGHT = RHO * G * H

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import jointwave as jw
-from cases.errors import SceneError
-from cases.material.calibrate import calibrate
-from cases.warnings import warnings
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.warnings import warnings
 
 MODULUS, DENSITY, STIFFNESS = 6e10, 2600.0, 6e10
 SPEED = sqrt(MODULUS / DENSITY)

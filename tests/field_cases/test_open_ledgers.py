@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import jointwave as jw
-from results.dataset import MOST_OPEN, energy_residual, open_ledger
+from jointwave.results.dataset import MOST_OPEN, energy_residual, open_ledger
 
 ENGINES = ("dem", "continuum-jointed")
 OPENS = {"tension": False}

@@ -4,10 +4,10 @@ the order in which points are listed says nothing about it."""
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
-from cases.read import load_tables
-from cases.warnings import warnings
-from compare.engines import solve
+from jointwave.cases.errors import SceneError
+from jointwave.cases.read import load_tables
+from jointwave.cases.warnings import warnings
+from jointwave.compare.engines import solve
 
 ENGINES = ("dem", "continuum-jointed")
 SQUARE = [[11.0, 11.0], [13.0, 11.0], [13.0, 13.0], [11.0, 13.0]]

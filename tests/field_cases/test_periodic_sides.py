@@ -7,10 +7,10 @@ of 224 m/s over 448 m/s, of equal density, struck from a quiet base below 256 m 
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
-from cases.loads import history_of
-from cases.read import load_tables
-from compare.engines import solve
+from jointwave.cases.errors import SceneError
+from jointwave.cases.loads import history_of
+from jointwave.cases.read import load_tables
+from jointwave.compare.engines import solve
 
 ENGINES = ("dem", "continuum-jointed")
 PERIODIC = {"left": "periodic", "right": "periodic"}

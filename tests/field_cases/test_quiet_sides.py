@@ -14,10 +14,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import jointwave as jw
-from cases.errors import SceneError
 from closed_forms.slipping_joint import slipping_joint
-from compare.scenes import shipped
-from compare.solvers.incident import incident, side_error, side_warnings
+from jointwave.cases.errors import SceneError
+from jointwave.compare.scenes import shipped
+from jointwave.compare.solvers.incident import incident, side_error, side_warnings
 
 ENGINES = ("dem", "continuum-jointed")
 SIDES = ("left", "right", "bottom", "top")

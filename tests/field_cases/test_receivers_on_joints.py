@@ -7,10 +7,10 @@ both sides, within 1e-9 of the rock's size, and a warning says so. Traction does
 import numpy as np
 import pytest
 
-from cases.read import load_tables
-from cases.warnings import warnings
-from compare.engines import solve
-from compare.misfit.metrics import relative_l2
+from jointwave.cases.read import load_tables
+from jointwave.cases.warnings import warnings
+from jointwave.compare.engines import solve
+from jointwave.compare.misfit.metrics import relative_l2
 
 JOINT = {"name": "joint", "normal_stiffness": 1.6e10, "shear_stiffness": 9e9}
 SIDES = ("left", "right", "bottom", "top")

@@ -13,11 +13,11 @@ import obspy
 import pytest
 
 import jointwave
-from cases.errors import SceneError
-from cases.records import read_columns, read_history
-from cases.units import KNOWN, UNITS, split_unit
-from cases.warnings import warnings
-from compare.misfit.external import read_curves
+from jointwave.cases.errors import SceneError
+from jointwave.cases.records import read_columns, read_history
+from jointwave.cases.units import KNOWN, UNITS, split_unit
+from jointwave.cases.warnings import warnings
+from jointwave.compare.misfit.external import read_curves
 
 TIMES = np.array([0.0, 0.1, 0.25, 0.7, 1.0, 20.0]) * 1e-3
 VALUES = np.array([0.0, 1.5e6, -2.25e6, 3.3e5, 1.0, 0.0])

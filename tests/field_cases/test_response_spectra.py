@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 import jointwave as jw
-from cases.errors import SceneError
+from jointwave.cases.errors import SceneError
 
 PERIODS = [0.01, 0.02, 0.05, 0.13, 0.4, 1.7]
 

@@ -7,8 +7,8 @@ degrees a block stays with friction of 21 degrees, and slides with 19 at g (sin 
 import numpy as np
 import pytest
 
-from cases.read import load_tables
-from compare.engines import solve
+from jointwave.cases.read import load_tables
+from jointwave.compare.engines import solve
 
 TILT = np.radians(20.0)
 

@@ -8,8 +8,8 @@ g t^2 / 2, so that it is 2 % of sqrt(A) away at t = sqrt(0.04 sqrt(A) / g).
 import numpy as np
 import pytest
 
-from cases.errors import StoppedError
 from jointwave import load, simulate
+from jointwave.cases.errors import StoppedError
 
 WEDGE = {
     "title": "a roof wedge above a floor",

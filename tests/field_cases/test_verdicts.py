@@ -11,12 +11,12 @@ import re
 
 import pytest
 
-from cases.read import load_tables
-from compare.engines import solve
-from compare.misfit.metrics import misfit, pairings
-from compare.misfit.pairs import meaning, measure
-from compare.misfit.ranking import applicable, kind_of, own_exact, reference_of
-from compare.solvers.record import Kind
+from jointwave.cases.read import load_tables
+from jointwave.compare.engines import solve
+from jointwave.compare.misfit.metrics import misfit, pairings
+from jointwave.compare.misfit.pairs import meaning, measure
+from jointwave.compare.misfit.ranking import applicable, kind_of, own_exact, reference_of
+from jointwave.compare.solvers.record import Kind
 
 #: In front of the tunnel's right wall, which the wave passes along, and around the tunnel.
 WALL, AROUND = [22.01, 14.0], [[23.0, 15.0], [17.0, 15.0], [25.0, 15.0], [15.0, 15.0]]

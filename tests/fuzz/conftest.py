@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-import cases
 import targets
+from jointwave import cases
 from meshes import meshes
 
 #: How many times the inputs of a plain run.

@@ -19,22 +19,22 @@ from unittest.mock import patch
 
 import numpy as np
 
-import cases
-from cases.effects import active_effects, is_spatial
-from cases.errors import SceneError, UnstableError
-from cases.loads import load_history, step_means
-from cases.material.calibrate import calibrate
-from cases.partition.scene import partition_bytes, partition_of
-from cases.records import read_history
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from cases.warnings import warnings
-from compare.cli import program
-from compare.engines import applies, names
-from compare.misfit.external import read_curves
-from compare.studies.study import load as load_study
-from compare.studies.work_precision import key
-from results.dataset import scene_hash
+from jointwave import cases
+from jointwave.cases.effects import active_effects, is_spatial
+from jointwave.cases.errors import SceneError, UnstableError
+from jointwave.cases.loads import load_history, step_means
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.partition.scene import partition_bytes, partition_of
+from jointwave.cases.records import read_history
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.warnings import warnings
+from jointwave.compare.cli import program
+from jointwave.compare.engines import applies, names
+from jointwave.compare.misfit.external import read_curves
+from jointwave.compare.studies.study import load as load_study
+from jointwave.compare.studies.work_precision import key
+from jointwave.results.dataset import scene_hash
 
 SECONDS = 5  # of the processor, for one input
 MEMORY = "0.2"  # GB that a run may take here
@@ -100,7 +100,7 @@ def _examine(one: Scene | RockMass) -> None:
     if steps * one.pillar.block_count <= TINY and (
         active_effects(one) == PLAIN and one.numerics.dem.scheme == "leapfrog" and one.record.energy
     ):
-        from dem import simulate
+        from jointwave.dem import simulate
 
         simulate(one)
 
@@ -116,18 +116,18 @@ def _examine_rock_mass(one: RockMass) -> None:
 def _steps(one: Scene) -> int:
     """Return how many steps the rigid blocks would take, after every check before the first."""
     if is_spatial(one):
-        from dem.spatial.simulate import prepare
+        from jointwave.dem.spatial.simulate import prepare
 
         return prepare(one).time.steps
-    from dem.axial.simulate import scheme_of
+    from jointwave.dem.axial.simulate import scheme_of
 
     return scheme_of(one).build(one)[2].steps
 
 
 def _refuse_large_rock(one: Scene, models: list[str]) -> None:
-    from continuum.build import elements_for
-    from continuum.size import refuse_large_mesh
-    from continuum.space.kinematics import kinematics
+    from jointwave.continuum.build import elements_for
+    from jointwave.continuum.size import refuse_large_mesh
+    from jointwave.continuum.space.kinematics import kinematics
 
     p, numerics = calibrate(one), one.numerics.continuum
     for name in models:
@@ -168,7 +168,7 @@ def study(data: bytes, folder: Path) -> str:
 
 def mesh(data: bytes, folder: Path) -> str:
     """A gmsh file of a pillar of three blocks."""
-    from continuum.mesh.given import given_mesh
+    from jointwave.continuum.mesh.given import given_mesh
 
     shape = {"pillar.length": 1.5, "pillar.side": 0.4, "pillar.block": 0.5, "soft_layers": []}
     places = {"record.stress": [0.5], "record.velocity": [0.25], "variants": []}

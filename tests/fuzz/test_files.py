@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from hypothesis import strategies as st
 
-import cases
+from jointwave import cases
 
 LOADS = [p.read_bytes() for p in sorted(Path(cases.__file__).parent.glob("*/*.csv"))]
 

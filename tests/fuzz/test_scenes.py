@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from hypothesis import strategies as st
 
-import cases
-from compare.studies import SHIPPED as STUDIES
+from jointwave import cases
+from jointwave.compare.studies import SHIPPED as STUDIES
 
 SCENES = [
     p.read_text(encoding="utf-8") for p in sorted(Path(cases.__file__).parent.glob("*/*.toml"))

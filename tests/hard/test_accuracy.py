@@ -2,11 +2,11 @@
 
 import pytest
 
-import cases
-from cases.errors import SceneError
-from compare.engines import applies
-from compare.scenes import find
 from hard_runs import SCHEMES, SHORT, HardRun, marked
+from jointwave import cases
+from jointwave.cases.errors import SceneError
+from jointwave.compare.engines import applies
+from jointwave.compare.scenes import find
 
 VARIANTS = [scene.name for scene in cases.load(find(SHORT))]
 NONLINEAR = {"joints without tension", "softening just short of a snap-back"}

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from compare.misfit.metrics import relative_l2
 from hard_runs import EPS, JOINTED, HardRun, marked
+from jointwave.compare.misfit.metrics import relative_l2
 
 LOOSE = {"joints.tension": False, "time.duration": 0.03}
 SLOW = [("continuum-jointed", "explicit"), ("continuum-jointed", "implicit")]

@@ -5,10 +5,10 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
-from compare.engines import solve
-from compare.misfit.metrics import relative_l2
 from hard_runs import BLOCKS, CUBES, EPS, JOINTED, ROCK, SCHEMES, HardRun, marked
+from jointwave.cases.errors import SceneError
+from jointwave.compare.engines import solve
+from jointwave.compare.misfit.metrics import relative_l2
 
 STRENGTH = {"joints.tensile_strength": 5e5, "joints.fracture_energy": 14.3}
 SOLID = {

@@ -5,12 +5,12 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from cases.loads import load_history, step_means
-from cases.sampling import interpolation
-from compare.exact.bar import jointed_bar
-from compare.exact.schemes.leapfrog import modes, of_modes
-from compare.misfit.metrics import relative_l2
 from hard_runs import BLOCKS, JOINT, REFEREE, ROUND_OFF, SCHEMES, HardRun, marked
+from jointwave.cases.loads import load_history, step_means
+from jointwave.cases.sampling import interpolation
+from jointwave.compare.exact.bar import jointed_bar
+from jointwave.compare.exact.schemes.leapfrog import modes, of_modes
+from jointwave.compare.misfit.metrics import relative_l2
 
 #: Rigid rock, so that blocks move by their joints alone.
 RIGID = {"rock.intact_modulus": 1e29, "time.duration": 0.02, "step": 0.9}

@@ -5,18 +5,18 @@ from math import hypot, inf, radians, tan
 import numpy as np
 import pytest
 
-from cases.loads import history_of, step_means
-from cases.material.block_stiffness import jump
-from cases.material.contact_points import contact_points
-from cases.material.rigid_blocks import rigid_joints
-from cases.material.rock import elastic_rock
-from cases.partition.locate import block_at
-from cases.partition.scene import partition_of
-from compare.engines import solve
-from compare.exact.rock_mass.block_lattice import at_points, masses
-from compare.exact.schemes.leapfrog import modes, of_modes
-from compare.misfit.metrics import relative_l2
 from hard_runs import CUBES, EPS, ERROR, FIFTHS, REFEREE, ROUND_OFF, HardRun
+from jointwave.cases.loads import history_of, step_means
+from jointwave.cases.material.block_stiffness import jump
+from jointwave.cases.material.contact_points import contact_points
+from jointwave.cases.material.rigid_blocks import rigid_joints
+from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.partition.locate import block_at
+from jointwave.cases.partition.scene import partition_of
+from jointwave.compare.engines import solve
+from jointwave.compare.exact.rock_mass.block_lattice import at_points, masses
+from jointwave.compare.exact.schemes.leapfrog import modes, of_modes
+from jointwave.compare.misfit.metrics import relative_l2
 
 BRICKS, GRAZING, SLIDING = "hard/struck-bricks", "hard/grazing-wave", "hard/sliding-bricks"
 LAW = {"normal_stiffness": 2e10, "shear_stiffness": 8e9}

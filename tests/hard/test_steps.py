@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from cases.errors import SceneError, UnstableError
-from cases.loads import load_history
-from cases.sampling import sample_times
 from hard_runs import EXPLICIT, ROCK, HardRun, marked
+from jointwave.cases.errors import SceneError, UnstableError
+from jointwave.cases.loads import load_history
+from jointwave.cases.sampling import sample_times
 
 #: A blow with its peak at 1 kHz, above the cut-off of 860 Hz, so that all modes ring.
 BLOW = {"load.period": 1e-3, "numerics.continuum.elements_per_block": 1}

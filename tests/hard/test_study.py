@@ -5,12 +5,12 @@ from math import nan
 import numpy as np
 import pytest
 
-from compare.engines import ENGINES, solve
-from compare.studies import hard_cases, hard_map
-from compare.studies.hard_cases import NONE, STABLE, HardRow
-from compare.studies.hard_map import boundary, columns, computed, maps_of
 from hard_runs import CROSSED
-from numerics.critical_step import critical_step_of_modes
+from jointwave.compare.engines import ENGINES, solve
+from jointwave.compare.studies import hard_cases, hard_map
+from jointwave.compare.studies.hard_cases import NONE, STABLE, HardRow
+from jointwave.compare.studies.hard_map import boundary, columns, computed, maps_of
+from jointwave.numerics.critical_step import critical_step_of_modes
 
 CASES = hard_cases.hard_cases()
 #: Laws whose kernels take long to compile.

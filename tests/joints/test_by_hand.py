@@ -9,14 +9,14 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from joints.ends import half_spring
-from joints.energy import elastic_energy, fracture_energy_spent, friction_work
-from joints.law import History, Law, law, law_of, parts_of, table_of, traction, uniform
-from joints.normal import normal_traction, spring_traction
-from joints.shear import UNLIMITED, shear_return
-from joints.softening import is_broken, strength_left
-from joints.tangent import tangent
-from numerics.critical_step import critical_step, critical_step_of_modes
+from jointwave.joints.ends import half_spring
+from jointwave.joints.energy import elastic_energy, fracture_energy_spent, friction_work
+from jointwave.joints.law import History, Law, law, law_of, parts_of, table_of, traction, uniform
+from jointwave.joints.normal import normal_traction, spring_traction
+from jointwave.joints.shear import UNLIMITED, shear_return
+from jointwave.joints.softening import is_broken, strength_left
+from jointwave.joints.tangent import tangent
+from jointwave.numerics.critical_step import critical_step, critical_step_of_modes
 
 K, K_S, DT = 1e9, 2e9, 1e-5
 VIRGIN = History()

@@ -11,10 +11,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from joints.closure import closure_stiffness, closure_traction, closure_under
-from joints.energy import elastic_energy
-from joints.law import Law, law_of, parts_of, table_of
-from joints.normal import gap_under, normal_traction, spring_traction
+from jointwave.joints.closure import closure_stiffness, closure_traction, closure_under
+from jointwave.joints.energy import elastic_energy
+from jointwave.joints.law import Law, law_of, parts_of, table_of
+from jointwave.joints.normal import gap_under, normal_traction, spring_traction
 
 ALONE = Law(1e9, maximum_closure=1e-4)
 #: 0.3 of the joint's own compliance is the rock's.

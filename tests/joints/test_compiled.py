@@ -7,8 +7,8 @@ import numba
 import numpy as np
 import pytest
 
-from joints.law import History, Law, law_of, parts_of, table_of, traction
-from joints.tangent import Tangent, tangent
+from jointwave.joints.law import History, Law, law_of, parts_of, table_of, traction
+from jointwave.joints.tangent import Tangent, tangent
 
 N, DT, HISTORY = 64, 1e-5, History()
 ELASTIC = Law(9e9, shear_stiffness=3e9)

@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import eigh
 
-from joints.dilation import lift, lift_rate, riding_stiffness
-from joints.energy import elastic_energy, friction_work, lift_work
-from joints.law import History, Law, law_of, parts_of, table_of, traction
-from joints.tangent import tangent
+from jointwave.joints.dilation import lift, lift_rate, riding_stiffness
+from jointwave.joints.energy import elastic_energy, friction_work, lift_work
+from jointwave.joints.law import History, Law, law_of, parts_of, table_of, traction
+from jointwave.joints.tangent import tangent
 
 JOINT = Law(1e9, shear_stiffness=2e9, friction=0.5, dilation=0.2, dilation_distance=1e-3)
 DT = 1e-5

@@ -5,7 +5,7 @@ from math import inf
 import numpy as np
 import pytest
 
-from joints.ends import half_spring
+from jointwave.joints.ends import half_spring
 
 
 def test_rigid_wall_adds_up_the_motion():

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from joints.energy import elastic_energy, fracture_energy_spent
-from joints.law import Law, law_of, parts_of, table_of
-from joints.normal import normal_traction, spring_traction
-from joints.softening import is_broken, strength_left
+from jointwave.joints.energy import elastic_energy, fracture_energy_spent
+from jointwave.joints.law import Law, law_of, parts_of, table_of
+from jointwave.joints.normal import normal_traction, spring_traction
+from jointwave.joints.softening import is_broken, strength_left
 
 gaps = st.floats(-1e-3, 1e-3)
 rates = st.floats(-10, 10)

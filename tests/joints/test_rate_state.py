@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from joints.energy import elastic_energy, friction_work
-from joints.law import History, Law, law_of, parts_of, table_of, traction
-from joints.rate_state import exponent, friction_at, rate_under
-from joints.tangent import tangent
+from jointwave.joints.energy import elastic_energy, friction_work
+from jointwave.joints.law import History, Law, law_of, parts_of, table_of, traction
+from jointwave.joints.rate_state import exponent, friction_at, rate_under
+from jointwave.joints.tangent import tangent
 
 PRESSURE, LENGTH, RATE = 1e6, 1e-4, 1e-6
 JOINT = Law(

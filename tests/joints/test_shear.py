@@ -7,11 +7,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from joints.energy import elastic_energy, friction_work
-from joints.law import History, Law, law_of, parts_of, table_of, traction
-from joints.shear import UNLIMITED, planar_return, shear_return, shear_strength
-from joints.softening import strength_left
-from joints.weakening import friction_left
+from jointwave.joints.energy import elastic_energy, friction_work
+from jointwave.joints.law import History, Law, law_of, parts_of, table_of, traction
+from jointwave.joints.shear import UNLIMITED, planar_return, shear_return, shear_strength
+from jointwave.joints.softening import strength_left
+from jointwave.joints.weakening import friction_left
 
 DT = 1e-5
 EPS = np.finfo(float).eps

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from joints.closure import closing, closure_stiffness
-from joints.dilation import lift
-from joints.law import History, Law, law_of, parts_of, table_of, traction
-from joints.normal import normal_traction, spring_alone
-from joints.shear import shear_strength, shear_traction
-from joints.softening import stiffness_left, strength_left
-from joints.tangent import normal_tangent, tangent
+from jointwave.joints.closure import closing, closure_stiffness
+from jointwave.joints.dilation import lift
+from jointwave.joints.law import History, Law, law_of, parts_of, table_of, traction
+from jointwave.joints.normal import normal_traction, spring_alone
+from jointwave.joints.shear import shear_strength, shear_traction
+from jointwave.joints.softening import stiffness_left, strength_left
+from jointwave.joints.tangent import normal_tangent, tangent
 
 DT = 1e-5
 EPS = np.finfo(float).eps

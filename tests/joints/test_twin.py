@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 from numpy.polynomial.legendre import leggauss
 from scipy.optimize import brentq
 
-from joints import energy, softening
-from joints.closure import closure_stiffness, closure_traction
-from joints.law import History, Law, law, law_of, parts_of, table_of, traction, uniform
-from joints.normal import spring_traction
-from joints.shear import UNLIMITED
+from jointwave.joints import energy, softening
+from jointwave.joints.closure import closure_stiffness, closure_traction
+from jointwave.joints.law import History, Law, law, law_of, parts_of, table_of, traction, uniform
+from jointwave.joints.normal import spring_traction
+from jointwave.joints.shear import UNLIMITED
 
 DT = 1e-5
 

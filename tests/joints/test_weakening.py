@@ -6,8 +6,8 @@ Pa/m, from 6e5 to 2e5 Pa.
 
 import pytest
 
-from joints.law import History, Law, law_of, parts_of, table_of, traction
-from joints.tangent import tangent
+from jointwave.joints.law import History, Law, law_of, parts_of, table_of, traction
+from jointwave.joints.tangent import tangent
 
 JOINT = Law(1e9, shear_stiffness=2e9, friction=0.6, dynamic_friction=0.2, weakening_distance=1e-3)
 PRESSED = -1e-3  # m: 1 MPa

@@ -7,9 +7,9 @@ import numba
 import numpy as np
 import pytest
 
-from joints.formula import formula
-from numerics.arguments import Packed, unpacked
-from numerics.jit import jitted
+from jointwave.joints.formula import formula
+from jointwave.numerics.arguments import Packed, unpacked
+from jointwave.numerics.jit import jitted
 
 
 class Inner(NamedTuple):

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from numerics.critical_step import critical_step
+from jointwave.numerics.critical_step import critical_step
 
 
 def growth(omega, eta, dt):

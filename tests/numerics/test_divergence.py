@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from numerics.divergence import (
+from jointwave.numerics.divergence import (
     CREATED,
     ENERGY,
     EVERY,
@@ -18,7 +18,7 @@ from numerics.divergence import (
     look,
     out_of_bounds,
 )
-from numerics.jit import jitted
+from jointwave.numerics.jit import jitted
 
 KINETIC, ELASTIC, VISCOUS, WORK = range(4)
 

@@ -13,10 +13,10 @@ from types import SimpleNamespace
 import numba
 import pytest
 
-import joints
-from numerics import jit
-from numerics.cache import PACKAGES, UNUSED, cache_directory, make, mark_used
-from numerics.jit import jitted
+from jointwave import joints
+from jointwave.numerics import jit
+from jointwave.numerics.cache import PACKAGES, UNUSED, cache_directory, make, mark_used
+from jointwave.numerics.jit import jitted
 
 ROOT = Path(joints.__file__).resolve().parent.parent
 
@@ -87,7 +87,7 @@ def test_what_takes_long_is_announced_once(monkeypatch, caplog):
 
 PROGRAM = """
 import sys
-from numerics import jit
+from jointwave.numerics import jit
 
 compile_for = jit.compile_for
 

@@ -5,9 +5,9 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from numerics.atomic import give_way, peek, post
-from numerics.denormals import ARM, X86, flush_denormals, restore_denormals
-from numerics.jit import jitted
+from jointwave.numerics.atomic import give_way, peek, post
+from jointwave.numerics.denormals import ARM, X86, flush_denormals, restore_denormals
+from jointwave.numerics.jit import jitted
 
 
 @jitted

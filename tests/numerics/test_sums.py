@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from numerics.jit import jitted
-from numerics.sums import total_of
+from jointwave.numerics.jit import jitted
+from jointwave.numerics.sums import total_of
 
 
 @jitted

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from cases import Scene, load
-from cases.sampling import sample_times
-from results.arrays import size_of
-from results.dataset import (
+from jointwave.cases import Scene, load
+from jointwave.cases.sampling import sample_times
+from jointwave.results.arrays import size_of
+from jointwave.results.dataset import (
     ALL_TERMS,
     AT_REST,
     DIMENSIONS,
@@ -19,7 +19,7 @@ from results.dataset import (
     imbalance,
     scene_hash,
 )
-from results.labels import LABELS
+from jointwave.results.labels import LABELS
 
 POINTS = {"record.velocity": [19.75, 20.25]}
 

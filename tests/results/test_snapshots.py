@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from cases import SceneError
-from cases.sampling import sample_times
-from results.snapshots import (
+from jointwave.cases import SceneError
+from jointwave.cases.sampling import sample_times
+from jointwave.results.snapshots import (
     SnapshotRecorder,
     Snapshots,
     in_space,

@@ -5,7 +5,7 @@ from math import factorial
 import numpy as np
 import pytest
 
-from results.subcells import CORNERS, KINDS, linear_cells
+from jointwave.results.subcells import CORNERS, KINDS, linear_cells
 
 LOBATTO = {1: [0, 1], 2: [0, 0.5, 1], 3: [0, 0.27639, 0.72361, 1], 4: [0, 0.17267, 0.5, 0.82733, 1]}
 BOXES = {"interval": 1, "quadrilateral": 2, "hexahedron": 3}

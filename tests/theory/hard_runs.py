@@ -10,13 +10,13 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-import cases
-from cases.material.calibrate import calibrate
-from cases.schema.pulse import shortest_period
-from compare.engines import ENGINES, applies, solve, solvers
-from compare.misfit.metrics import misfit
-from compare.scenes import find
-from continuum.build import elements_for
+from jointwave import cases
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.schema.pulse import shortest_period
+from jointwave.compare.engines import ENGINES, applies, solve, solvers
+from jointwave.compare.misfit.metrics import misfit
+from jointwave.compare.scenes import find
+from jointwave.continuum.build import elements_for
 
 SHORT = "hard/short-pillar"
 JOINT = 8.748e9  # Pa/m, K'_n of an ordinary joint of the short pillar

@@ -6,13 +6,13 @@ the exact solution of the model that they discretise, and the closing of their e
 
 import numpy as np
 
-import cases
-from cases.effects import active_effects
-from compare.cli.pytest_plugin import PairItem, SceneFile
-from compare.engines import ENGINES, applies
-from compare.misfit.metrics import misfit, relative_l2
-from compare.scenes import shipped
-from results.dataset import energy_residual
+from jointwave import cases
+from jointwave.cases.effects import active_effects
+from jointwave.compare.cli.pytest_plugin import PairItem, SceneFile
+from jointwave.compare.engines import ENGINES, applies
+from jointwave.compare.misfit.metrics import misfit, relative_l2
+from jointwave.compare.scenes import shipped
+from jointwave.results.dataset import energy_residual
 
 REFEREES = {
     "dem": ("lattice", "no-tension-chain", "spatial-lattice"),

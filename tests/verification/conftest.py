@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from closed_forms.manufactured import Manufactured
-from continuum.mesh.cells import CORNERS, DIMENSION, oriented
-from continuum.mesh.description import Joints, Mesh, Part
-from continuum.mesh.facets import Facets, normals, outer_facets
-from continuum.space.body import Body, build_body
-from continuum.space.elasticity import Material, Section, lame_constants
-from continuum.space.evaluation import Places, places_in, quadrature_in
-from continuum.space.interface import facet_points
+from jointwave.continuum.mesh.cells import CORNERS, DIMENSION, oriented
+from jointwave.continuum.mesh.description import Joints, Mesh, Part
+from jointwave.continuum.mesh.facets import Facets, normals, outer_facets
+from jointwave.continuum.space.body import Body, build_body
+from jointwave.continuum.space.elasticity import Material, Section, lame_constants
+from jointwave.continuum.space.evaluation import Places, places_in, quadrature_in
+from jointwave.continuum.space.interface import facet_points
 
 PERIOD = 0.01  # s, of the Ricker wavelet's peak frequency
 DENSITY, MODULUS, SPEED = 2400.0, 9.6e9, 2000.0

@@ -9,14 +9,13 @@ from math import pi
 import numpy as np
 import pytest
 
-import continuum
-import dem
-from cases.errors import StoppedError
-from cases.histories import Sine
-from cases.material import closure
-from compare.exact.joint import closing_joint
-from compare.exact.joint.closing_joint import ClosingJoint, Passed
-from dem.spatial import simulate as row
+from jointwave import continuum, dem
+from jointwave.cases.errors import StoppedError
+from jointwave.cases.histories import Sine
+from jointwave.cases.material import closure
+from jointwave.compare.exact.joint import closing_joint
+from jointwave.compare.exact.joint.closing_joint import ClosingJoint, Passed
+from jointwave.dem.spatial import simulate as row
 
 PERIOD, DENSITY, SPEED, PEAK = 0.02, 2400.0, 2000.0, 1e6
 MODULUS = DENSITY * SPEED**2

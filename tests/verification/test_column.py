@@ -10,8 +10,8 @@ from scipy.sparse import diags
 from scipy.sparse.linalg import eigsh
 
 from closed_forms import beam, column
-from continuum.build import discretise, operators
-from continuum.ends import face_area
+from jointwave.continuum.build import discretise, operators
+from jointwave.continuum.ends import face_area
 
 DENSITY, MODULUS, SIDE = 2400.0, 9.6e9, 0.5
 

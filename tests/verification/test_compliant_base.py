@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from cases.histories import Gabor, Integrated
-from cases.material.calibrate import calibrate
-from cases.read import load_tables
-from compare.engines import solve
+from jointwave.cases.histories import Gabor, Integrated
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.read import load_tables
+from jointwave.compare.engines import solve
 
 PERIOD, PEAK = 0.01, 0.02  # s, m/s
 GABOR = {"shape": "gabor", "period": PERIOD, "cycles": 2, "amplitude": PEAK}

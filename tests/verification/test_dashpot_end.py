@@ -8,11 +8,11 @@ the free one, infinity the fixed one.
 import numpy as np
 import pytest
 
-from cases.loads import load_history
-from cases.sampling import clock
-from continuum.build import build_model, critical_step_of, discretise
-from continuum.explicit.march import run
-from continuum.state import empty_samples, state_at_rest
+from jointwave.cases.loads import load_history
+from jointwave.cases.sampling import clock
+from jointwave.continuum.build import build_model, critical_step_of, discretise
+from jointwave.continuum.explicit.march import run
+from jointwave.continuum.state import empty_samples, state_at_rest
 
 
 @pytest.mark.parametrize("beta", [0.5, 1.0, 2.0])

@@ -8,15 +8,15 @@ what Kirsch's solution adds to it there, too.
 import numpy as np
 import pytest
 
-from cases.read import load
 from closed_forms.kirsch import Kirsch
-from continuum.explicit.march import readings
-from continuum.implicit.static import settle_static
-from continuum.mesh.session import gmsh_session
-from continuum.plane.sides import outward
-from continuum.run import run_of
-from continuum.space import basix_versions
-from continuum.space.evaluation import on_freedoms, places_in
+from jointwave.cases.read import load
+from jointwave.continuum.explicit.march import readings
+from jointwave.continuum.implicit.static import settle_static
+from jointwave.continuum.mesh.session import gmsh_session
+from jointwave.continuum.plane.sides import outward
+from jointwave.continuum.run import run_of
+from jointwave.continuum.space import basix_versions
+from jointwave.continuum.space.evaluation import on_freedoms, places_in
 
 HOLE = Kirsch(radius=1.0, stress=(10e6, 4e6), modulus=5e10, poisson=0.25)
 HALF = 4.0  # m, of the domain's width

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from cases.sampling import Clock
-from continuum.build import build_model, critical_step_of, discretise
-from continuum.explicit.march import run
-from continuum.model import Fixed
-from continuum.space.body import rock_matrices
-from continuum.state import TERMS, empty_samples, state_at_rest
+from jointwave.cases.sampling import Clock
+from jointwave.continuum.build import build_model, critical_step_of, discretise
+from jointwave.continuum.explicit.march import run
+from jointwave.continuum.model import Fixed
+from jointwave.continuum.space.body import rock_matrices
+from jointwave.continuum.state import TERMS, empty_samples, state_at_rest
 
 STRENGTH, ENERGY, AREA = 5e5, 30.0, 0.25
 CRITICAL = 2 * ENERGY / STRENGTH

@@ -9,10 +9,10 @@ than the bounds.
 import numpy as np
 import pytest
 
-import continuum
-from cases.loads import load_history
 from closed_forms import one_joint, parallel_joints
-from compare.misfit.metrics import relative_l2
+from jointwave import continuum
+from jointwave.cases.loads import load_history
+from jointwave.compare.misfit.metrics import relative_l2
 
 RHO, E, NU = 2400.0, 9.6e9, 0.25
 

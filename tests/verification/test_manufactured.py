@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_matrix
 
-from continuum.explicit.critical import critical_time_step
-from continuum.explicit.march import march
-from continuum.implicit.balance import implicit_matrices
-from continuum.implicit.run import Implicit
-from continuum.model import Ends, Model, Receivers, RockOperators
-from continuum.space.body import whole
-from continuum.space.operator import zeros
-from continuum.state import empty_samples, state_at_rest
+from jointwave.continuum.explicit.critical import critical_time_step
+from jointwave.continuum.explicit.march import march
+from jointwave.continuum.implicit.balance import implicit_matrices
+from jointwave.continuum.implicit.run import Implicit
+from jointwave.continuum.model import Ends, Model, Receivers, RockOperators
+from jointwave.continuum.space.body import whole
+from jointwave.continuum.space.operator import zeros
+from jointwave.continuum.state import empty_samples, state_at_rest
 
 #: Kind, order p, cells a side of the coarser mesh, and the order of convergence.
 MESHES = [

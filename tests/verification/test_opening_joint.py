@@ -6,9 +6,9 @@ The half wavelet that is compressed arrives while the joint is shut; what came b
 import numpy as np
 import pytest
 
-import continuum
-from cases.loads import load_history
 from closed_forms import opening_joint
+from jointwave import continuum
+from jointwave.cases.loads import load_history
 
 SPEED, Z, PERIOD = 2000.0, 2400.0 * 2000.0, 0.01
 SIDES = 20.0 - 1e-6, 20.0 + 1e-6  # m, of the joint

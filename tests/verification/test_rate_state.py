@@ -9,15 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import cases
-import continuum
-import dem
-from cases.validate import validated
-from compare.exact.joint import sliding_joint
-from compare.exact.joint.rate_state_joint import RateJoint, RateStateWave
-from compare.misfit.metrics import relative_l2
-from compare.scenes import SHIPPED
-from results.dataset import energy_residual
+from jointwave import cases, continuum, dem
+from jointwave.cases.validate import validated
+from jointwave.compare.exact.joint import sliding_joint
+from jointwave.compare.exact.joint.rate_state_joint import RateJoint, RateStateWave
+from jointwave.compare.misfit.metrics import relative_l2
+from jointwave.compare.scenes import SHIPPED
+from jointwave.results.dataset import energy_residual
 from tests.verification.test_slip_weakening import (
     FAULT,
     IN_THE_PLANE,

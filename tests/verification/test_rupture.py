@@ -21,10 +21,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import continuum
-import dem
-from cases.validate import validated
-from results.dataset import energy_residual
+from jointwave import continuum, dem
+from jointwave.cases.validate import validated
+from jointwave.results.dataset import energy_residual
 
 SHEAR, DENSITY, PRESSURE, SHARE = 2e10, 2600.0, 4e7, 0.58
 A, B, DISTANCE, RATE, AGE, MU = 0.01, 0.02, 1.2e-4, 1e-6, 1.2e4, 0.6

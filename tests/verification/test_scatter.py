@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
-from compare.engines import solve
-from compare.misfit.metrics import misfit
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.compare.engines import solve
+from jointwave.compare.misfit.metrics import misfit
 
 SMOOTH = {"load": {"shape": "ricker", "amplitude": 1e6, "period": 0.01}, "ends__end": "matched"}
 SHORT = {**SMOOTH, "time__duration": 0.04}

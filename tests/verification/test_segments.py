@@ -10,15 +10,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-import continuum
-import dem
-from cases.loads import load_history
-from cases.material.calibrate import calibrate
-from cases.sampling import sample_times
-from compare.engines import solve
-from compare.exact.bar import equivalent_bar, jointed_bar
-from compare.exact.bar.transfer import transfer
-from compare.misfit.metrics import misfit
+from jointwave import continuum, dem
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.compare.engines import solve
+from jointwave.compare.exact.bar import equivalent_bar, jointed_bar
+from jointwave.compare.exact.bar.transfer import transfer
+from jointwave.compare.misfit.metrics import misfit
 
 #: Density (kg/m3) and Young's modulus (Pa) of steel, a stiff rock and a soft one.
 STEEL, GRANITE, SALT = (7850.0, 2.1e11), (2650.0, 6.0e10), (2200.0, 3.0e10)

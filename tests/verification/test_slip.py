@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
-import cases
-import continuum
-from cases.loads import load_history
 from closed_forms.one_joint import slip_coefficients
-from compare.misfit.metrics import relative_l2
-from compare.scenes import SHIPPED
+from jointwave import cases, continuum
+from jointwave.cases.loads import load_history
+from jointwave.compare.misfit.metrics import relative_l2
+from jointwave.compare.scenes import SHIPPED
 
 SCENE = SHIPPED / "beyond" / "slip-three-cohesions.toml"
 PERIOD, INTERVAL = 0.04, 1e-4

@@ -10,17 +10,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import cases
-import continuum
-import dem
-from cases.histories import Ricker
-from cases.validate import validated
-from compare.exact.joint import sliding_joint
-from compare.exact.joint.sliding_joint import SlipJoint
-from compare.exact.joint.slip_weakening import Passed
-from compare.misfit.metrics import relative_l2
-from compare.scenes import SHIPPED
-from results.dataset import energy_residual
+from jointwave import cases, continuum, dem
+from jointwave.cases.histories import Ricker
+from jointwave.cases.validate import validated
+from jointwave.compare.exact.joint import sliding_joint
+from jointwave.compare.exact.joint.sliding_joint import SlipJoint
+from jointwave.compare.exact.joint.slip_weakening import Passed
+from jointwave.compare.misfit.metrics import relative_l2
+from jointwave.compare.scenes import SHIPPED
+from jointwave.results.dataset import energy_residual
 
 SCENE = SHIPPED / "beyond" / "slip-weakening.toml"
 

@@ -3,18 +3,17 @@
 import numpy as np
 import pytest
 
-import cases
-import continuum
-from cases.loads import load_history
-from cases.material.calibrate import calibrate
-from cases.sampling import clock
 from closed_forms.jointed_spall import jointed_spall
 from closed_forms.spall import spall
-from compare.scenes import SHIPPED
-from continuum.build import build_model, critical_step_of, discretise
-from continuum.explicit.march import march
-from continuum.state import empty_samples, state_at_rest
-from results.dataset import energy_residual
+from jointwave import cases, continuum
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import clock
+from jointwave.compare.scenes import SHIPPED
+from jointwave.continuum.build import build_model, critical_step_of, discretise
+from jointwave.continuum.explicit.march import march
+from jointwave.continuum.state import empty_samples, state_at_rest
+from jointwave.results.dataset import energy_residual
 
 SAW_TOOTH = SHIPPED / "beyond" / "spall.toml"
 

@@ -7,9 +7,9 @@ k_2 h = 0.3 at the peak frequency of the pulse. That the two differ, by 1.7 %, i
 import numpy as np
 import pytest
 
-import continuum
-from cases.loads import load_history
 from closed_forms import one_joint, thin_layer
+from jointwave import continuum
+from jointwave.cases.loads import load_history
 
 RATIO, PHASE = 0.1, 0.3
 MODULUS, SPEED, PERIOD = 9.6e9, 2000.0, 0.01

@@ -17,7 +17,7 @@ from kernels import ROUNDS, rate
 from plain_dolfinx import Pillar
 from rock import BLOCKS, CASES, SAME_STEPS, Engine, assert_same, engine_of, pillar_of
 
-from continuum.space.operator import layout, multiply, operator, zeros
+from jointwave.continuum.space.operator import layout, multiply, operator, zeros
 
 
 class Contender(NamedTuple):

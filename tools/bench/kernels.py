@@ -8,7 +8,7 @@ import bare
 import numpy as np
 from rows import changed, stretch
 
-from cases.material.calibrate import calibrate
+from jointwave.cases.material.calibrate import calibrate
 
 ROUNDS = 9
 SHORTEST = 0.03  # s

@@ -10,10 +10,10 @@ import processes
 from kernels import side_by_side
 from rock import network
 
-from continuum.plane.rock import discretise
-from continuum.space.body import rock_matrices
-from continuum.space.operator import multiply
-from numerics.cache_lines import zeros
+from jointwave.continuum.plane.rock import discretise
+from jointwave.continuum.space.body import rock_matrices
+from jointwave.continuum.space.operator import multiply
+from jointwave.numerics.cache_lines import zeros
 
 
 def products() -> None:

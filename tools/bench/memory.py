@@ -31,7 +31,7 @@ def peak() -> float:
 
 def one_run(blocks: int) -> None:
     """Run a row of so many blocks and print this process's peak."""
-    from dem import simulate
+    from jointwave.dem import simulate
 
     simulate(changed(SLIDES, blocks))
     print(peak())

@@ -12,7 +12,7 @@ import numpy as np
 import ufl
 from dolfinx import fem
 
-from continuum.space import dolfinx_export
+from jointwave.continuum.space import dolfinx_export
 
 
 class Pillar(NamedTuple):

@@ -6,8 +6,8 @@ import ufl
 from plain_dolfinx import Pillar, Steps
 from scipy.sparse import csr_matrix
 
-from continuum.space import dolfinx_export
-from continuum.space.operator import without_round_off
+from jointwave.continuum.space import dolfinx_export
+from jointwave.continuum.space.operator import without_round_off
 
 
 def stiffness(pillar: Pillar) -> csr_matrix:

@@ -9,9 +9,9 @@ import numpy as np
 from kernels import ROUNDS, SLIDES, rate, side_by_side
 from rows import ELASTIC, Stretch, changed, lattice, stretch
 
-from dem.blocks.leapfrog import march, samples_for
-from dem.blocks.model import PlaneModel, state_at_rest
-from dem.blocks.system import prepared
+from jointwave.dem.blocks.leapfrog import march, samples_for
+from jointwave.dem.blocks.model import PlaneModel, state_at_rest
+from jointwave.dem.blocks.system import prepared
 
 COULOMB = ELASTIC | {"friction_angle": 30.0, "cohesion": 1e5}
 PRESSURE = {"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1e5}

@@ -13,8 +13,8 @@ from kernels import in_words
 from mpi4py import MPI
 from rock import network, scene_of
 
-from continuum import simulate
-from continuum.run import discrete_and_steps
+from jointwave.continuum import simulate
+from jointwave.continuum.run import discrete_and_steps
 
 ROUNDS = 5
 STEPS = 4000  # some seconds

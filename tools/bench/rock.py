@@ -7,16 +7,16 @@ import numpy as np
 from plain_dolfinx import Pillar, Steps, in_order
 from rows import changed
 
-import cases
-from cases.read import load
-from cases.sampling import Clock
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from continuum.build import Discrete, build_model
-from continuum.explicit.march import run
-from continuum.model import Model
-from continuum.run import discrete_and_steps
-from continuum.state import Samples, State, empty_samples, state_at_rest
+from jointwave import cases
+from jointwave.cases.read import load
+from jointwave.cases.sampling import Clock
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.build import Discrete, build_model
+from jointwave.continuum.explicit.march import run
+from jointwave.continuum.model import Model
+from jointwave.continuum.run import discrete_and_steps
+from jointwave.continuum.state import Samples, State, empty_samples, state_at_rest
 
 BLOCKS = 100
 SAME_STEPS = 200  # of the motion that all must share

@@ -5,19 +5,19 @@ from math import isqrt
 from pathlib import Path
 from typing import Any
 
-import cases
-from cases.effects import is_spatial
-from cases.sampling import Clock
-from cases.scene_type import pillar_of
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from cases.validate import validated
-from compare.scenes import find
-from dem.axial.samples import buffers
-from dem.axial.simulate import scheme_of
-from dem.spatial.build import buffers_for, samples_for, state_at_rest
-from dem.spatial.march import make_stepper
-from dem.spatial.simulate import prepare
+from jointwave import cases
+from jointwave.cases.effects import is_spatial
+from jointwave.cases.sampling import Clock
+from jointwave.cases.scene_type import pillar_of
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.validate import validated
+from jointwave.compare.scenes import find
+from jointwave.dem.axial.samples import buffers
+from jointwave.dem.axial.simulate import scheme_of
+from jointwave.dem.spatial.build import buffers_for, samples_for, state_at_rest
+from jointwave.dem.spatial.march import make_stepper
+from jointwave.dem.spatial.simulate import prepare
 
 BLOCK_STEPS = 5_000_000  # of one call, at most, unless it has a single sample
 BLOCK_STEPS_IN_SPACE = 50_000  # each takes ten times as long

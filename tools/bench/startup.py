@@ -36,7 +36,7 @@ def seconds(*command: str, **environment: str) -> tuple[float, float]:
 
 def run_of(*scene: str, out: str) -> tuple[str, ...]:
     """Return the command that runs a scene."""
-    return sys.executable, "-m", "compare", "run", *scene, "--variant", "", "--out", out
+    return sys.executable, "-m", "jointwave", "run", *scene, "--variant", "", "--out", out
 
 
 def first_over_second(*scene: str) -> tuple[float, float]:

@@ -14,7 +14,7 @@ import commands
 import notebooks
 import scene_reference
 
-from cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.rock_mass import RockMass
 
 ROOT = Path(__file__).parents[2]
 

@@ -6,7 +6,7 @@ from typing import Any, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from cases.schema.keys import (
+from jointwave.cases.schema.keys import (
     SOLVERS,
     TableOf,
     default_of,
@@ -15,8 +15,8 @@ from cases.schema.keys import (
     model_in,
     tables,
 )
-from cases.schema.scene import Scene
-from compare.engines import names
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import names
 
 HEAD = "| key | allowed | default | meaning |\n| --- | --- | --- | --- |"
 

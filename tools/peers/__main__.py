@@ -14,11 +14,11 @@ import table
 from environment import Place
 from job import Job
 
-import cases
-from cases.schema.scene import Scene
-from compare.report.peers import sentences
-from compare.runs.output import write_csv
-from compare.scenes import find
+from jointwave import cases
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.report.peers import sentences
+from jointwave.compare.runs.output import write_csv
+from jointwave.compare.scenes import find
 
 
 class Peer(NamedTuple):

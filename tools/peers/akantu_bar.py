@@ -14,7 +14,7 @@ from mesh import Mesh
 from ours import COLUMN
 from pillar import Pillar, pillar, stride_for
 
-from cases.schema.scene import Scene
+from jointwave.cases.schema.scene import Scene
 
 #: Elements a block by dimension, in the column across it too.
 POINTS = {1: (1, 2, 4, 8), 3: (1, 2)}

@@ -13,7 +13,7 @@ from environment import Place
 from job import Job, Reading, Twin, folder_of
 from pillar import Pillar, pillar
 
-from cases.schema.scene import Scene
+from jointwave.cases.schema.scene import Scene
 
 STRIDES = (1, 2, 4, 16)
 UNBREAKABLE = 1e30  # N and N m

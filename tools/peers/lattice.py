@@ -22,11 +22,11 @@ from job import ONE_THREAD
 from lammps_bonds import UNBREAKABLE
 from measure import on_one_core
 
-import cases
-from dem.blocks.leapfrog import march, samples_for
-from dem.blocks.model import PlaneModel, state_at_rest
-from dem.blocks.system import prepared
-from joints.law import law_of
+from jointwave import cases
+from jointwave.dem.blocks.leapfrog import march, samples_for
+from jointwave.dem.blocks.model import PlaneModel, state_at_rest
+from jointwave.dem.blocks.system import prepared
+from jointwave.joints.law import law_of
 
 SIDES = (32, 100, 316)  # bodies along each side
 SCENE = Path(__file__).with_name("lattice.toml")

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from job import Job, environment_of
 
-from compare.misfit.metrics import relative_l2
+from jointwave.compare.misfit.metrics import relative_l2
 
 FINEST = "jointed-bar"  # intact rock with every joint resolved
 LONGEST = 600  # s

@@ -11,12 +11,12 @@ import xarray as xr
 from job import Job, Reading, Twin, folder_of
 from pillar import pillar
 
-import cases
-from cases.schema.scene import Scene
-from compare.engines import solve
-from compare.runs.output import write
-from compare.scenes import find
-from results.dataset import scene_hash
+from jointwave import cases
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import solve
+from jointwave.compare.runs.output import write
+from jointwave.compare.scenes import find
+from jointwave.results.dataset import scene_hash
 
 #: A blow so close to the axis that it turns nothing, yet calls for all six freedoms.
 IN_SPACE = {"load.at": [1e-12, 0.0]}
@@ -112,7 +112,7 @@ def job(scene: Scene, twin: Twin, root: Path) -> Job:
         work=(p.blocks if kind.engine == "dem" else freedoms) * p.steps,
         samples=p.samples,
         folder=folder,
-        command=[sys.executable, "-m", "compare", "run", str(find(SCENE)), *options],
+        command=[sys.executable, "-m", "jointwave", "run", str(find(SCENE)), *options],
         read=lambda place: read(place, kind.engine),
     )
 

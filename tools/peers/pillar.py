@@ -5,11 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.loads import load_history, step_means
-from cases.material.calibrate import calibrate
-from cases.sampling import sample_times
-from cases.schema.scene import Scene
+from jointwave.cases.errors import SceneError
+from jointwave.cases.loads import load_history, step_means
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.scene import Scene
 
 
 class Pillar(NamedTuple):

@@ -5,8 +5,8 @@ import platform
 
 import pandas as pd
 
-from compare.runs.timings import processor
-from compare.studies.summary import cell
+from jointwave.compare.runs.timings import processor
+from jointwave.compare.studies.summary import cell
 
 #: The columns that all studies share, then those of the peers.
 COLUMNS = (

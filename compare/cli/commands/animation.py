@@ -8,10 +8,10 @@ from typing import Annotated, Any
 
 import typer
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
-from compare.cli import terminal
-from compare.cli.options import (
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.cli import terminal
+from jointwave.compare.cli.options import (
     JsonOption,
     SceneArgument,
     SetOption,
@@ -50,9 +50,9 @@ def animate(
     """
     _require_positive("--scale", scale)
     _require_positive("--seconds", seconds)
-    from compare.figures.animation import video
-    from compare.figures.animation.frame import Frame
-    from compare.figures.animation.settings import settings_for
+    from jointwave.compare.figures.animation import video
+    from jointwave.compare.figures.animation.frame import Frame
+    from jointwave.compare.figures.animation.settings import settings_for
 
     (one,) = load(scene, changes, variant, strict)
     path = out or Path(f"{_name(scene, one)}.mp4")
@@ -102,10 +102,10 @@ def view(
 
 
 def _open_window(scene: AnyScene, time: float, scale: float | None) -> None:
-    from compare.figures.animation.frame import colours_of
-    from compare.figures.animation.polygons import polygons_of
-    from compare.figures.animation.rendered import open_window
-    from compare.figures.animation.settings import DISPLACEMENT, settings_for
+    from jointwave.compare.figures.animation.frame import colours_of
+    from jointwave.compare.figures.animation.polygons import polygons_of
+    from jointwave.compare.figures.animation.rendered import open_window
+    from jointwave.compare.figures.animation.settings import DISPLACEMENT, settings_for
 
     simulated = _simulate(scene, FRAMES)
     settings = settings_for(simulated.scene, simulated.found, scale, DISPLACEMENT)
@@ -116,11 +116,11 @@ def _open_window(scene: AnyScene, time: float, scale: float | None) -> None:
 
 
 def _write_picture(path: Path, scene: AnyScene, time: float, scale: float | None) -> None:
-    from compare.figures.animation.frame import Frame
-    from compare.figures.animation.settings import DISPLACEMENT, settings_for
-    from compare.figures.animation.snapshots import until
-    from compare.figures.export import write_drawing
-    from compare.runs.output import refuse_foreign
+    from jointwave.compare.figures.animation.frame import Frame
+    from jointwave.compare.figures.animation.settings import DISPLACEMENT, settings_for
+    from jointwave.compare.figures.animation.snapshots import until
+    from jointwave.compare.figures.export import write_drawing
+    from jointwave.compare.runs.output import refuse_foreign
 
     if path.suffix != ".png":
         raise SceneError("--out", str(path), None, "must end in .png")
@@ -135,7 +135,7 @@ def _write_picture(path: Path, scene: AnyScene, time: float, scale: float | None
 
 def _simulate(scene: AnyScene, count: int) -> Any:
     """Return this many snapshots of a scene by both engines."""
-    from compare.figures.animation.snapshots import take
+    from jointwave.compare.figures.animation.snapshots import take
 
     with terminal.progress("both engines") as advance:
         return take(scene, count, advance)

@@ -6,9 +6,9 @@ from typing import Annotated, Any
 
 import typer
 
-from cases.errors import SceneError
-from compare.cli import completion, terminal
-from compare.cli.options import (
+from jointwave.cases.errors import SceneError
+from jointwave.compare.cli import completion, terminal
+from jointwave.compare.cli.options import (
     CORES,
     DryOption,
     JsonOption,
@@ -21,7 +21,7 @@ from compare.cli.options import (
     app,
     load,
 )
-from compare.runs.checkpoint.lock import locked
+from jointwave.compare.runs.checkpoint.lock import locked
 
 
 @app.command()
@@ -48,14 +48,14 @@ def effects(
     For a pillar, or a rock mass that rigid blocks can represent. Without a scene: every variant of
     every shipped pillar. Slow; finished scenes are saved in DIR and not run again.
     """
-    from compare.cli.study_view import run_and_show
-    from compare.studies.effects import run
-    from compare.studies.effects_summary import summarise
+    from jointwave.compare.cli.study_view import run_and_show
+    from jointwave.compare.studies.effects import run
+    from jointwave.compare.studies.effects_summary import summarise
 
     wanted = _cases(scene, changes, variant, strict)
     if dry:
-        from compare.cli.forecast_view import show_parts
-        from compare.studies import parts
+        from jointwave.compare.cli.forecast_view import show_parts
+        from jointwave.compare.studies import parts
 
         show_parts(parts.of_effects(wanted, out), as_json)
         return
@@ -82,8 +82,8 @@ def plan(
 ) -> None:
     """Find the cheapest engine, elements and step that meet a misfit, run from cheap to dear."""
     scenes = load(scene, changes, variant or "", strict)
-    from compare.cli import plan_view
-    from compare.studies import plan as plans
+    from jointwave.compare.cli import plan_view
+    from jointwave.compare.studies import plan as plans
 
     found = []
     for one in scenes:
@@ -114,27 +114,27 @@ def study(
     and transmission of P and SV waves at one joint, over the angle, `parallel-joints` at several.
     """
     if dry:
-        from compare.cli.forecast_view import show_parts
-        from compare.studies import parts
+        from jointwave.compare.cli.forecast_view import show_parts
+        from jointwave.compare.studies import parts
 
         show_parts(parts.of_study(name, out), as_json)
         return
-    from compare.cli.study_view import run_and_show
+    from jointwave.compare.cli.study_view import run_and_show
 
     folder = out / Path(name).stem
     work: Callable[[Any, Any], Any]
     if name == "stability":
-        from compare.studies import hard_cases as hard
+        from jointwave.compare.studies import hard_cases as hard
 
         title, work = hard.TITLE, lambda pool, tell: hard.make_study(out, pool, progress=tell)
     elif name in ("oblique-joint", "parallel-joints"):
-        from compare.studies.scattering import TITLES
-        from compare.studies.scattering_summary import make_study
+        from jointwave.compare.studies.scattering import TITLES
+        from jointwave.compare.studies.scattering_summary import make_study
 
         title, work = TITLES[name], lambda pool, tell: make_study(name, out, tell, pool=pool)
     else:
-        from compare.studies.study import load
-        from compare.studies.work_precision import run, summarise
+        from jointwave.compare.studies.study import load
+        from jointwave.compare.studies.work_precision import run, summarise
 
         asked = load(name)
         title, work = (
@@ -175,19 +175,19 @@ def report(
     """
     for one in scenes or []:
         load(one, [], None, strict)
-    from compare.cli import views
+    from jointwave.compare.cli import views
 
     if dry:
-        from compare.cli.forecast_view import show_parts
-        from compare.report.scenes import ROCK_MASSES, asked_for
-        from compare.scenes import load as load_variants
-        from compare.studies import parts
+        from jointwave.compare.cli.forecast_view import show_parts
+        from jointwave.compare.report.scenes import ROCK_MASSES, asked_for
+        from jointwave.compare.scenes import load as load_variants
+        from jointwave.compare.studies import parts
 
         asked = [*asked_for(scenes or ()), *(() if scenes else asked_for(ROCK_MASSES))]
         variants = [load_variants(one.file) for one in asked]
         show_parts(parts.of_report(variants, None if scenes else out), as_json)
         return
-    from compare.report.report import build
+    from jointwave.compare.report.report import build
 
     with (
         locked(out, out / "figures", out / "studies"),
@@ -199,7 +199,7 @@ def report(
 
 def _cases(scene: str | None, changes: list[str], variant: str | None, strict: bool) -> list[Any]:
     """Return the variants whose effects are asked for; without a scene all that are shipped."""
-    from compare.studies.effects import Variant, all_shipped
+    from jointwave.compare.studies.effects import Variant, all_shipped
 
     if scene is not None:
         return [Variant(scene, one) for one in load(scene, changes, variant or "", strict)]

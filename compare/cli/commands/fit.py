@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
-from compare.cli import terminal
-from compare.cli.options import (
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.cli import terminal
+from jointwave.compare.cli.options import (
     Engine,
     JsonOption,
     ModelOption,
@@ -24,11 +24,11 @@ from compare.cli.options import (
     load,
     warn,
 )
-from compare.runs import jobs
-from compare.runs.checkpoint.lock import locked
+from jointwave.compare.runs import jobs
+from jointwave.compare.runs.checkpoint.lock import locked
 
 if TYPE_CHECKING:
-    from compare.studies.fit import Estimate, Fit
+    from jointwave.compare.studies.fit import Estimate, Fit
 
 
 @app.command()
@@ -73,8 +73,8 @@ def fit(
     --out writes fit.csv, fitted.toml, a runnable scene, and fit-waveforms as SVG, PDF,
     PNG and CSV, with the residual below each waveform.
     """
-    from compare.misfit.external import read_curves, slips
-    from compare.studies.fit import fit as fitted
+    from jointwave.compare.misfit.external import read_curves, slips
+    from jointwave.compare.studies.fit import fit as fitted
 
     (one,) = load(scene, changes, variant or "", strict)
     curves = read_curves(given, [one])
@@ -85,7 +85,7 @@ def fit(
             held.enter_context(locked(out))
         with terminal.progress(one.name or one.title) as advance:
             found = fitted(one, curves, free, solver, advance)
-        from compare.studies.fit_files import write_fit
+        from jointwave.compare.studies.fit_files import write_fit
 
         files = write_fit(found, one, out) if out is not None else []
     if as_json:

@@ -4,9 +4,9 @@ from typing import Annotated
 
 import typer
 
-from cases.errors import SceneError
-from compare.cli import completion, terminal
-from compare.cli.options import JsonOption, app
+from jointwave.cases.errors import SceneError
+from jointwave.compare.cli import completion, terminal
+from jointwave.compare.cli.options import JsonOption, app
 
 
 @app.command()
@@ -29,7 +29,7 @@ def new(
 
     Existing files are not overwritten.
     """
-    from compare.cli.new import write_new
+    from jointwave.compare.cli.new import write_new
 
     if rock_mass and source is not None:
         raise SceneError("--rock-mass", "", None, "has no meaning with --from")
@@ -44,7 +44,7 @@ def doctor(as_json: JsonOption = False) -> None:
     Exit code 0 if both engines pass, else 1; missing or broken parts are listed. The first run
     compiles kernels, which takes up to a minute.
     """
-    from compare.cli.doctor import examine, show_health
+    from jointwave.compare.cli.doctor import examine, show_health
 
     with terminal.progress("looking") as advance:
         parts, checks = examine(advance)

@@ -10,9 +10,9 @@ from typing import Annotated
 
 import typer
 
-import cases
-from compare.cli import terminal
-from compare.cli.options import (
+from jointwave import cases
+from jointwave.compare.cli import terminal
+from jointwave.compare.cli.options import (
     CORES,
     DryOption,
     Engine,
@@ -30,17 +30,17 @@ from compare.cli.options import (
     app,
     load,
 )
-from compare.runs.checkpoint.lock import locked
-from compare.runs.checkpoint.signals import watched
-from compare.runs.processes import started
-from compare.scenes import shipped
-from compare.solvers.dem import DEM
+from jointwave.compare.runs.checkpoint.lock import locked
+from jointwave.compare.runs.checkpoint.signals import watched
+from jointwave.compare.runs.processes import started
+from jointwave.compare.scenes import shipped
+from jointwave.compare.solvers.dem import DEM
 
 
 @app.command("list")
 def list_scenes(as_json: JsonOption = False) -> None:
     """List the shipped scenes and their variants."""
-    from compare.cli import views
+    from jointwave.compare.cli import views
 
     rows = [(path, cases.load(path)) for path in shipped()]
     views.show_scenes(rows, as_json)
@@ -88,15 +88,15 @@ def run(
     points are not run again, failed ones are listed. --ensemble does so for every member of a
     scene with random joints.
     """
-    from compare.cli import views
-    from compare.runs import jobs
-    from compare.runs import run as runs
-    from compare.runs.checkpoint.resume import CheckpointSettings
+    from jointwave.compare.cli import views
+    from jointwave.compare.runs import jobs
+    from jointwave.compare.runs import run as runs
+    from jointwave.compare.runs.checkpoint.resume import CheckpointSettings
 
     wanted = jobs.wanted([e.value for e in engine], model or [])
     if swept or members:
-        from compare.cli.study_view import sweep
-        from compare.studies.sweep import Running, sweep_of
+        from jointwave.compare.cli.study_view import sweep
+        from jointwave.compare.studies.sweep import Running, sweep_of
 
         asked_for = sweep_of(scene, changes, variant, swept, out, members)
         sweep(asked_for, Running(wanted, vtx), workers, dry, as_json, strict)
@@ -104,7 +104,7 @@ def run(
     scenes = load(scene, changes, variant, strict)
     asked = jobs.plan(scenes, wanted, out)
     if dry:
-        from compare.cli.forecast_view import show_runs
+        from jointwave.compare.cli.forecast_view import show_runs
 
         show_runs([("", job.scene, job.name) for job in asked], as_json)
         return
@@ -133,7 +133,7 @@ def explain(
 ) -> None:
     """Print the effects of a scene, its critical steps, the exact solutions that apply, and the
     reference; for a rock mass also its blocks."""
-    from compare.cli.explain import explanation, show_explanation
+    from jointwave.compare.cli.explain import explanation, show_explanation
 
     for one in load(scene, changes, variant or "", strict):
         (terminal.print_json if as_json else show_explanation)(explanation(one, measured))

@@ -5,10 +5,10 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene
-from compare.cli import terminal
-from compare.cli.options import (
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.cli import terminal
+from jointwave.compare.cli.options import (
     CORES,
     DryOption,
     EngineOption,
@@ -73,13 +73,13 @@ def compare(
     --sweep compares every value of a key, in several processes, and writes one table of all;
     --ensemble every member of a scene with random joints, with statistics of all.
     """
-    from compare.cli.comparison_view import show_comparisons
-    from compare.misfit.ranking import deciding
-    from compare.runs import comparison
+    from jointwave.compare.cli.comparison_view import show_comparisons
+    from jointwave.compare.misfit.ranking import deciding
+    from jointwave.compare.runs import comparison
 
     if swept or members:
-        from compare.cli.study_view import sweep
-        from compare.studies.sweep import Comparing, sweep_of
+        from jointwave.compare.cli.study_view import sweep
+        from jointwave.compare.studies.sweep import Comparing, sweep_of
 
         asked = sweep_of(scene, changes, variant, swept, out, members)
         curves = _read_curves(given, asked.scenes, align, strict)
@@ -89,8 +89,8 @@ def compare(
     scenes = load(scene, changes, variant, strict)
     curves = _read_curves(given, scenes, align, strict)
     if dry:
-        from compare.cli.forecast_view import show_runs
-        from compare.studies.forecast import all_runs
+        from jointwave.compare.cli.forecast_view import show_runs
+        from jointwave.compare.studies.forecast import all_runs
 
         show_runs(all_runs(scenes), as_json)
         return
@@ -103,7 +103,7 @@ def compare(
             else:
                 found.append(comparison.solved(one, deciding(one), advance))
     if out is not None:
-        from compare.figures.comparison import write_comparisons
+        from jointwave.compare.figures.comparison import write_comparisons
 
         write_comparisons(found, out)
     show_comparisons(found, every, as_json, reads)
@@ -141,8 +141,8 @@ def figure(
 
     In place of a scene, a folder that --ensemble has written: median and bands of its waveforms.
     """
-    from compare.figures.publication_file import FigureRequest, make, make_bands
-    from compare.runs import jobs
+    from jointwave.compare.figures.publication_file import FigureRequest, make, make_bands
+    from jointwave.compare.runs import jobs
 
     request = FigureRequest(style, columns, kind, language, out)
     if Path(scene).is_dir():
@@ -165,8 +165,8 @@ def _read_curves(given: list[str], scenes: list[AnyScene], align: bool, strict: 
         if align:
             raise SceneError("--align", "", None, "needs --with: there is no curve to align")
         return []
-    from compare.misfit.alignment import common_times
-    from compare.misfit.external import read_curves, slips
+    from jointwave.compare.misfit.alignment import common_times
+    from jointwave.compare.misfit.external import read_curves, slips
 
     curves = read_curves(given, scenes)
     if not align:

@@ -18,12 +18,12 @@ from math import ceil, sqrt
 import numpy as np
 import xarray as xr
 
-from cases.errors import SceneError
-from cases.material.calibrate import Properties, calibrate
-from cases.schema.scene import Scene
-from compare.exact.bar import equivalent_bar, jointed_bar
-from compare.exact.bar.transfer import Bar, RockFrom, end_of, transfer
-from compare.exact.conditions import DAMPED, holds
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.bar import equivalent_bar, jointed_bar
+from jointwave.compare.exact.bar.transfer import Bar, RockFrom, end_of, transfer
+from jointwave.compare.exact.conditions import DAMPED, holds
 
 HELD = (
     *("spatial motion", "reversed load", "gravity", "prestress", "stiff layers", "soft layers"),

@@ -18,13 +18,13 @@ from math import floor
 import numpy as np
 import xarray as xr
 
-from cases.loads import load_history
-from cases.material.calibrate import calibrate
-from cases.sampling import sample_times
-from cases.schema.scene import Scene
-from compare.exact.conditions import holds, static_stress
-from compare.solvers.record import BAR, Answer, Form, Kind, Rock, Solver, Words, thin
-from results.dataset import dataset
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.conditions import holds, static_stress
+from jointwave.compare.solvers.record import BAR, Answer, Form, Kind, Rock, Solver, Words, thin
+from jointwave.results.dataset import dataset
 
 MOST_TRIPS = 1_000_000  # through the bar and back
 

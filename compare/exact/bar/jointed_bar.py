@@ -12,12 +12,12 @@ Valid for any load; every joint carries tension and the scene gives intact_modul
 import numpy as np
 import xarray as xr
 
-from cases.material.calibrate import Properties, calibrate, mechanisms_of
-from cases.schema.scene import Scene
-from compare.exact.bar.laplace import solved
-from compare.exact.bar.transfer import Bar, End, end_of, rocks
-from compare.exact.conditions import DAMPED, holds
-from compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, thin
+from jointwave.cases.material.calibrate import Properties, calibrate, mechanisms_of
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.bar.laplace import solved
+from jointwave.compare.exact.bar.transfer import Bar, End, end_of, rocks
+from jointwave.compare.exact.conditions import DAMPED, holds
+from jointwave.compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, thin
 
 HELD = (
     "prestress",

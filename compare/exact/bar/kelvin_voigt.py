@@ -21,15 +21,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cases.histories import Sine
-from cases.loads import load_history
-from cases.material.calibrate import calibrate
-from cases.sampling import sample_times
-from cases.schema.scene import Scene
-from compare.exact.bar.series import exponentials, rigid
-from compare.exact.conditions import DAMPED, holds, is_free, static_stress
-from compare.solvers.record import BAR, Answer, Kind, Rock, Solver, Words, thin
-from results.dataset import dataset
+from jointwave.cases.histories import Sine
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.bar.series import exponentials, rigid
+from jointwave.compare.exact.conditions import DAMPED, holds, is_free, static_stress
+from jointwave.compare.solvers.record import BAR, Answer, Kind, Rock, Solver, Words, thin
+from jointwave.results.dataset import dataset
 
 HELD = ("prestress", "thick layers", "fixed start", *DAMPED)
 SAFETY = 2.0

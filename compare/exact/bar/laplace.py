@@ -22,15 +22,15 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.histories import LoadHistory, Recorded, Step
-from cases.loads import load_history
-from cases.sampling import sample_times
-from cases.schema.scene import Scene
-from cases.size import require
-from compare.exact.bar.images import images
-from compare.exact.bar.transfer import Bar, End, nodes_of, transfer
-from compare.exact.conditions import static_stress
-from results.dataset import dataset
+from jointwave.cases.histories import LoadHistory, Recorded, Step
+from jointwave.cases.loads import load_history
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.size import require
+from jointwave.compare.exact.bar.images import images
+from jointwave.compare.exact.bar.transfer import Bar, End, nodes_of, transfer
+from jointwave.compare.exact.conditions import static_stress
+from jointwave.results.dataset import dataset
 
 TAIL = 1.5
 WRAPPED = 1e-10

@@ -20,15 +20,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cases.histories import Sine
-from cases.loads import load_history
-from cases.material.calibrate import calibrate
-from cases.sampling import sample_times
-from cases.schema.scene import Scene
-from compare.exact.bar import images
-from compare.exact.conditions import is_free, static_stress
-from compare.solvers.record import BAR, Answer, Rock, Solver, Words, no, thin
-from results.dataset import dataset
+from jointwave.cases.histories import Sine
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.bar import images
+from jointwave.compare.exact.conditions import is_free, static_stress
+from jointwave.compare.solvers.record import BAR, Answer, Rock, Solver, Words, no, thin
+from jointwave.results.dataset import dataset
 
 PAPER_TERMS = 100
 ROUND_OFF = 1e-12  # of the sum, relative to a waveform's peak

@@ -28,10 +28,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.material.calibrate import Properties
+from jointwave.cases.material.calibrate import Properties
 
 if TYPE_CHECKING:
-    from cases.material.constant_q import Mechanisms
+    from jointwave.cases.material.constant_q import Mechanisms
 
 
 @dataclass(frozen=True)

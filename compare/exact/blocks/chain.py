@@ -22,10 +22,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.material.calibrate import Properties, calibrate
-from cases.sampling import interpolation
-from cases.schema.scene import Scene
-from compare.exact.conditions import static_stress
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.sampling import interpolation
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.conditions import static_stress
 
 
 class EndOfChain(NamedTuple):

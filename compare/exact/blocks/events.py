@@ -17,10 +17,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts1
 
-from cases.histories import LoadHistory
-from cases.size import require
-from compare.exact.blocks.bernstein import of_powers, sign_changes
-from compare.exact.blocks.chain import Chain, contact_forces, rates, reaction
+from jointwave.cases.histories import LoadHistory
+from jointwave.cases.size import require
+from jointwave.compare.exact.blocks.bernstein import of_powers, sign_changes
+from jointwave.compare.exact.blocks.chain import Chain, contact_forces, rates, reaction
 
 ORDER = 24
 STEP = 2.0  # over the norm of A: the last term is 2^24 / 24! = 3e-17

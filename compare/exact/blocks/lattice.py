@@ -17,14 +17,14 @@ gravity along the axis and prestress; every joint carries tension.
 import numpy as np
 import xarray as xr
 
-from cases.histories import Step
-from cases.sampling import sample_times
-from cases.schema.scene import Scene
-from compare.exact.blocks.chain import Chain, chain, rates, receivers, standing
-from compare.exact.conditions import DAMPED, LAYERS, drive, holds
-from compare.exact.linear import errors, twins
-from compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, thin
-from results.dataset import dataset
+from jointwave.cases.histories import Step
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.blocks.chain import Chain, chain, rates, receivers, standing
+from jointwave.compare.exact.conditions import DAMPED, LAYERS, drive, holds
+from jointwave.compare.exact.linear import errors, twins
+from jointwave.compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, thin
+from jointwave.results.dataset import dataset
 
 MOST_BLOCKS = 2000
 HELD = (

@@ -16,16 +16,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cases.material.calibrate import calibrate
-from cases.sampling import sample_times
-from cases.schema.scene import Scene
-from compare.exact.blocks.chain import Chain, chain, contact_forces, receivers, split
-from compare.exact.blocks.events import ChainMotion, integrate
-from compare.exact.blocks.lattice import HELD, at_rest
-from compare.exact.conditions import drive, holds
-from compare.exact.linear import errors
-from compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, no, thin
-from results.dataset import dataset, scene_hash
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.blocks.chain import Chain, chain, contact_forces, receivers, split
+from jointwave.compare.exact.blocks.events import ChainMotion, integrate
+from jointwave.compare.exact.blocks.lattice import HELD, at_rest
+from jointwave.compare.exact.conditions import drive, holds
+from jointwave.compare.exact.linear import errors
+from jointwave.compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, no, thin
+from jointwave.results.dataset import dataset, scene_hash
 
 MOST_BLOCKS = 2000
 MANY = f"more than {MOST_BLOCKS:,} blocks: too many events"

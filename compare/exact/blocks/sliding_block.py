@@ -17,13 +17,23 @@ from math import hypot
 import numpy as np
 import xarray as xr
 
-from cases.material.calibrate import calibrate
-from cases.material.face import face_points
-from cases.sampling import interpolation, sample_times
-from cases.schema.scene import Scene
-from compare.exact.conditions import DAMPED, LAYERS, holds
-from compare.solvers.record import ALONE, Answer, Form, Kind, Rock, Solver, Words, no, thin
-from results.dataset import dataset
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.face import face_points
+from jointwave.cases.sampling import interpolation, sample_times
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.conditions import DAMPED, LAYERS, holds
+from jointwave.compare.solvers.record import (
+    ALONE,
+    Answer,
+    Form,
+    Kind,
+    Rock,
+    Solver,
+    Words,
+    no,
+    thin,
+)
+from jointwave.results.dataset import dataset
 
 HELD = ("spatial motion", "gravity", "no tension", "fixed start", *DAMPED, *LAYERS)
 

@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.material.calibrate import calibrate
-from cases.material.face import face_points
-from cases.schema.scene import Scene
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.face import face_points
+from jointwave.cases.schema.scene import Scene
 
 #: Degrees of freedom that are coupled by the kinematics.
 PLANES = {"none": ((0,), (1,), (2,)), "small": ((1,), (4,), (0, 5), (2, 3))}

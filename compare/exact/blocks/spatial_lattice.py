@@ -27,17 +27,17 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.effects import is_spatial
-from cases.histories import Step
-from cases.material.calibrate import calibrate
-from cases.sampling import interpolation, sample_times
-from cases.schema.scene import Scene
-from compare.exact.blocks.lattice import HELD
-from compare.exact.blocks.spatial import PLANES, Plane, plane, row
-from compare.exact.conditions import drive, holds, static_stress
-from compare.exact.linear import bound, twins
-from compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, no, thin
-from results.dataset import dataset
+from jointwave.cases.effects import is_spatial
+from jointwave.cases.histories import Step
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import interpolation, sample_times
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.blocks.lattice import HELD
+from jointwave.compare.exact.blocks.spatial import PLANES, Plane, plane, row
+from jointwave.compare.exact.conditions import drive, holds, static_stress
+from jointwave.compare.exact.linear import bound, twins
+from jointwave.compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, no, thin
+from jointwave.results.dataset import dataset
 
 MOST_BLOCKS = 500
 

@@ -20,15 +20,15 @@ from itertools import pairwise
 import numpy as np
 import xarray as xr
 
-from cases.loads import LoadHistory, load_history
-from cases.material.calibrate import Properties, calibrate
-from cases.sampling import sample_times
-from cases.schema.joint import UNLIMITED
-from cases.schema.scene import Scene
-from compare.exact.bar.images import ENTERS
-from compare.exact.conditions import holds, static_stress
-from compare.exact.joint.one_joint import back_in_time, behind_and_before
-from compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, no, thin
+from jointwave.cases.loads import LoadHistory, load_history
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.joint import UNLIMITED
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.bar.images import ENTERS
+from jointwave.compare.exact.conditions import holds, static_stress
+from jointwave.compare.exact.joint.one_joint import back_in_time, behind_and_before
+from jointwave.compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, no, thin
 
 HELD = ("closure", "prestress", "soft layers", "stiff layers")
 TOLERANCES = (1e-12, 1e-9)  # of the solution and its twin, relative to the largest stress

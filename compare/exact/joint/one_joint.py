@@ -20,16 +20,16 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.histories import LoadHistory
-from cases.loads import load_history
-from cases.material.calibrate import Properties, calibrate
-from cases.sampling import sample_times
-from cases.schema.scene import Scene
-from compare.exact.bar.images import ENTERS
-from compare.exact.conditions import holds, static_stress
-from compare.exact.linear import errors, twins
-from compare.solvers.record import JOINTED, YES, Answer, Rock, Solver, Words, no, thin
-from results.dataset import dataset
+from jointwave.cases.histories import LoadHistory
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.bar.images import ENTERS
+from jointwave.compare.exact.conditions import holds, static_stress
+from jointwave.compare.exact.linear import errors, twins
+from jointwave.compare.solvers.record import JOINTED, YES, Answer, Rock, Solver, Words, no, thin
+from jointwave.results.dataset import dataset
 
 Passes = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 HELD = ("prestress", "damped joints", "soft layers", "stiff layers")

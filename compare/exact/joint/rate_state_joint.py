@@ -22,8 +22,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cases.histories import LoadHistory
-from cases.material.calibrate import Properties
+from jointwave.cases.histories import LoadHistory
+from jointwave.cases.material.calibrate import Properties
 
 SPANS = 500  # of the whole time: no step is longer than one
 SHORTEST = 1e-12  # s, of a part of the time

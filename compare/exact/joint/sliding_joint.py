@@ -26,19 +26,19 @@ import numpy as np
 import xarray as xr
 from numpy.polynomial.legendre import leggauss
 
-from cases.histories import LoadHistory
-from cases.loads import load_history
-from cases.material.calibrate import Properties, calibrate
-from cases.sampling import sample_times
-from cases.schema.joint import UNLIMITED
-from cases.schema.scene import Scene
-from compare.exact.bar.images import ENTERS
-from compare.exact.conditions import LAYERS, holds, static_stress
-from compare.exact.joint import rate_state_joint
-from compare.exact.joint.one_joint import around
-from compare.exact.linear import bound
-from compare.solvers.record import ALONE, Answer, Kind, Rock, Solver, Words, no, thin
-from results.dataset import dataset
+from jointwave.cases.histories import LoadHistory
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.joint import UNLIMITED
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.bar.images import ENTERS
+from jointwave.compare.exact.conditions import LAYERS, holds, static_stress
+from jointwave.compare.exact.joint import rate_state_joint
+from jointwave.compare.exact.joint.one_joint import around
+from jointwave.compare.exact.linear import bound
+from jointwave.compare.solvers.record import ALONE, Answer, Kind, Rock, Solver, Words, no, thin
+from jointwave.results.dataset import dataset
 
 WORN = ("weakening", "dilation", "rate and state")
 HELD = ("spatial motion", "prestress", "fixed start", *WORN, *LAYERS)
@@ -138,7 +138,7 @@ def _snaps(scene: Scene, p: Properties) -> bool:
 def solve(scene: Scene) -> xr.Dataset:
     """Return shear, velocity and displacement on both sides of the joint that slips."""
     p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
-    from compare.exact.joint import slip_weakening
+    from jointwave.compare.exact.joint import slip_weakening
 
     joint, enters = the_joint(scene, p), ENTERS[scene.ends.start]
     scaled = joint.scaled(enters)

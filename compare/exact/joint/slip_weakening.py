@@ -21,8 +21,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cases.histories import LoadHistory
-from compare.exact.joint.sliding_joint import SlipJoint
+from jointwave.cases.histories import LoadHistory
+from jointwave.compare.exact.joint.sliding_joint import SlipJoint
 
 SPANS = 2000  # of the whole time, in each of which at most one phase ends
 SHORTEST = 1e-12  # s, of a part of the time

@@ -14,8 +14,8 @@ from math import prod
 
 import numpy as np
 
-from compare.exact.plane.inversion import STEPS, analytic_inverse
-from compare.exact.plane.pulse import Pulse, PulseStack, modes_of
+from jointwave.compare.exact.plane.inversion import STEPS, analytic_inverse
+from jointwave.compare.exact.plane.pulse import Pulse, PulseStack, modes_of
 
 HALF = 4  # samples on either side
 NODES = range(-HALF + 1, HALF + 1)  # the samples, from the one before a time on

@@ -21,8 +21,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from cases.material.rock import ElasticRock
-from compare.exact.plane.waves import PlaneMotion
+from jointwave.cases.material.rock import ElasticRock
+from jointwave.compare.exact.plane.waves import PlaneMotion
 
 POINTS = 64  # of integration between two breaks
 SAFETY = 2.0  # factor on the difference from half of them

@@ -29,9 +29,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.material.rock import ElasticRock, Values
-from compare.exact.plane.pulse import Axes, Layers
-from compare.exact.plane.waves import KINDS, Kind, face, is_evanescent, solve_pair
+from jointwave.cases.material.rock import ElasticRock, Values
+from jointwave.compare.exact.plane.pulse import Axes, Layers
+from jointwave.compare.exact.plane.waves import KINDS, Kind, face, is_evanescent, solve_pair
 
 
 @dataclass(frozen=True)

@@ -17,16 +17,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cases.material.rock import ElasticRock, Values
-from compare.exact.plane.oblique_joint import (
+from jointwave.cases.material.rock import ElasticRock, Values
+from jointwave.compare.exact.plane.oblique_joint import (
     Coefficients,
     Joint,
     layers_at_once,
     picked,
     scattering,
 )
-from compare.exact.plane.pulse import Layers, PulseStack, axes_of
-from compare.exact.plane.waves import Kind, slowness_along, slownesses_across, solve_pair
+from jointwave.compare.exact.plane.pulse import Layers, PulseStack, axes_of
+from jointwave.compare.exact.plane.waves import Kind, slowness_along, slownesses_across, solve_pair
 
 
 def coefficients(

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.material.rock import ElasticRock
-from compare.exact.plane.inversion import inverse
-from compare.exact.plane.waves import (
+from jointwave.cases.material.rock import ElasticRock
+from jointwave.compare.exact.plane.inversion import inverse
+from jointwave.compare.exact.plane.waves import (
     KINDS,
     Kind,
     is_evanescent,

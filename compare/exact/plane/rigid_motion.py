@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import bmat, csr_array, identity
 
-from cases.material.block_stiffness import jump
-from cases.material.contact_points import ContactPoints, points_of
-from cases.material.rock_mass import Stiffness
-from cases.partition.blocks import Contacts
+from jointwave.cases.material.block_stiffness import jump
+from jointwave.cases.material.contact_points import ContactPoints, points_of
+from jointwave.cases.material.rock_mass import Stiffness
+from jointwave.cases.partition.blocks import Contacts
 
 ORDER = 24
 STEP = 2.0

@@ -16,7 +16,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from cases.material.rock import ElasticRock, Values
+from jointwave.cases.material.rock import ElasticRock, Values
 
 Kind = Literal["P", "SV"]
 KINDS = ("P", "SV")

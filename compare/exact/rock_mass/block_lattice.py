@@ -11,22 +11,22 @@ that are quiet, free or periodic, and up to MOST_BLOCKS blocks.
 import numpy as np
 import xarray as xr
 
-from cases.incident import tractions
-from cases.material.contact_points import contact_points
-from cases.material.quiet_sides import impedances
-from cases.material.rigid_blocks import rigid_joints, welds
-from cases.material.rock_mass import Stiffness, inertia
-from cases.partition.blocks import Partition
-from cases.partition.lattice import further_sets
-from cases.partition.locate import sides_at
-from cases.partition.periodic import across_periodic
-from cases.partition.scene import block_count, partition_of
-from cases.partition.subdivision import NO_SET
-from cases.sampling import sample_times
-from cases.schema.pulse import shortest_period
-from cases.schema.rock_mass import RockMass
-from compare.exact.linear import bound
-from compare.exact.plane.rigid_motion import (
+from jointwave.cases.incident import tractions
+from jointwave.cases.material.contact_points import contact_points
+from jointwave.cases.material.quiet_sides import impedances
+from jointwave.cases.material.rigid_blocks import rigid_joints, welds
+from jointwave.cases.material.rock_mass import Stiffness, inertia
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.partition.lattice import further_sets
+from jointwave.cases.partition.locate import sides_at
+from jointwave.cases.partition.periodic import across_periodic
+from jointwave.cases.partition.scene import block_count, partition_of
+from jointwave.cases.partition.subdivision import NO_SET
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.pulse import shortest_period
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.compare.exact.linear import bound
+from jointwave.compare.exact.plane.rigid_motion import (
     Points,
     RigidSystem,
     forces_of,
@@ -35,10 +35,20 @@ from compare.exact.plane.rigid_motion import (
     stiffness_of,
     viscosity_of,
 )
-from compare.exact.rock_mass.conditions import beyond_linear_rock
-from compare.exact.rock_mass.field import field_of
-from compare.solvers.record import BLOCKS, YES, Answer, Kind, Rock, Solver, Words, no, thin
-from results.plane import plane_dataset
+from jointwave.compare.exact.rock_mass.conditions import beyond_linear_rock
+from jointwave.compare.exact.rock_mass.field import field_of
+from jointwave.compare.solvers.record import (
+    BLOCKS,
+    YES,
+    Answer,
+    Kind,
+    Rock,
+    Solver,
+    Words,
+    no,
+    thin,
+)
+from jointwave.results.plane import plane_dataset
 
 MOST_BLOCKS = 1000
 IN_A_PERIOD = 400  #: samples of the field per period per period

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.partition.joints import direction_of
-from cases.partition.outline import outline_of
-from cases.partition.regions import strata
-from cases.schema.joint import PARTS
+from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.outline import outline_of
+from jointwave.cases.partition.regions import strata
+from jointwave.cases.schema.joint import PARTS
 
 if TYPE_CHECKING:
-    from cases.schema.joint_set import JointSet
-    from cases.schema.rock_mass import RockMass
+    from jointwave.cases.schema.joint_set import JointSet
+    from jointwave.cases.schema.rock_mass import RockMass
 
 PARALLEL = 1e-6  #: sine of the largest angle between directions that count as parallel
 #: Sine of the angle to joints, layers or a free face, 1 degree, up to which a wave runs along them:

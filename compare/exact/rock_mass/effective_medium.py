@@ -19,15 +19,15 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from cases.histories import LoadHistory
-from cases.incident import WaveMotion
-from cases.loads import history_of
-from cases.material.effective_medium import compliant, speeds, stiffness, tensor
-from cases.material.rock import elastic_rock
-from cases.sampling import sample_times
-from cases.schema.rock_mass import RockMass
-from cases.schema.sources import Wave
-from compare.exact.rock_mass.conditions import (
+from jointwave.cases.histories import LoadHistory
+from jointwave.cases.incident import WaveMotion
+from jointwave.cases.loads import history_of
+from jointwave.cases.material.effective_medium import compliant, speeds, stiffness, tensor
+from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.sources import Wave
+from jointwave.compare.exact.rock_mass.conditions import (
     Face,
     all_parallel,
     beyond_linear_rock,
@@ -35,8 +35,19 @@ from compare.exact.rock_mass.conditions import (
     prestress_of,
     reflecting_side,
 )
-from compare.solvers.record import BAR, YES, Answer, Form, Kind, Rock, Solver, Words, no, thin
-from results.plane import plane_dataset
+from jointwave.compare.solvers.record import (
+    BAR,
+    YES,
+    Answer,
+    Form,
+    Kind,
+    Rock,
+    Solver,
+    Words,
+    no,
+    thin,
+)
+from jointwave.results.plane import plane_dataset
 
 
 @dataclass(frozen=True)

@@ -19,23 +19,29 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.incident import FreeField, WaveMotion, free_field, plane_wave
-from cases.partition.joints import direction_of
-from cases.partition.regions import strata
-from cases.schema.domain import Domain
-from cases.schema.plane import Boundaries
-from cases.schema.region import REST
-from compare.exact.plane import layer_pulses
-from compare.exact.rock_mass import normal_incidence
-from compare.exact.rock_mass.conditions import ALONG, PARALLEL, along, directions_of, free_face
-from compare.exact.rock_mass.effective_medium import medium_field
-from compare.exact.rock_mass.stack import JointStack, scatters_otherwise, stack_of
+from jointwave.cases.errors import SceneError
+from jointwave.cases.incident import FreeField, WaveMotion, free_field, plane_wave
+from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.regions import strata
+from jointwave.cases.schema.domain import Domain
+from jointwave.cases.schema.plane import Boundaries
+from jointwave.cases.schema.region import REST
+from jointwave.compare.exact.plane import layer_pulses
+from jointwave.compare.exact.rock_mass import normal_incidence
+from jointwave.compare.exact.rock_mass.conditions import (
+    ALONG,
+    PARALLEL,
+    along,
+    directions_of,
+    free_face,
+)
+from jointwave.compare.exact.rock_mass.effective_medium import medium_field
+from jointwave.compare.exact.rock_mass.stack import JointStack, scatters_otherwise, stack_of
 
 if TYPE_CHECKING:
-    from cases.incident import IncidentField, PlaneWave
-    from cases.schema.joint_set import JointSet
-    from cases.schema.rock_mass import RockMass
+    from jointwave.cases.incident import IncidentField, PlaneWave
+    from jointwave.cases.schema.joint_set import JointSet
+    from jointwave.cases.schema.rock_mass import RockMass
 
 
 #: Periodic sides, and the direction in which they repeat the rock.

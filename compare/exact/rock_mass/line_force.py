@@ -10,17 +10,27 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cases.histories import Gabor, Recorded, Ricker, Shape, Sine, Step
-from cases.loads import history_of
-from cases.material.rock import elastic_rock
-from cases.partition.outline import outline_of
-from cases.sampling import sample_times
-from cases.schema.rock_mass import RockMass
-from compare.exact.plane.line_force import motion
-from compare.exact.plane.waves import PlaneMotion
-from compare.exact.rock_mass.conditions import beyond_linear_rock, prestress_of
-from compare.solvers.record import JOINTED, YES, Answer, Kind, Rock, Solver, Words, no, thin
-from results.plane import plane_dataset
+from jointwave.cases.histories import Gabor, Recorded, Ricker, Shape, Sine, Step
+from jointwave.cases.loads import history_of
+from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.partition.outline import outline_of
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.compare.exact.plane.line_force import motion
+from jointwave.compare.exact.plane.waves import PlaneMotion
+from jointwave.compare.exact.rock_mass.conditions import beyond_linear_rock, prestress_of
+from jointwave.compare.solvers.record import (
+    JOINTED,
+    YES,
+    Answer,
+    Kind,
+    Rock,
+    Solver,
+    Words,
+    no,
+    thin,
+)
+from jointwave.results.plane import plane_dataset
 
 #: Pieces of a Ricker wavelet, each smooth enough for the points of one integral.
 PARTS = 8

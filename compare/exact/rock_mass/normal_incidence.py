@@ -7,17 +7,17 @@ which waves leave. The stress along the front is nu / (1 - nu) of that across it
 import numpy as np
 import xarray as xr
 
-from cases.incident import WaveMotion, plane_wave
-from cases.loads import history_of
-from cases.material.rock import elastic_rock
-from cases.schema.rock_mass import RockMass
-from compare.exact.joint.closing_joint import TOLERANCES, ClosingJoint, Passed
-from compare.exact.linear import bound
-from compare.exact.plane.waves import PlaneMotion
-from compare.exact.rock_mass import stack_waves
-from compare.exact.rock_mass.conditions import along, prestress_of
-from compare.exact.rock_mass.stack import JointStack, stack_of
-from compare.solvers.record import JOINTED, Answer, Rock, Solver, Words, no, thin
+from jointwave.cases.incident import WaveMotion, plane_wave
+from jointwave.cases.loads import history_of
+from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.compare.exact.joint.closing_joint import TOLERANCES, ClosingJoint, Passed
+from jointwave.compare.exact.linear import bound
+from jointwave.compare.exact.plane.waves import PlaneMotion
+from jointwave.compare.exact.rock_mass import stack_waves
+from jointwave.compare.exact.rock_mass.conditions import along, prestress_of
+from jointwave.compare.exact.rock_mass.stack import JointStack, stack_of
+from jointwave.compare.solvers.record import JOINTED, Answer, Rock, Solver, Words, no, thin
 
 
 def applies(scene: RockMass) -> Answer:

@@ -6,8 +6,8 @@ which waves leave, and any number of plane waves that meet them after the start 
 
 from functools import partial
 
-from compare.exact.rock_mass import stack_waves
-from compare.solvers.record import JOINTED, Rock, Solver, Words, thin
+from jointwave.compare.exact.rock_mass import stack_waves
+from jointwave.compare.solvers.record import JOINTED, Rock, Solver, Words, thin
 
 SOLVER = Solver(
     name="parallel-joints",

@@ -14,15 +14,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.incident import plane_wave
-from cases.material.rock import elastic_rock
-from cases.partition.joints import direction_of
-from cases.partition.outline import outline_of
-from cases.partition.regions import rocks_of
-from cases.schema.rock_mass_checks import distance
-from compare.exact.plane.waves import face
-from compare.exact.rock_mass import normal_incidence
-from compare.exact.rock_mass.conditions import (
+from jointwave.cases.incident import plane_wave
+from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.outline import outline_of
+from jointwave.cases.partition.regions import rocks_of
+from jointwave.cases.schema.rock_mass_checks import distance
+from jointwave.compare.exact.plane.waves import face
+from jointwave.compare.exact.rock_mass import normal_incidence
+from jointwave.compare.exact.rock_mass.conditions import (
     ALONG,
     along,
     directions_of,
@@ -30,12 +30,12 @@ from compare.exact.rock_mass.conditions import (
     prestress_of,
     reflecting_side,
 )
-from compare.exact.rock_mass.field import StackField, field_of, planes_of
+from jointwave.compare.exact.rock_mass.field import StackField, field_of, planes_of
 
 if TYPE_CHECKING:
-    from cases.incident import PlaneWave
-    from cases.schema.joint_set import JointSet
-    from cases.schema.rock_mass import RockMass
+    from jointwave.cases.incident import PlaneWave
+    from jointwave.cases.schema.joint_set import JointSet
+    from jointwave.cases.schema.rock_mass import RockMass
 
 LEAST = 0.01  # of the wave: less is not said
 SAMPLES = 2000  # times at which tractions are looked at, at most

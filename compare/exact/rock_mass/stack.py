@@ -12,19 +12,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.incident import plane_wave
-from cases.material.dashpots import set_time_constants
-from cases.material.rock import elastic_rock
-from cases.partition.joints import direction_of
-from cases.partition.outline import TOLERANCE, outline_of
-from cases.partition.regions import rocks_of, strata
-from cases.partition.scene import partition_of
-from cases.partition.subdivision import NO_SET
-from compare.exact.plane import parallel_joints
-from compare.exact.plane.oblique_joint import Joint
-from compare.exact.plane.pulse import PulseStack
-from compare.exact.plane.waves import Kind, slownesses_across
-from compare.exact.rock_mass.conditions import (
+from jointwave.cases.incident import plane_wave
+from jointwave.cases.material.dashpots import set_time_constants
+from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.outline import TOLERANCE, outline_of
+from jointwave.cases.partition.regions import rocks_of, strata
+from jointwave.cases.partition.scene import partition_of
+from jointwave.cases.partition.subdivision import NO_SET
+from jointwave.compare.exact.plane import parallel_joints
+from jointwave.compare.exact.plane.oblique_joint import Joint
+from jointwave.compare.exact.plane.pulse import PulseStack
+from jointwave.compare.exact.plane.waves import Kind, slownesses_across
+from jointwave.compare.exact.rock_mass.conditions import (
     ALONG,
     PARALLEL,
     all_parallel,
@@ -37,11 +37,11 @@ from compare.exact.rock_mass.conditions import (
 )
 
 if TYPE_CHECKING:
-    from cases.incident import PlaneWave
-    from cases.material.rock import ElasticRock
-    from cases.partition.blocks import Partition
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.sources import Wave
+    from jointwave.cases.incident import PlaneWave
+    from jointwave.cases.material.rock import ElasticRock
+    from jointwave.cases.partition.blocks import Partition
+    from jointwave.cases.schema.rock_mass import RockMass
+    from jointwave.cases.schema.sources import Wave
 
 BEGUN = 1e-6  #: of the duration: tolerated time for which a pulse has met a joint at t = 0
 

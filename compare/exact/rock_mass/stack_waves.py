@@ -12,18 +12,18 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.incident import plane_wave
-from cases.partition.locate import contact_at, sides_at
-from cases.partition.outline import TOLERANCE
-from cases.partition.subdivision import OUTSIDE
-from cases.sampling import sample_times
-from cases.schema.rock_mass import RockMass
-from compare.exact.plane.pulse import pulse_fields
-from compare.exact.plane.waves import PlaneMotion
-from compare.exact.rock_mass.conditions import prestress_of
-from compare.exact.rock_mass.stack import JointStack, against, begun, stack_of
-from compare.solvers.record import YES, Answer, Kind, no
-from results.plane import plane_dataset
+from jointwave.cases.incident import plane_wave
+from jointwave.cases.partition.locate import contact_at, sides_at
+from jointwave.cases.partition.outline import TOLERANCE
+from jointwave.cases.partition.subdivision import OUTSIDE
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.compare.exact.plane.pulse import pulse_fields
+from jointwave.compare.exact.plane.waves import PlaneMotion
+from jointwave.compare.exact.rock_mass.conditions import prestress_of
+from jointwave.compare.exact.rock_mass.stack import JointStack, against, begun, stack_of
+from jointwave.compare.solvers.record import YES, Answer, Kind, no
+from jointwave.results.plane import plane_dataset
 
 #: Causes of the engines' misfits against these waves.
 DISTANCES = {

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D, proj3d
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from compare.figures.animation.polygons import Polygons
+from jointwave.compare.figures.animation.polygons import Polygons
 
 EDGE, WIDTH = "#333333", 0.4  # of the polygons' edges, points
 DENSE = 2.5  # points: closer edges would hide the colours

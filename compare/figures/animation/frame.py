@@ -10,19 +10,19 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.ticker import MaxNLocator
 
-from cases.effects import is_spatial
-from cases.schema.scene import Scene
-from compare.figures import fonts
-from compare.figures.animation.bodies import TOWARDS, Box, FrontView, SpaceView
-from compare.figures.animation.polygons import Polygons, polygons_of
-from compare.figures.animation.rendered import RenderedView, can_render
-from compare.figures.animation.settings import ViewSettings, caption
-from compare.figures.animation.snapshots import SceneSnapshots
-from compare.figures.export import blank
-from compare.figures.panels import panels
-from compare.figures.style import FIELD, RC, UNSIGNED, style
-from compare.figures.units import UNITS, unit_for
-from compare.misfit.pairs import Comparison
+from jointwave.cases.effects import is_spatial
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.figures import fonts
+from jointwave.compare.figures.animation.bodies import TOWARDS, Box, FrontView, SpaceView
+from jointwave.compare.figures.animation.polygons import Polygons, polygons_of
+from jointwave.compare.figures.animation.rendered import RenderedView, can_render
+from jointwave.compare.figures.animation.settings import ViewSettings, caption
+from jointwave.compare.figures.animation.snapshots import SceneSnapshots
+from jointwave.compare.figures.export import blank
+from jointwave.compare.figures.panels import panels
+from jointwave.compare.figures.style import FIELD, RC, UNSIGNED, style
+from jointwave.compare.figures.units import UNITS, unit_for
+from jointwave.compare.misfit.pairs import Comparison
 
 SIZE = 12.8, 7.2  # inches
 LEFT, RIGHT, FOOT, GAP, NAME, LINE = 1.05, 0.25, 0.5, 0.55, 0.3, 0.2  # inches

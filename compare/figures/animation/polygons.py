@@ -5,15 +5,15 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from cases.schema.scene import Scene
-from compare.figures.animation.settings import (
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.figures.animation.settings import (
     DISPLACEMENT,
     STRESS,
     VELOCITY,
     Quantity,
     ViewSettings,
 )
-from results.snapshots import Snapshots
+from jointwave.results.snapshots import Snapshots
 
 #: Corners of the faces of a cell.
 FACES = {

@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 
-from compare.figures.animation.bodies import EDGE, MARGIN, TOWARDS
-from compare.figures.animation.polygons import Polygons
+from jointwave.compare.figures.animation.bodies import EDGE, MARGIN, TOWARDS
+from jointwave.compare.figures.animation.polygons import Polygons
 
 #: Renders one picture; VTK ends a process in which it cannot.
 TRIAL = "import pyvista; pyvista.Plotter(off_screen=True).screenshot(return_img=True)"

@@ -6,11 +6,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from cases.effects import is_spatial
-from cases.material.calibrate import calibrate
-from cases.scene_type import AnyScene
-from cases.schema.scene import Scene
-from results.snapshots import Snapshots
+from jointwave.cases.effects import is_spatial
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
+from jointwave.results.snapshots import Snapshots
 
 #: Limits of drawn displacements: approach of two neighbours over the block's thickness; motion of a
 #: node along and across, over the pillar's length; rotation of a corner over half the largest side.

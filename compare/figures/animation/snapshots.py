@@ -6,13 +6,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.errors import SceneError
-from cases.scene_type import AnyScene, checked
-from cases.schema.tables import Time
-from compare.engines import ENGINES, Progress, applies, solve
-from compare.figures.units import UNITS
-from compare.solvers.dem import DEM
-from results.snapshots import Snapshots, snapshots_of
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene, checked
+from jointwave.cases.schema.tables import Time
+from jointwave.compare.engines import ENGINES, Progress, applies, solve
+from jointwave.compare.figures.units import UNITS
+from jointwave.compare.solvers.dem import DEM
+from jointwave.results.snapshots import Snapshots, snapshots_of
 
 
 class SceneSnapshots(NamedTuple):

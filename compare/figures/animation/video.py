@@ -11,9 +11,9 @@ from imageio_ffmpeg import get_ffmpeg_exe
 from matplotlib.animation import FFMpegWriter
 from matplotlib.figure import Figure
 
-from cases.errors import SceneError
-from compare.engines import Progress
-from compare.runs.output import refuse_foreign, write
+from jointwave.cases.errors import SceneError
+from jointwave.compare.engines import Progress
+from jointwave.compare.runs.output import refuse_foreign, write
 
 #: First bytes of the files, by suffix: MP4 begins with the size of its first box, `ftyp`.
 BEGINS = {

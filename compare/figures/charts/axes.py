@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from compare.engines import ENGINES, by_model, in_order
-from compare.figures.export import blank
-from compare.figures.style import WIDTH, Style, given_style, style
-from compare.misfit.pairs import Comparison
+from jointwave.compare.engines import ENGINES, by_model, in_order
+from jointwave.compare.figures.export import blank
+from jointwave.compare.figures.style import WIDTH, Style, given_style, style
+from jointwave.compare.misfit.pairs import Comparison
 
 HEADING, ABSCISSA, LINE = 0.3, 0.45, 0.19  # inches above axes, below the lowest, and of a legend's
 BESIDE = 0.8  # inches beside axes

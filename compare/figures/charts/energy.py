@@ -8,13 +8,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from compare.engines import ENGINES, in_order
-from compare.figures.charts.axes import Legend, chart, entry, set_heading, share
-from compare.figures.figure import SceneFigure
-from compare.figures.panels import variant_names
-from compare.figures.style import TERMS, Style, style
-from compare.figures.units import Unit, unit_for
-from compare.misfit.pairs import Comparison
+from jointwave.compare.engines import ENGINES, in_order
+from jointwave.compare.figures.charts.axes import Legend, chart, entry, set_heading, share
+from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.panels import variant_names
+from jointwave.compare.figures.style import TERMS, Style, style
+from jointwave.compare.figures.units import Unit, unit_for
+from jointwave.compare.misfit.pairs import Comparison
 
 MOST = 480  # samples of a curve, and of the table
 LEAST = 1e-17  # lower limit of a drawn residual: below round-off

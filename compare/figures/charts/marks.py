@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 from scipy.optimize import brentq
 
-from cases.material.calibrate import Properties, calibrate
-from cases.schema.scene import Scene
-from compare.figures.panels import Panel
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.figures.panels import Panel
 
 
 class Frequency(NamedTuple):

@@ -11,13 +11,13 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cases.scene_type import AnyScene
-from compare.engines import ENGINES, in_order
-from compare.figures.charts.axes import Legend, chart, set_heading, share
-from compare.figures.panels import Panel, panels
-from compare.figures.style import Style, given_style, style
-from compare.figures.units import DRAWN, UNITS, unit_for
-from compare.misfit.pairs import Comparison
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import ENGINES, in_order
+from jointwave.compare.figures.charts.axes import Legend, chart, set_heading, share
+from jointwave.compare.figures.panels import Panel, panels
+from jointwave.compare.figures.style import Style, given_style, style
+from jointwave.compare.figures.units import DRAWN, UNITS, unit_for
+from jointwave.compare.misfit.pairs import Comparison
 
 #: Keys of a scene that do not change its physics, or only its numerical solution.
 ASIDE = {"title", "source", "name", "expect", "numerics", "record", "where"}

@@ -9,16 +9,16 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from compare.engines import in_order
-from compare.figures.export import blank
-from compare.figures.figure import SceneFigure
-from compare.figures.panels import variant_names
-from compare.figures.style import UNSIGNED
-from compare.misfit.pairs import Comparison
-from compare.readings import peak_velocity_map
-from results.snapshots import snapshots_of
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import in_order
+from jointwave.compare.figures.export import blank
+from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.panels import variant_names
+from jointwave.compare.figures.style import UNSIGNED
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.readings import peak_velocity_map
+from jointwave.results.snapshots import snapshots_of
 
 MANY = 3000  # cells above which they are an image in the drawing
 HEIGHT = 3.6  # inches

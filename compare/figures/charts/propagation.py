@@ -12,21 +12,21 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from cases.schema.scene import Scene
-from compare.engines import in_order
-from compare.figures.charts.axes import chart, entry, set_heading, solutions_legend
-from compare.figures.figure import SceneFigure
-from compare.figures.panels import variant_names
-from compare.figures.style import Style, style
-from compare.misfit.pairs import Comparison
-from compare.readings import (
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import in_order
+from jointwave.compare.figures.charts.axes import chart, entry, set_heading, solutions_legend
+from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.panels import variant_names
+from jointwave.compare.figures.style import Style, style
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.readings import (
     dispersion,
     dispersion_theory,
     quality_factor,
     transfer_function,
     wave_speed,
 )
-from compare.readings.attenuation import waveforms
+from jointwave.compare.readings.attenuation import waveforms
 
 LEAST = 3  # receivers of a row
 HEARD = 0.03  # of the first receiver's largest amplitude: threshold of drawn frequencies

@@ -13,16 +13,16 @@ from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from cases.schema.scene import Scene
-from compare.engines import ENGINES, in_order
-from compare.figures.export import blank
-from compare.figures.figure import SceneFigure
-from compare.figures.panels import FORCES, MOTION, ROTATION, axis_of, loudest
-from compare.figures.style import DIFFERENCE, FIELD
-from compare.figures.units import UNITS, Unit, unit_for
-from compare.misfit.metrics import motion
-from compare.misfit.pairs import pairs
-from compare.misfit.ranking import own_exact
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import ENGINES, in_order
+from jointwave.compare.figures.export import blank
+from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.panels import FORCES, MOTION, ROTATION, axis_of, loudest
+from jointwave.compare.figures.style import DIFFERENCE, FIELD
+from jointwave.compare.figures.units import UNITS, Unit, unit_for
+from jointwave.compare.misfit.metrics import motion
+from jointwave.compare.misfit.pairs import pairs
+from jointwave.compare.misfit.ranking import own_exact
 
 LEAST = 1e-9  # SI: smaller values count as no motion
 HEIGHT = 3.2  # inches

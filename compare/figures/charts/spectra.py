@@ -9,13 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from compare.figures.charts.axes import GREY, chart, set_heading, share, solutions_legend
-from compare.figures.charts.marks import Frequency, marks_of
-from compare.figures.figure import SceneFigure
-from compare.figures.panels import Panel, in_page, panels
-from compare.figures.style import style
-from compare.figures.units import DRAWN, UNITS, Unit
-from compare.misfit.pairs import Comparison
+from jointwave.compare.figures.charts.axes import GREY, chart, set_heading, share, solutions_legend
+from jointwave.compare.figures.charts.marks import Frequency, marks_of
+from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.panels import Panel, in_page, panels
+from jointwave.compare.figures.style import style
+from jointwave.compare.figures.units import DRAWN, UNITS, Unit
+from jointwave.compare.misfit.pairs import Comparison
 
 HEIGHT = 2.1  # inches
 DECADES = 5  # drawn below the largest amplitude

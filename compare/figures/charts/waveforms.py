@@ -5,18 +5,18 @@ from functools import partial
 import pandas as pd
 from matplotlib.figure import Figure
 
-from compare.figures.charts.axes import Legend, entry, given_entries, solutions_legend
-from compare.figures.charts.overlays import (
+from jointwave.compare.figures.charts.axes import Legend, entry, given_entries, solutions_legend
+from jointwave.compare.figures.charts.overlays import (
     Overlay,
     by_solution,
     by_variant,
     changed_key,
     draw_overlays,
 )
-from compare.figures.figure import SceneFigure
-from compare.figures.panels import Panel, curve_table, in_page, panels
-from compare.figures.units import UNITS
-from compare.misfit.pairs import Comparison
+from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.panels import Panel, curve_table, in_page, panels
+from jointwave.compare.figures.units import UNITS
+from jointwave.compare.misfit.pairs import Comparison
 
 TITLE = "Waveforms at the receivers"
 STYLES = (

@@ -7,15 +7,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
-from cases.effects import is_spatial
-from cases.material.calibrate import calibrate
-from cases.material.contacts import contacts, welds
-from cases.material.face import face_points
-from cases.schema.joint import SoftLayer
-from cases.schema.scene import Scene
-from cases.schema.segment import regions
-from compare.figures.drawing.pulses import law_words
-from compare.figures.drawing.sketch import (
+from jointwave.cases.effects import is_spatial
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.contacts import contacts, welds
+from jointwave.cases.material.face import face_points
+from jointwave.cases.schema.joint import SoftLayer
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.schema.segment import regions
+from jointwave.compare.figures.drawing.pulses import law_words
+from jointwave.compare.figures.drawing.sketch import (
     EDGE,
     INK,
     LAYER,
@@ -31,7 +31,7 @@ from compare.figures.drawing.sketch import (
     shaking,
     side_style,
 )
-from compare.figures.units import unit_for
+from jointwave.compare.figures.units import unit_for
 
 MOST = 400  # blocks that are drawn individually
 THIN, THICK = 0.07, 0.12  # limits of the pillar's thickness over the width of the drawing

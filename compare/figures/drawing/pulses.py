@@ -3,11 +3,11 @@
 import numpy as np
 from matplotlib.axes import Axes
 
-from cases.loads import history_of
-from cases.schema.joint import PARTS, JointLaw
-from cases.schema.pulse import Pulse
-from compare.figures.drawing.sketch import LOAD
-from compare.figures.units import unit_for
+from jointwave.cases.loads import history_of
+from jointwave.cases.schema.joint import PARTS, JointLaw
+from jointwave.cases.schema.pulse import Pulse
+from jointwave.compare.figures.drawing.sketch import LOAD
+from jointwave.compare.figures.units import unit_for
 
 SAMPLES = 400
 UNITS = {

@@ -4,15 +4,15 @@ from typing import Any
 
 import numpy as np
 
-from cases.partition.blocks import Partition
-from cases.partition.outline import outline_of
-from cases.partition.regions import rocks_of
-from cases.partition.scene import partition_of
-from cases.schema.plane import IntactRock
-from cases.schema.rock_mass import RockMass
-from cases.schema.sources import PlaneLoad, Wave
-from compare.figures.drawing.pulses import law_words
-from compare.figures.drawing.sketch import (
+from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.partition.outline import outline_of
+from jointwave.cases.partition.regions import rocks_of
+from jointwave.cases.partition.scene import partition_of
+from jointwave.cases.schema.plane import IntactRock
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.sources import PlaneLoad, Wave
+from jointwave.compare.figures.drawing.pulses import law_words
+from jointwave.compare.figures.drawing.sketch import (
     EDGE,
     REGIONS,
     ROCK,

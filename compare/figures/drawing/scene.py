@@ -9,16 +9,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from cases.effects import is_spatial
-from cases.schema.scene import Scene
-from compare.figures.drawing import pillar
-from compare.figures.drawing.pulses import draw_pulse
-from compare.figures.drawing.sketch import Sketch, draw, legend, table
-from compare.figures.export import blank
-from compare.figures.figure import SceneFigure
-from compare.figures.panels import variant_names
-from compare.figures.style import WIDTH
-from compare.misfit.pairs import Comparison
+from jointwave.cases.effects import is_spatial
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.figures.drawing import pillar
+from jointwave.compare.figures.drawing.pulses import draw_pulse
+from jointwave.compare.figures.drawing.sketch import Sketch, draw, legend, table
+from jointwave.compare.figures.export import blank
+from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.panels import variant_names
+from jointwave.compare.figures.style import WIDTH
+from jointwave.compare.misfit.pairs import Comparison
 
 MOST = 4  # drawings per scene
 TITLE = "The scene"
@@ -31,7 +31,7 @@ def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
     """Return the figure of a scene; variants with the same appearance share a drawing."""
     drawing: ModuleType = pillar
     if not isinstance(comparisons[0].scene, Scene):
-        from compare.figures.drawing import rock_mass as drawing  # imports shapely
+        from jointwave.compare.figures.drawing import rock_mass as drawing  # imports shapely
 
     groups: dict[str, tuple[list[str], Any]] = {}
     for words, comparison in zip(variant_names(comparisons), comparisons, strict=True):

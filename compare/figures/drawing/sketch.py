@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
 
-from cases.schema.plane import GravityInPlane
-from cases.schema.tables import Gravity
+from jointwave.cases.schema.plane import GravityInPlane
+from jointwave.cases.schema.tables import Gravity
 
 INK, LOAD, RECEIVER, LAYER = "#1c2126", "#b3001b", "#00549e", "#8a3b12"
 ROCK, EDGE, SOFT = "#efe9dd", "#9a917f", "#5d6670"

@@ -6,9 +6,9 @@ other. The distances of the engines from exact solutions are in the tables of mi
 
 from collections.abc import Callable
 
-from compare.misfit.pairs import Comparison
-from compare.report.claims import joints, pillar, travel
-from compare.report.claims.claim import Claim, Measured
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.report.claims import joints, pillar, travel
+from jointwave.compare.report.claims.claim import Claim, Measured
 
 #: By figure: what it must show, and the function that measures it on the scene and its variants.
 CLAIMS: dict[int, dict[str, Callable[[list[Comparison]], Measured]]] = {

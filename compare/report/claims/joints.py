@@ -5,12 +5,12 @@ from math import pi, sqrt
 import numpy as np
 import pandas as pd
 
-from cases.material.calibrate import calibrate
-from cases.schema.scene import Scene
-from compare.misfit.metrics import delay
-from compare.misfit.pairs import Comparison
-from compare.report.claims import pulses
-from compare.report.claims.claim import Measured, listed, share, shares
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.misfit.metrics import delay
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.report.claims import pulses
+from jointwave.compare.report.claims.claim import Measured, listed, share, shares
 
 
 def _quantity(scene: Scene) -> str:

@@ -6,15 +6,15 @@ from typing import TypeVar
 import numpy as np
 import pandas as pd
 
-from cases.loads import load_history
-from compare.exact.bar import equivalent_bar, jointed_bar
-from compare.exact.blocks import lattice
-from compare.figures.panels import variant_names
-from compare.misfit.metrics import mean_period, misfit, relative_l2
-from compare.misfit.pairs import Comparison
-from compare.report.claims import pulses
-from compare.report.claims.claim import Claim, Measured, falls, listed, share, shares
-from compare.solvers.dem import DEM
+from jointwave.cases.loads import load_history
+from jointwave.compare.exact.bar import equivalent_bar, jointed_bar
+from jointwave.compare.exact.blocks import lattice
+from jointwave.compare.figures.panels import variant_names
+from jointwave.compare.misfit.metrics import mean_period, misfit, relative_l2
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.report.claims import pulses
+from jointwave.compare.report.claims.claim import Claim, Measured, falls, listed, share, shares
+from jointwave.compare.solvers.dem import DEM
 
 T = TypeVar("T")
 

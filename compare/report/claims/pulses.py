@@ -12,10 +12,10 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cases.material.calibrate import calibrate
-from cases.schema.scene import Scene
-from compare.engines import ENGINES, in_order
-from compare.misfit.pairs import Comparison
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import ENGINES, in_order
+from jointwave.compare.misfit.pairs import Comparison
 
 T = TypeVar("T")
 

@@ -5,12 +5,12 @@
 import numpy as np
 import pandas as pd
 
-from cases.material.calibrate import calibrate
-from compare.misfit.metrics import delay, relative_l2
-from compare.misfit.pairs import Comparison
-from compare.report.claims import pulses
-from compare.report.claims.claim import Measured, listed, share, shares
-from compare.solvers.dem import DEM
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.compare.misfit.metrics import delay, relative_l2
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.report.claims import pulses
+from jointwave.compare.report.claims.claim import Measured, listed, share, shares
+from jointwave.compare.solvers.dem import DEM
 
 
 def travels(comparisons: list[Comparison]) -> Measured:

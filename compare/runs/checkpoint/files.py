@@ -20,12 +20,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.size import require, within
-from compare.runs.checkpoint.signature import Signature, differences
-from compare.runs.output import write
-from compare.runs.processes import Processes
-from results.arrays import arrays, fill
+from jointwave.cases.errors import SceneError
+from jointwave.cases.size import require, within
+from jointwave.compare.runs.checkpoint.signature import Signature, differences
+from jointwave.compare.runs.output import write
+from jointwave.compare.runs.processes import Processes
+from jointwave.results.arrays import arrays, fill
 
 DIGEST = 64  # characters of a SHA-256
 COPIES = 2  # of a file: its arrays, and one of them as bytes

@@ -7,7 +7,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryFile
 
-from cases.errors import SceneError
+from jointwave.cases.errors import SceneError
 
 
 @contextmanager
@@ -18,7 +18,7 @@ def locked(folder: Path, *inner: Path) -> Iterator[None]:
 
     Raises SceneError if another command has locked it, OSError if nothing can be written.
     """
-    from compare.runs.output import sweep
+    from jointwave.compare.runs.output import sweep
 
     made = [place for place in (folder, *folder.parents) if not place.exists()]
     try:

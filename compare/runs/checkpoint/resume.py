@@ -8,15 +8,15 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from cases.errors import InterruptedRun, printable
-from cases.sampling import sample_times
-from cases.scene_type import AnyScene
-from compare.engines import ENGINES
-from compare.runs.checkpoint.files import Checkpoints
-from compare.runs.checkpoint.signals import Signals, exit_code, word
-from compare.runs.checkpoint.signature import Signature, signature
-from compare.runs.processes import Processes
-from results.netcdf import load_netcdf
+from jointwave.cases.errors import InterruptedRun, printable
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import ENGINES
+from jointwave.compare.runs.checkpoint.files import Checkpoints
+from jointwave.compare.runs.checkpoint.signals import Signals, exit_code, word
+from jointwave.compare.runs.checkpoint.signature import Signature, signature
+from jointwave.compare.runs.processes import Processes
+from jointwave.results.netcdf import load_netcdf
 
 
 class RunCheckpointer:

@@ -6,11 +6,11 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-import cases
-from cases.scene_type import AnyScene
-from cases.schema.scene import Scene
-from compare.engines import solver
-from results.dataset import scene_hash
+from jointwave import cases
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import solver
+from jointwave.results.dataset import scene_hash
 
 Signature = dict[str, str]
 

@@ -2,7 +2,7 @@
 
 from types import ModuleType
 
-from compare.studies.methods import adaptive, plain_dolfinx
+from jointwave.compare.studies.methods import adaptive, plain_dolfinx
 
 #: Each module has NAME, ENGINE, whose model it solves, applies(scene) -> Answer and
 #: solve(scene, **arguments) -> xarray.Dataset, with the names of the ARGUMENTS that a study varies.

@@ -8,14 +8,14 @@ from time import perf_counter
 
 import xarray as xr
 
-from cases.sampling import sample_times
-from cases.schema.scene import Scene
-from compare.exact.blocks.chain import chain, rates, receivers
-from compare.exact.blocks.lattice import HELD, at_rest
-from compare.exact.conditions import drive, holds
-from compare.solvers.dem import DEM
-from compare.solvers.record import Answer
-from results.dataset import dataset
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.blocks.chain import chain, rates, receivers
+from jointwave.compare.exact.blocks.lattice import HELD, at_rest
+from jointwave.compare.exact.conditions import drive, holds
+from jointwave.compare.solvers.dem import DEM
+from jointwave.compare.solvers.record import Answer
+from jointwave.results.dataset import dataset
 
 NAME = "solve-ivp"
 ENGINE = DEM.name

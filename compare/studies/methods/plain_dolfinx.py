@@ -16,14 +16,14 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.material.calibrate import calibrate
-from cases.sampling import Clock, clock
-from cases.schema.scene import Scene
-from compare.exact.bar import equivalent_bar
-from compare.exact.conditions import drive, joints_are_damped
-from compare.solvers.continuum import EQUIVALENT_ROCK
-from compare.solvers.record import YES, Answer, no
-from results.dataset import dataset
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import Clock, clock
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.bar import equivalent_bar
+from jointwave.compare.exact.conditions import drive, joints_are_damped
+from jointwave.compare.solvers.continuum import EQUIVALENT_ROCK
+from jointwave.compare.solvers.record import YES, Answer, no
+from jointwave.results.dataset import dataset
 
 NAME = "plain-dolfinx"
 ENGINE = EQUIVALENT_ROCK.name
@@ -125,8 +125,8 @@ def _bar(scene: Scene) -> PlainBar:
     import ufl
     from dolfinx import fem
 
-    from continuum.build import elements_for
-    from continuum.space import dolfinx_export
+    from jointwave.continuum.build import elements_for
+    from jointwave.continuum.space import dolfinx_export
 
     p, order = calibrate(scene), scene.numerics.continuum.order
     per_block = scene.numerics.continuum.elements_per_block
@@ -165,7 +165,7 @@ def _critical(stiffness, mass: np.ndarray, eta: float) -> float:
 
 
 def _row(bar: PlainBar, y: float, derivative: int) -> np.ndarray:
-    from continuum.space import basix_versions, dolfinx_export
+    from jointwave.continuum.space import basix_versions, dolfinx_export
 
     nodes = dolfinx_export.cell_nodes(bar.space)
     at = bar.space.tabulate_dof_coordinates()[:, 0][nodes]

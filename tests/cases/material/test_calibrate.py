@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cases import load
-from cases.material.calibrate import calibrate
-from cases.material.elastic import (
+from jointwave.cases import load
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.elastic import (
     equivalent_modulus,
     joint_stiffness,
     modulus_from_speeds,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from cases.material.closure import bandis_closure, stress_in_reach
+from jointwave.cases.material.closure import bandis_closure, stress_in_reach
 
 
 def test_a_joint_by_bandis():

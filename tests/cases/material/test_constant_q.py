@@ -9,10 +9,10 @@ import sys
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
-from cases.material.calibrate import calibrate, mechanisms_of
-from cases.material.constant_q import fitted
 from closed_forms.constant_q import ConstantQ
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import calibrate, mechanisms_of
+from jointwave.cases.material.constant_q import fitted
 
 
 def band(decades: float, points: int = 2000) -> np.ndarray:
@@ -151,9 +151,10 @@ def test_rock_is_not_damped_twice(pillar):
 
 def test_rock_without_a_quality_factor_imports_nothing_of_it():
     code = (
-        "import sys, cases; from compare.scenes import find; from compare.engines import solve\n"
+        "import sys; from jointwave import cases; from jointwave.compare.scenes import find\n"
+        "from jointwave.compare.engines import solve\n"
         "scene = cases.load_variant(find('guo-li-2002/fig-03'), '')\n"
         "solve('jointed-bar', scene)\n"
-        "assert 'cases.material.constant_q' not in sys.modules"
+        "assert 'jointwave.cases.material.constant_q' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from cases.material.dashpots import set_time_constants
-from cases.schema.damping import Damping, Rayleigh
-from cases.schema.domain import Domain
-from cases.schema.joint_set import JointSet
-from cases.schema.plane import IntactRock, RecordInPlane
-from cases.schema.rock_mass import RockMass
-from cases.schema.tables import Time
+from jointwave.cases.material.dashpots import set_time_constants
+from jointwave.cases.schema.damping import Damping, Rayleigh
+from jointwave.cases.schema.domain import Domain
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.plane import IntactRock, RecordInPlane
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.tables import Time
 
 
 def scene(*sets, **tables):

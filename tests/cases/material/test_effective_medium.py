@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from cases.material.effective_medium import (
+from closed_forms.block_lattice import Lattice, modes
+from jointwave.cases.material.effective_medium import (
     JointSet,
     christoffel,
     compliance,
@@ -13,11 +14,10 @@ from cases.material.effective_medium import (
     stiffness,
     tensor,
 )
-from cases.material.rigid_fit import rigid_fit
-from cases.material.rock import ElasticRock
-from closed_forms.block_lattice import Lattice, modes
-from compare.exact.plane.oblique_joint import Joint, scattering
-from compare.exact.plane.waves import slownesses_across
+from jointwave.cases.material.rigid_fit import rigid_fit
+from jointwave.cases.material.rock import ElasticRock
+from jointwave.compare.exact.plane.oblique_joint import Joint, scattering
+from jointwave.compare.exact.plane.waves import slownesses_across
 
 UNIT = ElasticRock(1.0, np.sqrt(3.0), 1.0)  # lambda = mu = rho = 1
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from cases.material.prestress import beyond_strength
-from cases.schema.joint_set import JointSet
-from cases.schema.plane import StressInPlane
+from jointwave.cases.material.prestress import beyond_strength
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.plane import StressInPlane
 
 #: At 30 degrees: t_n = 1 x 1/4 + 5 x 3/4 = 4 MPa, |t_s| = 4 sqrt(3)/4 = 1.732 MPa.
 PRESSED = StressInPlane(xx=1e6, yy=5e6)

@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
-from cases.material.effective_medium import intact
-from cases.material.rigid_blocks import rigid_joints
-from cases.material.rigid_fit import nearest_stiffness
-from cases.material.rock import ElasticRock
-from cases.partition.lattice import further_sets
-from cases.validate import validated
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.effective_medium import intact
+from jointwave.cases.material.rigid_blocks import rigid_joints
+from jointwave.cases.material.rigid_fit import nearest_stiffness
+from jointwave.cases.material.rock import ElasticRock
+from jointwave.cases.partition.lattice import further_sets
+from jointwave.cases.validate import validated
 
 UNIT = ElasticRock(1.0, np.sqrt(3.0), 1.0)  # lambda = mu = 1
 

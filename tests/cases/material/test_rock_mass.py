@@ -8,15 +8,15 @@ from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigh
 
-from cases.material.block_stiffness import block_stiffness, jump
-from cases.material.contact_points import contact_points, points_of
-from cases.material.rock_mass import Stiffness, constrained_modulus, inertia
-from cases.partition.periodic import periodic_contacts
-from cases.partition.scene import cut
-from cases.partition.subdivision import PartitionError
-from cases.schema.domain import Domain
-from cases.schema.joint_set import JointSet
-from cases.schema.plane import IntactRock
+from jointwave.cases.material.block_stiffness import block_stiffness, jump
+from jointwave.cases.material.contact_points import contact_points, points_of
+from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus, inertia
+from jointwave.cases.partition.periodic import periodic_contacts
+from jointwave.cases.partition.scene import cut
+from jointwave.cases.partition.subdivision import PartitionError
+from jointwave.cases.schema.domain import Domain
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.plane import IntactRock
 
 DENSITY, NORMAL, SHEAR = 2500.0, 1.1e10, 4e9
 

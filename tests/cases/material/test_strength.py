@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
-from cases.material.strength import NAMES
-from cases.schema.joint import UNLIMITED
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.strength import NAMES
+from jointwave.cases.schema.joint import UNLIMITED
 
 TENSILE = {"tensile_strength": 1e5, "fracture_energy": 10.0}
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from cases.schema.domain import Domain
-from cases.schema.joint_set import JointSet
+from jointwave.cases.schema.domain import Domain
+from jointwave.cases.schema.joint_set import JointSet
 
 
 @pytest.fixture(scope="session")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.partition.scene import cut
+from jointwave.cases.partition.scene import cut
 
 #: The first joints of a set with spacing 1, scatter 0.25 and seed 7: the same everywhere.
 PINNED = [1.1083358519779094, 2.4523330943513377, 3.691083905563523]
@@ -136,7 +136,7 @@ def test_joints_along_the_boundary_are_known(rectangle, joints):
 
 def test_a_slope_is_an_outline_that_is_not_convex(joints):
     """Area by hand: 20 x 4, and a trapezium of 12 and 6 m at 6 m height."""
-    from cases.schema.domain import Domain
+    from jointwave.cases.schema.domain import Domain
 
     corners = [[0.0, 0.0], [20.0, 0.0], [20.0, 10.0], [14.0, 10.0], [8.0, 4.0], [0.0, 4.0]]
     sets = [joints("a", 35.0, spacing=1.0), joints("b", -50.0, spacing=1.0)]

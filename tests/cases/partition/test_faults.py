@@ -4,11 +4,11 @@ import re
 
 import pytest
 
-from cases.errors import SceneError
-from cases.partition.periodic import periodic_contacts
-from cases.partition.scene import block_count, cut, partition_bytes, partition_of
-from cases.partition.subdivision import NO_SET, NonConvex, PartitionError, Sliver
-from cases.read import load_variant
+from jointwave.cases.errors import SceneError
+from jointwave.cases.partition.periodic import periodic_contacts
+from jointwave.cases.partition.scene import block_count, cut, partition_bytes, partition_of
+from jointwave.cases.partition.subdivision import NO_SET, NonConvex, PartitionError, Sliver
+from jointwave.cases.read import load_variant
 
 SCENE = """\
 title = "rows"
@@ -81,7 +81,7 @@ def test_one_joint_outside(scene):
 
 
 def test_one_joint_on_the_joint_that_it_ends_at(scene, joints):
-    from cases.schema.domain import Domain
+    from jointwave.cases.schema.domain import Domain
 
     sets = [joints("rows", 0.0, spacing=1.0)]
     one = joints("one", 60.0, through=[5.0, 2.0], ends_at=["rows"])

@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
-from cases.partition.lattice import further_sets
-from cases.partition.locate import contact_at
-from cases.partition.polygons import widths
-from cases.partition.scene import partition_of
-from cases.validate import validated
+from jointwave.cases.errors import SceneError
+from jointwave.cases.partition.lattice import further_sets
+from jointwave.cases.partition.locate import contact_at
+from jointwave.cases.partition.polygons import widths
+from jointwave.cases.partition.scene import partition_of
+from jointwave.cases.validate import validated
 
 LAW = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 

@@ -6,14 +6,14 @@ import shapely
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from cases.partition.joints import _scattered, direction_of
-from cases.partition.locate import block_at, contact_at
-from cases.partition.outline import outline_of
-from cases.partition.polygons import following, least_angles, owner, widths
-from cases.partition.scene import cut, least_width
-from cases.partition.subdivision import PartitionError, Sliver
-from cases.schema.domain import Domain
-from cases.schema.joint_set import JointSet
+from jointwave.cases.partition.joints import _scattered, direction_of
+from jointwave.cases.partition.locate import block_at, contact_at
+from jointwave.cases.partition.outline import outline_of
+from jointwave.cases.partition.polygons import following, least_angles, owner, widths
+from jointwave.cases.partition.scene import cut, least_width
+from jointwave.cases.partition.subdivision import PartitionError, Sliver
+from jointwave.cases.schema.domain import Domain
+from jointwave.cases.schema.joint_set import JointSet
 
 LAW = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 HEXAGON = [[0.0, 1.0], [4.0, 0.0], [9.0, 0.5], [10.0, 4.0], [6.0, 7.0], [1.0, 5.0]]

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from cases.partition.regions import ROCK, region_at
-from cases.partition.scene import cut
-from cases.partition.subdivision import NO_SET, PartitionError
-from cases.schema.region import Region
+from jointwave.cases.partition.regions import ROCK, region_at
+from jointwave.cases.partition.scene import cut
+from jointwave.cases.partition.subdivision import NO_SET, PartitionError
+from jointwave.cases.schema.region import Region
 
 
 def region(name, y, dip=0.0, x=0.0):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from cases.read import load_tables
+from jointwave.cases.read import load_tables
 
 
 @pytest.fixture

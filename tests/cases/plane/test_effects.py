@@ -2,7 +2,7 @@
 
 import pytest
 
-from cases.effects import active_effects, effects
+from jointwave.cases.effects import active_effects, effects
 
 ALWAYS = ["quiet sides", "energy ledger", "incident waves"]
 STILL = {"waves": [], "boundaries__bottom": "fixed"}

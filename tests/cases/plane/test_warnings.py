@@ -2,7 +2,7 @@
 
 import pytest
 
-from cases.warnings import warnings
+from jointwave.cases.warnings import warnings
 
 #: b = sqrt(E / (2 (1 + nu) rho)) of the rock, over 1.664 / T of a Ricker wavelet, where 95 % of its
 #: energy lies below: what blocks and elements are measured by, m.

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cases.material.calibrate import calibrate
-from cases.schema.damping import Damping, Rayleigh
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.schema.damping import Damping, Rayleigh
 
 
 def rayleigh(**keys):

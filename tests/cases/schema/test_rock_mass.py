@@ -8,10 +8,10 @@ import sys
 
 import pytest
 
-from cases.errors import SceneError
-from cases.read import load, load_variant
-from cases.scene_type import pillar_of
-from cases.schema.rock_mass import RockMass
+from jointwave.cases.errors import SceneError
+from jointwave.cases.read import load, load_variant
+from jointwave.cases.scene_type import pillar_of
+from jointwave.cases.schema.rock_mass import RockMass
 
 GOOD = """\
 title = "good"

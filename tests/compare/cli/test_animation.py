@@ -9,8 +9,8 @@ import pytest
 from imageio_ffmpeg import count_frames_and_secs
 from PIL import Image
 
-from compare.figures.animation import frame
-from compare.scenes import SHIPPED
+from jointwave.compare.figures.animation import frame
+from jointwave.compare.scenes import SHIPPED
 
 SCENE = "guo-li-2002/fig-03"
 SHORT = ("--set", "time.duration=0.01", "--set", "pillar.length=10", "--set", "record.stress=[5]")
@@ -104,7 +104,7 @@ def test_help_draws_nothing():
     """Neither figures nor engines are imported for a command's help."""
     script = (
         "import sys; sys.argv = ['jointwave', 'animate', '--help']\n"
-        "from compare.cli.program import main\n"
+        "from jointwave.compare.cli.program import main\n"
         "try:\n    main()\nexcept SystemExit:\n    pass\n"
         "heavy = {'matplotlib', 'pyvista', 'imageio_ffmpeg', 'PIL', 'xarray', 'dolfinx', 'numba'}\n"
         "print('heavy:', sorted(heavy & set(sys.modules)))"

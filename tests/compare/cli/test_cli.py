@@ -8,11 +8,11 @@ import sys
 import pytest
 import xarray as xr
 
-from compare.cli import explain
-from compare.cli.explain import explanation
-from compare.cli.new import starter
-from compare.engines import solve
-from compare.runs import timings
+from jointwave.compare.cli import explain
+from jointwave.compare.cli.explain import explanation
+from jointwave.compare.cli.new import starter
+from jointwave.compare.engines import solve
+from jointwave.compare.runs import timings
 
 SCENE = "guo-li-2002/fig-03"
 SHORT = ("--set", "time.duration=0.02")
@@ -47,7 +47,7 @@ def test_run_writes_one_file_for_each_variant_and_model(jointwave, tmp_path):
 def test_run_reports_the_same_as_json(tmp_path):
     """--json gives a machine the table, and nothing else on the standard output of its process."""
     options = ("run", SCENE, "--variant", "", *SHORT, "--out", str(tmp_path), "--json")
-    done = subprocess.run((sys.executable, "-m", "compare", *options), capture_output=True)
+    done = subprocess.run((sys.executable, "-m", "jointwave", *options), capture_output=True)
     (fact,) = json.loads(done.stdout)
     assert done.returncode == 0 and not done.stderr
     assert fact["engine"] == "dem" and fact["steps"] == 1200 and fact["energy_residual"] < 1e-10
@@ -282,12 +282,12 @@ def test_rigid_block_run_imports_neither_dolfinx_nor_matplotlib(tmp_path):
     """A run of the rigid blocks pays for nothing that it does not use."""
     code = (
         "import sys; sys.argv = ['jointwave', 'run', %r, '--out', %r]\n"
-        "from compare.cli.program import main\n"
+        "from jointwave.compare.cli.program import main\n"
         "try: main()\n"
         "except SystemExit as end: assert end.code == 0, end.code\n"
         "heavy = {'dolfinx', 'matplotlib', 'petsc4py', 'gmsh', 'obspy', 'continuum', 'jinja2',\n"
-        "         'dem.spatial', 'shapely', 'cases.schema.plane',\n"
-        "         'cases.schema.rock_mass', 'cases.material.rigid_blocks'}\n"
+        "         'jointwave.dem.spatial', 'shapely', 'jointwave.cases.schema.plane',\n"
+        "         'jointwave.cases.schema.rock_mass', 'jointwave.cases.material.rigid_blocks'}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )
     command = [sys.executable, "-c", code % (SCENE, str(tmp_path))]

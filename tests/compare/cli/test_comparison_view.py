@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from compare.cli.comparison_view import MOST_LINES, in_percent, show_comparisons
-from compare.misfit.alignment import AlignedCurve
-from compare.misfit.metrics import Worst
-from compare.misfit.pairs import Comparison, measure, measure_curves
-from compare.report.verdict import engine_scores
+from jointwave.compare.cli.comparison_view import MOST_LINES, in_percent, show_comparisons
+from jointwave.compare.misfit.alignment import AlignedCurve
+from jointwave.compare.misfit.metrics import Worst
+from jointwave.compare.misfit.pairs import Comparison, measure, measure_curves
+from jointwave.compare.report.verdict import engine_scores
 
 
 @pytest.fixture
@@ -74,7 +74,7 @@ def test_the_answer_has_at_most_ten_lines(compared, curve, capsys, variants, fil
 @pytest.fixture
 def curve(tmp_path):
     """Return a function that puts a measured curve, half as large again, beside a comparison."""
-    from compare.misfit.external import read_curves
+    from jointwave.compare.misfit.external import read_curves
 
     def add(comparison, factor=1.5):
         time = comparison.results["dem"].time.values

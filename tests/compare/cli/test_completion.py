@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from cases.schema.keys import keys
-from compare.cli.program import main
-from compare.scenes import SHIPPED, shipped
+from jointwave.cases.schema.keys import keys
+from jointwave.compare.cli.program import main
+from jointwave.compare.scenes import SHIPPED, shipped
 
 SCENE = "guo-li-2002/fig-03"
 
@@ -94,12 +94,21 @@ def test_a_broken_scene_is_no_message(tmp_path, text, complete):
 
 
 #: What validates scenes, computes and draws; `typer` may bring the last two by itself.
-HEAVY = {"cases.schema", "cases.read", "numpy", "scipy", "numba", "xarray", "pandas", "matplotlib"}
+HEAVY = {
+    "jointwave.cases.schema",
+    "jointwave.cases.read",
+    "numpy",
+    "scipy",
+    "numba",
+    "xarray",
+    "pandas",
+    "matplotlib",
+}
 HEAVY |= {"shapely", "obspy", "dolfinx", "dem", "continuum", "rich", "pydantic"}
 IMPORTED = """
 import sys, typer
 before = set(sys.modules)
-from compare.cli.start import main
+from jointwave.compare.cli.start import main
 sys.argv = ["jointwave", *sys.argv[1:]]
 try:
     main()
@@ -141,7 +150,7 @@ def test_words_are_completed_without_what_validates_and_computes(line):
 def test_keys_are_completed_by_their_models_alone():
     line = f"jointwave run {SCENE} --set joints.damp"
     asked = {"_JOINTWAVE_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": "4"}
-    assert imported(**asked) <= {"pydantic", "cases.schema"}
+    assert imported(**asked) <= {"pydantic", "jointwave.cases.schema"}
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="no bash here")
@@ -149,7 +158,7 @@ def test_bash_completes_by_the_script_that_is_installed(tmp_path):
     """--install-completion writes it where bash will read it, and bash asks it."""
     home = {**os.environ, "HOME": str(tmp_path)}
     code = "import sys; sys.argv = ['jointwave', '--install-completion']\n"
-    code += "from compare.cli.start import main; main()"
+    code += "from jointwave.compare.cli.start import main; main()"
     install = f'{sys.executable} -c "$CODE"; exit $?'
     within = {**home, "CODE": code}  # the shell is known by the process that asks
     subprocess.run(("bash", "-c", install), env=within, check=True, capture_output=True)
@@ -158,7 +167,7 @@ def test_bash_completes_by_the_script_that_is_installed(tmp_path):
     real = tmp_path / "real"
     real.write_text(
         f"#!{sys.executable}\nimport sys\nsys.argv[0] = 'jointwave'\n"
-        "from compare.cli.start import main\nmain()\n"
+        "from jointwave.compare.cli.start import main\nmain()\n"
     )
     real.chmod(0o755)
     ask = (

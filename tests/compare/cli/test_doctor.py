@@ -7,8 +7,8 @@ from math import isnan, nan
 
 import pytest
 
-from compare.cli import doctor
-from compare.cli.doctor import PAIRS, PARTS, Check, Part, check, show_health
+from jointwave.compare.cli import doctor
+from jointwave.compare.cli.doctor import PAIRS, PARTS, Check, Part, check, show_health
 
 BLOCKS, ROCK = PAIRS
 FOUND = Part("numba", "found", "0.61")

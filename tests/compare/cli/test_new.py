@@ -5,16 +5,16 @@ from itertools import pairwise
 
 import pytest
 
-import cases
-from cases.errors import SceneError
-from cases.schema.keys import keys
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from cases.warnings import warnings
-from compare.cli.new import starter, write_new
-from compare.engines import solve
-from compare.misfit.metrics import misfit
-from compare.scenes import SHIPPED
+from jointwave import cases
+from jointwave.cases.errors import SceneError
+from jointwave.cases.schema.keys import keys
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.warnings import warnings
+from jointwave.compare.cli.new import starter, write_new
+from jointwave.compare.engines import solve
+from jointwave.compare.misfit.metrics import misfit
+from jointwave.compare.scenes import SHIPPED
 
 MODELS = {"pillar": Scene, "rock-mass": RockMass}
 #: A key, in use or commented out to be chosen, and a heading of a table.

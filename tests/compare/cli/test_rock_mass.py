@@ -8,8 +8,8 @@ import xarray as xr
 from PIL import Image
 
 import jointwave as jw
-from compare.runs.comparison import solved
-from compare.solvers.record import no
+from jointwave.compare.runs.comparison import solved
+from jointwave.compare.solvers.record import no
 
 SCENE = """\
 title = "A tunnel in brickwork"

@@ -13,7 +13,7 @@ class Interrupting:
             raise KeyboardInterrupt
 
 sys.meta_path.insert(0, Interrupting())
-from compare.cli.start import main
+from jointwave.compare.cli.start import main
 main()
 """
 
@@ -41,7 +41,7 @@ reinit = deinit = init
 
 MESSAGE = """
 import sys
-from compare.cli.start import main
+from jointwave.compare.cli.start import main
 
 sys.argv = ["jointwave", "--version"]
 try:

@@ -14,7 +14,7 @@ RED = ("run", "guo-li-2002/fig-03", "--sweep", "joints.damping_ratio=-1,0.1", "-
 
 SLOW = """
 from time import sleep
-from compare.cli.terminal import progress
+from jointwave.compare.cli.terminal import progress
 with progress("[bold]ten parts") as advance:
     for i in range(10):
         sleep(0.05)
@@ -51,7 +51,7 @@ def on_terminal(command, **environment):
 
 
 def command(*arguments):
-    return [sys.executable, "-m", "compare", *arguments]
+    return [sys.executable, "-m", "jointwave", *arguments]
 
 
 def test_progress_says_what_is_done_and_how_long_it_will_take():

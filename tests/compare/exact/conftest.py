@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cases import Scene
+from jointwave.cases import Scene
 
 PILLAR: dict[str, Any] = {
     "title": "the paper's pillar",

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from cases import SceneError
-from compare.engines import EXACT, solve, solver
-from compare.exact.bar import images, jointed_bar
-from compare.exact.blocks import lattice
+from jointwave.cases import SceneError
+from jointwave.compare.engines import EXACT, solve, solver
+from jointwave.compare.exact.bar import images, jointed_bar
+from jointwave.compare.exact.blocks import lattice
 
 BARRED, DAMPED = {"joints": {"tension": False}}, {"joints": {"damping_ratio": 0.02}}
 LAYER = [{"y": 20.0, "spacing_stiffness": 4.375e8}]

@@ -9,17 +9,17 @@ from math import cos, exp, pi, sin, sqrt
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
-from cases.schema.scene import Scene
 from closed_forms import beam, column, parallel_joints, thin_layer
 from closed_forms.leapfrog import frequencies
 from closed_forms.spall import advance
-from compare.exact.bar import equivalent_bar, images, jointed_bar, series
-from compare.exact.blocks import lattice, sliding_block
-from compare.exact.blocks.chain import chain, contact_forces, rates
-from compare.exact.conditions import drive, joints_are_damped
-from compare.exact.joint import one_joint
-from compare.exact.schemes.leapfrog import modes
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.bar import equivalent_bar, images, jointed_bar, series
+from jointwave.compare.exact.blocks import lattice, sliding_block
+from jointwave.compare.exact.blocks.chain import chain, contact_forces, rates
+from jointwave.compare.exact.conditions import drive, joints_are_damped
+from jointwave.compare.exact.joint import one_joint
+from jointwave.compare.exact.schemes.leapfrog import modes
 
 PERIOD = 2 * pi / sqrt(5000.0)  # of the two blocks against each other, s
 RECORD = {"stress": [0.0, 0.5, 1.0, 2.0], "velocity": [0.5, 1.5]}

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from cases.errors import SceneError
-from cases.histories import Gabor
-from cases.material.calibrate import calibrate
-from cases.read import load_tables
-from compare.engines import solve
-from compare.exact.bar.deconvolution import deconvolve
+from jointwave.cases.errors import SceneError
+from jointwave.cases.histories import Gabor
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.read import load_tables
+from jointwave.compare.engines import solve
+from jointwave.compare.exact.bar.deconvolution import deconvolve
 
 PERIOD, CYCLES = 0.01, 3
 PULSE = Gabor(0.02, PERIOD, CYCLES)

@@ -10,17 +10,17 @@ from numpy.polynomial import polynomial as poly
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-import dem
-from cases import Scene
-from cases.loads import load_history
-from cases.material.calibrate import calibrate
-from cases.sampling import sample_times
-from compare.exact.blocks import no_tension
-from compare.exact.blocks.bernstein import of_powers, sign_changes
-from compare.exact.blocks.chain import chain, receivers
-from compare.exact.blocks.events import integrate
-from compare.exact.blocks.lattice import at_rest
-from compare.exact.conditions import drive
+from jointwave import dem
+from jointwave.cases import Scene
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.compare.exact.blocks import no_tension
+from jointwave.compare.exact.blocks.bernstein import of_powers, sign_changes
+from jointwave.compare.exact.blocks.chain import chain, receivers
+from jointwave.compare.exact.blocks.events import integrate
+from jointwave.compare.exact.blocks.lattice import at_rest
+from jointwave.compare.exact.conditions import drive
 
 D, C = 0.5, 1350.0  # m, about the paper's bar speed, m/s
 ENDS = [("free", "free"), ("free", "fixed"), ("quiet", "fixed"), ("free", "quiet")]

@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from compare.exact.bar import equivalent_bar, images, series
+from jointwave.compare.exact.bar import equivalent_bar, images, series
 
 FIELDS = ("stress", "velocity", "displacement")
 

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cases import Scene
-from cases.histories import Recorded, Sine, Step
-from cases.material.calibrate import calibrate
 from closed_forms.parallel_joints import transmission
-from compare.exact.bar import equivalent_bar, images, jointed_bar, kelvin_voigt, laplace
-from compare.exact.bar.transfer import Bar, End, RockFrom, transfer
+from jointwave.cases import Scene
+from jointwave.cases.histories import Recorded, Sine, Step
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.compare.exact.bar import equivalent_bar, images, jointed_bar, kelvin_voigt, laplace
+from jointwave.compare.exact.bar.transfer import Bar, End, RockFrom, transfer
 
 NONE = np.zeros(0)
 ROCK = Bar(1000.0, (RockFrom(0.0, 2400.0, 4e9, 0.0),), NONE, NONE, NONE, End(0.0), End(0.0))

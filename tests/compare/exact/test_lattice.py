@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from cases.loads import load_history
-from cases.material.calibrate import calibrate
-from cases.sampling import sample_times
 from closed_forms import leapfrog
-from compare.exact.bar import images, jointed_bar, kelvin_voigt
-from compare.exact.blocks import lattice
-from compare.exact.blocks.chain import chain
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.compare.exact.bar import images, jointed_bar, kelvin_voigt
+from jointwave.compare.exact.blocks import lattice
+from jointwave.compare.exact.blocks.chain import chain
 
 SHORT = {"length": 5.0, "side": 0.5, "block": 0.5}
 QUICK = {"shape": "sine", "amplitude": 1e6, "period": 0.002}

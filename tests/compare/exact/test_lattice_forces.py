@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from cases.histories import Integrated, Recorded
-from cases.material.calibrate import calibrate
 from closed_forms import leapfrog
-from compare.exact.blocks import lattice, no_tension
-from compare.exact.blocks.chain import chain
-from compare.exact.linear import twins
+from jointwave.cases.histories import Integrated, Recorded
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.compare.exact.blocks import lattice, no_tension
+from jointwave.compare.exact.blocks.chain import chain
+from jointwave.compare.exact.linear import twins
 
 FIELDS = ("stress", "velocity", "displacement")
 DOWN = {"direction": [0.0, 1.0, 0.0]}

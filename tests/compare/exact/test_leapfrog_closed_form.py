@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from cases.loads import load_history, step_means
-from cases.material.calibrate import calibrate
 from closed_forms import leapfrog
-from compare.exact.bar import images
-from compare.exact.blocks import lattice
+from jointwave.cases.loads import load_history, step_means
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.compare.exact.bar import images
+from jointwave.compare.exact.blocks import lattice
 
 
 def stepped(force, dt, k, m, count):

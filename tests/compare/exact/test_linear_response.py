@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.signal import lsim
 
-from cases.histories import Recorded, Step
-from compare.exact.linear import twins
+from jointwave.cases.histories import Recorded, Step
+from jointwave.compare.exact.linear import twins
 
 A = np.array([[0.0, 3.0], [-3.0, -0.4]])
 B = np.array([0.5, 1.0])

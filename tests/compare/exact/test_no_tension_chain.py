@@ -5,13 +5,13 @@ from math import pi
 import numpy as np
 import pytest
 
-from cases.histories import Recorded, Sine
-from cases.loads import load_history
-from cases.material.calibrate import calibrate
-from cases.sampling import sample_times
 from closed_forms import opening_joint
-from compare.exact.blocks import lattice, no_tension
-from compare.exact.blocks.chain import chain
+from jointwave.cases.histories import Recorded, Sine
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.compare.exact.blocks import lattice, no_tension
+from jointwave.compare.exact.blocks.chain import chain
 
 FIELDS = ("stress", "velocity", "displacement")
 

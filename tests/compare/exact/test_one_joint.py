@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from closed_forms.one_joint import coefficients
-from compare.exact.bar import equivalent_bar
-from compare.exact.joint import one_joint
+from jointwave.compare.exact.bar import equivalent_bar
+from jointwave.compare.exact.joint import one_joint
 
 LAYER = {"y": 20.0, "spacing_stiffness": 4.375e8}
 RECORD = {"stress": [5.0, 20.0, 41.3], "velocity": [0.0, 19.75, 20.0, 33.3]}

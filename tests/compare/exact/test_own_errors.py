@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 
-from cases import Scene
-from cases.material.calibrate import calibrate
-from cases.sampling import sample_times
-from compare.exact.bar import images, kelvin_voigt, series
-from compare.exact.blocks import lattice, spatial_lattice
-from compare.exact.blocks.chain import chain, receivers
-from compare.exact.blocks.events import integrate
-from compare.exact.blocks.spatial import PLANES, plane, row
-from compare.exact.blocks.spatial_lattice import _rows, drive_vector, system
-from compare.exact.conditions import drive
-from compare.exact.joint import one_joint
+from jointwave.cases import Scene
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.compare.exact.bar import images, kelvin_voigt, series
+from jointwave.compare.exact.blocks import lattice, spatial_lattice
+from jointwave.compare.exact.blocks.chain import chain, receivers
+from jointwave.compare.exact.blocks.events import integrate
+from jointwave.compare.exact.blocks.spatial import PLANES, plane, row
+from jointwave.compare.exact.blocks.spatial_lattice import _rows, drive_vector, system
+from jointwave.compare.exact.conditions import drive
+from jointwave.compare.exact.joint import one_joint
 
 QUANTITIES = ("stress", "velocity", "displacement")
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from cases.histories import Ricker, Step
-from compare.exact.joint.rate_state_joint import RateJoint, RateStateWave
+from jointwave.cases.histories import Ricker, Step
+from jointwave.compare.exact.joint.rate_state_joint import RateJoint, RateStateWave
 
 Z = 2e6  # Pa s/m
 JOINT = RateJoint(1e6, 0.6, 0.01, 0.015, 1e-4, 1e-6, 100.0)

@@ -5,7 +5,7 @@ from math import cos, radians, sin, tan
 import numpy as np
 import pytest
 
-from compare.exact.blocks import sliding_block
+from jointwave.compare.exact.blocks import sliding_block
 
 G = 9.81
 

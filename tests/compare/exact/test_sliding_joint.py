@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from cases.histories import Recorded, Ricker, Sine, Step
-from cases.loads import load_history
-from cases.material.calibrate import calibrate
 from closed_forms.one_joint import slip_coefficients
-from compare.exact.bar import images
-from compare.exact.joint import one_joint, sliding_joint
-from compare.exact.joint.sliding_joint import SlipJoint, transmitted
-from compare.exact.joint.slip_weakening import Passed
+from jointwave.cases.histories import Recorded, Ricker, Sine, Step
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.compare.exact.bar import images
+from jointwave.compare.exact.joint import one_joint, sliding_joint
+from jointwave.compare.exact.joint.sliding_joint import SlipJoint, transmitted
+from jointwave.compare.exact.joint.slip_weakening import Passed
 
 Z = 2400.0 * 800.0
 OMEGA = 2 * np.pi / 0.01

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.optimize import fsolve
 
-from cases.histories import Recorded, Ricker, Sine, Step
 from closed_forms.spall import lattice_spall, spall
-from compare.exact.bar import images
-from compare.exact.blocks import lattice
+from jointwave.cases.histories import Recorded, Ricker, Sine, Step
+from jointwave.compare.exact.bar import images
+from jointwave.compare.exact.blocks import lattice
 
 L, C = 50.0, 1350.0
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from cases.loads import load_history, step_means
-from cases.material.calibrate import calibrate
-from cases.material.face import face_points
-from cases.sampling import sample_times
 from closed_forms import leapfrog
-from compare.exact.blocks import lattice, spatial, spatial_lattice
-from compare.exact.conditions import drive
+from jointwave.cases.loads import load_history, step_means
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.face import face_points
+from jointwave.cases.sampling import sample_times
+from jointwave.compare.exact.blocks import lattice, spatial, spatial_lattice
+from jointwave.compare.exact.conditions import drive
 
 ACROSS = {"direction": [1.0, 0.0, 0.0]}
 OBLIQUE = [0.48, 0.6, -0.64]

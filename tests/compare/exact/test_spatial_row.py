@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
-from cases.material.face import face_points
 from closed_forms import cantilever, leapfrog
-from compare.exact.blocks import spatial, spatial_lattice
-from compare.exact.blocks.spatial_lattice import at_rest, system
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.face import face_points
+from jointwave.compare.exact.blocks import spatial, spatial_lattice
+from jointwave.compare.exact.blocks.spatial_lattice import at_rest, system
 
 SHORT = {
     "pillar": {"length": 3.0, "side": 0.7, "block": 0.5},

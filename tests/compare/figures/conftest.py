@@ -4,8 +4,8 @@ import matplotlib
 import numpy as np
 import pytest
 
-from compare.engines import applies, solve
-from compare.misfit.pairs import Comparison
+from jointwave.compare.engines import applies, solve
+from jointwave.compare.misfit.pairs import Comparison
 
 
 @pytest.fixture(scope="session")

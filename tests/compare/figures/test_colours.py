@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from compare.engines import ENGINES, names
-from compare.figures.charts.overlays import variant_styles
-from compare.figures.style import DIFFERENCE, FIELD, TERMS, style
+from jointwave.compare.engines import ENGINES, names
+from jointwave.compare.figures.charts.overlays import variant_styles
+from jointwave.compare.figures.style import DIFFERENCE, FIELD, TERMS, style
 
 #: Of linear RGB, at full severity; normal sight first.
 SIGHTS = {

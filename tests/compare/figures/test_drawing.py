@@ -7,12 +7,12 @@ import pytest
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.text import Annotation
 
-import cases
-from compare.figures.drawing.pillar import MOST, THIN, sketch_of
-from compare.figures.drawing.pulses import pulse_curve
-from compare.figures.drawing.scene import scene_figure
-from compare.misfit.pairs import Comparison
-from compare.scenes import find
+from jointwave import cases
+from jointwave.compare.figures.drawing.pillar import MOST, THIN, sketch_of
+from jointwave.compare.figures.drawing.pulses import pulse_curve
+from jointwave.compare.figures.drawing.scene import scene_figure
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.scenes import find
 
 LAYERS = [
     {"y": 20.0, "spacing_stiffness": 4.375e8},

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.figures.charts.energy import RESIDUAL, energy, ledgers_of
-from results.dataset import energy_residual
+from jointwave.compare.figures.charts.energy import RESIDUAL, energy, ledgers_of
+from jointwave.results.dataset import energy_residual
 
 
 @pytest.fixture(scope="module")

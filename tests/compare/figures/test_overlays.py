@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
-import cases
-from compare.engines import applies, solve
-from compare.figures.charts.overlays import (
+from jointwave import cases
+from jointwave.compare.engines import applies, solve
+from jointwave.compare.figures.charts.overlays import (
     MOST,
     REFERENCE,
     by_solution,
@@ -17,10 +17,10 @@ from compare.figures.charts.overlays import (
     changed_key,
     variant_styles,
 )
-from compare.figures.charts.waveforms import draw_solutions, draw_variants
-from compare.figures.panels import panels
-from compare.misfit.pairs import Comparison
-from compare.misfit.ranking import finest
+from jointwave.compare.figures.charts.waveforms import draw_solutions, draw_variants
+from jointwave.compare.figures.panels import panels
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.misfit.ranking import finest
 
 SHIPPED = Path(cases.__file__).parent
 SHORT = {"time__duration": 0.03}

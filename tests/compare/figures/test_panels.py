@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from compare.exact.blocks import lattice, spatial_lattice
-from compare.figures.charts.waveforms import draw_solutions
-from compare.figures.panels import curve_table, panels
-from compare.misfit.pairs import Comparison
+from jointwave.compare.exact.blocks import lattice, spatial_lattice
+from jointwave.compare.figures.charts.waveforms import draw_solutions
+from jointwave.compare.figures.panels import curve_table, panels
+from jointwave.compare.misfit.pairs import Comparison
 
 RECORD = {"record__stress": [5.0], "record__velocity": [5.25], "time__duration": 0.01}
 TWIST = {"load__arm": 0.2, "record__stress": []}

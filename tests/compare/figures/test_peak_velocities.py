@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
-from cases.read import load_tables
-from compare.figures.charts.peak_velocities import cells_of, peak_velocities
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.read import load_tables
+from jointwave.compare.figures.charts.peak_velocities import cells_of, peak_velocities
 
 
 @pytest.fixture(scope="module")

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cases.read import load_tables
-from compare.figures.charts.propagation import curves_of, propagation
+from jointwave.cases.read import load_tables
+from jointwave.compare.figures.charts.propagation import curves_of, propagation
 
 Y = np.linspace(5.25, 20.25, 16).tolist()  # centres of blocks
 THEORY = "rigid blocks, theory"

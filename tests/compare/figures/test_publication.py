@@ -15,16 +15,16 @@ from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 from matplotlib.text import Text
 
-from cases.errors import SceneError
-from compare.engines import ENGINES, names
-from compare.exact.blocks import lattice
-from compare.figures import fonts
-from compare.figures.publication import MM, STYLES, draw
-from compare.figures.publication_file import FigureRequest, make, save
-from compare.figures.style import style
-from compare.figures.words import CHINESE, WORDS
-from compare.misfit.pairs import Comparison
-from results.dataset import dataset
+from jointwave.cases.errors import SceneError
+from jointwave.compare.engines import ENGINES, names
+from jointwave.compare.exact.blocks import lattice
+from jointwave.compare.figures import fonts
+from jointwave.compare.figures.publication import MM, STYLES, draw
+from jointwave.compare.figures.publication_file import FigureRequest, make, save
+from jointwave.compare.figures.style import style
+from jointwave.compare.figures.words import CHINESE, WORDS
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.results.dataset import dataset
 
 SCENE = "guo-li-2002/fig-03"
 SHORT = {"time__duration": 0.01, "record__velocity": [20.25]}

@@ -5,15 +5,15 @@ import json
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
-from cases.read import load_tables
-from compare.cli.comparison_view import show_comparisons
-from compare.engines import solve
-from compare.figures.tables import READINGS, reading_frame
-from compare.misfit.alignment import align_curve
-from compare.misfit.external import Curves
-from compare.misfit.pairs import Comparison, measure
-from compare.misfit.places import Place
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.read import load_tables
+from jointwave.compare.cli.comparison_view import show_comparisons
+from jointwave.compare.engines import solve
+from jointwave.compare.figures.tables import READINGS, reading_frame
+from jointwave.compare.misfit.alignment import align_curve
+from jointwave.compare.misfit.external import Curves
+from jointwave.compare.misfit.pairs import Comparison, measure
+from jointwave.compare.misfit.places import Place
 
 
 @pytest.fixture(scope="module")

@@ -6,11 +6,11 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex
 from matplotlib.text import Annotation
 
-from cases.read import load_tables
-from compare.figures.drawing import rock_mass
-from compare.figures.drawing.scene import scene_figure
-from compare.figures.drawing.sketch import INK
-from compare.misfit.pairs import Comparison
+from jointwave.cases.read import load_tables
+from jointwave.compare.figures.drawing import rock_mass
+from jointwave.compare.figures.drawing.scene import scene_figure
+from jointwave.compare.figures.drawing.sketch import INK
+from jointwave.compare.misfit.pairs import Comparison
 
 JOINTS = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 PULSE = {"shape": "ricker", "period": 0.005, "amplitude": 1e6}

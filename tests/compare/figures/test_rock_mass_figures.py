@@ -2,12 +2,12 @@
 
 import pytest
 
-from cases.read import load_tables
-from compare.figures.panels import curve_table, panels
-from compare.figures.scene_figures import figures_of
-from compare.figures.tables import distance_frame
-from compare.misfit.pairs import measure
-from compare.report.tables import misfit_table
+from jointwave.cases.read import load_tables
+from jointwave.compare.figures.panels import curve_table, panels
+from jointwave.compare.figures.scene_figures import figures_of
+from jointwave.compare.figures.tables import distance_frame
+from jointwave.compare.misfit.pairs import measure
+from jointwave.compare.report.tables import misfit_table
 
 
 @pytest.fixture

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from compare.engines import solve
-from compare.figures.charts.waveforms import waveforms
-from compare.figures.scene_figures import figures_of, recorded_along
-from compare.figures.style import GIVEN
-from compare.misfit.alignment import align_curve
-from compare.misfit.external import Curves
-from compare.misfit.places import Place
+from jointwave.compare.engines import solve
+from jointwave.compare.figures.charts.waveforms import waveforms
+from jointwave.compare.figures.scene_figures import figures_of, recorded_along
+from jointwave.compare.figures.style import GIVEN
+from jointwave.compare.misfit.alignment import align_curve
+from jointwave.compare.misfit.external import Curves
+from jointwave.compare.misfit.places import Place
 
 
 @pytest.fixture(scope="module")

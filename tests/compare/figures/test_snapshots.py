@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from mpl_toolkits.mplot3d import proj3d
 
-from compare.figures.export import save
-from compare.figures.snapshots import HEAD, STRIP, draw_snapshots
-from results.snapshots import snapshots
-from results.subcells import CORNERS
+from jointwave.compare.figures.export import save
+from jointwave.compare.figures.snapshots import HEAD, STRIP, draw_snapshots
+from jointwave.results.snapshots import snapshots
+from jointwave.results.subcells import CORNERS
 
 TURN = 0.1  # rad
 

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
-import dem
-from cases.material.calibrate import calibrate
-from cases.sampling import Clock
 from closed_forms import leapfrog
-from compare.engines import solve
-from compare.figures import scene_figures
-from compare.figures.charts.spacetime import diagrams_of, space_time
-from compare.figures.scene_figures import along_pillar, recorded_along, sections
-from dem.axial.build import build_model
+from jointwave import dem
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import Clock
+from jointwave.compare.engines import solve
+from jointwave.compare.figures import scene_figures
+from jointwave.compare.figures.charts.spacetime import diagrams_of, space_time
+from jointwave.compare.figures.scene_figures import along_pillar, recorded_along, sections
+from jointwave.dem.axial.build import build_model
 
 
 def fields_of(scene, names):

@@ -5,11 +5,11 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
 from closed_forms.parallel_joints import transmission
-from compare.figures.charts.marks import band_edge, marks_of
-from compare.figures.charts.spectra import TAPERED, spectra, spectra_of, spectrum, tapered
-from compare.figures.panels import panels
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.compare.figures.charts.marks import band_edge, marks_of
+from jointwave.compare.figures.charts.spectra import TAPERED, spectra, spectra_of, spectrum, tapered
+from jointwave.compare.figures.panels import panels
 
 LAYER = {"y": 20.0, "spacing_stiffness": 4.375e8}
 

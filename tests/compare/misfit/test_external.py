@@ -7,21 +7,21 @@ import numpy as np
 import pytest
 import xarray as xr
 
-import dem
-from cases.errors import SceneError
-from cases.schema.tables import Prestress
-from compare.exact.blocks import lattice, spatial_lattice
-from compare.figures.charts.waveforms import draw_solutions
-from compare.figures.comparison import write_comparisons
-from compare.figures.export import DIGITS, write_csv
-from compare.figures.panels import curve_table, panels
-from compare.misfit.alignment import align_curve, distance_at, distances
-from compare.misfit.external import read_curves
-from compare.misfit.pairs import Comparison, measure_curves
-from compare.misfit.places import Place
-from compare.runs import comparison as runs
-from compare.runs.comparison import compare
-from compare.solvers.record import YES
+from jointwave import dem
+from jointwave.cases.errors import SceneError
+from jointwave.cases.schema.tables import Prestress
+from jointwave.compare.exact.blocks import lattice, spatial_lattice
+from jointwave.compare.figures.charts.waveforms import draw_solutions
+from jointwave.compare.figures.comparison import write_comparisons
+from jointwave.compare.figures.export import DIGITS, write_csv
+from jointwave.compare.figures.panels import curve_table, panels
+from jointwave.compare.misfit.alignment import align_curve, distance_at, distances
+from jointwave.compare.misfit.external import read_curves
+from jointwave.compare.misfit.pairs import Comparison, measure_curves
+from jointwave.compare.misfit.places import Place
+from jointwave.compare.runs import comparison as runs
+from jointwave.compare.runs.comparison import compare
+from jointwave.compare.solvers.record import YES
 
 SCENE = "guo-li-2002/fig-03"
 AT_20 = Place("stress", "", (20.0,))

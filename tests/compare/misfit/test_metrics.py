@@ -6,7 +6,7 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from compare.misfit.metrics import (
+from jointwave.compare.misfit.metrics import (
     Worst,
     delay,
     distance,

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from compare.exact.blocks import lattice, spatial_lattice
-from compare.misfit.pairs import measure
+from jointwave.compare.exact.blocks import lattice, spatial_lattice
+from jointwave.compare.misfit.pairs import measure
 
 RECORD = {"record__stress": [5.0], "record__velocity": [5.25], "time__duration": 0.01}
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from cases.read import load_tables
-from compare.misfit.external import read_curves
-from compare.misfit.metrics import pairings, worst
-from compare.misfit.pairs import measure
-from compare.misfit.places import WORDS, Place, parsed, places_of
-from results.plane import plane_dataset
+from jointwave.cases.read import load_tables
+from jointwave.compare.misfit.external import read_curves
+from jointwave.compare.misfit.metrics import pairings, worst
+from jointwave.compare.misfit.pairs import measure
+from jointwave.compare.misfit.places import WORDS, Place, parsed, places_of
+from jointwave.results.plane import plane_dataset
 
 JOINT = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 TABLES = {

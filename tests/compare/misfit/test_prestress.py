@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from compare.engines import ENGINES, applies, names, solve
-from compare.misfit.metrics import worst
+from jointwave.compare.engines import ENGINES, applies, names, solve
+from jointwave.compare.misfit.metrics import worst
 
 RECORD = {"record__stress": [5.0, 9.75], "record__velocity": [5.25]}
 SHORT = {"pillar__length": 15.0, "time__duration": 0.02, **RECORD}

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from compare.engines import ENGINES, names, solver
-from compare.misfit.ranking import (
+from jointwave.compare.engines import ENGINES, names, solver
+from jointwave.compare.misfit.ranking import (
     applicable,
     deciding,
     finest,
@@ -85,7 +85,7 @@ def test_a_reference_is_finer_complete_and_the_same_in_any_order(
 
 @pytest.fixture(scope="module")
 def pillar_scene():
-    import cases
-    from compare.scenes import SHIPPED
+    from jointwave import cases
+    from jointwave.compare.scenes import SHIPPED
 
     return cases.load_variant(SHIPPED / "guo-li-2002" / "fig-03.toml")

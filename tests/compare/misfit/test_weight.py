@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from compare.misfit.differences import peak_differences, peak_ratios, static_difference
-from compare.misfit.metrics import pairings, stacked, worst
-from compare.misfit.places import Place
-from compare.misfit.weight import weigh
+from jointwave.compare.misfit.differences import peak_differences, peak_ratios, static_difference
+from jointwave.compare.misfit.metrics import pairings, stacked, worst
+from jointwave.compare.misfit.places import Place
+from jointwave.compare.misfit.weight import weigh
 
 TIME = 1e-4 * np.arange(200)
 WAVE = np.sin(2e3 * TIME)

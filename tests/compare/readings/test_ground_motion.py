@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from cases.errors import SceneError
-from compare.readings.ground_motion import (
+from jointwave.cases.errors import SceneError
+from jointwave.compare.readings.ground_motion import (
     arias_intensity,
     peak_velocity,
     peak_velocity_map,

@@ -6,12 +6,17 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from cases.errors import SceneError
-from cases.material.calibrate import calibrate
-from cases.read import load_tables
-from compare.engines import solve
-from compare.readings.attenuation import quality_factor, transfer_function, wave_speed, waveforms
-from compare.readings.dispersion import dispersion, dispersion_theory
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.read import load_tables
+from jointwave.compare.engines import solve
+from jointwave.compare.readings.attenuation import (
+    quality_factor,
+    transfer_function,
+    wave_speed,
+    waveforms,
+)
+from jointwave.compare.readings.dispersion import dispersion, dispersion_theory
 
 PLACES = list(np.linspace(5.25, 20.25, 16))  # centres of blocks
 PASSED = 0.048  # s; nothing is back from the end at 60 m before

@@ -7,8 +7,8 @@ import pytest
 from pdfminer.high_level import extract_pages
 from pdfminer.layout import LTTextContainer
 
-from compare.report.report import build
-from compare.report.scenes import PAPER
+from jointwave.compare.report.report import build
+from jointwave.compare.report.scenes import PAPER
 
 TITLE = "A title of so many words that it takes more than one line on a narrow screen"
 

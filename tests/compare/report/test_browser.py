@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from compare.report.report import build
+from jointwave.compare.report.report import build
 
 WIDE, NARROW = (1280, 800), (390, 844)
 TALL = (1280, 1400)  # every figure fits: for its picture the page is not laid out anew

@@ -5,13 +5,13 @@ import dataclasses
 import numpy as np
 import pytest
 
-import cases
-from compare.engines import solve
-from compare.exact.blocks import lattice, no_tension
-from compare.misfit.pairs import Comparison
-from compare.report.claims import CLAIMS, joints, pillar, travel
-from compare.report.claims.pillar import mostly_dispersion
-from compare.report.scenes import PAPER as SCENES
+from jointwave import cases
+from jointwave.compare.engines import solve
+from jointwave.compare.exact.blocks import lattice, no_tension
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.report.claims import CLAIMS, joints, pillar, travel
+from jointwave.compare.report.claims.pillar import mostly_dispersion
+from jointwave.compare.report.scenes import PAPER as SCENES
 
 ALL = [(figure, measure) for figure, claims in CLAIMS.items() for measure in claims.values()]
 

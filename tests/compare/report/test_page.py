@@ -5,13 +5,13 @@ import re
 import pandas as pd
 import pytest
 
-from compare.figures.export import Drawn
-from compare.report.claims.claim import Claim
-from compare.report.overview import overview
-from compare.report.page import render
-from compare.report.scenes import PAPER, SceneRequest, Shown, SolvedScene, without_repeats
-from compare.report.sections import section
-from compare.studies.summary import Summary
+from jointwave.compare.figures.export import Drawn
+from jointwave.compare.report.claims.claim import Claim
+from jointwave.compare.report.overview import overview
+from jointwave.compare.report.page import render
+from jointwave.compare.report.scenes import PAPER, SceneRequest, Shown, SolvedScene, without_repeats
+from jointwave.compare.report.sections import section
+from jointwave.compare.studies.summary import Summary
 
 
 @pytest.fixture

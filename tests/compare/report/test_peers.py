@@ -3,8 +3,8 @@
 import pandas as pd
 import pytest
 
-from cases.errors import SceneError
-from compare.report import peers
+from jointwave.cases.errors import SceneError
+from jointwave.compare.report import peers
 
 DONE = {"settings": '{"elements_per_block": 2}', "state": "done", "misfit": 0.01}
 SECONDS = {"total_misfit": 0.04, "seconds": 0.001, "whole": 0.8, "rate": 1e9}

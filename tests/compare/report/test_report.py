@@ -7,16 +7,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import cases
-from cases.effects import active_effects
-from compare.report.report import build
-from compare.report.scenes import PAPER
-from compare.report.verdict import NOT_CHECKED
-from compare.runs.field_files import read_pvd
-from compare.studies.effects import reported
-from compare.studies.study import load
-from compare.studies.work_precision import REPORTED
-from compare.text import percent
+from jointwave import cases
+from jointwave.cases.effects import active_effects
+from jointwave.compare.report.report import build
+from jointwave.compare.report.scenes import PAPER
+from jointwave.compare.report.verdict import NOT_CHECKED
+from jointwave.compare.runs.field_files import read_pvd
+from jointwave.compare.studies.effects import reported
+from jointwave.compare.studies.study import load
+from jointwave.compare.studies.work_precision import REPORTED
+from jointwave.compare.text import percent
 
 pytestmark = pytest.mark.slow  # minutes: small pages are opened in test_browser
 

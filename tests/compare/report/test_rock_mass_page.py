@@ -5,7 +5,7 @@ import re
 import pandas as pd
 import pytest
 
-from compare.report.report import build
+from jointwave.compare.report.report import build
 
 SQUARE = {
     "title": "One joint in a small square",

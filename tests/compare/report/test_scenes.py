@@ -2,12 +2,12 @@
 
 import pytest
 
-import cases
-from cases.errors import SceneError
-from compare.figures.panels import curve_table, variant_names
-from compare.misfit.pairs import Comparison
-from compare.report.report import build
-from compare.report.scenes import PAPER, ROCK_MASSES, asked_for
+from jointwave import cases
+from jointwave.cases.errors import SceneError
+from jointwave.compare.figures.panels import curve_table, variant_names
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.report.report import build
+from jointwave.compare.report.scenes import PAPER, ROCK_MASSES, asked_for
 
 
 def test_without_names_it_is_the_papers_figures_in_order():
@@ -61,7 +61,7 @@ def test_variants_are_named_by_what_differs(name, names):
 
 def test_variants_of_other_durations_share_one_table(pillar):
     """Where a shorter variant has no sample the cell is empty."""
-    from compare.exact.bar import images
+    from jointwave.compare.exact.bar import images
 
     scenes = [pillar(time__duration=duration, load__cycles=1) for duration in (0.01, 0.02)]
     scenes[1] = scenes[1].model_copy(update={"name": "long"})

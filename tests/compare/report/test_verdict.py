@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from compare.misfit.metrics import Worst
-from compare.misfit.pairs import Comparison
-from compare.report.overview import RankedScene, overview
-from compare.report.verdict import NOT_CHECKED, EngineScore, VariantScore, engine_scores
-from compare.text import in_seconds
+from jointwave.compare.misfit.metrics import Worst
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.report.overview import RankedScene, overview
+from jointwave.compare.report.verdict import NOT_CHECKED, EngineScore, VariantScore, engine_scores
+from jointwave.compare.text import in_seconds
 
 
 @pytest.fixture

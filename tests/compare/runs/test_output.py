@@ -5,9 +5,9 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-import dem
-from compare.exact.blocks import spatial_lattice
-from compare.runs.output import write, write_csv, write_dataset, write_text
+from jointwave import dem
+from jointwave.compare.exact.blocks import spatial_lattice
+from jointwave.compare.runs.output import write, write_csv, write_dataset, write_text
 
 
 def test_failed_write_leaves_the_old_file_and_no_other(tmp_path):

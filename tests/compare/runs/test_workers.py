@@ -5,7 +5,7 @@ import sys
 from functools import partial
 from multiprocessing import active_children
 
-from compare.runs.workers import Workers
+from jointwave.compare.runs.workers import Workers
 
 THREADS = "OPENBLAS_NUM_THREADS"
 

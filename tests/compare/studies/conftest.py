@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from compare.studies.study import Study
+from jointwave.compare.studies.study import Study
 
 
 @pytest.fixture

@@ -8,14 +8,21 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-import dem
-from cases.effects import active_effects
-from compare.misfit.metrics import relative_l2
-from compare.studies import effects
-from compare.studies.effect_removal import left_out
-from compare.studies.effects import EffectRow, Removal, Variant, all_shipped, reported, run
-from compare.studies.effects_summary import draw, sentences, summarise, table
-from compare.studies.step_cost import StepCost
+from jointwave import dem
+from jointwave.cases.effects import active_effects
+from jointwave.compare.misfit.metrics import relative_l2
+from jointwave.compare.studies import effects
+from jointwave.compare.studies.effect_removal import left_out
+from jointwave.compare.studies.effects import (
+    EffectRow,
+    Removal,
+    Variant,
+    all_shipped,
+    reported,
+    run,
+)
+from jointwave.compare.studies.effects_summary import draw, sentences, summarise, table
+from jointwave.compare.studies.step_cost import StepCost
 
 #: ns of a block-step with (dashpots, energy ledger).
 KNOWN = {(False, False): 1.0, (False, True): 3.0, (True, False): 4.0, (True, True): 7.0}

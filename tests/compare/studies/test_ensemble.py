@@ -8,13 +8,13 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-import cases
-from cases.errors import SceneError
-from compare.report.scenes import asked_for
-from compare.scenes import find
-from compare.studies.ensemble import PERCENTILES, STATISTICS
-from compare.studies.sweep import sweep_of
-from dem import simulate
+from jointwave import cases
+from jointwave.cases.errors import SceneError
+from jointwave.compare.report.scenes import asked_for
+from jointwave.compare.scenes import find
+from jointwave.compare.studies.ensemble import PERCENTILES, STATISTICS
+from jointwave.compare.studies.sweep import sweep_of
+from jointwave.dem import simulate
 
 SCENE = "beyond/random-joints"
 SHORT = {"time.duration": 0.02, "record.stress": [10.0, 20.0]}

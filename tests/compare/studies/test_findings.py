@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from compare.studies.findings import cheapest, floor, judged, orders, sentences
-from compare.studies.measure import PointRow
-from compare.studies.study import load, shipped
-from compare.studies.work_precision import run
+from jointwave.compare.studies.findings import cheapest, floor, judged, orders, sentences
+from jointwave.compare.studies.measure import PointRow
+from jointwave.compare.studies.study import load, shipped
+from jointwave.compare.studies.work_precision import run
 
 
 def row(**numbers):

@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-import cases
 import jointwave
-from cases.errors import SceneError, StoppedError
-from cases.schema.keys import keys
-from compare.engines import solve
-from compare.exact.blocks import lattice
-from compare.misfit.external import Curves, read_curves
-from compare.misfit.places import Place
-from compare.scenes import shipped
-from compare.studies import fit_trials
-from compare.studies.fit_files import draw, scene_text
-from compare.studies.fit_keys import changed, free_keys
+from jointwave import cases
+from jointwave.cases.errors import SceneError, StoppedError
+from jointwave.cases.schema.keys import keys
+from jointwave.compare.engines import solve
+from jointwave.compare.exact.blocks import lattice
+from jointwave.compare.misfit.external import Curves, read_curves
+from jointwave.compare.misfit.places import Place
+from jointwave.compare.scenes import shipped
+from jointwave.compare.studies import fit_trials
+from jointwave.compare.studies.fit_files import draw, scene_text
+from jointwave.compare.studies.fit_keys import changed, free_keys
 
 LAYER, LOAD, RATIO = "soft_layers.0.spacing_stiffness", "load.amplitude", "joints.damping_ratio"
 AT_3 = Place("stress", "", (3.0,))

@@ -5,17 +5,17 @@ import json
 import numpy as np
 import pytest
 
-import cases
 import jointwave
-from cases.errors import SceneError
-from cases.read import load_tables
-from cases.schema.keys import keys
-from compare.engines import solve
-from compare.misfit.external import Curves
-from compare.misfit.places import Place
-from compare.scenes import shipped
-from compare.studies.fit_files import scene_text
-from compare.studies.fit_keys import changed, free_keys
+from jointwave import cases
+from jointwave.cases.errors import SceneError
+from jointwave.cases.read import load_tables
+from jointwave.cases.schema.keys import keys
+from jointwave.compare.engines import solve
+from jointwave.compare.misfit.external import Curves
+from jointwave.compare.misfit.places import Place
+from jointwave.compare.scenes import shipped
+from jointwave.compare.studies.fit_files import scene_text
+from jointwave.compare.studies.fit_keys import changed, free_keys
 
 STIFFNESS, AMPLITUDE = "joint_sets.0.normal_stiffness", "waves.0.amplitude"
 TRUE = {STIFFNESS: 5e9, AMPLITUDE: 1.3e6}

@@ -5,16 +5,16 @@ import tracemalloc
 
 import pytest
 
-from cases.errors import SceneError
-from cases.size import LIMIT, estimates, refuse_beyond_memory
-from compare.cli.forecast_view import in_words
-from compare.engines import solve
-from compare.runs import timings
-from compare.studies import parts
-from compare.studies.forecast import forecast, total
-from compare.studies.step_cost import step_costs
-from compare.studies.study import load
-from compare.studies.work_precision import run
+from jointwave.cases.errors import SceneError
+from jointwave.cases.size import LIMIT, estimates, refuse_beyond_memory
+from jointwave.compare.cli.forecast_view import in_words
+from jointwave.compare.engines import solve
+from jointwave.compare.runs import timings
+from jointwave.compare.studies import parts
+from jointwave.compare.studies.forecast import forecast, total
+from jointwave.compare.studies.step_cost import step_costs
+from jointwave.compare.studies.study import load
+from jointwave.compare.studies.work_precision import run
 
 SHORT = {"time__duration": 0.01, "record__velocity": [20.25]}
 SPACE = {"load__direction": [0.6, 0.8, 0.0]}

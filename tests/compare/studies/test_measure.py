@@ -6,16 +6,16 @@ import sys
 import numpy as np
 import pytest
 
-from compare.engines import applies, solve
-from compare.misfit.metrics import misfit, pairings
-from compare.studies import measure as measuring
-from compare.studies import work_precision
-from compare.studies.findings import judged, orders, sentences
-from compare.studies.measure import measure, method_applies
-from compare.studies.reference import finest_of, own_of
-from compare.studies.store import alone
-from compare.studies.study import FineRun, load, shipped
-from compare.studies.work_precision import key, run
+from jointwave.compare.engines import applies, solve
+from jointwave.compare.misfit.metrics import misfit, pairings
+from jointwave.compare.studies import measure as measuring
+from jointwave.compare.studies import work_precision
+from jointwave.compare.studies.findings import judged, orders, sentences
+from jointwave.compare.studies.measure import measure, method_applies
+from jointwave.compare.studies.reference import finest_of, own_of
+from jointwave.compare.studies.store import alone
+from jointwave.compare.studies.study import FineRun, load, shipped
+from jointwave.compare.studies.work_precision import key, run
 
 STEP = "numerics.dem.step_fraction"
 FINE = {"method": "dem", "changes": {STEP: 0.01}, "coarser": {STEP: 0.02}}
@@ -170,7 +170,7 @@ def test_timed_points_are_run_one_at_a_time_whatever_the_pool(study, tmp_path):
     """A pool that cannot be made is not asked for; a second timed study waits for the first."""
     rows = run(study(timed=True, repeats=2), tmp_path, pool=lambda work, points: 1 / 0)
     assert all(row.seconds > 0 and row.spread >= 0 for row in rows)
-    program = "from compare.studies.store import alone\nwith alone(): print('in')"
+    program = "from jointwave.compare.studies.store import alone\nwith alone(): print('in')"
     with alone():
         waiting = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE)
         with pytest.raises(subprocess.TimeoutExpired):

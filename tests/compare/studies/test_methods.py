@@ -2,10 +2,10 @@
 
 import pytest
 
-from compare.engines import solve
-from compare.misfit.metrics import misfit, relative_l2
-from compare.studies.measure import measure
-from compare.studies.methods import adaptive, plain_dolfinx
+from jointwave.compare.engines import solve
+from jointwave.compare.misfit.metrics import misfit, relative_l2
+from jointwave.compare.studies.measure import measure
+from jointwave.compare.studies.methods import adaptive, plain_dolfinx
 
 RICKER = {"shape": "ricker", "amplitude": 1e6, "period": 0.01}
 

@@ -7,17 +7,17 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-import cases
-from cases.errors import SceneError
-from cases.read import parse_override
-from compare.engines import solve
-from compare.misfit.metrics import misfit
-from compare.runs import timings
-from compare.scenes import find
-from compare.studies import plan as plans
-from compare.studies.elements import coarsest, configured, elements, halved, plain, rock
-from compare.studies.plan import Plan, PlannedRun, plan
-from compare.studies.reference import Reference
+from jointwave import cases
+from jointwave.cases.errors import SceneError
+from jointwave.cases.read import parse_override
+from jointwave.compare.engines import solve
+from jointwave.compare.misfit.metrics import misfit
+from jointwave.compare.runs import timings
+from jointwave.compare.scenes import find
+from jointwave.compare.studies import plan as plans
+from jointwave.compare.studies.elements import coarsest, configured, elements, halved, plain, rock
+from jointwave.compare.studies.plan import Plan, PlannedRun, plan
+from jointwave.compare.studies.reference import Reference
 
 PILLAR = find("guo-li-2002/fig-03")
 RICKER = {"shape": "ricker", "amplitude": 1e6, "period": 0.01}

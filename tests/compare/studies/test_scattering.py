@@ -4,11 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from compare.engines import solve
-from compare.studies import parts
-from compare.studies import scattering as points
-from compare.studies.scattering import JointsPoint, JointsRow, measure, scene_of
-from compare.studies.scattering_summary import WAVES, draw, make_study
+from jointwave.compare.engines import solve
+from jointwave.compare.studies import parts
+from jointwave.compare.studies import scattering as points
+from jointwave.compare.studies.scattering import JointsPoint, JointsRow, measure, scene_of
+from jointwave.compare.studies.scattering_summary import WAVES, draw, make_study
 
 #: |R_p|, |R_s|, |T_p|, |T_s| of P at nu = 0.25, K_n = Z_p omega, K_s = Z_s omega, found by solving
 #: the four boundary conditions as they stand.

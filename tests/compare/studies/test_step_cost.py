@@ -2,12 +2,12 @@
 
 import pytest
 
-import cases
-from cases.effects import effects
-from compare.scenes import find
-from compare.solvers.record import OF_BLOCK_IN_PLANE
-from compare.studies import step_cost
-from compare.studies.step_cost import shortened, step_costs, with_every_effect
+from jointwave import cases
+from jointwave.cases.effects import effects
+from jointwave.compare.scenes import find
+from jointwave.compare.solvers.record import OF_BLOCK_IN_PLANE
+from jointwave.compare.studies import step_cost
+from jointwave.compare.studies.step_cost import shortened, step_costs, with_every_effect
 
 PILLAR = find("guo-li-2002/fig-03")
 

@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
-from compare.studies.store import Store, in_processes, key, on_executor, plain
+from jointwave.cases.errors import SceneError
+from jointwave.compare import studies
+from jointwave.compare.studies.store import Store, in_processes, key, on_executor, plain
 
 
 class Square(NamedTuple):
@@ -111,7 +112,7 @@ def test_keys_tell_all_that_decides_a_point_apart(monkeypatch):
     assert key("a", {"x": 1, "y": 2}) == key("a", {"y": 2, "x": 1})
     assert len({key("a", 1), key("a", 2), key("b", 1), key("a", [1])}) == 4
     before = key("a")
-    monkeypatch.setattr("compare.studies.store.program", lambda: "another")
+    monkeypatch.setattr(studies.store, "program", lambda: "another")
     assert key("a") != before
 
 

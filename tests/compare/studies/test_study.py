@@ -8,11 +8,11 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from cases.errors import SceneError
-from compare.studies.findings import judged
-from compare.studies.measure import PointRow
-from compare.studies.study import load
-from compare.studies.work_precision import COSTS, draw, run
+from jointwave.cases.errors import SceneError
+from jointwave.compare.studies.findings import judged
+from jointwave.compare.studies.measure import PointRow
+from jointwave.compare.studies.study import load
+from jointwave.compare.studies.work_precision import COSTS, draw, run
 
 GOOD = """
 title = "two steps"
@@ -105,7 +105,7 @@ def test_command_writes_what_it_prints(made):
 def test_two_ranks_give_the_table_of_one_process(made, tmp_path, mpiexec):
     (folder, facts), (launcher, env) = made, mpiexec
     study = ("study", folder / "mine.toml", "--out", tmp_path, "--json")
-    two = [*launcher, "-n", "2", sys.executable, "-m", "compare", *map(str, study)]
+    two = [*launcher, "-n", "2", sys.executable, "-m", "jointwave", *map(str, study)]
     done = subprocess.run(two, capture_output=True, text=True, env=env)
     assert done.returncode == 0, done.stderr
     ranks = json.loads(done.stdout)

@@ -8,11 +8,11 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-import cases
-from compare.scenes import find
-from compare.studies.sweep import Sweep, SweepCase, SweepOutcome
-from compare.studies.sweep_table import summarise
-from dem import simulate
+from jointwave import cases
+from jointwave.compare.scenes import find
+from jointwave.compare.studies.sweep import Sweep, SweepCase, SweepOutcome
+from jointwave.compare.studies.sweep_table import summarise
+from jointwave.dem import simulate
 
 SCENE = "guo-li-2002/fig-03"
 SHORT = ("--set", "time.duration=0.02", "--set", "record.velocity=[20.25]")

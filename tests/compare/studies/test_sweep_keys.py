@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cases.errors import SceneError
-from compare.studies.sweep_keys import axes
+from jointwave.cases.errors import SceneError
+from jointwave.compare.studies.sweep_keys import axes
 
 KEY = "joints.damping_ratio"
 

@@ -5,11 +5,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from cases.sampling import Clock
-from continuum.build import build_model, discretise
-from continuum.implicit.balance import implicit_matrices
-from continuum.implicit.run import Implicit
-from continuum.state import TERMS, empty_samples, state_at_rest
+from jointwave.cases.sampling import Clock
+from jointwave.continuum.build import build_model, discretise
+from jointwave.continuum.implicit.balance import implicit_matrices
+from jointwave.continuum.implicit.run import Implicit
+from jointwave.continuum.state import TERMS, empty_samples, state_at_rest
 
 
 class Run(NamedTuple):

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from cases.material.calibrate import calibrate
 from closed_forms import generalised_alpha as theory
-from compare.exact.bar import images, jointed_bar
-from continuum.build import critical_step_of, discretise, operators
-from continuum.implicit.balance import implicit_matrices
-from continuum.implicit.generalised_alpha import scheme
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.compare.exact.bar import images, jointed_bar
+from jointwave.continuum.build import critical_step_of, discretise, operators
+from jointwave.continuum.implicit.balance import implicit_matrices
+from jointwave.continuum.implicit.generalised_alpha import scheme
 from tests.continuum.conftest import take
 
 RICKER = {"load": {"shape": "ricker", "amplitude": 1e6, "period": 0.01}}

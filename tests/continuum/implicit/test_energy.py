@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
 from closed_forms import generalised_alpha as theory
-from continuum.implicit.generalised_alpha import scheme
-from continuum.state import TERMS
-from results.dataset import imbalance
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.continuum.implicit.generalised_alpha import scheme
+from jointwave.continuum.state import TERMS
+from jointwave.results.dataset import imbalance
 
 OBLIQUE = {"load__direction": [0.6, 0.8, 0.0]}
 ACROSS = OBLIQUE | {"motion__rotation": "none"}

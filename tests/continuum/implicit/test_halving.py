@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from cases.errors import StoppedError, UnstableError
-from continuum import simulate
-from continuum.implicit import step as implicit_step
-from continuum.implicit.run import HALVINGS
-from continuum.implicit.substeps import end_resistance, shortened
-from joints.ends import half_spring
-from results.arrays import arrays
+from jointwave.cases.errors import StoppedError, UnstableError
+from jointwave.continuum import simulate
+from jointwave.continuum.implicit import step as implicit_step
+from jointwave.continuum.implicit.run import HALVINGS
+from jointwave.continuum.implicit.substeps import end_resistance, shortened
+from jointwave.joints.ends import half_spring
+from jointwave.results.arrays import arrays
 
 
 def watched(run, refuse):

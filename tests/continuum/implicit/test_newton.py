@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_matrix, random
 
-from continuum.implicit import step as implicit_step
-from continuum.implicit.factors import Factors
-from continuum.implicit.newton import MOST_ITERATIONS, newton
-from continuum.implicit.pattern import pattern
+from jointwave.continuum.implicit import step as implicit_step
+from jointwave.continuum.implicit.factors import Factors
+from jointwave.continuum.implicit.newton import MOST_ITERATIONS, newton
+from jointwave.continuum.implicit.pattern import pattern
 
 
 def roots_of_two(x):

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from cases.errors import SceneError, StoppedError
-from cases.sampling import Clock
-from continuum.build import build_model, discretise
-from continuum.implicit.static import settle_static
-from continuum.state import state_at_rest
+from jointwave.cases.errors import SceneError, StoppedError
+from jointwave.cases.sampling import Clock
+from jointwave.continuum.build import build_model, discretise
+from jointwave.continuum.implicit.static import settle_static
+from jointwave.continuum.state import state_at_rest
 
 FEW = {"pillar__length": 1.5, "record__stress": [0.5], "record__velocity": [1.0]}
 

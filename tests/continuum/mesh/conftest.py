@@ -6,10 +6,10 @@ from math import factorial
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
-from continuum.mesh.cells import DIMENSION, jacobians
-from continuum.mesh.description import Mesh
-from continuum.mesh.session import gmsh_session
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.continuum.mesh.cells import DIMENSION, jacobians
+from jointwave.continuum.mesh.description import Mesh
+from jointwave.continuum.mesh.session import gmsh_session
 
 
 @pytest.fixture

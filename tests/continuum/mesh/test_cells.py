@@ -4,8 +4,8 @@ import basix
 import numpy as np
 import pytest
 
-from cases.gmsh_file import FROM_GMSH
-from continuum.mesh.cells import (
+from jointwave.cases.gmsh_file import FROM_GMSH
+from jointwave.continuum.mesh.cells import (
     CORNERS,
     DIMENSION,
     FACETS,
@@ -13,7 +13,7 @@ from continuum.mesh.cells import (
     jacobians,
     oriented,
 )
-from continuum.mesh.session import gmsh_session
+from jointwave.continuum.mesh.session import gmsh_session
 
 GMSH_NAME = {
     "interval": "Line",

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from continuum.mesh.cut import pieces, split
+from jointwave.continuum.mesh.cut import pieces, split
 
 X = np.array([(x, y) for y in range(3) for x in range(3)], dtype=float)
 CELLS = np.array([[0, 1, 3, 4], [1, 2, 4, 5], [3, 4, 6, 7], [4, 5, 7, 8]])

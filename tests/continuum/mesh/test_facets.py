@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from continuum.mesh import facets
-from continuum.mesh.description import Part
-from continuum.mesh.facets import Facets
-from continuum.mesh.pillar import pillar_mesh
+from jointwave.continuum.mesh import facets
+from jointwave.continuum.mesh.description import Part
+from jointwave.continuum.mesh.facets import Facets
+from jointwave.continuum.mesh.pillar import pillar_mesh
 
 KINDS = [(1, "hexahedron"), (2, "hexahedron"), (2, "simplex"), (3, "hexahedron"), (3, "simplex")]
 

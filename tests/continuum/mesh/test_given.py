@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
-from continuum.mesh.cells import DIMENSION, jacobians
-from continuum.mesh.given import given_mesh
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.continuum.mesh.cells import DIMENSION, jacobians
+from jointwave.continuum.mesh.given import given_mesh
 
 KINDS = ["quadrilateral", "triangle", "hexahedron", "tetrahedron"]
 FLAT, STEEP = (0.5, 0.5), (0.6, 1.3)  # y at x = -0.2 and at x = 0.2: 60 degrees

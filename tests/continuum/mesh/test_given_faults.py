@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
-from cases.material.calibrate import calibrate
-from continuum.mesh.given import given_mesh
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.continuum.mesh.given import given_mesh
 
 
 @pytest.fixture

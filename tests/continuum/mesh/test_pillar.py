@@ -5,8 +5,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from continuum.mesh.cells import jacobians
-from continuum.mesh.pillar import elements_in_block, pillar_mesh
+from jointwave.continuum.mesh.cells import jacobians
+from jointwave.continuum.mesh.pillar import elements_in_block, pillar_mesh
 
 KINDS = [
     (1, "hexahedron"),

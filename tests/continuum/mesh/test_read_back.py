@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
-from continuum.mesh.given import given_mesh
-from continuum.mesh.pillar import pillar_mesh
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.continuum.mesh.given import given_mesh
+from jointwave.continuum.mesh.pillar import pillar_mesh
 
 KINDS = [(2, "hexahedron"), (2, "simplex"), (3, "hexahedron"), (3, "simplex")]
 

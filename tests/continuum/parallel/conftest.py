@@ -11,7 +11,7 @@ import pytest
 IN_TURN = """
 import json, sys
 from mpi4py import MPI
-from compare.cli import program
+from jointwave.compare.cli import program
 
 ours = sys.stdout, sys.stderr
 for arguments in json.loads(sys.argv[1]):

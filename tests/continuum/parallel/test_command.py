@@ -106,10 +106,10 @@ def test_rigid_blocks_run_once_in_the_first_process(told):
 SERIAL = """
 import sys
 from mpi4py import MPI
-from compare.cli import program
-from compare.runs import processes
-from continuum import build
-from continuum.parallel import body
+from jointwave.compare.cli import program
+from jointwave.compare.runs import processes
+from jointwave.continuum import build
+from jointwave.continuum.parallel import body
 
 def broken(*arguments, **named):
     raise {error}
@@ -143,7 +143,7 @@ def test_a_process_that_fails_alone_ends_all(
 def test_an_mpiexec_of_another_mpi_is_refused(said):
     """Its processes would not know of each other, and all write the same file."""
     environment = {**os.environ, "MV2_COMM_WORLD_SIZE": "4"}
-    command = [sys.executable, "-m", "compare", "run", *SCENE]
+    command = [sys.executable, "-m", "jointwave", "run", *SCENE]
     done = subprocess.run(command, capture_output=True, text=True, env=environment)
     assert done.returncode == 2
     assert said(done) == [

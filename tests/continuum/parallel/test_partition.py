@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse import coo_matrix, csr_matrix, diags, identity, kron
 
-from cases.errors import SceneError
-from continuum.mesh.description import Joints, Mesh, Part
-from continuum.parallel.graph import halved
-from continuum.parallel.partition import WHOLE, copies_of, ranks_of_cells, restrict
+from jointwave.cases.errors import SceneError
+from jointwave.continuum.mesh.description import Joints, Mesh, Part
+from jointwave.continuum.parallel.graph import halved
+from jointwave.continuum.parallel.partition import WHOLE, copies_of, ranks_of_cells, restrict
 
 
 def bar(counts: list[tuple[int, int]]) -> Mesh:

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from cases.read import load
-from compare.solvers.incident import incident
-from continuum.explicit.critical import RESIDUAL
-from continuum.simulate import simulate
-from results.snapshots import snapshots_of
+from jointwave.cases.read import load
+from jointwave.compare.solvers.incident import incident
+from jointwave.continuum.explicit.critical import RESIDUAL
+from jointwave.continuum.simulate import simulate
+from jointwave.results.snapshots import snapshots_of
 
 #: Of the largest value of a waveform: sums of some thousand steps in another order; with friction
 #: and fracture, too. Newton's method ends far below what it may leave, 1e-10 of the forces.

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from cases.read import load_variant
-from compare.engines import solve
-from compare.scenes import find
-from continuum.explicit.critical import RESIDUAL
-from results.dataset import energy_residual
-from results.snapshots import snapshots_of
+from jointwave.cases.read import load_variant
+from jointwave.compare.engines import solve
+from jointwave.compare.scenes import find
+from jointwave.continuum.explicit.critical import RESIDUAL
+from jointwave.results.dataset import energy_residual
+from jointwave.results.snapshots import snapshots_of
 
 FILE = "guo-li-2002/fig-03"
 SAME = 1e-10  # of the largest value of a waveform

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from cases.schema.rock_mass import RockMass
-from continuum.plane.discrete import PlaneDiscrete
-from continuum.plane.rock import discretise
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.continuum.plane.discrete import PlaneDiscrete
+from jointwave.continuum.plane.rock import discretise
 
 QUIET = dict.fromkeys(("left", "right", "bottom", "top"), "quiet")
 

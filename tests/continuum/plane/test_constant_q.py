@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cases.material.constant_q import fitted
-from continuum.explicit.march import run as take
-from continuum.run import run_of
+from jointwave.cases.material.constant_q import fitted
+from jointwave.continuum.explicit.march import run as take
+from jointwave.continuum.run import run_of
 from tests.continuum.test_constant_q import started
 from tests.continuum.test_modes import free_mode
 

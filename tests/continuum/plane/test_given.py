@@ -6,16 +6,16 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
-from cases.read import load
-from compare.engines import solver
-from compare.solvers.incident import incident
-from continuum.build import operators
-from continuum.mesh.session import gmsh_session
-from continuum.plane.loads import pushes
-from continuum.plane.rock import discretise
-from continuum.simulate import simulate
-from results.dataset import energy_residual
+from jointwave.cases.errors import SceneError
+from jointwave.cases.read import load
+from jointwave.compare.engines import solver
+from jointwave.compare.solvers.incident import incident
+from jointwave.continuum.build import operators
+from jointwave.continuum.mesh.session import gmsh_session
+from jointwave.continuum.plane.loads import pushes
+from jointwave.continuum.plane.rock import discretise
+from jointwave.continuum.simulate import simulate
+from jointwave.results.dataset import energy_residual
 
 SIZE = 10.0  # m, of the square
 STRESS = np.array([[-3e6, 7e5], [7e5, -1e6]])  # Pa, tension positive

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from compare.engines import solve
-from compare.exact.rock_mass.field import field_of
-from compare.misfit.metrics import relative_l2
-from continuum import simulate
+from jointwave.compare.engines import solve
+from jointwave.compare.exact.rock_mass.field import field_of
+from jointwave.compare.misfit.metrics import relative_l2
+from jointwave.continuum import simulate
 
 SOFT = {"name": "soft", "dip": 20.0, "through": [10.0, 9.0], "density": 2200.0}
 HARD = {"name": "hard", "dip": 20.0, "through": [10.0, 14.0], "intact_modulus": 8e10}

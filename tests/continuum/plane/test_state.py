@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
-from continuum import applies, simulate
-from continuum.explicit.march import readings
-from continuum.implicit.balance import implicit_matrices, trial_forces
-from continuum.implicit.static import settle_static
-from continuum.implicit.substeps import UNLOADED
-from continuum.plane.receivers import receivers
-from continuum.plane.rock import discretise
-from continuum.run import run_of
-from results.arrays import copied
+from jointwave.cases.errors import SceneError
+from jointwave.continuum import applies, simulate
+from jointwave.continuum.explicit.march import readings
+from jointwave.continuum.implicit.balance import implicit_matrices, trial_forces
+from jointwave.continuum.implicit.static import settle_static
+from jointwave.continuum.implicit.substeps import UNLOADED
+from jointwave.continuum.plane.receivers import receivers
+from jointwave.continuum.plane.rock import discretise
+from jointwave.continuum.run import run_of
+from jointwave.results.arrays import copied
 
 STEP = {"shape": "step", "amplitude": 1e6}
 HELD = {"bottom": "fixed"}

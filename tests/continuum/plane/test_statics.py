@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from cases.material.rock import elastic_rock
-from cases.partition.periodic import of_all
-from continuum.build import operators
-from continuum.space.evaluation import quadrature_in
+from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.partition.periodic import of_all
+from jointwave.continuum.build import operators
+from jointwave.continuum.space.evaluation import quadrature_in
 
 #: xx, yy, xy, Pa, tension positive; the other where joints that end at others carry nothing: with
 #: what they opened by, blocks at their ends would not fit together.
@@ -192,7 +192,7 @@ def divergence(rock, x, h=1e-4):
 
 def held_nodes(body):
     """Return the freedoms of the nodes on the boundary."""
-    from continuum.plane.sides import points_on
+    from jointwave.continuum.plane.sides import points_on
 
     nodes = np.unique(points_on(body, list(body.mesh.sides)).node)
     return body.freedom(nodes[:, None], np.arange(2)).ravel()
@@ -200,8 +200,8 @@ def held_nodes(body):
 
 def add_tractions(found, load, rock):
     """Add what the rock's stress pulls at both faces of the joint, which its springs do not."""
-    from continuum.space.evaluation import places_in
-    from continuum.space.interface import facet_points
+    from jointwave.continuum.space.evaluation import places_in
+    from jointwave.continuum.space.interface import facet_points
 
     body = found.body
     joints = body.mesh.joints

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from cases.errors import UnstableError
-from cases.incident import FreeField, PlaneWave, plane_wave
-from cases.loads import history_of
 from closed_forms.quiet_face import coefficients
-from compare.exact.rock_mass.effective_medium import medium_field
-from compare.exact.rock_mass.field import field_of
-from compare.exact.rock_mass.line_force import SOLVER as LINE_FORCE
-from compare.exact.rock_mass.oblique_joint import SOLVER as ONE_JOINT
-from continuum import applies, simulate
-from results.arrays import copied, fill
+from jointwave.cases.errors import UnstableError
+from jointwave.cases.incident import FreeField, PlaneWave, plane_wave
+from jointwave.cases.loads import history_of
+from jointwave.compare.exact.rock_mass.effective_medium import medium_field
+from jointwave.compare.exact.rock_mass.field import field_of
+from jointwave.compare.exact.rock_mass.line_force import SOLVER as LINE_FORCE
+from jointwave.compare.exact.rock_mass.oblique_joint import SOLVER as ONE_JOINT
+from jointwave.continuum import applies, simulate
+from jointwave.results.arrays import copied, fill
 
 
 def misfit(found, exact):

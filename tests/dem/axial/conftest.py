@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
-from cases.sampling import Clock
-from dem.axial.build import build_model
-from dem.axial.leapfrog import march
-from dem.axial.state import state_at_rest
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import Clock
+from jointwave.dem.axial.build import build_model
+from jointwave.dem.axial.leapfrog import march
+from jointwave.dem.axial.state import state_at_rest
 
 
 @pytest.fixture

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import dem
-from cases.loads import load_history
-from compare.exact.blocks import lattice, no_tension, spatial_lattice
-from compare.misfit.metrics import misfit, relative_l2
+from jointwave import dem
+from jointwave.cases.loads import load_history
+from jointwave.compare.exact.blocks import lattice, no_tension, spatial_lattice
+from jointwave.compare.misfit.metrics import misfit, relative_l2
 
 SOFT = [{"y": 20.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.02}]
 DOWN = {"direction": [0, 1, 0]}

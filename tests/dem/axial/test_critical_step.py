@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import dem
-from cases.errors import SceneError, UnstableError
-from cases.material.calibrate import calibrate
-from dem.axial.stability import critical_chain_step
+from jointwave import dem
+from jointwave.cases.errors import SceneError, UnstableError
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.dem.axial.stability import critical_chain_step
 
 SEGMENTS = [
     {"y": [2.0, 4.0], "density": 5000.0, "block": 0.25},

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import dem
-from cases.material.calibrate import calibrate
 from closed_forms.leapfrog import frequencies
+from jointwave import dem
+from jointwave.cases.material.calibrate import calibrate
 
 
 def decay_rates(matrix, dt, omega):

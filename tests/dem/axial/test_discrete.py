@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-import dem
-from cases.loads import load_history
-from cases.material.calibrate import calibrate
-from cases.sampling import Clock
 from closed_forms import leapfrog
-from compare.exact.bar import images
-from dem.axial.build import build_model
-from dem.axial.leapfrog import march
-from dem.axial.state import state_at_rest
+from jointwave import dem
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import Clock
+from jointwave.compare.exact.bar import images
+from jointwave.dem.axial.build import build_model
+from jointwave.dem.axial.leapfrog import march
+from jointwave.dem.axial.state import state_at_rest
 
 
 def blocks_after(scene, clock, load=None):

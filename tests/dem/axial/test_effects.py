@@ -4,12 +4,12 @@ import numba
 import numpy as np
 import pytest
 
-import dem
-from cases.material.calibrate import calibrate
-from dem.axial.build import build
-from dem.axial.leapfrog import arguments, loop_for
-from dem.axial.samples import buffers
-from joints.law import Law
+from jointwave import dem
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.dem.axial.build import build
+from jointwave.dem.axial.leapfrog import arguments, loop_for
+from jointwave.dem.axial.samples import buffers
+from jointwave.joints.law import Law
 
 COMPRESSION = {"load": {"shape": "step", "amplitude": 1e6}, "time__duration": 0.03}
 

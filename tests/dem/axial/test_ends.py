@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-import dem
-from cases.material.calibrate import calibrate
+from jointwave import dem
+from jointwave.cases.material.calibrate import calibrate
 
 RAMP, STEADY = 40, 60  # periods: a slow start excites nothing near the cut-off of the chain
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-import dem
-from results.dataset import energy_residual
+from jointwave import dem
+from jointwave.results.dataset import energy_residual
 
 DOWN = {"direction": [0, 1, 0]}
 HELD = {"start": "matched", "end": "fixed"}

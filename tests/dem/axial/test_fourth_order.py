@@ -3,22 +3,22 @@
 import numpy as np
 import pytest
 
-import dem
-from cases.errors import SceneError
-from cases.material.calibrate import calibrate
-from cases.sampling import Clock
-from compare.exact.blocks import lattice, no_tension
-from compare.misfit.metrics import misfit
-from dem.axial.fourth_order import (
+from jointwave import dem
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import Clock
+from jointwave.compare.exact.blocks import lattice, no_tension
+from jointwave.compare.misfit.metrics import misfit
+from jointwave.dem.axial.fourth_order import (
     build,
     compose,
     half_trace,
     make_stepper,
     stability_limit,
 )
-from dem.axial.samples import buffers
-from dem.axial.state import state_at_rest
-from results.dataset import energy_residual
+from jointwave.dem.axial.samples import buffers
+from jointwave.dem.axial.state import state_at_rest
+from jointwave.results.dataset import energy_residual
 
 RICKER = {"shape": "ricker", "amplitude": 1e6, "period": 0.01}
 SOFT = [{"y": 20.0, "spacing_stiffness": 4.375e8}]

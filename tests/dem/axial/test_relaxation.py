@@ -5,16 +5,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import dem
-from cases.material.calibrate import calibrate
-from cases.sampling import Clock
-from compare.engines import solve
-from compare.misfit.metrics import misfit
-from dem.axial.build import build, build_model
-from dem.axial.leapfrog import march
-from dem.axial.relaxation import unrelaxed
-from dem.axial.state import state_at_rest
-from results.dataset import energy_residual
+from jointwave import dem
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import Clock
+from jointwave.compare.engines import solve
+from jointwave.compare.misfit.metrics import misfit
+from jointwave.dem.axial.build import build, build_model
+from jointwave.dem.axial.leapfrog import march
+from jointwave.dem.axial.relaxation import unrelaxed
+from jointwave.dem.axial.state import state_at_rest
+from jointwave.results.dataset import energy_residual
 from tests.cases.material.test_constant_q import roots
 
 Q = {"rock__quality_factor": 10.0, "rock__reference_frequency": 100.0}

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-import dem
-from cases.material.calibrate import calibrate
 from closed_forms.spall import lattice_spall
-from dem.axial.build import build
-from dem.axial.leapfrog import make_stepper, march
-from dem.axial.samples import buffers, terms
-from results.dataset import energy_residual
+from jointwave import dem
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.dem.axial.build import build
+from jointwave.dem.axial.leapfrog import make_stepper, march
+from jointwave.dem.axial.samples import buffers, terms
+from jointwave.results.dataset import energy_residual
 
 STRENGTH, ENERGY = 1e6, 500.0  # Pa, J/m2
 

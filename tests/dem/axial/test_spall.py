@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from cases.loads import load_history
-from cases.material.calibrate import calibrate
 from closed_forms.spall import lattice_spall, spall
-from dem.axial.build import build
-from dem.axial.leapfrog import march
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.dem.axial.build import build
+from jointwave.dem.axial.leapfrog import march
 
 
 @pytest.mark.parametrize("strength", [5e5, 6e5, 8e5])  # the wavelet's own tension is 4.5e5

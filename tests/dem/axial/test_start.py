@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import dem
-from cases.errors import SceneError
-from cases.material.calibrate import calibrate
+from jointwave import dem
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import calibrate
 
 G = 9.81
 DOWN = {"direction": [0, 1, 0]}

@@ -5,16 +5,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cases.material.contact_points import points_of
-from cases.validate import validated
-from dem.blocks.model import (
+from jointwave.cases.material.contact_points import points_of
+from jointwave.cases.validate import validated
+from jointwave.dem.blocks.model import (
     Blocks,
     KernelFlags,
     PlaneModel,
     held_by,
 )
-from dem.blocks.tiles import contacts_of
-from joints.law import Law, parts_of, table_of
+from jointwave.dem.blocks.tiles import contacts_of
+from jointwave.joints.law import Law, parts_of, table_of
 
 SIDE, DENSITY, K_N, K_S = 0.5, 2600.0, 9e9, 4e9
 NUMBER = np.array([6, 5])  # blocks along x and y

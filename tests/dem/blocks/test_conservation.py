@@ -6,12 +6,12 @@ The ledger is kept throughout, so that each law is compiled once.
 import numpy as np
 import pytest
 
-from dem.blocks.leapfrog import march, samples_for
-from dem.blocks.model import state_at_rest
-from dem.blocks.tile import BEND, FORCE_X, FORCE_Y
-from dem.blocks.tiles import LANES
-from joints.law import Law
-from results.plane import TERMS
+from jointwave.dem.blocks.leapfrog import march, samples_for
+from jointwave.dem.blocks.model import state_at_rest
+from jointwave.dem.blocks.tile import BEND, FORCE_X, FORCE_Y
+from jointwave.dem.blocks.tiles import LANES
+from jointwave.joints.law import Law
+from jointwave.results.plane import TERMS
 
 SIDE = 0.5  # of the blocks of `lattice`, m
 STIFF = {"normal_stiffness": 9e9, "shear_stiffness": 4e9}

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from dem import simulate
-from dem.blocks.leapfrog import samples_for
-from dem.blocks.model import state_at_rest
-from dem.blocks.simulate import step
-from dem.blocks.start import PARTS, start
-from dem.blocks.system import prepared
-from dem.blocks.tile import FORCE_X, FORCE_Y, relative
-from dem.blocks.tiles import LENGTH
+from jointwave.dem import simulate
+from jointwave.dem.blocks.leapfrog import samples_for
+from jointwave.dem.blocks.model import state_at_rest
+from jointwave.dem.blocks.simulate import step
+from jointwave.dem.blocks.start import PARTS, start
+from jointwave.dem.blocks.system import prepared
+from jointwave.dem.blocks.tile import FORCE_X, FORCE_Y, relative
+from jointwave.dem.blocks.tiles import LENGTH
 
 STRESS = {"xx": 4e6, "yy": 5e6, "xy": 5e5}
 TENSOR = np.array([[4e6, 5e5], [5e5, 5e6]])
@@ -172,7 +172,7 @@ def test_walls_are_released_slowly_enough_for_slip(excavated, monkeypatch):
     fixed = dict.fromkeys(("left", "right", "bottom", "top"), "fixed")
     scene, slid = excavated(SLIPS, boundaries=fixed), {}
     for parts in (1, 10, PARTS, 4 * PARTS):
-        monkeypatch.setattr("dem.blocks.start.PARTS", parts)
+        monkeypatch.setattr("jointwave.dem.blocks.start.PARTS", parts)
         slid[parts] = at_rest(scene)[1].history
     finest = slid.pop(4 * PARTS)
     off = [np.linalg.norm(found - finest) / np.linalg.norm(finest) for found in slid.values()]

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from compare.exact.rock_mass import oblique_joint, parallel_joints
-from compare.exact.rock_mass.field import field_of
-from dem import simulate
+from jointwave.compare.exact.rock_mass import oblique_joint, parallel_joints
+from jointwave.compare.exact.rock_mass.field import field_of
+from jointwave.dem import simulate
 
 QUANTITIES = ("velocity", "displacement", "stress", "traction", "gap", "slip")
 

@@ -18,8 +18,8 @@ from scipy.linalg import eigh
 
 from closed_forms.bloch import brickwork, leapfrog
 from closed_forms.bloch import modes as bloch_modes
-from dem.blocks.leapfrog import march, samples_for
-from dem.blocks.model import state_at_rest
+from jointwave.dem.blocks.leapfrog import march, samples_for
+from jointwave.dem.blocks.model import state_at_rest
 
 K_N, K_S, SIDE, DENSITY, NUMBER = 9e9, 4e9, 0.5, 2600.0, np.array([6, 5])
 

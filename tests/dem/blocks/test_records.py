@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from cases.errors import InterruptedRun
-from dem import simulate
-from dem.blocks.build import rigid_blocks
-from joints.law import Law
-from results.snapshots import snapshots_of
+from jointwave.cases.errors import InterruptedRun
+from jointwave.dem import simulate
+from jointwave.dem.blocks.build import rigid_blocks
+from jointwave.joints.law import Law
+from jointwave.results.snapshots import snapshots_of
 
 CROSSED = ({"dip": 10.0, "spacing": 2.5}, {"dip": 80.0, "spacing": 3.0, "name": "cross"})
 

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
-from cases.schema.plane import Boundaries
-from compare.engines import solve
-from compare.exact.rock_mass.field import field_of
-from compare.misfit.metrics import relative_l2
-from dem import simulate
-from dem.blocks.build import rigid_blocks
+from jointwave.cases.errors import SceneError
+from jointwave.cases.schema.plane import Boundaries
+from jointwave.compare.engines import solve
+from jointwave.compare.exact.rock_mass.field import field_of
+from jointwave.compare.misfit.metrics import relative_l2
+from jointwave.dem import simulate
+from jointwave.dem.blocks.build import rigid_blocks
 
 SOFT = {"name": "soft", "through": [0.0, 8.0], "density": 2200.0, "intact_modulus": 2e10}
 HARD = {"name": "hard", "through": [0.0, 14.0], "density": 2900.0, "intact_modulus": 7e10}

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from cases.errors import SceneError, StoppedError
-from cases.incident import free_field
-from compare.exact.rock_mass.field import field_of
-from dem import simulate
-from dem.blocks.build import rigid_blocks
-from dem.blocks.leapfrog import samples_for
-from dem.blocks.model import state_at_rest
-from dem.blocks.simulate import step
-from dem.blocks.start import PlaneRelaxation
-from dem.blocks.system import prepared
+from jointwave.cases.errors import SceneError, StoppedError
+from jointwave.cases.incident import free_field
+from jointwave.compare.exact.rock_mass.field import field_of
+from jointwave.dem import simulate
+from jointwave.dem.blocks.build import rigid_blocks
+from jointwave.dem.blocks.leapfrog import samples_for
+from jointwave.dem.blocks.model import state_at_rest
+from jointwave.dem.blocks.simulate import step
+from jointwave.dem.blocks.start import PlaneRelaxation
+from jointwave.dem.blocks.system import prepared
 
 SINE = {"shape": "sine", "amplitude": 1e6, "period": 0.002}
 PRESSURE = SINE | {"kind": "pressure", "side": "bottom"}
@@ -416,7 +416,7 @@ def test_an_unstable_run_is_stopped_with_what_is_sound(rock_mass, wave):
 
 def test_rare_samples_do_not_hide_a_pulse_from_the_divergence_monitor(rock_mass, wave):
     """What waves and forces can cause is the same whether a sample falls on the pulse or none."""
-    from dem.blocks.bounds import highest_energy
+    from jointwave.dem.blocks.bounds import highest_energy
 
     force = {
         "kind": "force", "at": [6.2, 5.3], "direction": [0.6, 0.8], "shape": "ricker",

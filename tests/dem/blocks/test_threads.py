@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from dem import simulate
-from dem.blocks.leapfrog import make_stepper, march, samples_for
-from dem.blocks.model import state_at_rest
-from dem.blocks.system import prepared
-from dem.static import NEVER
+from jointwave.dem import simulate
+from jointwave.dem.blocks.leapfrog import make_stepper, march, samples_for
+from jointwave.dem.blocks.model import state_at_rest
+from jointwave.dem.blocks.system import prepared
+from jointwave.dem.static import NEVER
 
 SLIDES = {"friction_angle": 30.0, "cohesion": 2e5, "residual_cohesion": 0.0, "damping_ratio": 0.05}
 UNDER_STRESS = {"xx": 2e6, "yy": 3e6}

@@ -6,14 +6,14 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from cases.material.calibrate import Properties
-from cases.sampling import Clock
-from dem.spatial.build import buffers_for, build_model, samples_for, state_at_rest
-from dem.spatial.ends import CLOSURE
-from dem.spatial.layout import LANES, STRIDE, TERMS, packed, unpacked
-from dem.spatial.march import make_stepper
-from dem.spatial.simulate import prepare
-from numerics.divergence import guard
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.sampling import Clock
+from jointwave.dem.spatial.build import buffers_for, build_model, samples_for, state_at_rest
+from jointwave.dem.spatial.ends import CLOSURE
+from jointwave.dem.spatial.layout import LANES, STRIDE, TERMS, packed, unpacked
+from jointwave.dem.spatial.march import make_stepper
+from jointwave.dem.spatial.simulate import prepare
+from jointwave.numerics.divergence import guard
 
 SHORT: dict[str, Any] = {
     "pillar__length": 8.0,

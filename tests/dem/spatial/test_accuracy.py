@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import dem
-from compare.exact.blocks import spatial_lattice
-from compare.misfit.metrics import relative_l2
+from jointwave import dem
+from jointwave.compare.exact.blocks import spatial_lattice
+from jointwave.compare.misfit.metrics import relative_l2
 
 SOFT = [{"y": 3.0, "spacing_stiffness": 4e8, "shear_stiffness": 5e8, "damping_ratio": 0.1}]
 # A smooth pulse: at the kinks of a sine the load's mean over a step, which the stress at the start

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-import dem
-from cases.material.calibrate import calibrate
 from closed_forms import cantilever, leapfrog
-from compare.exact.blocks import spatial
-from dem.spatial.ends import CLOSURE
+from jointwave import dem
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.compare.exact.blocks import spatial
+from jointwave.dem.spatial.ends import CLOSURE
 
 FACES = {
     "2 x 2 midpoint": ({"contact_points": 2}, 3 / 4),

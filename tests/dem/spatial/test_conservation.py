@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cases.loads import load_history
-from compare.exact.blocks.spatial_lattice import drive_vector
+from jointwave.cases.loads import load_history
+from jointwave.compare.exact.blocks.spatial_lattice import drive_vector
 
 JOINTS = {
     "elastic": {},

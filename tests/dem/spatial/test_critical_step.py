@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import dem
-from cases.errors import SceneError, UnstableError
-from cases.material.calibrate import calibrate
-from dem.spatial.simulate import critical_step_of
+from jointwave import dem
+from jointwave.cases.errors import SceneError, UnstableError
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.dem.spatial.simulate import critical_step_of
 
 SOFT = [{"y": 2.0, "spacing_stiffness": 4e8, "shear_stiffness": 5e8, "damping_ratio": 0.3}]
 STIFF = [{"y": 2.0, "spacing_stiffness": 4e10, "shear_stiffness": 3e10}]

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-import dem
-from cases.loads import load_history, step_means
-from cases.material.calibrate import calibrate
 from closed_forms import leapfrog
-from compare.exact.blocks import spatial
-from compare.exact.blocks.spatial_lattice import drive_vector
+from jointwave import dem
+from jointwave.cases.loads import load_history, step_means
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.compare.exact.blocks import spatial
+from jointwave.compare.exact.blocks.spatial_lattice import drive_vector
 
 TWO_TILES = {"pillar__length": 50.0, "time__duration": 0.05}
 BLOWS = {

@@ -2,8 +2,8 @@
 
 import pytest
 
-import dem
-from cases.errors import StoppedError
+from jointwave import dem
+from jointwave.cases.errors import StoppedError
 
 
 def test_a_couple_on_three_blocks_runs_away(row, plain):

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import dem
-from dem.spatial.build import buffers_for
-from dem.spatial.layout import KernelFlags
-from dem.spatial.march import arguments, march_for
+from jointwave import dem
+from jointwave.dem.spatial.build import buffers_for
+from jointwave.dem.spatial.layout import KernelFlags
+from jointwave.dem.spatial.march import arguments, march_for
 
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
 ABSENT = ("points", "finite", "mass_damping", "local_damping", "gravity", "base", "start", "end")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-import dem
-from results.dataset import energy_residual, imbalance
+from jointwave import dem
+from jointwave.results.dataset import energy_residual, imbalance
 
 DOWN = {"direction": [0.6, 0.8, 0.0]}
 SOFT = [{"y": 3.0, "spacing_stiffness": 4e8, "shear_stiffness": 5e8, "damping_ratio": 0.1}]

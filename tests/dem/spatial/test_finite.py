@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import dem
-from cases.material.calibrate import calibrate
-from cases.sampling import Clock
-from dem.spatial.build import buffers_for, build_model, samples_for, state_at_rest
-from dem.spatial.layout import LANES, STRIDE
-from dem.spatial.march import make_stepper
-from results.dataset import energy_residual
+from jointwave import dem
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import Clock
+from jointwave.dem.spatial.build import buffers_for, build_model, samples_for, state_at_rest
+from jointwave.dem.spatial.layout import LANES, STRIDE
+from jointwave.dem.spatial.march import make_stepper
+from jointwave.results.dataset import energy_residual
 
 DT = 2e-5
 BLOW = {

@@ -2,8 +2,8 @@
 
 import pytest
 
-import dem
-from cases.errors import SceneError
+from jointwave import dem
+from jointwave.cases.errors import SceneError
 
 TWIST = {"shape": "step", "direction": [0, 1, 0], "arm": 0.1}
 

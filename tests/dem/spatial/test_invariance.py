@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-import dem
+from jointwave import dem
 
 JOINTS = {
     "elastic": {},

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-import dem
-from cases.errors import SceneError
-from compare.exact.blocks import sliding_block
-from compare.exact.joint import sliding_joint
-from compare.misfit.metrics import relative_l2
+from jointwave import dem
+from jointwave.cases.errors import SceneError
+from jointwave.compare.exact.blocks import sliding_block
+from jointwave.compare.exact.joint import sliding_joint
+from jointwave.compare.misfit.metrics import relative_l2
 
 PERIOD = 0.04  # s: 64 blocks a wavelength
 WAVE = {

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-import dem
-from cases.material.calibrate import calibrate
+from jointwave import dem
+from jointwave.cases.material.calibrate import calibrate
 
 SLIP = {"friction_angle": 30.0, "damping_ratio": 0.02}
 UNLOADED = {"load": {"shape": "step", "amplitude": 0.0, "direction": [1, 0, 0]}}

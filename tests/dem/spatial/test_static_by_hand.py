@@ -5,8 +5,8 @@ from time import perf_counter
 import numpy as np
 import pytest
 
-import dem
-from cases.material.calibrate import calibrate
+from jointwave import dem
+from jointwave.cases.material.calibrate import calibrate
 
 pytestmark = pytest.mark.usefixtures("plain")
 

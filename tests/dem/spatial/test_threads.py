@@ -5,11 +5,11 @@ import os
 import numpy as np
 import pytest
 
-from dem.spatial.build import buffers_for, samples_for, state_at_rest
-from dem.spatial.layout import LANES
-from dem.spatial.march import make_stepper
-from dem.spatial.simulate import prepare
-from dem.time_loop import ENOUGH_BLOCKS, thread_count
+from jointwave.dem.spatial.build import buffers_for, samples_for, state_at_rest
+from jointwave.dem.spatial.layout import LANES
+from jointwave.dem.spatial.march import make_stepper
+from jointwave.dem.spatial.simulate import prepare
+from jointwave.dem.time_loop import ENOUGH_BLOCKS, thread_count
 
 BLOCKS = 80 * LANES  # five runs of tiles for threads that follow one another
 STEPS = 203  # no multiple of any depth

@@ -7,13 +7,13 @@ see `spall`.
 
 import numpy as np
 
-from cases.loads import load_history
-from cases.material.calibrate import calibrate
-from cases.sampling import sample_times
-from cases.schema.scene import Scene
 from closed_forms.spall import Spall
-from compare.exact.bar.jointed_bar import bar
-from compare.exact.bar.laplace import bounded
+from jointwave.cases.loads import load_history
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.bar.jointed_bar import bar
+from jointwave.compare.exact.bar.laplace import bounded
 
 
 def jointed_spall(scene: Scene) -> Spall | None:

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from cases.material.rock import ElasticRock, Values
-from compare.exact.plane import parallel_joints
-from compare.exact.plane.oblique_joint import Coefficients, Joint
-from compare.exact.plane.waves import KINDS, Kind, cosines, slowness_along
+from jointwave.cases.material.rock import ElasticRock, Values
+from jointwave.compare.exact.plane import parallel_joints
+from jointwave.compare.exact.plane.oblique_joint import Coefficients, Joint
+from jointwave.compare.exact.plane.waves import KINDS, Kind, cosines, slowness_along
 
 
 def coefficients(

@@ -12,7 +12,7 @@ the joint is closed where I is at its maximum so far, and sigma_T is the rate of
 
 import numpy as np
 
-from cases.histories import LoadHistory
+from jointwave.cases.histories import LoadHistory
 
 
 def gap(load: LoadHistory, times: np.ndarray, impedance: float) -> np.ndarray:

@@ -13,8 +13,15 @@ for P | SV. They do not depend on frequency. alpha = beta = 0 is a free face, in
 
 import numpy as np
 
-from cases.material.rock import ElasticRock, Values
-from compare.exact.plane.waves import KINDS, Kind, cosines, face, slowness_along, solve_pair
+from jointwave.cases.material.rock import ElasticRock, Values
+from jointwave.compare.exact.plane.waves import (
+    KINDS,
+    Kind,
+    cosines,
+    face,
+    slowness_along,
+    solve_pair,
+)
 
 
 def coefficients(

@@ -17,7 +17,7 @@ STEP = 4e-6  # s: 1e-5 of a wave of 200 Hz at a linear joint
 
 def slipping_joint(scene, points, times):
     """Return the velocity [points, times, (x, y)], m/s, of the one wave and joint of a scene."""
-    from cases.incident import plane_wave
+    from jointwave.cases.incident import plane_wave
 
     wave, joint = plane_wave(scene, scene.waves[0]), scene.joint_sets[0]
     dip, through = np.radians(joint.dip), np.array(joint.through)

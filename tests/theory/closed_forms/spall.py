@@ -19,14 +19,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.histories import LoadHistory, Recorded, Step
-from cases.material.calibrate import calibrate
-from cases.sampling import sample_times
-from cases.schema.scene import Scene
-from compare.exact.blocks.chain import chain, contact_forces
-from compare.exact.blocks.lattice import at_rest, state_space
-from compare.exact.conditions import drive
-from compare.exact.linear import _gauss, _load_on_nodes, twins
+from jointwave.cases.histories import LoadHistory, Recorded, Step
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.blocks.chain import chain, contact_forces
+from jointwave.compare.exact.blocks.lattice import at_rest, state_space
+from jointwave.compare.exact.conditions import drive
+from jointwave.compare.exact.linear import _gauss, _load_on_nodes, twins
 
 PIECES = 400  # of a polygon
 REFINEMENTS = 2  # each by PIECES / 4

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from cases.material.rock import ElasticRock
-from compare.exact.plane.oblique_joint import Joint
+from jointwave.cases.material.rock import ElasticRock
+from jointwave.compare.exact.plane.oblique_joint import Joint
 
 
 class Referee(NamedTuple):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from compare.exact.plane import layer_pulses, parallel_joints
-from compare.exact.plane.oblique_joint import Joint
-from compare.exact.plane.pulse import pulse_fields
+from jointwave.compare.exact.plane import layer_pulses, parallel_joints
+from jointwave.compare.exact.plane.oblique_joint import Joint
+from jointwave.compare.exact.plane.pulse import pulse_fields
 
 JOINTS, OFFSETS, DIP = [Joint(4e9, 2e9), Joint(8e9, 2e9, 1e6, 3e6)], [0.0, 6.0], 0.3
 TIMES = np.linspace(0, 0.05, 501)

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from cases.material.rock import ElasticRock
-from compare.exact.bar.transfer import Bar, End, RockFrom, transfer
-from compare.exact.plane import layer_pulses, parallel_joints
-from compare.exact.plane.oblique_joint import Joint, scattering
-from compare.exact.plane.pulse import pulse_fields
-from compare.exact.plane.waves import cosines
+from jointwave.cases.material.rock import ElasticRock
+from jointwave.compare.exact.bar.transfer import Bar, End, RockFrom, transfer
+from jointwave.compare.exact.plane import layer_pulses, parallel_joints
+from jointwave.compare.exact.plane.oblique_joint import Joint, scattering
+from jointwave.compare.exact.plane.pulse import pulse_fields
+from jointwave.compare.exact.plane.waves import cosines
 
 OMEGA = 2 * np.pi * 100.0
 WELDED = Joint(np.inf, np.inf)

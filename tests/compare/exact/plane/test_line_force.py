@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.special import hankel1
 
-from cases.material.rock import ElasticRock
-from compare.exact.plane import line_force
-from compare.exact.plane.line_force import motion
+from jointwave.cases.material.rock import ElasticRock
+from jointwave.compare.exact.plane import line_force
+from jointwave.compare.exact.plane.line_force import motion
 
 ROCK = ElasticRock(2600.0, 5800.0, 3800.0)
 PLACES = np.array([[12.0, 5.0], [-3.0, 20.0], [0.5, -0.2], [0.0, -40.0]])

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from cases.material.rock import ElasticRock
 from closed_forms import one_joint
 from closed_forms.oblique_joint import coefficients, energy_flux
-from compare.exact.plane.oblique_joint import Joint, scattering
-from compare.exact.plane.waves import cosines, slowness_along
+from jointwave.cases.material.rock import ElasticRock
+from jointwave.compare.exact.plane.oblique_joint import Joint, scattering
+from jointwave.compare.exact.plane.waves import cosines, slowness_along
 
 OMEGA = 2 * np.pi * 100.0
 KINDS = pytest.mark.parametrize("kind", ["P", "SV"])

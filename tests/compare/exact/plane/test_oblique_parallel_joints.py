@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from cases.material.rock import ElasticRock
 from closed_forms import parallel_joints as normal_incidence
 from closed_forms.oblique_joint import energy_flux
-from compare.exact.plane.oblique_joint import Joint
-from compare.exact.plane.parallel_joints import coefficients
-from compare.exact.plane.waves import slowness_along
+from jointwave.cases.material.rock import ElasticRock
+from jointwave.compare.exact.plane.oblique_joint import Joint
+from jointwave.compare.exact.plane.parallel_joints import coefficients
+from jointwave.compare.exact.plane.waves import slowness_along
 
 OMEGA = 2 * np.pi * 100.0
 KINDS = pytest.mark.parametrize("kind", ["P", "SV"])

@@ -6,10 +6,10 @@ from numpy.polynomial.legendre import leggauss
 from scipy.special import erfc
 
 from closed_forms.oblique_joint import coefficients
-from compare.exact.plane import inversion, parallel_joints
-from compare.exact.plane.oblique_joint import Joint
-from compare.exact.plane.pulse import pulse_fields
-from compare.exact.plane.waves import polarisations
+from jointwave.compare.exact.plane import inversion, parallel_joints
+from jointwave.compare.exact.plane.oblique_joint import Joint
+from jointwave.compare.exact.plane.pulse import pulse_fields
+from jointwave.compare.exact.plane.waves import polarisations
 
 TRAVELS = [("P", 0), ("P", 50), ("P", 130), ("SV", 25), ("SV", -60), ("SV", 200)]
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from cases.material.rock import ElasticRock
 from closed_forms import oblique_joint
 from closed_forms.quiet_face import coefficients, energy_flux
-from compare.exact.plane.oblique_joint import Joint
-from compare.exact.plane.waves import cosines, slowness_along
+from jointwave.cases.material.rock import ElasticRock
+from jointwave.compare.exact.plane.oblique_joint import Joint
+from jointwave.compare.exact.plane.waves import cosines, slowness_along
 
 KINDS = pytest.mark.parametrize("kind", ["P", "SV"])
 ANGLES = np.radians(np.linspace(-89.9, 89.9, 181))

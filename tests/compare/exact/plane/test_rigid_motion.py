@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from cases.histories import Ricker
-from cases.material.contact_points import contact_points
-from cases.material.rock_mass import Stiffness
-from cases.partition.periodic import periodic_contacts
-from cases.partition.scene import cut
-from cases.schema.domain import Domain
-from cases.schema.joint_set import JointSet
 from closed_forms.block_lattice import Lattice, modes
-from compare.exact.linear import twins
-from compare.exact.plane.rigid_motion import (
+from jointwave.cases.histories import Ricker
+from jointwave.cases.material.contact_points import contact_points
+from jointwave.cases.material.rock_mass import Stiffness
+from jointwave.cases.partition.periodic import periodic_contacts
+from jointwave.cases.partition.scene import cut
+from jointwave.cases.schema.domain import Domain
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.compare.exact.linear import twins
+from jointwave.compare.exact.plane.rigid_motion import (
     RigidSystem,
     forces_of,
     motion,

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from cases.validate import validated
+from jointwave.cases.validate import validated
 
 JOINT = {
     "name": "joint",

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cases.histories import Ricker
-from compare.engines import applies, solve
-from compare.exact.linear import twins
+from jointwave.cases.histories import Ricker
+from jointwave.compare.engines import applies, solve
+from jointwave.compare.exact.linear import twins
 
 LAW = {"normal_stiffness": 4e10, "shear_stiffness": 2e10}
 PERIODIC = {"left": "periodic", "right": "periodic"}

@@ -3,10 +3,14 @@
 import numpy as np
 import pytest
 
-from cases.material.effective_medium import tensor
-from compare.engines import applies, solve
-from compare.exact.rock_mass.effective_medium import MediumField, medium_field, medium_stiffness
-from compare.exact.rock_mass.field import field_of
+from jointwave.cases.material.effective_medium import tensor
+from jointwave.compare.engines import applies, solve
+from jointwave.compare.exact.rock_mass.effective_medium import (
+    MediumField,
+    medium_field,
+    medium_stiffness,
+)
+from jointwave.compare.exact.rock_mass.field import field_of
 
 #: lambda = mu = 20 GPa, so that K_n = 2 mu / 1 m and K_s = mu / 1 m.
 LAW = {"normal_stiffness": 4e10, "shear_stiffness": 2e10, "spacing": 1.0}

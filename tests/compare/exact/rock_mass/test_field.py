@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from cases.incident import FreeField, free_field
-from compare.engines import solver
-from compare.exact.rock_mass.field import StackField, field_of
-from compare.exact.rock_mass.stack import stack_of
-from compare.exact.rock_mass.stack_waves import motion_at
+from jointwave.cases.incident import FreeField, free_field
+from jointwave.compare.engines import solver
+from jointwave.compare.exact.rock_mass.field import StackField, field_of
+from jointwave.compare.exact.rock_mass.stack import stack_of
+from jointwave.compare.exact.rock_mass.stack_waves import motion_at
 
 SIDES = np.array([[0.0, 12.0], [40.0, 21.0], [31.0, 0.0], [4.0, 30.0], [0.0, 3.0]])
 TIMES = np.linspace(0, 0.02, 201)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cases.histories import Recorded, Ricker, Sine
-from compare.engines import applies, solve
+from jointwave.cases.histories import Recorded, Ricker, Sine
+from jointwave.compare.engines import applies, solve
 
 A, B = np.sqrt(2.4e7), np.sqrt(8e6)
 FORCE = {

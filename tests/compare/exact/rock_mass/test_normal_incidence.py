@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cases.sampling import sample_times
-from compare.engines import applies, solve
-from compare.exact.rock_mass.field import field_of
+from jointwave.cases.sampling import sample_times
+from jointwave.compare.engines import applies, solve
+from jointwave.compare.exact.rock_mass.field import field_of
 
 CLOSES = {"maximum_closure": 1e-4}
 NO = [

@@ -5,13 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cases.incident import plane_wave
-from cases.sampling import sample_times
-from compare.engines import applies, solve
-from compare.exact.plane import parallel_joints
-from compare.exact.plane.oblique_joint import Joint
-from compare.exact.plane.pulse import pulse_fields
-from compare.exact.rock_mass.stack import stack_of
+from jointwave.cases.incident import plane_wave
+from jointwave.cases.sampling import sample_times
+from jointwave.compare.engines import applies, solve
+from jointwave.compare.exact.plane import parallel_joints
+from jointwave.compare.exact.plane.oblique_joint import Joint
+from jointwave.compare.exact.plane.pulse import pulse_fields
+from jointwave.compare.exact.rock_mass.stack import stack_of
 
 SPACED = {"spacing": 6.0, "through": [0.0, 3.0]}
 STARTS = "reaches a joint before t = 0"

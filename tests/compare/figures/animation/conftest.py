@@ -5,9 +5,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from compare.figures.animation.snapshots import take
-from results.snapshots import snapshots
-from results.subcells import CORNERS
+from jointwave.compare.figures.animation.snapshots import take
+from jointwave.results.snapshots import snapshots
+from jointwave.results.subcells import CORNERS
 
 SHORT = {
     "pillar.length": 10.0,

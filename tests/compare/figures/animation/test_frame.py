@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from cases.material.calibrate import calibrate
-from compare.figures.animation.frame import Frame
-from compare.figures.animation.settings import settings_for
-from compare.figures.style import style
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.compare.figures.animation.frame import Frame
+from jointwave.compare.figures.animation.settings import settings_for
+from jointwave.compare.figures.style import style
 
 
 @pytest.fixture(scope="module")

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from cases import SceneError
-from cases.read import load_tables
-from compare.figures.animation.frame import Frame
-from compare.figures.animation.polygons import polygons_of
-from compare.figures.animation.settings import DISPLACEMENT, settings_for
-from compare.figures.animation.snapshots import SceneSnapshots, at_instants, until
-from results.snapshots import snapshots
+from jointwave.cases import SceneError
+from jointwave.cases.read import load_tables
+from jointwave.compare.figures.animation.frame import Frame
+from jointwave.compare.figures.animation.polygons import polygons_of
+from jointwave.compare.figures.animation.settings import DISPLACEMENT, settings_for
+from jointwave.compare.figures.animation.snapshots import SceneSnapshots, at_instants, until
+from jointwave.results.snapshots import snapshots
 
 TABLES = {
     "title": "two blocks",

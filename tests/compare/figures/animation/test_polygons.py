@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from compare.figures.animation.polygons import polygons_of
-from compare.figures.animation.settings import SPEED, STRESS, VELOCITY, ViewSettings
+from jointwave.compare.figures.animation.polygons import polygons_of
+from jointwave.compare.figures.animation.settings import SPEED, STRESS, VELOCITY, ViewSettings
 
 X, Z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import cases
-from compare.figures.animation.settings import STRESS, VELOCITY, round_down, settings_for
-from compare.figures.animation.snapshots import take
-from compare.scenes import find
+from jointwave import cases
+from jointwave.compare.figures.animation.settings import STRESS, VELOCITY, round_down, settings_for
+from jointwave.compare.figures.animation.snapshots import take
+from jointwave.compare.scenes import find
 
 IN_SPACE = {"load__direction": [1.0, 0.0, 0.0]}
 

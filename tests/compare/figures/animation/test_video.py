@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from PIL import Image
 
-from cases import SceneError
-from compare.figures.animation.video import refuse, write_video
+from jointwave.cases import SceneError
+from jointwave.compare.figures.animation.video import refuse, write_video
 
 COUNT, SECONDS, SIZE = 12, 1.5, (64, 48)
 

@@ -5,10 +5,10 @@ import pytest
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
-from compare.figures.animation.bodies import SpaceView
-from compare.figures.animation.polygons import Polygons
-from compare.figures.animation.rendered import RenderedView, Stage, can_render
-from compare.figures.export import blank
+from jointwave.compare.figures.animation.bodies import SpaceView
+from jointwave.compare.figures.animation.polygons import Polygons
+from jointwave.compare.figures.animation.rendered import RenderedView, Stage, can_render
+from jointwave.compare.figures.export import blank
 
 #: A plate that faces the viewer, 4 m x 1 m, in two halves; at the second instant it is elsewhere.
 POINTS = np.array([[0.0, 0, 0], [2, 0, 0], [4, 0, 0], [4, 0, 1], [2, 0, 1], [0, 0, 1]])

@@ -76,7 +76,7 @@ def start(request):
     begun = []
 
     def started(*arguments, ranks=1, out=subprocess.PIPE):
-        command = [sys.executable, "-m", "compare", *map(str, arguments)]
+        command = [sys.executable, "-m", "jointwave", *map(str, arguments)]
         environment = None
         if ranks > 1:
             mpiexec, environment = request.getfixturevalue("mpiexec")

@@ -12,11 +12,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import cases
-from cases.errors import SceneError
-from compare.runs.checkpoint.files import Checkpoints
-from compare.runs.processes import ALONE, Processes
-from results.arrays import copied
+from jointwave import cases
+from jointwave.cases.errors import SceneError
+from jointwave.compare.runs.checkpoint.files import Checkpoints
+from jointwave.compare.runs.processes import ALONE, Processes
+from jointwave.results.arrays import copied
 
 SIGNATURE = {"scene": "a", "engine": "dem", "number of processes": "1", "program": "1"}
 BEYOND = Path(cases.__file__).parent / "beyond"

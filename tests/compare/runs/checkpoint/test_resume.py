@@ -2,8 +2,8 @@
 
 import pytest
 
-from cases.errors import InterruptedRun
-from compare.engines import solve
+from jointwave.cases.errors import InterruptedRun
+from jointwave.compare.engines import solve
 
 SHORT = {
     "pillar__length": 10.0,

@@ -8,7 +8,7 @@ import time
 import pytest
 import xarray as xr
 
-from compare.runs.checkpoint.signals import Ended, Signals
+from jointwave.compare.runs.checkpoint.signals import Ended, Signals
 
 EVERY = ("--checkpoint-every", "0.01")
 
