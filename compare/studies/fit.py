@@ -10,6 +10,7 @@ from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 from scipy.stats import qmc
 from scipy.stats import t as student
 
@@ -24,7 +25,6 @@ from jointwave.compare.studies.fit_trials import Trials, solver_of, started, tri
 POOR = 0.2  # misfit above which other starts are tried
 STARTS, OTHERS = 12, 2  # other starts for each key, and the best of them that are searched from
 DECADES = 2.0  # in which other starts lie, on either side
-LEAST_NOISE = 0.01  # of a waveform, relative to the noisiest one
 NEAR = 1e-6  # of an unknown to its bound
 ALIKE = 0.99  # correlation above which two keys are indistinguishable
 SINGULAR = 1e-9  # of the largest eigenvalue: accuracy of derivatives by differences
@@ -98,11 +98,12 @@ def fit(
 ) -> Fit:
     """Fit keys of a scene to measured waveforms by least squares, with confidence intervals.
 
-    curves : from `read_curves`. free : dotted keys, KEY, KEY=START, KEY=LOW:HIGH or
+    curves : from `read_curves`. free : dotted keys, KEY, KEY=START or
     KEY=LOW:START:HIGH, and `clock`, a shift added to the times of all files, s. solver : an engine
     or exact solution; None: the exact chain of rigid blocks if it applies and is short, else
-    `dem`. Each waveform is weighted by its own noise; amplitudes are not scaled. Intervals are of
-    95 %, linearised at the best fit, and valid if the model is correct and residuals independent.
+    `dem`. Each waveform has the same weight, relative to its size; amplitudes are not scaled.
+    Intervals are of 95 %, linearised at the best fit, and valid if the model is correct and
+    residuals independent.
 
     Raises SceneError for keys and curves that cannot be fitted, StoppedError if the search does not
     converge.
@@ -113,7 +114,6 @@ def fit(
     mine = [curve for curve in curves if curve.holds_for(scene)]
     if not mine or not keys:
         raise SceneError(scene.where, "", None, "a fit needs a curve of this scene and a free key")
-    _refuse_several(mine)
     keys = [started(key, first, name, mine) if key.key == CLOCK else key for key in keys]
     trials = trials_of(first, name, mine, keys, progress or (lambda fraction: None))
     start = np.array([key.unknown(key.start) for key in keys])
@@ -122,13 +122,12 @@ def fit(
     return _finished(scene, trials, trials.misfits(begun), _best(trials, start))
 
 
-def _refuse_several(curves: list[Curves]) -> None:
-    """Raise SceneError if two curves of one file are at the same place, as of two solutions."""
-    for i, one in enumerate(curves):
-        for other in curves[:i]:
-            if one.file == other.file and one.waveforms.keys() & other.waveforms.keys():
-                several = ", ".join(c.name for c in curves if c.file == one.file)
-                raise SceneError(one.file, "", None, f"holds {several}: fit to one of them")
+def table(found: Fit) -> pd.DataFrame:
+    """Return the values of a fit, a row per key, with their intervals and correlations."""
+    correlations = pd.DataFrame(
+        found.correlation, columns=[f"correlation with {e.key}" for e in found.estimates]
+    )
+    return pd.DataFrame(found.estimates).join(correlations)
 
 
 def _best(trials: Trials, start: np.ndarray) -> Any:
@@ -146,11 +145,7 @@ def _best(trials: Trials, start: np.ndarray) -> Any:
             f"fit: not converged after {trials.count} solutions: start closer "
             "(--free KEY=START), bound the keys, or free fewer"
         )
-    best = min(converged, key=lambda one: one.chisqr)
-    if len(trials.measured) > 1:
-        _weigh_by_noise(trials, best.x)
-        best = trials.search(best.x) or best
-    return best
+    return min(converged, key=lambda one: one.chisqr)
 
 
 def _other_starts(trials: Trials, start: np.ndarray) -> list[np.ndarray]:
@@ -162,16 +157,6 @@ def _other_starts(trials: Trials, start: np.ndarray) -> list[np.ndarray]:
     points = qmc.scale(qmc.LatinHypercube(p, seed=0).random(STARTS * p), low, high)
     ranked = sorted((trials.worst(x), i) for i, x in enumerate(points))
     return [points[i] for misfit, i in ranked[:OTHERS] if np.isfinite(misfit)]
-
-
-def _weigh_by_noise(trials: Trials, x: np.ndarray) -> None:
-    """Weight each waveform by its residual, as the noise of its gauge."""
-    found = trials.residuals(x)
-    assert found is not None
-    noise = np.array(trials.misfits(found))
-    if noise.any():
-        relative = np.maximum(noise, LEAST_NOISE * noise.max()) / noise.max()
-        trials.weights = [w / r for w, r in zip(trials.weights, relative, strict=True)]
 
 
 def _finished(scene: AnyScene, trials: Trials, before: list[float], best: Any) -> Fit:
@@ -211,15 +196,15 @@ def _uncertainty(best: Any) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _estimate(key: FreeKey, x: float, error: float, quantile: float) -> Estimate:
-    ends = [key.unknown(key.low), key.unknown(key.high)]
-    stopped = bool(min(x - ends[0], ends[1] - x) <= NEAR)
-    value = key.within(key.value(x))
+    ends = key.unknown(key.low), key.unknown(key.high)
+    at_bound = bool(min(x - ends[0], ends[1] - x) <= NEAR)
+    value = key.value(x)
     if not np.isfinite(error):
         low = 0.0 if key.logarithmic else -inf
-        return Estimate(key.key, value, inf, low, inf, key.start, stopped)
+        return Estimate(key.key, value, inf, low, inf, key.start, at_bound)
     low, high = (key.value(x + s * quantile * error) for s in (-1, 1))
-    own = value * error if key.logarithmic else key.size * error
-    return Estimate(key.key, value, own, low, high, key.start, stopped)
+    own = error * (value if key.logarithmic else key.size)
+    return Estimate(key.key, value, own, low, high, key.start, at_bound)
 
 
 def _notes(estimates: list[Estimate], correlation: np.ndarray, trials: Trials) -> list[str]:

@@ -2,16 +2,15 @@
 
 from collections.abc import Mapping
 from fnmatch import fnmatch
-from itertools import pairwise
 from math import exp, inf, isfinite, log, nan, nextafter
 from typing import Annotated, Any, NamedTuple
 
-from pydantic import BaseModel, TypeAdapter, ValidationError
+from pydantic import TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
-from jointwave.cases.errors import SceneError
+from jointwave.cases.errors import SceneError, nearest
 from jointwave.cases.scene_type import AnyScene, Either, checked
-from jointwave.cases.schema.keys import model_in
+from jointwave.cases.schema.keys import keys, model_in
 
 CLOCK = "clock"  # shift added to the times of the files, s
 FACTOR = 1000.0  # by which a positive key may change, if nothing else bounds it
@@ -23,7 +22,7 @@ FIXED = (
     *("expect.*", "domain.*", "regions.*.dip", "segments.*.y", "segments.*.block"),
     *("joint_sets.*.dip", "joint_sets.*.spacing", "joint_sets.*.offset", "joint_sets.*.scatter*"),
 )
-FORMS = "must be KEY, KEY=START, KEY=LOW:HIGH or KEY=LOW:START:HIGH"
+FORMS = "must be KEY, KEY=START or KEY=LOW:START:HIGH"
 
 
 class FreeKey(NamedTuple):
@@ -53,19 +52,16 @@ class FreeKey(NamedTuple):
         return ORIGIN + (value - self.start) / self.size
 
     def value(self, unknown: float) -> float:
-        """Return the value of a search variable, not limited by the bounds."""
+        """Return the value of a search variable, within the bounds."""
         x = unknown - ORIGIN
-        return self.start * exp(x) if self.logarithmic else self.start + self.size * x
-
-    def within(self, value: float) -> float:
-        """Return the value limited by the bounds."""
+        value = self.start * exp(x) if self.logarithmic else self.start + self.size * x
         return min(max(value, self.low), self.high)
 
 
 def free_keys(texts: list[str], scene: AnyScene) -> list[FreeKey]:
     """Return the keys of `--free`, several in one text separated by commas; raises SceneError."""
     found: dict[str, FreeKey] = {}
-    for text in [part for given in texts for part in given.split(",")]:
+    for text in ",".join(texts).split(","):
         key, numbers = _parsed(text)
         if key in found:
             raise SceneError("--free", key, None, "must be given only once")
@@ -103,35 +99,34 @@ def _with(table: Any, parts: list[str], value: float) -> Any:
 
 
 def _parsed(text: str) -> tuple[str, list[float]]:
+    """Return a key, and its start alone or between its bounds; empty if not given."""
     key, equals, numbers = (part.strip() for part in text.partition("="))
     try:
         found = [float(part) for part in numbers.split(":")] if equals else []
     except ValueError:
         raise SceneError("--free", text, None, f"{FORMS}, of numbers") from None
-    if not key or len(found) > 3 or not all(map(isfinite, found)):
+    if not key or len(found) not in (0, 1, 3) or not all(map(isfinite, found)):
         raise SceneError("--free", text, None, FORMS)
-    if len(found) > 1 and not all(a < b for a, b in pairwise(found)):
+    if len(found) == 3 and not found[0] < found[1] < found[2]:
         raise SceneError("--free", text, None, "must have its bounds in order, LOW first")
     return key, found
 
 
 def _free_key(key: str, numbers: list[float], scene: AnyScene) -> FreeKey:
     """Return a key with its start and bounds, as given or else from the scene and its models."""
-    if key == CLOCK:
-        start, low, high = _bounded(numbers, None, -inf, inf)
-        return FreeKey(key, nan if start is None else start, low, high, False)
-    field, old = _find(key, scene)
-    limits = _limits(field)
-    if limits is None or any(fnmatch(key, fixed) for fixed in FIXED):
-        raise SceneError("--free", key, None, "must be a continuous number")
-    least, most, logarithmic = limits
+    least, most, logarithmic, old = -inf, inf, False, nan
+    if key != CLOCK:
+        field, old = _find(key, scene)
+        limits = _limits(field)
+        if limits is None or any(fnmatch(key, fixed) for fixed in FIXED):
+            raise SceneError("--free", key, None, "must be a continuous number")
+        least, most, logarithmic = limits
     if old is None and not numbers:
         allowed = f"is not in {scene.where}: give a start, --free {key}=START"
         raise SceneError("--free", key, None, allowed)
-    start, low, high = _bounded(numbers, old, least, most)
-    if start is None:
-        start = (low * high) ** 0.5 if logarithmic and low > 0 else (low + high) / 2
-    if not (least <= low and high <= most and low <= start <= high):
+    start = numbers[len(numbers) // 2] if numbers else old
+    low, high = (numbers[0], numbers[2]) if len(numbers) == 3 else (least, most)
+    if key != CLOCK and not least <= low <= start <= high <= most:
         allowed = f"must start and stay within {max(low, least):.6g} to {min(high, most):.6g}"
         raise SceneError("--free", key, start, allowed)
     if logarithmic:
@@ -139,38 +134,24 @@ def _free_key(key: str, numbers: list[float], scene: AnyScene) -> FreeKey:
     return FreeKey(key, start, low, high, logarithmic)
 
 
-def _bounded(
-    numbers: list[float], start: float | None, low: float, high: float
-) -> tuple[float | None, float, float]:
-    """Return start and bounds as given, or the defaults."""
-    if len(numbers) == 1:
-        return numbers[0], low, high
-    if len(numbers) == 2:
-        inside = start is not None and numbers[0] <= start <= numbers[1]
-        return start if inside else None, numbers[0], numbers[1]
-    return (numbers[1], numbers[0], numbers[2]) if numbers else (start, low, high)
-
-
 def _find(key: str, scene: AnyScene) -> tuple[FieldInfo, Any]:
     """Return the field of a dotted key and its value, None if the scene has none."""
+    known, parts = dict(keys(type(scene))), key.split(".")
+    name = ".".join(part for part in parts if not part.isdecimal())
+    if name not in known:
+        allowed = f"is not a key of a scene{nearest(name, list(known))}"
+        raise SceneError("--free", key, None, allowed)
     table: Any = scene
-    model: type[BaseModel] | None = type(scene)
-    field, parts = None, key.split(".")
-    while parts:
-        part = parts.pop(0)
-        if model is None or part not in model.model_fields:
-            known = f"; allowed: {', '.join(model.model_fields)}" if model else ""
-            raise SceneError("--free", key, None, f"is not a key of a scene{known}")
-        field = model.model_fields[part]
-        model, table = model_in(field.annotation), getattr(table, part, None)
-        if isinstance(table, list) and model is not None and parts:
-            number = parts.pop(0)
-            if not number.isdecimal() or int(number) >= len(table):
-                allowed = f"must be {part}.0 to {part}.{len(table) - 1}" if table else "has none"
-                raise SceneError("--free", key, None, f"{part}: {allowed}")
-            table = table[int(number)]
-    assert field is not None
-    return field, table
+    for i, part in enumerate(parts):
+        if not isinstance(table, list):
+            table = getattr(table, part, None)
+        elif part.isdecimal() and int(part) < len(table):
+            table = table[int(part)]
+        else:
+            above, last = ".".join(parts[:i]), len(table) - 1
+            allowed = f"must be {above}.0 to {above}.{last}" if table else "the scene has none"
+            raise SceneError("--free", key, None, allowed)
+    return known[name], table
 
 
 def _limits(field: FieldInfo) -> tuple[float, float, bool] | None:

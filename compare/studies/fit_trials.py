@@ -1,7 +1,7 @@
 """Solutions of a scene for values of its free keys, beside the measured waveforms of a fit."""
 
-from dataclasses import dataclass, field
-from math import inf
+from dataclasses import dataclass
+from math import inf, isnan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,7 +23,6 @@ from jointwave.compare.studies.fit_keys import CLOCK, ORIGIN, FreeKey, changed
 
 SHORT = 200  # blocks, up to which matrix exponentials are cheap
 FINER = 4  # samples of the solution per sample of the scene, if the clock is free
-LARGEST_STEP = 0.9  # of the critical step, in a trial
 EXACT_STEP, COMPUTED_STEP = 1e-4, 1e-3  # of an unknown, for differences
 LEAST_SAMPLES = 10  # of a waveform
 TOLERANCE = 1e-12  # of the squares, the unknowns and the gradient
@@ -45,49 +44,38 @@ class Measured(NamedTuple):
 class Trials:
     """Solutions of a scene for values of its free keys, beside the measured waveforms.
 
-    scene : with the sampling and duration that the fit needs. steps : of rigid blocks per sample,
-    the same in every trial, so that waveforms vary smoothly with a key; 0 without steps.
+    scene : with the sampling and duration that the fit needs. count, refused : of the solutions
+    tried, and of those that do not exist.
     """
 
     scene: AnyScene
     solver: str
     keys: list[FreeKey]
     measured: list[Measured]
-    steps: int
     tell: Progress
     count: int = 0
     refused: int = 0
-    weights: list[float] = field(default_factory=list)
+
+    def values(self, x: np.ndarray) -> dict[str, float]:
+        """Return the value of each key for the search variables [p]."""
+        return {k.key: k.value(u) for k, u in zip(self.keys, x.tolist(), strict=True)}
 
     def residuals(self, x: np.ndarray) -> list[np.ndarray] | None:
         """Return solution minus measurement [n] of each waveform, SI; None without a solution."""
         self.count += 1
         self.tell(1 - 0.97**self.count)  # the number of trials is unknown
-        values = {k.key: k.within(k.value(u)) for k, u in zip(self.keys, x, strict=True)}
+        values = self.values(x)
         shift = values.pop(CLOCK, 0.0)
         try:
-            result = solve(self.solver, self.stepped(changed(self.scene, values)))
+            result = solve(self.solver, changed(self.scene, values))
         except (SceneError, UnstableError):
             self.refused += 1
             return None
         time, found = result.time.values, []
         for one in self.measured:
-            ours = one.place.waveform(result)
-            assert ours is not None
             at = np.clip(one.time + shift, time[0], time[-1])  # at rest before its first sample
-            found.append(CubicSpline(time, ours)(at) - one.values)
+            found.append(CubicSpline(time, one.place.waveform(result))(at) - one.values)
         return found
-
-    def stepped(self, scene: AnyScene) -> AnyScene:
-        """Return a scene with the step of all trials; raises UnstableError above its critical."""
-        if not self.steps:
-            return scene
-        fraction = scene.interval / self.steps / DEM.prepare(scene).critical
-        if fraction > LARGEST_STEP:
-            raise UnstableError("the initial step exceeds the critical step of this trial")
-        step = {"step_fraction": fraction * (1 + 1e-6)}  # otherwise rounding adds a step
-        dem = scene.numerics.dem.model_copy(update=step)
-        return scene.model_copy(update={"numerics": scene.numerics.model_copy(update={"dem": dem})})
 
     def misfits(self, residuals: list[np.ndarray]) -> list[float]:
         """Return the relative L2 misfit of each waveform, of the measured motion."""
@@ -102,25 +90,22 @@ class Trials:
         """Return lmfit's result from a start; None if the search does not converge."""
 
         def weighted(p: Parameters) -> np.ndarray:
-            found = self.residuals(np.array([one.value for one in p.values()]))
+            found = self.residuals(np.array(list(p.valuesdict().values())))
             if found is None:  # such a step is taken back
                 return np.full(sum(len(m.time) for m in self.measured), inf)
-            return np.concatenate([w * r for w, r in zip(self.weights, found, strict=True)])
+            pairs = zip(found, self.measured, strict=True)
+            return np.concatenate([r / (m.size * np.sqrt(len(r))) for r, m in pairs])
 
-        given, p = Parameters(), len(self.keys)
+        given = Parameters()
         for i, (key, value) in enumerate(zip(self.keys, start, strict=True)):
             given.add(f"key_{i}", value, min=key.unknown(key.low), max=key.unknown(key.high))
         step = COMPUTED_STEP if self.solver in ENGINES else EXACT_STEP
         options = {"jac": "3-point", "diff_step": step / ORIGIN, "x_scale": "jac"}
         options |= dict.fromkeys(("ftol", "xtol", "gtol"), TOLERANCE)
+        options["max_nfev"] = MOST * (2 * len(start) + 1)
         try:
             found = minimize(
-                weighted,
-                given,
-                method="least_squares",
-                nan_policy="propagate",
-                max_nfev=MOST * (2 * p + 1),
-                **options,
+                weighted, given, method="least_squares", nan_policy="propagate", **options
             )
         except ValueError:  # no derivative: a neighbour has no solution
             return None
@@ -142,11 +127,9 @@ def started(clock: FreeKey, scene: AnyScene, solver: str, curves: list[Curves]) 
     """Return the clock with its start, unless given the shift with the best correlation of the
     first file to the solution, and with bounds within its reach."""
     start, reach = clock.start, _clock_reach(scene)
-    if np.isnan(start):
+    if isnan(start):
         found = align_curve(curves[0], scene, {solver: solve(solver, scene)}, align=True).shift
         start = found.seconds if found else 0.0
-    if not clock.low <= start <= clock.high:
-        start = (clock.low + clock.high) / 2
     low, high = max(clock.low, start - reach), min(clock.high, start + reach)
     return clock._replace(start=start, low=low, high=high)
 
@@ -177,9 +160,7 @@ def trials_of(
                 size = rms(values - static_level(place, result)) or 1.0
                 measured.append(Measured(one.name, place, time, values, size))
     _require_samples(measured, curves, scene)
-    steps = round(interval / float(result.attrs["dt"])) if name == DEM.name else 0
-    weights = [1 / m.size / np.sqrt(len(m.time)) for m in measured]
-    return Trials(base, name, keys, measured, steps, tell, weights=weights)
+    return Trials(base, name, keys, measured, tell)
 
 
 def _require_samples(measured: list[Measured], curves: list[Curves], scene: AnyScene) -> None:

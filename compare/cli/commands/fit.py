@@ -2,7 +2,6 @@
 
 import math
 import shlex
-from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -25,7 +24,6 @@ from jointwave.compare.cli.options import (
     warn,
 )
 from jointwave.compare.runs import jobs
-from jointwave.compare.runs.checkpoint.lock import locked
 
 if TYPE_CHECKING:
     from jointwave.compare.studies.fit import Estimate, Fit
@@ -49,9 +47,7 @@ def fit(
     model: ModelOption = None,
     changes: SetOption = [],
     variant: VariantOption = "",
-    out: Annotated[
-        Path | None, typer.Option(help="Also write table, fitted scene, curves and figure.")
-    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder of a table, fit.csv.")] = None,
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
@@ -59,7 +55,7 @@ def fit(
 
     --free names keys by their dotted path, joints.normal_stiffness or
     soft_layers.0.spacing_stiffness, optionally with start and bounds:
-    KEY=START, KEY=LOW:HIGH or KEY=LOW:START:HIGH. clock is a shift of the times of the files, s,
+    KEY=START or KEY=LOW:START:HIGH. clock is a shift of the times of the files, s,
     started from cross-correlation. --with is that of compare: quantity, place, sign
     and unit of every column; amplitudes are never scaled.
 
@@ -70,28 +66,27 @@ def fit(
     Intervals assume independent residuals; keys that the waveforms cannot distinguish, and
     keys that stop at a bound, are named. A search that does not converge ends with exit code 3.
 
-    --out writes fit.csv, fitted.toml, a runnable scene, and fit-waveforms as SVG, PDF,
-    PNG and CSV, with the residual below each waveform.
+    --out writes fit.csv: values, intervals and correlations. The last line printed is a command
+    that compares the fitted scene with the same files, with figures.
     """
     from jointwave.compare.misfit.external import read_curves, slips
+    from jointwave.compare.runs.output import write_csv
     from jointwave.compare.studies.fit import fit as fitted
+    from jointwave.compare.studies.fit import table
 
     (one,) = load(scene, changes, variant or "", strict)
     curves = read_curves(given, [one])
     warn([one], strict, lambda scene: slips(curves, scene))
     solver = _solver(one, engine, model)
-    with ExitStack() as held:
-        if out is not None:
-            held.enter_context(locked(out))
-        with terminal.progress(one.name or one.title) as advance:
-            found = fitted(one, curves, free, solver, advance)
-        from jointwave.compare.studies.fit_files import write_fit
-
-        files = write_fit(found, one, out) if out is not None else []
+    with terminal.progress(one.name or one.title) as advance:
+        found = fitted(one, curves, free, solver, advance)
+    files = [write_csv(out / "fit.csv", table(found), 12)] if out is not None else []
     if as_json:
         terminal.print_json({**_facts(found), "files": list(map(str, files))})
     else:
-        _show(found, scene, changes, files)
+        _show(found, scene, given, changes)
+        for path in files:
+            terminal.say(f"wrote {path}")
 
 
 def _solver(scene: AnyScene, engine: Engine | None, models: list[str] | None) -> str | None:
@@ -108,8 +103,8 @@ def _solver(scene: AnyScene, engine: Engine | None, models: list[str] | None) ->
     return found[0]
 
 
-def _show(found: "Fit", scene: str, changes: list[str], files: list[Path]) -> None:
-    """Print values with intervals, correlations, misfits, and the command to continue."""
+def _show(found: "Fit", scene: str, given: list[str], changes: list[str]) -> None:
+    """Print values with intervals, misfits, and the command to continue."""
     name = f"{found.scene.title} {found.scene.name}".strip()
     terminal.say(f"{name}, fitted by {found.solver} in {found.trials} solutions", "bold")
     worst = max(found.waveforms, key=lambda one: one.after)
@@ -121,22 +116,14 @@ def _show(found: "Fit", scene: str, changes: list[str], files: list[Path]) -> No
         ["key", "value", "from", "to", "start"],
         {"values, with 95 % intervals": [_cells(e) for e in found.estimates]},
     )
-    names = [e.key for e in found.estimates]
-    if len(names) > 1:
-        rows = [
-            [name, *(f"{c:+.3f}" for c in row)]
-            for name, row in zip(names, found.correlation, strict=True)
-        ]
-        terminal.show_numbers(["", *names], {"correlations": rows})
     for note in found.notes:
         terminal.say(f"note: {note}")
     terminal.say("The intervals assume the model: jointwave compare shows how far models differ.")
     arguments = ["jointwave", "compare", scene, "--variant", found.scene.name]
-    for setting in [*changes, *found.settings]:
-        arguments += ["--set", setting]
-    terminal.say(f"run it: {shlex.join(arguments)}")
-    for path in files:
-        terminal.say(f"wrote {path}")
+    arguments += [part for setting in [*changes, *found.settings] for part in ("--set", setting)]
+    arguments += [part for file in given for part in ("--with", file)]
+    arguments += ["--align"] * any(e.key == "clock" for e in found.estimates)
+    terminal.say(f"compare: {shlex.join(arguments)}")
 
 
 def _facts(found: "Fit") -> dict[str, Any]:

@@ -12,11 +12,9 @@ from jointwave.cases.errors import SceneError, StoppedError
 from jointwave.cases.schema.keys import keys
 from jointwave.compare.engines import solve
 from jointwave.compare.exact.blocks import lattice
-from jointwave.compare.misfit.external import Curves, read_curves
+from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.places import Place
-from jointwave.compare.scenes import shipped
 from jointwave.compare.studies import fit_trials
-from jointwave.compare.studies.fit_files import draw, scene_text
 from jointwave.compare.studies.fit_keys import changed, free_keys
 
 LAYER, LOAD, RATIO = "soft_layers.0.spacing_stiffness", "load.amplitude", "joints.damping_ratio"
@@ -72,7 +70,7 @@ def by_key(found):
 @pytest.mark.parametrize("solver", ["lattice", "dem"])
 def test_known_values_are_found_to_round_off(solver, scene):
     """From the very solution, by the exact chain and by time steps; three waveforms."""
-    true = TRUE if solver == "dem" else {**TRUE, RATIO: 0.08}  # which would change the step
+    true = {**TRUE, RATIO: 0.08}
     places = (Place("stress", "", (1.0,)), AT_3, Place("velocity", "y", (3.25,)))
     result = solve(solver, changed(scene, true))
     waveforms = {place: place.waveform(result) for place in places}
@@ -141,23 +139,6 @@ def test_poor_start_is_left_for_another(scene):
     assert by_key(found)[LAYER].value == pytest.approx(TRUE[LAYER], rel=1e-6)
 
 
-def test_waveforms_count_by_their_own_noise(scene):
-    """A gauge with ten times the noise of another does not spoil it."""
-    clean = heard(scene, places=(AT_3,), noise=noise_of(3, 3e3))
-    both = heard(scene, places=(AT_3, Place("stress", "", (1.0,))))
-    random = np.random.default_rng(4)
-    poor = both.waveforms[Place("stress", "", (1.0,))]
-    waveforms = {
-        AT_3: clean.waveforms[AT_3],
-        Place("stress", "", (1.0,)): poor + random.normal(scale=3e5, size=poor.size),
-    }
-    mixed = Curves("gauge.csv", "gauge.csv", both.time, waveforms)
-    near = changed(scene, TRUE)
-    one, two = (jointwave.fit(near, [c], list(TRUE)).estimates[0] for c in (clean, mixed))
-    assert two.low < TRUE[LAYER] < two.high
-    assert (two.high - two.low) < 1.3 * (one.high - one.low)
-
-
 def test_what_waveforms_do_not_tell_apart_is_said(scene):
     """A particle velocity is the load over the impedance: their ratio is known, not each."""
     velocity = Place("velocity", "y", (3.25,))
@@ -210,27 +191,15 @@ def test_every_number_of_a_scene_is_free_or_refused(scene):
             assert "\n" not in str(error) and here in str(error)
             continue
         assert free.low < 0.3 < free.high and free.value(free.unknown(0.31)) == pytest.approx(0.31)
-        table, name = here.rpartition(".")[::2]
         try:
             set_here = changed(scene, {here: 0.3})
         except SceneError:
             continue
-        told = scene_text(set_here)
-        assert f"{name} = 0.3" in told and table.split(".")[0] in told
-
-
-def test_scene_is_written_as_it_is_read(tmp_path):
-    """Every shipped pillar and variant, by its own numbers."""
-    for path in shipped():
-        for scene in cases.load(path):
-            if scene.kind == "pillar" and scene.load.file is None:
-                (tmp_path / "scene.toml").write_text(scene_text(scene), "utf-8")
-                (again,) = cases.load(tmp_path / "scene.toml")
-                assert again.model_dump() == {**scene.model_dump(), "name": ""}
+        assert set_here != scene
 
 
 FAULTS = {
-    "unknown": (["--free", "joints.stiffness"], "joints.stiffness: is not a key of a scene;"),
+    "unknown": (["--free", "joints.stiffness"], "joints.stiffness: is not a key of a scene"),
     "text": (["--free", "ends.start"], "ends.start: must be a continuous number"),
     "whole": (["--free", "joints.contact_points"], "must be a continuous number"),
     "how": (["--free", "time.duration"], "must be a continuous number"),
@@ -240,7 +209,8 @@ FAULTS = {
         "must be soft_layers.0 to soft_layers.0",
     ),
     "twice": (["--free", LAYER, "--free", LAYER], "given only once"),
-    "order": (["--free", f"{LAYER}=2:1"], "LOW first"),
+    "order": (["--free", f"{LAYER}=2:1:3"], "LOW first"),
+    "two": (["--free", f"{LAYER}=1:2"], "must be KEY, KEY=START or KEY=LOW:START:HIGH"),
     "word": (["--free", f"{LAYER}=soft"], "of numbers"),
     "outside": (["--free", f"{RATIO}=-1"], "must start and stay within 0 to"),
     "solution": (["--free", LAYER, "--model", "images"], "images does not apply"),
@@ -254,9 +224,9 @@ FAULTS = {
 
 
 @pytest.fixture
-def files(scene, tmp_path):
+def files(scene, tmp_path, in_toml):
     """Write scene and measurement, in MPa and ms, tension positive, and return their paths."""
-    (tmp_path / "scene.toml").write_text(scene_text(scene))
+    (tmp_path / "scene.toml").write_text(in_toml(TABLES))
     curves = heard(scene, noise=noise_of(7, 1e4), late=1e-3)
     columns = np.c_[1e3 * curves.time, -1e-6 * curves.waveforms[AT_3]]
     path = tmp_path / "gauge.csv"
@@ -284,7 +254,7 @@ def test_no_convergence_is_exit_3(files, monkeypatch, command):
 
 
 def test_command_fits_writes_and_says_how_to_go_on(files, tmp_path, command):
-    """Units, sign and clock of a file; the fitted scene runs and fits; JSON says the same."""
+    """Units, sign and clock of a file; the table and JSON say the same."""
     free = ["--free", f"{LAYER},{LOAD}", "--free", "clock"]
     out = tmp_path / "out"
     facts = json.loads(command(*asked(files), *free, "--out", out, "--json").out)
@@ -294,46 +264,7 @@ def test_command_fits_writes_and_says_how_to_go_on(files, tmp_path, command):
     found = {e["key"]: e for e in facts["keys"]}
     for key, true in {**TRUE, "clock": -1e-3}.items():
         assert found[key]["low"] < true < found[key]["high"]
-    (again,) = cases.load(out / "fitted.toml")
-    assert again.load.amplitude == found[LOAD]["value"]
-    left = np.genfromtxt(
-        out / "fit-waveforms.csv", delimiter=",", names=True, dtype=None, encoding=None
-    )
-    assert np.allclose(left["measured"] - left["fitted"], left["residual"], atol=2)
-    assert (out / "fit-waveforms.png").stat().st_size > 10_000
     said = command(*asked(files), "--free", LOAD, "--set", "title=mine").out
     assert "fitted by lattice" in said
-    assert "--variant '' --set title=mine --set load.amplitude=" in said
-
-
-def test_a_scene_that_no_fit_wrote_is_not_replaced(files, tmp_path, command):
-    (tmp_path / "mine").mkdir()
-    (tmp_path / "mine" / "fitted.toml").write_text("title = 'mine'")
-    said = command(*asked(files), "--free", LOAD, "--out", "mine", code=2)
-    assert "would be overwritten" in said.err
-
-
-def test_one_solution_of_our_own_table_is_fitted(scene, tmp_path):
-    """Two solutions in one file are a question; one of them is a measurement like any other."""
-    header = "time (s),dem | stress at y = 3 m | a (Pa),lattice | stress at y = 3 m | a (Pa)"
-    curves = heard(scene)
-    values = curves.waveforms[AT_3]
-    file = tmp_path / "comparison.csv"
-    np.savetxt(
-        file, np.c_[curves.time, 2 * values, values], "%.12g", ",", header=header, comments=""
-    )
-    with pytest.raises(SceneError, match=r"comparison\.csv:dem, comparison\.csv:lattice"):
-        jointwave.fit(scene, read_curves([str(file)], [scene]), list(TRUE))
-    found = jointwave.fit(scene, read_curves([f"{file}:lattice"], [scene]), list(TRUE))
-    assert found.estimates[0].value == pytest.approx(TRUE[LAYER], rel=1e-6)
-
-
-def test_figure_shows_everything_and_nothing_twice(scene, collisions):
-    """No text is cut off or lies on another; residuals are drawn below, to their own scale."""
-    places = (Place("stress", "", (1.0,)), AT_3, Place("velocity", "y", (3.25,)))
-    curves = heard(scene, places=places, noise=lambda i, n: noise_of(i, (1e4, 1e4, 1e-3)[i])(i, n))
-    long = Curves(
-        "a-rather-long-name-of-a-$-file-with-everything.csv", "x", curves.time, curves.waveforms
-    )
-    figure = draw(jointwave.fit(changed(scene, {LOAD: TRUE[LOAD]}), [long], [LAYER]))
-    assert len(figure.axes) == 6 and not collisions(figure)
+    (line,) = (one for one in said.splitlines() if one.startswith("compare: jointwave compare"))
+    assert "--set title=mine --set load.amplitude=" in line and "gauge.csv:t=time" in line

@@ -6,15 +6,12 @@ import numpy as np
 import pytest
 
 import jointwave
-from jointwave import cases
 from jointwave.cases.errors import SceneError
 from jointwave.cases.read import load_tables
 from jointwave.cases.schema.keys import keys
 from jointwave.compare.engines import solve
 from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.places import Place
-from jointwave.compare.scenes import shipped
-from jointwave.compare.studies.fit_files import scene_text
 from jointwave.compare.studies.fit_keys import changed, free_keys
 
 STIFFNESS, AMPLITUDE = "joint_sets.0.normal_stiffness", "waves.0.amplitude"
@@ -76,7 +73,7 @@ def test_every_number_of_a_rock_mass_is_free_or_refused(scene):
             set_here = changed(scene, {here: 0.3})
         except SceneError:
             continue
-        assert f"{here.rpartition('.')[2]} = 0.3" in scene_text(set_here)
+        assert set_here != scene
     assert {"rock", "joint_sets", "waves"} <= free_tables
     assert not {"domain", "time", "numerics", "record"} & free_tables
 
@@ -95,38 +92,22 @@ def test_a_scene_without_rigid_blocks_asks_for_another_solver(tables):
         jointwave.fit(whole, [heard(solve("oblique-joint", whole))], list(TRUE))
 
 
-def test_rock_mass_is_written_as_it_is_read(tmp_path):
-    """Every shipped one and its variants, by its own numbers."""
-    for path in shipped():
-        for scene in cases.load(path):
-            if scene.kind == "rock mass":
-                (tmp_path / "scene.toml").write_text(scene_text(scene), "utf-8")
-                (again,) = cases.load(tmp_path / "scene.toml")
-                assert again.model_dump() == {**scene.model_dump(), "name": ""}
-
-
-def test_command_fits_a_history_and_writes_a_scene_that_runs(scene, tables, tmp_path, command):
-    """A pulse from a file goes along; the factor on it is found, and the fitted scene has it."""
+def test_command_fits_a_history(tables, tmp_path, command, in_toml):
+    """The factor on a pulse from a file is found."""
     time = np.linspace(0.0, 0.004, 41)
     pulse = np.c_[time, 1e6 * np.sin(np.pi * time / 0.004) ** 2]
     np.savetxt(tmp_path / "pulse.csv", pulse, "%.9g", ",")
     wave = tables["waves"][0] | {"shape": "table", "file": "pulse.csv", "amplitude": 1.0}
     del wave["period"]
-    text = scene_text(scene)
-    old = text.split("waves = [")[1].split("\n]")[0]
-    new = ", ".join(f"{key} = {json.dumps(value)}" for key, value in wave.items())
-    (tmp_path / "scene.toml").write_text(text.replace(old, f"{{ {new} }}"))
+    tables["waves"] = [wave]
+    (tmp_path / "scene.toml").write_text(in_toml(tables))
     true = jointwave.load(tmp_path / "scene.toml", changes={AMPLITUDE: 1.3})
     curve = heard(solve("oblique-joint", true), [ABOVE])
     columns = np.c_[1e3 * curve.time, 1e3 * curve.waveforms[ABOVE]]
     header = 'time [ms],"velocity_y@[6,8] [mm/s]"'
     np.savetxt(tmp_path / "gauge.csv", columns, "%.12g", ",", header=header, comments="")
     asked = ("--with", "gauge.csv", "--free", AMPLITUDE, "--engine", "exact")
-    model = ("--model", "oblique-joint", "--out", "out")
+    model = ("--model", "oblique-joint")
     facts = json.loads(command("fit", "scene.toml", *asked, *model, "--json").out)
     (estimate,) = facts["keys"]
     assert estimate["value"] == pytest.approx(1.3, rel=1e-6)
-    again = cases.load_variant(tmp_path / "out" / "fitted.toml")
-    assert again.waves[0].amplitude == estimate["value"]
-    assert (tmp_path / "out" / "pulse.csv").is_file()
-    assert (tmp_path / "out" / "fit-waveforms.svg").is_file()
