@@ -216,7 +216,7 @@ def fit(
 ) -> Fit:
     """Return keys of a scene fitted to measured waveforms by least squares, with 95 % intervals.
 
-    free : dotted keys, KEY, KEY=START, KEY=LOW:HIGH or KEY=LOW:START:HIGH, and `clock`. solver : as
+    free : dotted keys, KEY, KEY=START or KEY=LOW:START:HIGH, and `clock`. solver : as
     of `simulate`; None: the exact chain of rigid blocks where it holds and is short, else "dem".
 
     Raises SceneError for what cannot be fitted, StoppedError where the search does not converge.

@@ -266,5 +266,6 @@ def test_command_fits_writes_and_says_how_to_go_on(files, tmp_path, command):
         assert found[key]["low"] < true < found[key]["high"]
     said = command(*asked(files), "--free", LOAD, "--set", "title=mine").out
     assert "fitted by lattice" in said
-    (line,) = (one for one in said.splitlines() if one.startswith("compare: jointwave compare"))
-    assert "--set title=mine --set load.amplitude=" in line and "gauge.csv:t=time" in line
+    line = "".join(said.split())
+    assert "compare:jointwavecompare" in line and "gauge.csv:t=time" in line
+    assert "--settitle=mine--setload.amplitude=" in line
