@@ -5,7 +5,7 @@ that applies; the misfit is that of the rigid blocks without the effect, relativ
 the complete scene.
 """
 
-from collections.abc import Callable
+from contextlib import suppress
 from math import nan
 from pathlib import Path
 from typing import NamedTuple
@@ -30,7 +30,6 @@ from jointwave.compare.studies.store import DIED, FAILURES, Pool, Store, alone, 
 from jointwave.results.dataset import scene_hash
 
 ROCK = JOINTED_ROCK.name
-MISSING = StepCost(nan, nan)  # not timed
 SOLVING = 0.8  # of the time, if nothing is compiled yet
 #: Scenes of the report's page, each with its variants, whose kernels are compiled there anyhow.
 REPORTED = {
@@ -53,31 +52,21 @@ class Variant(NamedTuple):
         """The key of its results: a hash of everything that determines them."""
         return store.key(self.name, self.scene.name, scene_hash(self.scene))
 
-
-class Removal(NamedTuple):
-    """The result without an effect.
-
-    reason : why the effect cannot be left out; "" if it can. misfit : from the result with it, of
-    the waveforms that move with it; nan if none does. at_rest : a waveform that moves only without
-    it, in words; "" if there is none. steps : of the scene over those without it, if the effect
-    shortens the step. rock : whether the jointed rock can be without it.
-    """
-
-    effect: str
-    reason: str
-    misfit: float = nan
-    at_rest: str = ""
-    steps: float = nan
-    rock: bool = False
+    def row(self, effect: str, reason: str) -> "EffectRow":
+        """Return the row of an effect before it is measured; reason : why it cannot be left out."""
+        return EffectRow(self.name, self.scene.title, self.scene.name, effect, reason)
 
 
 class EffectRow(NamedTuple):
     """One effect of a scene; missing numbers are nan.
 
-    ns : that it adds to a block-step of the scene, and share : of it. ns_rock : ns that it adds to
-    a step of one freedom of the jointed rock. Noise: the resolution of timings. own, everything :
-    ns per block-step with all effects of the scene, and with every effect in as many blocks. The
-    others as in `Removal`.
+    reason : why the effect cannot be left out; "" if it can. misfit : of the result without it from
+    that with it, of the waveforms that move with it; nan if none does. at_rest : a waveform that
+    moves only without it, in words; "" if there is none. steps : of the scene over those without
+    it, if the effect shortens the step. ns : that it adds to a block-step of the scene, and share :
+    of it. ns_rock : ns that it adds to a step of one freedom of the jointed rock. Noise: the
+    resolution of timings. own, everything : ns per block-step with all effects of the scene, and
+    with every effect in as many blocks.
     """
 
     scene: str
@@ -85,23 +74,24 @@ class EffectRow(NamedTuple):
     variant: str
     effect: str
     reason: str
-    misfit: float
-    at_rest: str
-    steps: float
-    ns: float
-    ns_noise: float
-    share: float
-    ns_rock: float
-    ns_rock_noise: float
-    own: float
-    everything: float
+    misfit: float = nan
+    at_rest: str = ""
+    steps: float = nan
+    ns: float = nan
+    ns_noise: float = nan
+    share: float = nan
+    ns_rock: float = nan
+    ns_rock_noise: float = nan
+    own: float = nan
+    everything: float = nan
 
 
 def all_shipped() -> list[Variant]:
-    """Return every variant of every shipped pillar."""
+    """Return every variant of every shipped pillar, but for the hard cases."""
     return [
         Variant(f"{path.parent.name}/{path.stem}", scene)
         for path in shipped()
+        if path.parent.name != "hard"
         for scene in cases.load(path)
         if isinstance(scene, Scene)
     ]
@@ -124,12 +114,19 @@ def run(
     pool : solves and compiles; steps are timed in this process, one scene after the other.
     """
     tell = progress or (lambda fraction: None)
-    rows: Store[list[EffectRow]] = Store(list[EffectRow], folder)
-    new = [one for one in wanted if not rows.has(one.key)]
-    results = removals(new, folder, pool, lambda part: tell(SOLVING * part))
+    saved: Store[list[EffectRow]] = Store(list[EffectRow], folder)
+    new = [one for one in wanted if not saved.has(one.key)]
+    results = saved.compute(
+        new,
+        lambda one: f"{one.key}-without",
+        without_each,
+        pool,
+        lambda part: tell(SOLVING * part),
+        lost=lambda one: [one.row(effect, DIED) for effect in active_effects(one.scene)],
+    )
     found = {one.key: some for one, some in zip(new, results, strict=True)}
     with alone():
-        measured = rows.compute(
+        measured = saved.compute(
             wanted,
             lambda one: one.key,
             lambda one: timed(one, found[one.key]),
@@ -138,46 +135,28 @@ def run(
     return pd.DataFrame([row for some in measured for row in some], columns=EffectRow._fields)
 
 
-def removals(
-    wanted: list[Variant], folder: Path, pool: Pool | None = None, progress: Progress | None = None
-) -> list[list[Removal]]:
-    """Return the results without each effect of all variants, which are saved in `folder`, and
-    compile what `run` will time."""
-    known: Store[list[Removal]] = Store(list[Removal], folder)
-    return known.compute(
-        wanted,
-        lambda one: f"{one.key}-without",
-        without_each,
-        pool,
-        progress,
-        lost=lambda one: [Removal(effect, DIED) for effect in active_effects(one.scene)],
-    )
-
-
-def without_each(variant: Variant) -> list[Removal]:
-    """Return the results without each effect of a variant."""
+def without_each(variant: Variant) -> list[EffectRow]:
+    """Return the rows of a variant before they are timed, and compile what `timed` will run."""
     result = solve(DEM.name, variant.scene)
-    _runs(lambda: solve(ROCK, variant.scene))
-    return [_without(variant.scene, name, result) for name in active_effects(variant.scene)]
+    _compile_rock(variant.scene)
+    return [_without(variant, name, result) for name in active_effects(variant.scene)]
 
 
-def _without(scene: AnyScene, name: str, result: xr.Dataset) -> Removal:
+def _without(variant: Variant, name: str, result: xr.Dataset) -> EffectRow:
     try:
-        one = left_out(scene, name)
+        one = left_out(variant.scene, name)
         found = solve(DEM.name, one)
     except FAILURES as error:
-        return Removal(name, reason_of(error))
+        return variant.row(name, reason_of(error))
+    _compile_rock(one)
+    misfit, at_rest = influence(found, result)
     steps = float(result.attrs["steps"] / found.attrs["steps"])
-    rock = _runs(lambda: solve(ROCK, one))
-    return Removal(name, "", *influence(found, result), steps, rock)
+    return variant.row(name, "")._replace(misfit=misfit, at_rest=at_rest, steps=steps)
 
 
-def _runs(work: Callable[[], object]) -> bool:
-    try:
-        work()
-    except FAILURES:
-        return False
-    return True
+def _compile_rock(scene: AnyScene) -> None:
+    with suppress(*FAILURES):
+        solve(ROCK, scene)
 
 
 def influence(without: xr.Dataset, result: xr.Dataset) -> tuple[float, str]:
@@ -194,29 +173,32 @@ def influence(without: xr.Dataset, result: xr.Dataset) -> tuple[float, str]:
     return misfit, next(iter(at_rest), "")
 
 
-def timed(variant: Variant, removed: list[Removal]) -> list[EffectRow]:
-    """Return the rows of a variant; removed : its results without each effect."""
-    name, scene = variant
-    without = {one.effect: left_out(scene, one.effect) for one in removed if not one.reason}
+def timed(variant: Variant, rows: list[EffectRow]) -> list[EffectRow]:
+    """Return the rows of a variant with the costs of its effects."""
+    scene = variant.scene
+    found: list[EffectRow] = []
+    without = {one.effect: left_out(scene, one.effect) for one in rows if not one.reason}
     full, own, *rest = step_costs([with_every_effect(scene), scene, *without.values()])
-    blocks, rock, own_rock = dict(zip(without, rest, strict=True)), {}, MISSING
-    if applies(ROCK, scene):
-        names = [one.effect for one in removed if one.rock]
-        own_rock, *rest = step_costs([scene, *(without[x] for x in names)], ROCK)
-        rock = dict(zip(names, rest, strict=True))
-    rows = []
-    for one in removed:
-        less, less_rock = blocks.get(one.effect, MISSING), rock.get(one.effect, MISSING)
-        ns = own.ns - less.ns
-        rows.append(
-            EffectRow(
-                name,
-                scene.title,
-                scene.name,
-                *(one.effect, one.reason, one.misfit, one.at_rest, one.steps),
-                *(ns, own.noise + less.noise, ns / own.ns),
-                *(own_rock.ns - less_rock.ns, own_rock.noise + less_rock.noise),
-                *(own.ns, full.ns),
-            )
-        )
-    return rows
+    blocks, rock = dict(zip(without, rest, strict=True)), _rock_costs(scene, without)
+    for row in rows:
+        ns, ns_noise = _difference(own, blocks.get(row.effect))
+        ns_rock, ns_rock_noise = _difference(rock.get(""), rock.get(row.effect))
+        row = row._replace(ns=ns, ns_noise=ns_noise, ns_rock=ns_rock, ns_rock_noise=ns_rock_noise)
+        found.append(row._replace(share=ns / own.ns, own=own.ns, everything=full.ns))
+    return found
+
+
+def _rock_costs(scene: AnyScene, without: dict[str, AnyScene]) -> dict[str, StepCost]:
+    """Return the costs of the jointed rock by the effect left out, "" for none."""
+    if not applies(ROCK, scene):
+        return {}
+    scenes = {k: one for k, one in {"": scene, **without}.items() if applies(ROCK, one)}
+    try:
+        return dict(zip(scenes, step_costs([*scenes.values()], ROCK), strict=True))
+    except FAILURES:
+        return {}
+
+
+def _difference(own: StepCost | None, less: StepCost | None) -> tuple[float, float]:
+    """Return the difference of two costs and its noise; nan without one of them."""
+    return (own.ns - less.ns, own.noise + less.noise) if own and less else (nan, nan)

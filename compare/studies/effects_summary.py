@@ -77,61 +77,39 @@ def _resolved(value: float, noise: float) -> float | str:
 
 
 def sentences(found: pd.DataFrame) -> list[str]:
-    """Return the extremes: of whole sets, of effects without influence, and of those with."""
+    """Return the costs of the cheapest and the most expensive set of effects, and the most
+    expensive effect without influence."""
     sets = sorted((one.own / one.everything, _label(one)) for one, _ in _scenes(found))
     ends = dict.fromkeys(f"{percent(share)} % ({name})" for share, name in (sets[0], sets[-1]))
     said = [
         "With the effects that a scene needs, its block-step costs "
         f"{' to '.join(ends)} of one with everything on."
     ]
-    resolved = found[found.ns.abs() > found.ns_noise]
-    idle, active = resolved[resolved.misfit == 0], found[found.misfit > 0]
+    idle = found[(found.ns.abs() > found.ns_noise) & (found.misfit == 0)]
     if len(idle):
         one = found.loc[idle.share.idxmax()]
         said.append(
             f"The most expensive effect that does not change the result is the {one.effect}: "
             f"{percent(one.share)} % of a step of {_label(one)}."
         )
-    if len(active):
-        dearest, most, least = (
-            _words(active.loc[row])
-            for row in (active.share.idxmax(), active.misfit.idxmax(), active.misfit.idxmin())
-        )
-        said.append(
-            f"Of those that change it, the most expensive is {dearest}; the most influential is "
-            f"{most}, the least is {least}."
-        )
     return said
 
 
-def _words(one: Any) -> str:
-    share = "no measurable cost"
-    if abs(one.ns) > one.ns_noise:
-        share = f"{percent(abs(one.share))} % of a step{' less with it' if one.share < 0 else ''}"
-    return f"{one.effect} in {_label(one)} ({share}, misfit {percent(one.misfit)} % without)"
-
-
 def draw(found: pd.DataFrame) -> Figure:
-    """Return the misfit over the cost of every effect; points have the number of their scene.
-
-    Points at an edge lie there or beyond, and are hollow. The k-th effect is the SVG group
-    effects-points-k.
-    """
-    points = found[found.reason == ""].assign(number=0)
+    """Return the misfit over the cost of every effect; points have the number of their scene, and
+    those at an edge lie there or beyond. The k-th effect is the SVG group effects-points-k."""
+    points = found[found.reason == ""]
     labels = [_label(one) for one, _ in _scenes(found)]
     with blank(max(4.6, 0.6 + 0.17 * (len(labels) + points.effect.nunique()))) as figure:
         ax = figure.subplots()
         for k, (effect, some) in enumerate(points.groupby("effect", sort=False)):
             x = (100 * some.share).clip(lower=LEAST_SHARE)
             y = (100 * some.misfit).clip(lower=LEAST_MISFIT)
-            marks: dict[str, Any] = {
+            look: dict[str, Any] = {
                 "color": COLOURS[k % len(COLOURS)],
                 "marker": MARKERS[k % len(MARKERS)],
             }
-            (line,) = ax.plot(x, y, ls="none", mfc="none", label=effect, **marks)
-            line.set_gid(f"effects-points-{k}")
-            inside = (x > LEAST_SHARE) & (y > LEAST_MISFIT)
-            ax.plot(x[inside], y[inside], ls="none", **marks)
+            ax.plot(x, y, ls="none", label=effect, gid=f"effects-points-{k}", **look)
             for row, *at in zip(some.itertuples(), x, y, strict=True):
                 number = str(labels.index(_label(row)) + 1)
                 ax.annotate(number, (at[0], at[1]), (6, 3), textcoords="offset points", fontsize=8)

@@ -135,12 +135,11 @@ def _order(curve: Curve, table: pd.DataFrame) -> Order | None:
 
 def sentences(study: Study, table: pd.DataFrame) -> list[str]:
     """Return the findings of a study: the measured orders; of a timed one the cheapest point within
-    each misfit, and the extra cost of the next best curve; where errors cancel; and the accuracy of
-    the finest physics, if it is a fine run."""
+    each misfit, and the extra cost of the next best curve; and the accuracy of the finest physics,
+    if it is a fine run."""
     found = []
     if study.timed and table["total"].notna().any():
         found += [_cheapest(target) for target in cheapest(table)]
-        found += _cancelling(table[table["cancels"] & (table["measured"] > 0)])
         if isinstance(study.finest, FineRun):
             found.append(
                 f"The finest physics is a fine run of {study.finest.method}; a coarser one is "
@@ -173,14 +172,3 @@ def _errors(point: Any) -> str:
 
 def _seconds(value: float) -> str:
     return f"{value:.2g} s" if value >= 0.1 else f"{max(1e3 * value, 0.1):.2g} ms"
-
-
-def _cancelling(points: pd.DataFrame) -> list[str]:
-    if points.empty:
-        return []
-    most = points.loc[(points["measured"] / points["held"]).idxmin()]
-    return [
-        f"At {len(points)} points errors cancel, or a finer step is worse; they are marked, and "
-        f"count for what all finer points of their curve hold: {most.curve} measures "
-        f"{percent(most.measured)} % from the finest physics and counts for {percent(most.held)} %."
-    ]

@@ -14,7 +14,7 @@ from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies import effects, hard_cases, scattering, work_precision
 from jointwave.compare.studies.forecast import Part, Run, all_runs, part
 from jointwave.compare.studies.store import Store
-from jointwave.compare.studies.study import StudyPoint, load
+from jointwave.compare.studies.study import load
 
 
 def of_study(name: str, out: Path) -> list[Part]:
@@ -30,7 +30,7 @@ def of_study(name: str, out: Path) -> list[Part]:
             f"{stem}: {one.curves[0].label} ({one.curves[0].method})",
             one.points(),
             work_precision.key,
-            _of_point,
+            lambda x: [("", x.scene, x.curve.method)],
             out / stem,
         )
         for one in curves
@@ -69,37 +69,30 @@ def _part(
 ) -> Part:
     """Return a part; runs : of a point; key, folder : of its result in the store."""
     done = Store[Any](None, folder)
-    to_do = [runs(point) for point in points if not done.has(key(point))]
+
+    def of_point(point: Any) -> list[Run]:
+        try:
+            return runs(point)
+        except SceneError:
+            return []  # it fails before its first step
+
+    to_do = [of_point(point) for point in points if not done.has(key(point))]
     return part(label, len(points), to_do)
 
 
 def _joints(name: str, out: Path, brief: bool = False) -> Part:
     points = scattering.points(name, brief)
-    return _part(name, points, scattering.key, _of_joints, out / name)
+
+    def runs(point: scattering.JointsPoint) -> list[Run]:
+        return [("", scattering.scene_of(*point[1:]), point.solver)]
+
+    return _part(name, points, scattering.key, runs, out / name)
 
 
 def _hard_cases(out: Path) -> Part:
     found, folder = hard_cases.hard_cases(), out / hard_cases.NAME
-    return _part("hard cases", found, hard_cases.key, _of_hard_case, folder)
-
-
-def _of_point(point: StudyPoint) -> list[Run]:
-    try:
-        return [("", point.scene, point.curve.method)]
-    except SceneError:
-        return []  # it fails before its first step
+    return _part("hard cases", found, hard_cases.key, lambda x: [("", x.read(), x.engine)], folder)
 
 
 def _of_effects(one: effects.Variant) -> list[Run]:
     return [("", one.scene, DEM.name)] * (1 + len(active_effects(one.scene)))
-
-
-def _of_joints(point: scattering.JointsPoint) -> list[Run]:
-    return [("", scattering.scene_of(*point[1:]), point.solver)]
-
-
-def _of_hard_case(one: hard_cases.HardCase) -> list[Run]:
-    try:
-        return [("", one.read(), one.engine)]
-    except SceneError:
-        return []

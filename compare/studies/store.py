@@ -7,6 +7,7 @@ including the program. An interrupted study thus resumes, and a changed one star
 import hashlib
 import json
 import os
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -154,6 +155,8 @@ def _parallel(
             begun.append(name)
             yield delayed(_named)(name, work, point, Path.cwd())
 
+    # joblib replaces a worker that has grown: no point is lost
+    warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
     run = Parallel(
         count, return_as="generator_unordered", pre_dispatch=count, batch_size=1, max_nbytes=None
     )

@@ -22,7 +22,7 @@ from jointwave.compare.studies.findings import done, floor, judged, orders, sent
 from jointwave.compare.studies.measure import PointRow, measure
 from jointwave.compare.studies.store import Pool, Store, alone
 from jointwave.compare.studies.store import key as store_key
-from jointwave.compare.studies.study import Study, StudyPoint, load
+from jointwave.compare.studies.study import Study, StudyPoint
 from jointwave.compare.studies.summary import Summary, number, text_table, write_tables
 
 #: The studies of the report, in its order.
@@ -34,8 +34,7 @@ ERRORS = {
 }
 COSTS = {"seconds": "seconds of stepping", "work": "degrees of freedom x force evaluations"}
 MARKERS = "os^vDPX*<>hpd8H"
-#: Colours of methods without one elsewhere, distinct from all others (Okabe & Ito 2008).
-OTHERS = ("#6b6b6b", "#cc79a7", "#8a6d00", "#7a4fbf", "#000000")
+OTHER = "#6b6b6b"  # colour of methods that are no solver
 LEGEND = (
     "Sum: numerical and modelling error with what their references are not known to; it counts. "
     f"Measured: from the finest physics; {CANCELS} where errors cancel, or a finer point is worse."
@@ -64,23 +63,6 @@ def key(point: StudyPoint) -> str:
     """Return the key of a point: everything that determines its row."""
     study = point.study.model_dump(mode="json", exclude={"title", "curves"})
     return store_key(study, point.curve.model_dump(mode="json"), point.settings)
-
-
-def reported(
-    out: Path,
-    studies: tuple[str, ...] = REPORTED,
-    progress: Progress | None = None,
-    pool: Pool | None = None,
-) -> list[tuple[Path, str, Study, list[PointRow]]]:
-    """Run studies one after the other, because they are timed; return the arguments of `summarise`
-    for each. Points are saved in `out`."""
-    measured, folder = [], out / "studies"
-    for i, name in enumerate(studies):
-        study = load(name)
-        measured.append((folder, name, study, run(study, folder / name, pool)))
-        if progress:
-            progress((i + 1) / len(studies))
-    return measured
 
 
 def summarise(folder: Path, name: str, study: Study, rows: list[PointRow]) -> Summary:
@@ -159,12 +141,12 @@ def draw(name: str, table: pd.DataFrame, costs: dict[str, str]) -> Figure:
 
 
 def _draw_panel(ax: Axes, table: pd.DataFrame, error: str, cost: str, name: str) -> None:
-    styles = line_styles(table)
     points = done(table, error, cost)
-    for k, (curve, about) in enumerate(styles.items()):
-        found = points[points["curve"] == curve]
-        (line,) = ax.loglog(found[cost], found[error], label=curve, zorder=2, **about)
-        line.set_gid(f"{name}-{k}")
+    for k, (curve, some) in enumerate(table.groupby("curve", sort=False)):
+        method, found = some["method"].iloc[0], points[points["curve"] == curve]
+        (line,) = ax.loglog(found[cost], found[error], MARKERS[k % len(MARKERS)], label=curve)
+        line.set(gid=f"{name}-{k}", linestyle="-", linewidth=1.2, markersize=4.5)
+        line.set_color(style(method).colour if method in names() else OTHER)
     shown = "measured" if error == "total" else error
     crossed = done(table, shown, cost)
     crossed = crossed[crossed["cancels"] & ((error == "total") | crossed["total"].isna())]
@@ -175,21 +157,3 @@ def _draw_panel(ax: Axes, table: pd.DataFrame, error: str, cost: str, name: str)
         ax.axhspan(0, least, color="#f2f2f2", zorder=0, label="fine runs differ")
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.grid(which="major", color="#e4e7ea", linewidth=0.6)
-
-
-def line_styles(table: pd.DataFrame) -> dict[str, dict[str, Any]]:
-    """Return how matplotlib draws each curve: a model has one colour, its curves other markers."""
-    methods = table.groupby("curve", sort=False)["method"].first()
-    others = [name for name in dict.fromkeys(methods) if name not in names()]
-    ranks = methods.groupby(methods).cumcount()
-    return {
-        curve: {
-            "color": style(method).colour
-            if method in names()
-            else OTHERS[others.index(method) % len(OTHERS)],
-            "marker": MARKERS[ranks[curve] % len(MARKERS)],
-            "markersize": 4.5,
-            "linewidth": 1.2,
-        }
-        for curve, method in methods.items()
-    }

@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 
 from jointwave.compare.engines import solve
-from jointwave.compare.studies import parts
 from jointwave.compare.studies import scattering as points
 from jointwave.compare.studies.scattering import JointsPoint, JointsRow, measure, scene_of
 from jointwave.compare.studies.scattering_summary import WAVES, draw, make_study
@@ -98,11 +97,6 @@ def test_a_brief_study_has_every_other_point():
         found = points.points(name, brief=True)
         assert {p.angle if name == "oblique-joint" else p.joints for p in found} == places
         assert set(found) < set(points.points(name)) and len(found) == 6 * len(places)
-
-
-def test_a_dry_run_counts_the_points(tmp_path):
-    (part,) = parts.of_study("oblique-joint", tmp_path)
-    assert part.count == part.to_do == len(points.points("oblique-joint")) == 36
 
 
 def lines_of(name, rows):
