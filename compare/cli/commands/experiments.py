@@ -29,7 +29,7 @@ def effects(
     scene: Annotated[
         str | None,
         typer.Argument(
-            help="A scene file or a shipped scene (default: every shipped pillar).",
+            help="A scene file or a shipped scene (default: every shipped pillar but hard cases).",
             autocompletion=completion.scenes,
         ),
     ] = None,
@@ -46,7 +46,7 @@ def effects(
     """Measure the cost of every effect of a scene, and the misfit of the result without it.
 
     For a pillar, or a rock mass that rigid blocks can represent. Without a scene: every variant of
-    every shipped pillar. Slow; finished scenes are saved in DIR and not run again.
+    every shipped pillar but the hard cases. Slow; finished scenes are saved in DIR.
     """
     from jointwave.compare.cli.study_view import run_and_show
     from jointwave.compare.studies.effects import run
