@@ -63,8 +63,7 @@ def make(
     found = []
     for i, (scene, answers) in enumerate(zip(scenes, asked, strict=True)):
         one = solved(scene, answers, partial(_tell, progress, i, len(scenes)))
-        given = [curve for curve in curves if curve.holds_for(scene)]
-        one.besides += [align_curve(curve, scene, one.results, False) for curve in given]
+        one.besides += [align_curve(curve, scene, one.results, False) for curve in curves]
         found.append(one)
     figure = draw(found, appearance, request.columns, request.language)
     return save(figure, request.out, kind, scenes[0].title, appearance.dpi)

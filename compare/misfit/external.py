@@ -6,8 +6,7 @@ rock mass it is QUANTITY[_COMPONENT]@[X,Y]: `velocity_x@[20,30]`, `stress_xx@[20
 `traction_n@[20,20]`, `gap@[20,20]`; in a CSV file a header that contains a comma is quoted.
 Stress is positive in compression and motion along +x, +y, +z; a minus sign marks a column with the
 opposite sign, e.g. tension positive. Without a unit, SI. A column with another header is selected
-by COLUMN=LABEL, and one of a table of `jointwave compare --out` by its solution
-(`compare.misfit.external_columns`).
+by COLUMN=LABEL (`compare.misfit.external_columns`).
 """
 
 from collections import Counter
@@ -37,21 +36,15 @@ class Curves:
     """Waveforms of one file over one time.
 
     name : its name in tables. file : the path, as given. time : [n] s, strictly increasing.
-    waveforms : [n] by place, SI, compression positive. variant : the scene's variant that it
-    belongs to, "" for the base scene; None: to every variant. timed : whether the file or the
-    command gives the unit of its times.
+    waveforms : [n] by place, SI, compression positive. timed : whether the file or the command
+    gives the unit of its times.
     """
 
     name: str
     file: str
     time: np.ndarray
     waveforms: dict[Place, np.ndarray]
-    variant: str | None = None
     timed: bool = True
-
-    def holds_for(self, scene: AnyScene) -> bool:
-        """Return whether the curves belong to this variant of a scene."""
-        return self.variant is None or self.variant == scene.name
 
 
 def read_curves(texts: list[str], scenes: Sequence[AnyScene]) -> list[Curves]:
@@ -59,11 +52,11 @@ def read_curves(texts: list[str], scenes: Sequence[AnyScene]) -> list[Curves]:
 
     FILE is NetCDF, written by `jointwave run` or with `time` and, for example, `stress`; or a table
     or seismogram as `cases.records` reads them, a header `time [ms], stress@20 [MPa]` or two bare
-    columns, time in s first; or a table of `jointwave compare --out`. LABEL selects one of several
-    curves, or labels the only one; COLUMN is a header, or a solution or variant of such a table.
-    Empty cells are skipped. One entry per file; one each for the solutions, variants, or columns
-    with different times of a file. Raises SceneError for a file that cannot be read, is not in this
-    format, or has no curve at a receiver of one of the scenes.
+    columns, time in s first. LABEL selects one of several curves, or labels the only one; COLUMN is
+    a header. Empty cells are skipped. One entry per file, and per set of times in it.
+
+    Raises SceneError for a file that cannot be read, is not in this format, or has no curve at a
+    receiver of one of the scenes.
     """
     every = [asked(text, _is_label) for text in texts]
     files = dict.fromkeys(str(one.path) for one in every)
@@ -74,8 +67,8 @@ def read_curves(texts: list[str], scenes: Sequence[AnyScene]) -> list[Curves]:
         mine = [one for one in every if str(one.path) == file]
         found += _of_file(name if short[name] == 1 else file, mine)
     for one in found:
-        _require_recorded(one, [s for s in scenes if one.holds_for(s)])
-    return [one for one in found if any(map(one.holds_for, scenes))]
+        _require_recorded(one, scenes)
+    return found
 
 
 def slips(curves: Sequence[Curves], scene: AnyScene) -> Iterator[str]:
@@ -84,7 +77,7 @@ def slips(curves: Sequence[Curves], scene: AnyScene) -> Iterator[str]:
     for one in curves:
         loudest = max(one.waveforms.values(), key=lambda values: np.ptp(values))
         slip = look_like_milliseconds(one.time, loudest - loudest[0], end)
-        if slip and not one.timed and one.holds_for(scene):
+        if slip and not one.timed:
             yield (
                 f"{one.file}: its times, up to {one.time[-1]:g} s, look like milliseconds (the "
                 f"scene ends at {end:g} s): a header time [ms] says so"
@@ -96,7 +89,7 @@ def is_recorded(place: Place, scene: AnyScene) -> bool:
     return any(same(place.at, one) for one in recorded(scene, place.key))
 
 
-def _require_recorded(curves: Curves, scenes: list[AnyScene]) -> None:
+def _require_recorded(curves: Curves, scenes: Sequence[AnyScene]) -> None:
     if not scenes or any(is_recorded(p, scene) for p in curves.waveforms for scene in scenes):
         return
     place, scene = next(iter(curves.waveforms)), scenes[0]
@@ -128,40 +121,31 @@ def _of_file(name: str, every: list[Asked]) -> list[Curves]:
         raise
     except ValueError as error:
         raise SceneError(str(path), "", None, str(error)) from None
-    # One group for each solution, variant and set of times.
-    groups: dict[tuple[str, str, bytes], dict[Place, np.ndarray]] = {}
-    for about, values in found:
-        key = about.solution, about.variant, np.isnan(values).tobytes()
-        group, place = groups.setdefault(key, {}), about.place
-        assert place is not None
+    groups: dict[bytes, dict[Place, np.ndarray]] = {}  # by the cells that are empty
+    for place, values in found:
+        group = groups.setdefault(np.isnan(values).tobytes(), {})
         if place in group:
             raise SceneError(str(path), "", None, f"{place} must be given only once")
         group[place] = values
-    several, variants = (len({key[i] for key in groups}) > 1 for i in (0, 1))
     curves: list[Curves] = []
-    for (solution, variant, _), group in groups.items():
+    for group in groups.values():
         place, values = next(iter(group.items()))
         there = ~np.isnan(values)
         if there.sum() < LEAST_SAMPLES:
             allowed = f"must hold at least {LEAST_SAMPLES} samples, not {there.sum()}"
             raise SceneError(str(path), str(place), None, allowed)
-        called = f"{name}:{solution}" if several else name
-        of_variant = variant if variants else None
-        if any((one.name, one.variant) == (called, of_variant) for one in curves):
-            called = f"{called}:{place}"  # of other times
+        called = f"{name}:{place}" if curves else name
         waveforms = {place: values[there] for place, values in group.items()}
-        curves.append(Curves(called, str(path), seconds[there], waveforms, of_variant, bool(unit)))
+        curves.append(Curves(called, str(path), seconds[there], waveforms, bool(unit)))
     return curves
 
 
-def _fitting(table: Columns, choice: Asked) -> list[tuple[Heading, np.ndarray]]:
+def _fitting(table: Columns, choice: Asked) -> list[tuple[Place, np.ndarray]]:
     """Return the waveforms of a file selected by one argument, [n] in SI, nan where cells are
     empty."""
     wanted = _label(choice.label) if choice.label else None
     named = [c for c in table.rest if not choice.column or choice.fits(c)]
     alone = len(table.rest) == 1 or bool(choice.column and len(named) == 1)
-    headings = map(heading, (column.name for column in table.rest))
-    base = next((one.variant for one in headings if one.solution), "")  # comes first in a table
     found = []
     for column in named:
         own = heading(column.name)
@@ -171,9 +155,7 @@ def _fitting(table: Columns, choice: Asked) -> list[tuple[Heading, np.ndarray]]:
         elif own.place is None:
             raise _without_place(column, choice, table)
         if own.place is not None:
-            values = own.sign * column.si(UNITS[own.place.quantity])
-            variant = "" if own.variant == base else own.variant
-            found.append((own._replace(variant=variant), values))
+            found.append((own.place, own.sign * column.si(UNITS[own.place.quantity])))
     if not found:
         raise _not_there(choice, table)
     return found
@@ -215,8 +197,7 @@ def _listed(table: Columns) -> str:
 
 
 def _is_label(text: str) -> bool:
-    found = _label(text)
-    return found.place is not None and not found.solution
+    return _label(text).place is not None
 
 
 def _label(text: str) -> Heading:

@@ -1,8 +1,4 @@
-"""Columns selected by `--with`: FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
-
-COLUMN is a header of the file, or in a table of `jointwave compare --out`, whose headers are
-`solution | place | variant (unit)`, one or more of these parts.
-"""
+"""Columns selected by `--with`: FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -10,20 +6,16 @@ from typing import NamedTuple
 
 from jointwave.cases.records import Column
 from jointwave.cases.units import split_unit
-from jointwave.compare.misfit.places import WORDS, Place, parsed
+from jointwave.compare.misfit.places import Place, parsed
 
-PART = " | "  # separator of the parts of jointwave's headers
 TIME = "time"
 
 
 class Heading(NamedTuple):
-    """What a header says: the place, None if it names none, the sign of the values, and in a table
-    of jointwave the solution and the variant."""
+    """What a header says: the place, None if it names none, and the sign of the values."""
 
     place: Place | None
     sign: float = 1.0
-    solution: str = ""
-    variant: str = ""
 
 
 class Asked(NamedTuple):
@@ -43,10 +35,7 @@ class Asked(NamedTuple):
         """Return whether a column's name matches the argument."""
         if self.column in (column.name, f"{column.name} [{column.unit}]"):
             return True
-        if split_unit(self.column) == (column.name, column.unit):
-            return True
-        parts = _parts_of(column.name)
-        return len(parts) > 1 and set(_parts_of(self.column)) <= set(parts)
+        return split_unit(self.column) == (column.name, column.unit)
 
 
 def asked(text: str, is_label: Callable[[str], bool]) -> Asked:
@@ -71,15 +60,6 @@ def asked(text: str, is_label: Callable[[str], bool]) -> Asked:
 
 
 def heading(name: str) -> Heading:
-    """Return what a header says: `[-]QUANTITY[_COMPONENT]@PLACE`, or one of jointwave's."""
-    parts = _parts_of(name)
-    if len(parts) == 3 and (place := parsed(parts[1], WORDS)):
-        return Heading(place, 1.0, parts[0], parts[2])
+    """Return what a header says: `[-]QUANTITY[_COMPONENT]@PLACE`."""
     text = name.strip()
-    sign = -1.0 if text.startswith("-") else 1.0
-    return Heading(parsed(text.removeprefix("-").lstrip()), sign)
-
-
-def _parts_of(name: str) -> list[str]:
-    """Return the parts of a header, variants as scenes name them."""
-    return [part.strip().replace("ζ = ", "zeta ") for part in name.split(PART.strip(), 2)]
+    return Heading(parsed(text.removeprefix("-").lstrip()), -1.0 if text.startswith("-") else 1.0)

@@ -47,7 +47,6 @@ OF_SECTIONS, OF_JOINTS = ("stress", "shear"), ("traction", "gap", "slip")
 _NUMBER = r"[0-9.eE+-]+"
 _AT = rf"({_NUMBER})|\[\s*({_NUMBER})\s*[,\s]\s*({_NUMBER})\s*\]"
 LABEL = re.compile(rf"([A-Za-z]+)(?:_([a-z]+))?\s*@\s*(?:{_AT})(?:\s*m)?")
-WORDS = re.compile(rf"([a-z]+)(?: ([a-z]+))? at (?:y = )?(?:{_AT}) m")
 
 
 class Place(NamedTuple):
@@ -110,9 +109,9 @@ class Place(NamedTuple):
         return values if values.ndim == 1 else values[:, components.index(component)]
 
 
-def parsed(text: str, pattern: re.Pattern[str] = LABEL) -> Place | None:
-    """Return the place given by a label or by words; None if they give none."""
-    match = pattern.fullmatch(text.strip())
+def parsed(text: str) -> Place | None:
+    """Return the place given by a label; None if it gives none."""
+    match = LABEL.fullmatch(text.strip())
     if match is None:
         return None
     quantity, component, *numbers = match.groups()

@@ -28,7 +28,7 @@ def compare(
     """
     comparison = solved(scene, applicable(scene), progress)
     comparison.rows = measure(comparison.results, spectral, scene)
-    for one in (curve for curve in curves if curve.holds_for(scene)):
+    for one in curves:
         beside = align_curve(one, scene, comparison.results, align)
         comparison.besides.append(beside)
         comparison.rows += measure_curves(beside, comparison.results, spectral)

@@ -111,7 +111,7 @@ def fit(
     keys = free_keys(list(free), scene)
     first = changed(scene, {k.key: k.start for k in keys if k.key != CLOCK})
     name = solver_of(first, solver)
-    mine = [curve for curve in curves if curve.holds_for(scene)]
+    mine = list(curves)
     if not mine or not keys:
         raise SceneError(scene.where, "", None, "a fit needs a curve of this scene and a free key")
     keys = [started(key, first, name, mine) if key.key == CLOCK else key for key in keys]

@@ -64,7 +64,7 @@ def compare(
     "time [ms], stress@20 [MPa]", a seismogram, or a NetCDF file. A label names the only curve of a
     file without names, or takes one out of several: curve.csv:stress@20,
     "run.nc:-velocity@20.25 [mm/s]"; a column's header in front takes that column:
-    "gauge.csv:CH 3=stress@20 [MPa]". A comparison.csv of --out is read variant by variant.
+    "gauge.csv:CH 3=stress@20 [MPa]".
     Receivers of a rock mass have two coordinates: "velocity_x@[20,30]", "stress_xx@[20,30] [MPa]",
     "gap@[20,20]". The default unit is SI; stress is positive in compression, a minus sign inverts
     it. Only the overlap in time is compared; amplitudes are never scaled, and times shifted only by
@@ -172,7 +172,6 @@ def _read_curves(given: list[str], scenes: list[AnyScene], align: bool, strict: 
     if not align:
         for scene in scenes:
             for one in curves:
-                if one.holds_for(scene):
-                    common_times(one, scene)
+                common_times(one, scene)
     warn(scenes, strict, lambda scene: slips(curves, scene))
     return curves

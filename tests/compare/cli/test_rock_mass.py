@@ -120,16 +120,12 @@ def curves_of(said):
     return [row for row in rows if row["kind"] == "given curves"]
 
 
-def test_tables_and_curves_of_a_comparison_name_places(says, tmp_path):
-    """Files of --out are read back by --with: the same curves, at the same places."""
+def test_tables_of_a_comparison_name_places(says, tmp_path):
+    """A header of a table is a solution and a place in words."""
     assert "oblique-joint" in says(f"{COARSE} --out found").out
     header = (tmp_path / "found" / "comparison.csv").read_text().splitlines()[0]
     assert "oblique-joint | velocity x at [20, 10] m" in header
     assert "oblique-joint | traction s at [20, 20] m" in header
-    rows = curves_of(says(f"{COARSE} --json --with found/comparison.csv:oblique-joint"))
-    places = {(row["quantity"], row["x"], row["y"]) for row in rows}
-    assert ("velocity x", 20.0, 30.0) in places and ("traction n", 20.0, 20.0) in places
-    assert all(row["misfit"] < 1e-5 for row in rows)  # of six digits in the table
 
 
 def test_one_waveform_of_a_result_is_asked_for_by_its_place(says):

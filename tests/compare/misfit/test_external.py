@@ -1,13 +1,11 @@
 """Curves of others: read as stated, refused in one line, and put beside ours without loss."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from jointwave import dem
 from jointwave.cases.errors import SceneError
 from jointwave.cases.schema.tables import Prestress
 from jointwave.compare.exact.blocks import lattice, spatial_lattice
@@ -19,9 +17,7 @@ from jointwave.compare.misfit.alignment import align_curve, distance_at, distanc
 from jointwave.compare.misfit.external import read_curves
 from jointwave.compare.misfit.pairs import Comparison, measure_curves
 from jointwave.compare.misfit.places import Place
-from jointwave.compare.runs import comparison as runs
 from jointwave.compare.runs.comparison import compare
-from jointwave.compare.solvers.record import YES
 
 SCENE = "guo-li-2002/fig-03"
 AT_20 = Place("stress", "", (20.0,))
@@ -115,71 +111,19 @@ def test_columns_of_different_times_are_curves_of_their_own(written, scene):
     assert (one.name, other.name) == ("curve.csv", "curve.csv:velocity_y@0.25")
 
 
-@pytest.fixture
-def table(pillar, tmp_path):
-    """Write the table of two variants, two solutions and two receivers; the variants' times
-    differ, so that cells are empty. Return scenes, results and file."""
-    base = pillar(time__duration=0.03, record__stress=[12.3456789, 20.0], record__velocity=[20.25])
-    record = base.record.model_copy(update={"interval": 0.7 * base.interval})
-    damped = base.joints.model_copy(update={"damping_ratio": 0.05})
-    other = base.model_copy(update={"name": "zeta #1, a; b", "joints": damped, "record": record})
-    scenes = [base, other]
-    found = [Comparison(s, {"lattice": lattice.solve(s), "dem": dem.simulate(s)}) for s in scenes]
-    file = write_csv(tmp_path / "comparison.csv", curve_table(found).reset_index(), DIGITS)
-    return scenes, found, str(file)
-
-
-def test_our_own_table_is_read_as_it_was_written(table):
-    """Solution by solution and variant by variant, at its own times, to the table's digits."""
-    scenes, found, file = table
-    assert ",," in Path(file).read_text()
-    curves = read_curves([file], scenes)
-    assert len(curves) == 4
-    for scene, comparison in zip(scenes, found, strict=True):
-        mine = {one.name: one for one in curves if one.holds_for(scene)}
-        assert mine.keys() == {"comparison.csv:dem", "comparison.csv:lattice"}
-        for name, result in comparison.results.items():
-            one = mine[f"comparison.csv:{name}"]
-            np.testing.assert_allclose(one.time, result.time.values, rtol=1e-5)
-            assert len(one.waveforms) == 3
-            for place, values in one.waveforms.items():
-                ours = place.waveform(result)
-                np.testing.assert_allclose(values, ours, rtol=1e-5, atol=1e-12 * abs(ours).max())
-
-
-@pytest.mark.parametrize(
-    ("which", "solution", "variant", "places"),
-    [
-        (":dem", "dem", None, 3),
-        (":lattice=stress@20", "lattice", None, 1),
-        (":lattice | undamped", "lattice", 0, 3),
-        (":zeta #1, a; b | dem", "dem", 1, 3),
-        (":dem | stress at y = 20 m | ζ = #1, a; b (Pa)", "dem", 1, 1),
-        (":dem | velocity at y = 20.25 m", "dem", None, 1),
-    ],
-)
-def test_one_solution_or_variant_of_our_own_table(which, solution, variant, places, table):
-    """By its parts, with or without a label; one variant is compared with every scene."""
-    scenes, found, file = table
-    curves = read_curves([file + which], scenes)
-    assert [one.name for one in curves] == ["comparison.csv"] * (2 if variant is None else 1)
-    for scene, comparison, one in zip(scenes, found, curves, strict=False):
-        result = (comparison if variant is None else found[variant]).results[solution]
-        assert one.variant == (scene.name if variant is None else None)
-        assert len(one.waveforms) == places
-        for place, values in one.waveforms.items():
-            ours = place.waveform(result)
-            np.testing.assert_allclose(values, ours, rtol=1e-5, atol=1e-12 * abs(ours).max())
-
-
-def test_variants_of_our_own_table_stand_beside_their_own(table, monkeypatch):
-    """Each variant is compared only with its own columns of the table."""
-    monkeypatch.setattr(runs, "applicable", lambda scene: {"lattice": YES})
-    scenes, _, file = table
-    curves = read_curves([f"{file}:lattice"], scenes)
-    for scene in scenes:
-        rows = compare(scene, curves=curves).rows
-        assert len(rows) == 3 and all(row.distance.misfit < 1e-5 for row in rows)
+def test_a_column_of_our_own_table_is_selected_by_its_header(pillar, tmp_path):
+    """Of one solution in one variant, to the table's digits; whole, the table is refused."""
+    scene = pillar(time__duration=0.03)
+    result = lattice.solve(scene)
+    table = curve_table([Comparison(scene, {"lattice": result})]).reset_index()
+    file = write_csv(tmp_path / "comparison.csv", table, DIGITS)
+    header = next(name for name in table if "stress at y = 20 m" in name)
+    (one,) = read_curves([f"{file}:{header}=stress@20"], [scene])
+    ours = AT_20.waveform(result)
+    np.testing.assert_allclose(one.time, result.time.values, rtol=1e-5)
+    np.testing.assert_allclose(one.waveforms[AT_20], ours, rtol=1e-5, atol=1e-6 * abs(ours).max())
+    with pytest.raises(SceneError, match="must be named as stress@20"):
+        read_curves([str(file)], [scene])
 
 
 @pytest.mark.parametrize(
@@ -498,4 +442,3 @@ def test_command_reads_what_run_wrote(tmp_path, jointwave):
     (curve,) = facts["curves"]
     assert curve["samples"] == 401 and curve["shift"] is None and curve["outside"] == 0
     assert "exact-lattice.nc ~ dem" in said
-    assert "exact-lattice.nc: at 401 of its own times, 0 to 20 ms; 0.0% of its" in said
