@@ -105,11 +105,13 @@ def _remarks(stand: dict[str, EngineScore], several: bool) -> Iterator[str]:
     """Yield the references, engines not checked independently, and bounds that are exceeded."""
     held = [one for of_all in stand.values() for one in of_all.variants]
     said = list(dict.fromkeys(f"{one.against}: {one.reason}" for one in held if one.against))
-    others = [e for e, one in stand.items() if {*one.meanings} - {Kind.NUMERICAL.words}]
+    own = {"", Kind.NUMERICAL.words}
+    others = [e for e, of in stand.items() if {one.meaning for one in of.variants} - own]
     if said:
         said += [f"a modelling difference of {', '.join(others)}"] if others else []
-        static = {engine: one.static_words for engine, one in stand.items()}
-        said += [f"static state of {engine} {words}" for engine, words in static.items() if words]
+        for engine, of_all in stand.items():
+            words = max(of_all.variants, key=lambda one: one.static.misfit).static_words
+            said += [f"static state of {engine} {words}"] if words else []
         yield f"reference: {'; '.join(said)}"
     alone = [f"{e} ({', '.join(one.unchecked)})" for e, one in stand.items() if one.unchecked]
     if alone and several:

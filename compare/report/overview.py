@@ -2,17 +2,14 @@
 
 from collections.abc import Callable, Sequence
 from math import isnan
-from time import perf_counter
 from typing import Any, NamedTuple
 
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import ENGINES, stepping
 from jointwave.compare.report.verdict import NOT_CHECKED, EngineScore
-from jointwave.compare.text import in_seconds, mean_and_worst, times
+from jointwave.compare.text import in_seconds, times
 
-REPEATS = 5
 LONG = 0.5  # s: a run that has taken so long is not repeated
-ENOUGH = 0.1  # s: of repeats, their set-up included
 
 
 class RankedScene(NamedTuple):
@@ -43,14 +40,12 @@ def overview(scenes: Sequence[RankedScene]) -> dict[str, Any]:
 
 def _cell(scene: RankedScene, engine: str) -> dict[str, Any]:
     score = scene.scores[engine]
-    peaks = [f"{name}: {mean_and_worst(peak)} %" for name, peak in score.peaks.items()]
     return {
         "verdict": score.verdict,
         "explanation": score.explanation,
         "cost": times(scene.ratio(engine)),
         "seconds": in_seconds(scene.seconds[engine]),
         "total": score.total.judged,
-        "peaks": ", ".join(peaks),
         "own": score.own.judged,
     }
 
@@ -60,12 +55,7 @@ def _sentence(engine: str, scenes: list[RankedScene]) -> str:
     scores = [s.scores[engine] for s in scenes]
     totals = [x for one in scores if not isnan(x := one.total.judged)]
     own = [x for one in scores if not isnan(x := one.own.judged)]
-    if totals:
-        far = f"{_span(_short, totals)} % from the finest physics"
-    elif any(one.references for one in scores):
-        far = "not compared with finer physics"
-    else:
-        far = NOT_CHECKED.word
+    far = f"{_span(_short, totals)} % from the finest physics" if totals else NOT_CHECKED.word
     error = f", own numerical error ≤ {_short(max(own))} %" if own else ""
     unchecked = sum(bool(one.unchecked) for one in scores)
     if totals and unchecked:
@@ -91,19 +81,12 @@ def _short(x: float) -> str:
 
 
 def seconds_of_stepping(scene: AnyScene, known: dict[str, float]) -> dict[str, float]:
-    """Return the seconds of stepping of each engine: the least of a few repeats, while no other
-    process should be computing; of a run that has taken long, what it took.
+    """Return the seconds of stepping of each engine, measured once more while no other process
+    should be computing; of a run that has taken long, what it took.
 
     known : what each engine has taken.
     """
-    return {engine: _least(engine, scene, taken) for engine, taken in known.items()}
-
-
-def _least(engine: str, scene: AnyScene, known: float) -> float:
-    if known > LONG:
-        return known
-    found: list[float] = []
-    began, repeat = perf_counter(), stepping(engine, scene)
-    while not found or (len(found) < REPEATS and perf_counter() - began < ENOUGH):
-        found.append(repeat())
-    return min(found)
+    return {
+        engine: taken if taken > LONG else min(taken, stepping(engine, scene)())
+        for engine, taken in known.items()
+    }

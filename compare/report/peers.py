@@ -7,10 +7,11 @@ import io
 from pathlib import Path
 
 import pandas as pd
+from matplotlib.figure import Figure
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.files import read_text
-from jointwave.compare.figures.export import Drawn, blank, save
+from jointwave.compare.figures.export import blank, save
 from jointwave.compare.studies.summary import Summary
 
 PLACE = Path("out/peers/points.csv")  # where `make bench-peers` writes
@@ -38,13 +39,14 @@ def read(file: Path | None) -> pd.DataFrame | None:
     if file is None and not path.is_file():
         return None
     try:
-        text, types = read_text(path, LARGEST_FILE), dict.fromkeys(NUMBERS, float)
-        table = pd.read_csv(io.StringIO(text), dtype={**dict.fromkeys(TEXTS, str), **types})
-        if missing := [name for name in (*TEXTS, *NUMBERS) if name not in table]:
+        types = dict.fromkeys(TEXTS, str) | dict.fromkeys(NUMBERS, float)
+        table = pd.read_csv(io.StringIO(read_text(path, LARGEST_FILE)), dtype=types)
+        if missing := [name for name in types if name not in table]:
             raise ValueError(f"it has no column {missing[0]}")
     except ValueError as error:
-        words = f"is not a table of make bench-peers: {error}"
-        raise SceneError(str(path), "", None, words) from error
+        raise SceneError(
+            str(path), "", None, f"is not a table of make bench-peers: {error}"
+        ) from error
     return table.fillna(dict.fromkeys(TEXTS, ""))
 
 
@@ -53,26 +55,24 @@ def summarise(found: pd.DataFrame, folder: Path) -> Summary:
     done, missing = found[found.state == "done"], found[found.state != "done"]
     failed = [f"{one.curve} ({one.solves}): {one.message}" for one in missing.itertuples()]
     machine = "; ".join(dict.fromkeys(filter(None, found.machine))) or "an unnamed machine"
-    figure = _draw(done, found, folder)
+    figure = save(_draw(done), folder, "peers", TITLE, found)
     about = sentences(done), failed, figure.drawings, None, figure, "", LEGEND, machine
     return Summary("peers", TITLE, _table(done), *about)
 
 
 def sentences(done: pd.DataFrame) -> list[str]:
     """Return for each other code how many times as long as ours it takes."""
-    held = done[done.stepping_over_ours.notna()]
+    groups = done[done.stepping_over_ours.notna()].groupby("curve", sort=False)
     said = [
         f"{curve} beside {rows.beside.iloc[0]}: stepping {_span(rows.stepping_over_ours)} times, "
-        f"whole process {_span(rows.whole_over_ours)} times as long, on the same chain or mesh at "
-        "the same step."
-        for curve, rows in held.groupby("curve", sort=False)
+        f"whole process {_span(rows.whole_over_ours)} times as long, with equal mesh and step."
+        for curve, rows in groups
     ]
     return said or ["No other code ran: there is nothing to compare with."]
 
 
 def _span(values: pd.Series) -> str:
-    low, high = f"{values.min():.3g}", f"{values.max():.3g}"
-    return low if low == high else f"{low} to {high}"
+    return " to ".join(dict.fromkeys(f"{x:.3g}" for x in (values.min(), values.max())))
 
 
 def _table(done: pd.DataFrame) -> pd.DataFrame:
@@ -82,14 +82,13 @@ def _table(done: pd.DataFrame) -> pd.DataFrame:
     return shown.set_index([(done.curve + ": " + done.solves).rename("curve"), point])
 
 
-def _draw(done: pd.DataFrame, found: pd.DataFrame, folder: Path) -> Drawn:
+def _draw(done: pd.DataFrame) -> Figure:
     with blank(4.0) as figure:
-        axes = figure.subplots(1, 2, sharey=True)
-        for ax, column in zip(axes, ("seconds", "whole"), strict=True):
-            for (curve, solves), rows in done.groupby(["curve", "solves"], sort=False):
-                ax.loglog(rows[column], 100 * rows.total_misfit, "o-", label=f"{curve}: {solves}")
-            ax.set_xlabel(NUMBERS[column])
-        axes[0].set_ylabel("misfit from the finest physics, %")
+        axes = figure.subplots()
+        for (curve, solves), rows in done.groupby(["curve", "solves"], sort=False):
+            axes.loglog(rows.whole, 100 * rows.total_misfit, "o-", label=f"{curve}: {solves}")
+        axes.set_xlabel(NUMBERS["whole"])
+        axes.set_ylabel("misfit from the finest physics, %")
         if len(done):
-            axes[1].legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
-    return save(figure, folder, "peers", TITLE, found)
+            axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
+    return figure

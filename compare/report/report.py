@@ -22,7 +22,6 @@ from jointwave.compare.report.scenes import (
     SolvedScene,
     asked_for,
     solve,
-    without_repeats,
 )
 from jointwave.compare.report.sections import section, sections
 from jointwave.compare.runs.output import write_text
@@ -36,10 +35,6 @@ PAPERS = (
     "blocks, by a deformable continuum and by exact solutions"
 )
 PACKAGES = ("jointwave", "scipy", "xarray", "obspy", "matplotlib")
-PEERS = (
-    "Other codes on the free pillar (LAMMPS, Akantu): run make bench-peers, then "
-    f"jointwave report --out DIR --peers {peers.PLACE}."
-)
 
 
 class Report(NamedTuple):
@@ -99,9 +94,7 @@ def _solve(
     solved = [found[one.name] for one in requests]
     with alone():
         timed = [seconds_of_stepping(one.scene, one.seconds) for one in solved]
-    return without_repeats(
-        one._replace(seconds=seconds) for one, seconds in zip(solved, timed, strict=True)
-    )
+    return [one._replace(seconds=s) for one, s in zip(solved, timed, strict=True)]
 
 
 def _scenes_page(solved: list[SolvedScene]) -> dict[str, Any]:
@@ -124,7 +117,6 @@ def _scenes_page(solved: list[SolvedScene]) -> dict[str, Any]:
         "contents": {"Figures" if numbered else "Scenes": _links(solved)},
         "machine": measured_on(),
         "versions": found | {name: _version(name) for name in PACKAGES},
-        "hint": "",
     }
 
 
@@ -168,5 +160,4 @@ def _paper_page(
         "rock_masses": rock,
         "rock_overview": overview([_ranked(one) for one in rock]),
         "studies": studies,
-        "hint": PEERS if others is None else "",
     }

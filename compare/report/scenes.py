@@ -3,7 +3,7 @@
 import json
 import re
 import shlex
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,7 +13,6 @@ import pandas as pd
 from jointwave import cases
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import ENGINES
 from jointwave.compare.figures.export import Drawn, save
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.scene_figures import along_pillar, figures_of
@@ -58,13 +57,11 @@ class SceneRequest(NamedTuple):
 
 
 class Shown(NamedTuple):
-    """A picture as it stands on the page; folded : whether it stands in a fold. same_as : id and
-    words of a picture further up that has the same numbers."""
+    """A picture as it stands on the page; folded : whether it stands in a fold."""
 
     drawn: Drawn
     caption: str
     folded: bool
-    same_as: tuple[str, str] | None = None
 
 
 class SolvedScene(NamedTuple):
@@ -127,11 +124,7 @@ def solve(request: SceneRequest, folder: Path) -> SolvedScene:
         scores,
         tables.worst_misfits(comparisons),
         first.scene,
-        {
-            engine: float(first.results[engine].attrs["seconds_stepping"])
-            for engine in ENGINES
-            if engine in first.results
-        },
+        {engine: float(first.results[engine].attrs["seconds_stepping"]) for engine in scores},
         versions,
         mostly_dispersion(first) if request.number == FREE_PILLAR else None,
     )
@@ -154,6 +147,7 @@ def _section(
 ) -> dict[str, Any]:
     """Return what the section shows beside pictures and claims; write its tables."""
     scene, readings = comparisons[0].scene, reading_frame(comparisons)
+    misfits = write_csv(folder / f"{request.name}-misfits.csv", distance_frame(comparisons))
     found: dict[str, Any] = {
         "heading": f"Figure {request.number}. {scene.title}" if request.number else scene.title,
         "source": scene.source or "",
@@ -161,31 +155,12 @@ def _section(
         "verdicts": tables.verdict_table(scores),
         "misfits": tables.misfit_table(comparisons),
         "distances": tables.distance_table(comparisons),
-        "distances_file": write_csv(
-            folder / f"{request.name}-misfits.csv", distance_frame(comparisons)
-        ),
+        "distances_file": misfits,
         "runs": tables.run_table(comparisons),
         "reasons": tables.reason_table(comparisons),
         "toml": request.file.read_text(encoding="utf-8-sig"),
     }
     if len(readings):
-        file = write_csv(folder / f"{request.name}-readings.csv", readings)
+        found["readings_file"] = write_csv(folder / f"{request.name}-readings.csv", readings)
         found["readings"] = readings.set_index(["variant", "solution", "at"])
-        found["readings_file"] = file
-    return found
-
-
-def without_repeats(solved: Iterable[SolvedScene]) -> list[SolvedScene]:
-    """Return the scenes, of which a picture with the numbers of one further up is a link to it."""
-    seen: dict[bytes, tuple[str, str]] = {}
-    found = []
-    for one in solved:
-        figures = []
-        for shown in one.figures:
-            words = f"{one.request.label}: {shown.drawn.title}"
-            numbers = shown.drawn.file("csv").read_bytes()
-            first = seen.setdefault(numbers, (shown.drawn.name, words))
-            repeats = first[0] != shown.drawn.name
-            figures.append(shown._replace(same_as=first if repeats else None))
-        found.append(one._replace(figures=figures))
     return found

@@ -50,6 +50,7 @@ def sections(
         found = make_hard_cases(folder, pool, lambda x: progress(start + share * x))
         yield section("hard", found, "jointwave study stability", contents="Hard cases")
     yield _snapshots(out)
+    progress(1.0)
 
 
 def section(kind: str, found: Summary, command: str, **more: Any) -> dict[str, Any]:

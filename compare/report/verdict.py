@@ -117,29 +117,9 @@ class EngineScore(NamedTuple):
         return _largest(one.total for one in self.variants)
 
     @property
-    def peaks(self) -> dict[str, PeakDifference]:
-        """The largest differences of peaks by name."""
-        found: dict[str, PeakDifference] = {}
-        for name in (VELOCITY, STRESS):
-            there = [one.peaks[name] for one in self.variants if name in one.peaks]
-            if there:
-                found[name] = max(there, key=lambda peak: peak.worst)
-        return found
-
-    @property
     def references(self) -> tuple[str, ...]:
         """The references of the variants."""
         return tuple(dict.fromkeys(one.against for one in self.variants if one.against))
-
-    @property
-    def meanings(self) -> tuple[str, ...]:
-        """What the distances from the references are."""
-        return tuple(dict.fromkeys(one.meaning for one in self.variants if one.meaning))
-
-    @property
-    def static_words(self) -> str:
-        """By how much the static states differ in the worst variant; "" if by less than 1 %."""
-        return max(self.variants, key=lambda one: one.static.misfit).static_words
 
     @property
     def unchecked(self) -> tuple[str, ...]:
@@ -162,7 +142,6 @@ class EngineScore(NamedTuple):
         unchecked = self.unchecked if len(self.variants) > 1 else ()
         found = {
             f"compared with {' and '.join(self.references)}: {self.total.where}": self.references,
-            f"static state {self.static_words}": self.static_words,
             f"{NOT_CHECKED.word}: {', '.join(filter(None, unchecked))}": self.unchecked,
             f"exceeds the scene's bound: {', '.join(self.broken)}": self.broken,
         }

@@ -8,10 +8,10 @@ from collections.abc import Callable
 
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.report.claims import joints, pillar, travel
-from jointwave.compare.report.claims.claim import Claim, Measured
+from jointwave.compare.report.claims.claim import Claim
 
 #: By figure: what it must show, and the function that measures it on the scene and its variants.
-CLAIMS: dict[int, dict[str, Callable[[list[Comparison]], Measured]]] = {
+CLAIMS: dict[int, dict[str, Callable[[list[Comparison]], Claim]]] = {
     2: {"one sine cycle": pillar.one_sine_cycle},
     3: {
         "incident, first and second reflected pulse": pillar.three_pulses,
@@ -49,9 +49,6 @@ CLAIMS: dict[int, dict[str, Callable[[list[Comparison]], Measured]]] = {
 
 
 def claims_of(figure: int | None, comparisons: list[Comparison]) -> list[Claim]:
-    """Return the claims of a figure of the paper; none for any other scene.
-
-    `comparisons` are the scene as it stands and its variants, in the order of the file.
-    """
+    """Return the claims of a figure of the paper; none for any other scene."""
     table = CLAIMS.get(figure or 0, {})
-    return [Claim(text, *measure(comparisons)) for text, measure in table.items()]
+    return [measure(comparisons)._replace(claim=text) for text, measure in table.items()]

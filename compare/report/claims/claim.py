@@ -6,19 +6,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 
-class Measured(NamedTuple):
-    """The sentence with the numbers that decide a claim, and whether it holds."""
-
-    sentence: str
-    holds: bool
-
-
 class Claim(NamedTuple):
-    """A claim of the paper, measured."""
+    """A claim of the paper: the sentence with the numbers that decide it, and whether it holds."""
 
-    claim: str
     sentence: str
     holds: bool
+    claim: str = ""
 
 
 def listed(numbers: Mapping[str, Any], form: str, unit: str = "") -> str:

@@ -9,11 +9,11 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.compare.misfit.metrics import delay, relative_l2
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.report.claims import pulses
-from jointwave.compare.report.claims.claim import Measured, listed, share, shares
+from jointwave.compare.report.claims.claim import Claim, listed, share, shares
 from jointwave.compare.solvers.dem import DEM
 
 
-def travels(comparisons: list[Comparison]) -> Measured:
+def travels(comparisons: list[Comparison]) -> Claim:
     """Fig. 4: the incident pulse travels at the bar speed, within 3 % of it."""
     base, scene = comparisons[0], comparisons[0].scene
     c, places, quarter = calibrate(scene).bar_speed, scene.record.stress, pulses.period(scene) / 4
@@ -29,7 +29,7 @@ def travels(comparisons: list[Comparison]) -> Measured:
     for name, near in incident[0].items():
         late = delay(incident[1][name].values, near.values, pulses.sampling(near))
         speeds[name] = way / late if late else np.inf
-    return Measured(
+    return Claim(
         f"From y = {places[apart[0]]:g} to {places[apart[-1]]:g} m the incident pulse runs at "
         f"{listed(speeds, '.0f', ' m/s')}; the bar speed is {c:.0f} m/s.",
         all(abs(v / c - 1) < 0.03 for v in speeds.values()),
@@ -41,21 +41,21 @@ def overlap(comparison: Comparison) -> float:
     return calibrate(comparison.scene).bar_speed * pulses.period(comparison.scene) / 2
 
 
-def reflection(comparisons: list[Comparison]) -> Measured:
+def reflection(comparisons: list[Comparison]) -> Claim:
     """Fig. 4: the free end reverses the pulse, and no end sends back more than it got."""
     scene = comparisons[0].scene
     places = np.array(scene.record.stress)
     index = int(np.argmin(np.abs(places - 0.6 * scene.pillar.length)))
     peaks, y = pulses.signed_peaks(comparisons[0], index), places[index]
     ratios = {name: back / there for name, (there, back, _) in peaks.items()}
-    return Measured(
-        f"At y = {y:g} m the peak of the pulse off the free end over the incident one, signed by "
-        f"the first half-cycle: {listed(ratios, '+.2f')}; -1 without damping.",
+    return Claim(
+        f"Signed peak of the reflected over the incident pulse at y = {y:g} m: "
+        f"{listed(ratios, '+.2f')}; -1 without damping.",
         all(-1.05 < ratio < -0.1 for ratio in ratios.values()),
     )
 
 
-def superposition(comparisons: list[Comparison]) -> Measured:
+def superposition(comparisons: list[Comparison]) -> Claim:
     """Fig. 4: near the free end the stress is the sum of the pulse and its reversed reflection.
 
     The sum is built from the incident pulse at the section farthest from the end, shifted by the
@@ -68,7 +68,7 @@ def superposition(comparisons: list[Comparison]) -> Measured:
     y, seen = places[index], places[source]
     if index == source:
         text = f"No section lies within c T / 2 = {reach:.2f} m of the end, where pulses overlap."
-        return Measured(text, False)
+        return Claim(text, False)
     near, far = (pulses.waveforms(base, "stress", i) for i in (source, index))
     errors, heights = {}, {}
     for name, w in near.items():
@@ -77,10 +77,9 @@ def superposition(comparisons: list[Comparison]) -> Measured:
         measured = pulses.span(far[name], 0.0, total.index[-1])
         errors[name] = relative_l2(measured.values, total.reindex(measured.index).values)
         heights[name] = pulses.peak(measured) / pulses.peak(incident)
-    return Measured(
-        f"At y = {y:g} m the pulse meets its own reflection: the largest stress over the incident "
-        f"peak is {listed(heights, '.2f')}, and the waveform differs from the sum of the incident "
-        f"pulse seen at y = {seen:g} m and its reverse by {shares(errors)} (relative L2).",
+    return Claim(
+        f"The stress at y = {y:g} m peaks at {listed(heights, '.2f')} of the incident pulse, and "
+        f"differs from that pulse (seen at y = {seen:g} m) and its reverse by {shares(errors)}.",
         max(errors.values()) < 0.15,
     )
 
@@ -98,8 +97,8 @@ def _sum_of_pulses(
     return pulses.span(pd.Series(there - back, t), 0.0, stop)
 
 
-def _by_end(comparisons: list[Comparison], end: str) -> Comparison:
-    return next(c for c in comparisons if c.scene.ends.end == end)
+def _by_end(comparisons: list[Comparison], *ends: str) -> list[Comparison]:
+    return [next(c for c in comparisons if c.scene.ends.end == end) for end in ends]
 
 
 def _reflected_over_incident(comparison: Comparison) -> dict[str, float]:
@@ -108,23 +107,23 @@ def _reflected_over_incident(comparison: Comparison) -> dict[str, float]:
     return {name: abs(reflected / incident) for name, (incident, reflected, _) in peaks.items()}
 
 
-def quiet_end(comparisons: list[Comparison]) -> Measured:
+def quiet_end(comparisons: list[Comparison]) -> Claim:
     """Fig. 5: the end (9) takes nearly all of the pulse, below a tenth of the incident peak."""
-    free, quiet = (_reflected_over_incident(_by_end(comparisons, e)) for e in ("free", "quiet"))
-    return Measured(
+    free, quiet = map(_reflected_over_incident, _by_end(comparisons, "free", "quiet"))
+    return Claim(
         f"Peak of the reflected over the incident pulse with a free end: {shares(free)}; with the "
         f"quiet end (9): {shares(quiet)}.",
         all(quiet[name] < 0.1 < free[name] for name in quiet),
     )
 
 
-def left_by_the_quiet_end(comparisons: list[Comparison]) -> Measured:
+def left_by_the_quiet_end(comparisons: list[Comparison]) -> Claim:
     """Fig. 5: what the rigid chain's quiet end leaves is what its end block's mass reflects.
 
     Theory is applied to the very pulse that comes back from the free end; 1 % of what is left is
     for the tails outside the window.
     """
-    free, quiet = (_by_end(comparisons, end) for end in ("free", "quiet"))
+    free, quiet = _by_end(comparisons, "free", "quiet")
     scene, y = free.scene, free.scene.record.stress[0]
     sent, left = (
         pulses.passage(pulses.waveforms(c, "stress", 0)[DEM.name], scene, y, 1)
@@ -132,25 +131,21 @@ def left_by_the_quiet_end(comparisons: list[Comparison]) -> Measured:
     )
     predicted = pulses.peak(pulses.quiet_share(sent, scene)) / pulses.peak(sent)
     measured = pulses.peak(left) / pulses.peak(sent)
-    return Measured(
-        f"A dashpot on a full-mass block reflects tan(k d / 4) of a harmonic, "
-        f"{share(pulses.quiet_harmonic(scene))} at the load's period. Of the pulse that comes back "
-        f"from the free end this leaves {share(predicted, 2)} of the peak; dem leaves "
-        f"{share(measured, 2)}.",
+    return Claim(
+        f"A dashpot on a full-mass block reflects {share(pulses.quiet_harmonic(scene))} of a "
+        f"harmonic of the load's period, and {share(predicted, 2)} of the pulse's peak; dem "
+        f"reflects {share(measured, 2)}.",
         bool(np.isclose(measured, predicted, rtol=0.01)),
     )
 
 
-def matched_end(comparisons: list[Comparison]) -> Measured:
+def matched_end(comparisons: list[Comparison]) -> Claim:
     """Fig. 5: behind a half-block spring the dashpot leaves below 1 % wherever there are joints."""
-    quiet, matched = (
-        _reflected_over_incident(_by_end(comparisons, end)) for end in ("quiet", "matched")
-    )
+    ends = _by_end(comparisons, "quiet", "matched")
+    quiet, matched = map(_reflected_over_incident, ends)
     blocks = DEM.name
-    return Measured(
-        f"With the dashpot behind the half-block spring (in jointed rock behind half a joint) the "
-        f"reflected pulse has this share of the incident peak: {shares(matched, 2)}; for the "
-        f"rigid blocks {quiet[blocks] / max(matched[blocks], 1e-12):.0f} times less than with the "
-        f"quiet end.",
+    return Claim(
+        f"Peak of the reflected over the incident pulse with the dashpot behind half a joint: "
+        f"{shares(matched, 2)}; {blocks} with the quiet end: {share(quiet[blocks], 2)}.",
         all(x < 0.01 for x in matched.values()) and matched[blocks] < quiet[blocks],
     )

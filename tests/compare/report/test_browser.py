@@ -83,8 +83,7 @@ def _whole(show):
 @pytest.fixture
 def whole(_whole):
     """Return the page with every fold open, for tests that only look."""
-    yield _whole
-    _whole.emulate_media(media="screen")
+    return _whole
 
 
 def _refuse_outside(url, path, complaints):
@@ -143,24 +142,6 @@ def test_the_page_prints_what_is_not_folded(page, printed, title):
     sides, said = printed(page)
     assert 4 <= sides <= 11 and title.replace(" ", "") in said
     assert page.locator("details[open]").count() == 0 < page.locator("details").count()
-
-
-def test_no_two_captions_show_the_same_picture_or_numbers(whole, report):
-    """On paper pixel by pixel, where none is blank, and file by file; what two scenes share is
-    drawn once and linked to."""
-    page = whole
-    page.emulate_media(media="print")
-    found = {}
-    for figure in page.locator("figure").all():
-        name = figure.get_attribute("id").removesuffix("-figure")
-        numbers = (report.file.parent / "figures" / f"{name}.csv").read_bytes()
-        picture = figure.locator(".picture").screenshot()
-        assert spread(picture) > 8, name
-        for seen in (picture, numbers):
-            assert found.setdefault(seen, name) == name
-    links = page.locator("#moving p a[href^='#short-pillar']")
-    assert links.all_inner_texts() == ["short-pillar: Energy over time"]
-    assert page.locator(links.get_attribute("href")).count() == 1
 
 
 def test_every_variant_has_a_diagram_of_its_own_under_its_name(whole):

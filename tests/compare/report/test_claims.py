@@ -146,7 +146,7 @@ def test_superposition_needs_a_section_where_pulses_meet():
 def test_theory_gives_what_the_quiet_end_leaves(chains):
     """tan(kh/4) of a harmonic is 5.8 % at the default period."""
     found = travel.left_by_the_quiet_end(chains(5))
-    assert "5.8 % at the load's period" in found.sentence
+    assert "reflects 5.8 % of a harmonic" in found.sentence
 
 
 @pytest.fixture(scope="module")

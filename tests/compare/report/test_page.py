@@ -9,7 +9,7 @@ from jointwave.compare.figures.export import Drawn
 from jointwave.compare.report.claims.claim import Claim
 from jointwave.compare.report.overview import overview
 from jointwave.compare.report.page import render
-from jointwave.compare.report.scenes import PAPER, SceneRequest, Shown, SolvedScene, without_repeats
+from jointwave.compare.report.scenes import PAPER, SceneRequest, Shown, SolvedScene
 from jointwave.compare.report.sections import section
 from jointwave.compare.studies.summary import Summary
 
@@ -18,9 +18,9 @@ from jointwave.compare.studies.summary import Summary
 def figure(tmp_path):
     """Return a function that gives a figure and writes its files."""
 
-    def make(name, numbers="x"):
+    def make(name):
         for kind in ("svg", "pdf", "csv"):
-            (tmp_path / f"{name}.{kind}").write_text(numbers)
+            (tmp_path / f"{name}.{kind}").write_text("x")
         return Drawn(name, "A figure", tmp_path)
 
     return make
@@ -42,7 +42,6 @@ def page(tmp_path):
         "command": "jointwave report",
         "machine": "here",
         "versions": {},
-        "hint": "",
     }
 
     def make(**parts):
@@ -58,8 +57,8 @@ def scene(tmp_path, figure):
     (tmp_path / "fig-05-misfits.csv").write_text("x")
     empty = pd.DataFrame()
 
-    def make(figures=(), claims=(), name="fig-05", **texts):
-        request = SceneRequest(PAPER / f"{name}.toml", name, name)
+    def make(figures=(), claims=(), **texts):
+        request = SceneRequest(PAPER / "fig-05.toml", "fig-05", "fig-05")
         section = {"heading": "Ends", "source": "source", "command": "c", "toml": "toml"}
         section |= dict.fromkeys(("verdicts", "distances", "runs", "reasons"), empty)
         misfits = pd.DataFrame({"undamped (%)": [0.5]}, pd.Index(["a ~ b"], name="pair"))
@@ -72,7 +71,7 @@ def scene(tmp_path, figure):
 
 
 def test_a_failed_claim_is_red_and_named_at_the_top(page, scene):
-    claims = [Claim("waves pass", "They do.", True), Claim("waves stop", "No.", False)]
+    claims = [Claim("They do.", True, "waves pass"), Claim("No.", False, "waves stop")]
     one = scene(claims=claims)
     html = page(scenes=[one], claims=[(one.request, claim) for claim in claims])
     assert '<li class="holds"><strong>waves pass.</strong> They do.</li>' in html
@@ -82,7 +81,7 @@ def test_a_failed_claim_is_red_and_named_at_the_top(page, scene):
 
 
 def test_a_claim_about_the_whole_that_fails_is_red(page):
-    html = page(about=Claim("claim", "It is not so.", False))
+    html = page(about=Claim("It is not so.", False))
     assert '<p class="fails">It is not so.</p>' in html
 
 
@@ -119,15 +118,6 @@ def test_a_picture_whose_file_is_not_there_is_an_error(page, scene, figure):
     gone.file("svg").unlink()
     with pytest.raises(FileNotFoundError):
         page(scenes=[scene([(gone, False)])])
-
-
-def test_no_picture_stands_twice(page, scene, figure):
-    """A later one of the same numbers, whatever it is called, is a link to the first."""
-    first, second, third = figure("first", "1"), figure("second", "1"), figure("third", "2")
-    scenes = [scene([(first, False)]), scene([(second, False), (third, False)], name="fig-06")]
-    html = page(scenes=without_repeats(scenes))
-    assert re.findall('<figure id="([a-z]+)-figure"', html) == ["first", "third"]
-    assert 'The same picture as <a href="#first-figure">fig. 5: A figure</a>.' in html
 
 
 def test_a_folded_picture_is_closed_until_it_is_opened(page, scene, figure):

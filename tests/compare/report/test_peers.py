@@ -67,3 +67,11 @@ def test_without_a_name_the_table_is_looked_for_where_it_is_written(file, tmp_pa
     peers.PLACE.parent.mkdir(parents=True)
     file.rename(peers.PLACE)
     assert len(peers.read(None)) == 4
+
+
+def test_wrong_table_of_other_codes_is_one_line(tmp_path, monkeypatch, jointwave):
+    """Before anything is solved or written."""
+    monkeypatch.chdir(tmp_path)
+    said = jointwave("report", "--peers", "none.csv", code=2).err
+    assert said.count("\n") == 1 and "none.csv" in said and "cannot be read" in said
+    assert not (tmp_path / "report").exists()

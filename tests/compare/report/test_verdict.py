@@ -129,8 +129,7 @@ def test_the_cheapest_everywhere_says_its_seconds():
 def test_an_engine_without_a_distance_is_not_given_one():
     there = {"dem": scored(nan, "lattice"), "continuum-jointed": scored(nan, "")}
     said = overview([RankedScene("a", "a", "A", there, dict.fromkeys(there, 1.0))])["lead"]
-    assert "not compared with finer physics" in said["dem"]
-    assert NOT_CHECKED.word in said["continuum-jointed"]
+    assert all(NOT_CHECKED.word in sentence for sentence in said.values())
 
 
 @pytest.mark.parametrize(
