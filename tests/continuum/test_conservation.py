@@ -81,10 +81,3 @@ def alike(found: np.ndarray, expected: np.ndarray) -> None:
     peak = np.abs(expected).max()
     assert peak > 0
     assert np.abs(found - expected).max() < 1e-10 * peak
-
-
-def test_load_on_the_axis_bends_nothing(plain, short, ready):
-    scene = short(load=blow(3, "sine", direction=[0.0, 1.0, 0.0], at=[0.0, 0.0]))
-    waves = ready(scene, "jointed", 3, samples=101).to_the_end().waves
-    peak = np.abs(waves["velocity"]).max()
-    assert np.abs(waves["velocity"][..., [0, 2]]).max() < 1e-10 * peak > 0

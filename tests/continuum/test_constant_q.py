@@ -122,22 +122,6 @@ def test_ledger_of_implicit_steps_closes(kind, short):
     assert np.diff(lost).min() >= -1e-10 * np.abs(lost).max()
 
 
-def test_loss_is_that_of_the_dashpots(short, ready):
-    """What the ledger calls viscous is omega dt share of K and the mean elongation of every step,
-    to round-off."""
-    run = ready(short(**Q, load__period=1e-3), "equivalent", samples=300)
-    memory, dt = run.model.rock.memory, run.time.dt
-    stiffness, lost = operators(run.discrete)[0], 0.0
-    for n in range(300):
-        before = run.state.elongation.copy()
-        run.take(n, n + 1)
-        if n < 299:
-            mean = (before + run.state.elongation) / 2
-            each = [e @ (stiffness @ e) for e in mean]
-            lost += dt * float((memory.frequency * memory.share) @ each)
-    assert run.samples.energy[4, 299] == pytest.approx(lost, rel=1e-10)
-
-
 def test_weight_at_rest_stays_at_rest(short):
     """The static state is that of the relaxed rock, where nothing is left to relax."""
     rest = LEDGERS["weight at rest"] | {"load__amplitude": 1e-9, "load__period": 1e-3}
@@ -287,9 +271,3 @@ def test_what_has_no_quality_factor_says_so(pillar, one_joint):
     )
     assert reason_against(mass, "jointed") == ""
     assert "effective medium has no" in reason_against(mass, "equivalent")
-
-
-def test_elastic_rock_remembers_nothing(short, ready):
-    run = ready(short(), "jointed")
-    assert run.model.rock.memory is None
-    assert run.state.elongation is run.state.strained is run.state.drag is None

@@ -14,8 +14,6 @@ from jointwave.continuum.explicit.march import arguments, readings
 from jointwave.continuum.implicit.balance import arguments as arguments_of_trials
 from jointwave.continuum.implicit.balance import forces_for, implicit_matrices
 from jointwave.continuum.implicit.pattern import empty_tangents
-from jointwave.continuum.joints import interfaces
-from jointwave.continuum.model import Quiet
 from jointwave.continuum.run import discrete_and_steps
 from jointwave.continuum.state import state_at_rest
 from jointwave.numerics.divergence import guard
@@ -23,12 +21,9 @@ from jointwave.results.arrays import copied
 
 SUDDEN = {"direction": [0.0, 1.0, 0.0], "static": False}
 SHAKEN = {"shape": "sine", "amplitude": 0.1, "period": 1e-3, "quantity": "velocity"}
-WEAKENS = {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3}
-DILATES = {"dilation_angle": 5.0, "dilation_distance": 1e-2}
 LOST = {"residual_cohesion": 0.0, "friction_angle": 0.0}
 NEVER = {"dynamic_friction_angle": 0.0, "weakening_distance": 1e-3}
 WEIGHTLESS = {"direction": [0.6, 0.8, 0.0], "acceleration": 0.0, "static": False}
-KEPT = ("opening", "slide", "cohesion", "path")
 BREAKS = {"tensile_strength": 5e6, "fracture_energy": 2000.0}
 SILENT = {"record__energy": False}
 
@@ -46,39 +41,6 @@ def waves(ready):
         return np.concatenate([at.samples.stress, at.samples.velocity, at.samples.displacement])
 
     return of
-
-
-@pytest.mark.parametrize("model", ["jointed", "equivalent"])
-def test_dashpots_of_ratio_zero_change_nothing(pillar, model):
-    step = {"numerics__continuum__step_fraction": 0.2, "time__duration": 0.06}
-    idle = simulate(pillar(joints__damping_ratio=0.0, **step), model)
-    assert idle["stress"].equals(simulate(pillar(**step), model)["stress"])
-    assert idle["velocity"].equals(simulate(pillar(**step), model)["velocity"])
-
-
-def test_joints_that_all_carry_tension_one_by_one_change_nothing(pillar, waves):
-    scene = pillar(time__duration=0.06)
-
-    def change(built):
-        every = np.ones(built.interfaces.area.size, dtype=bool)
-        law = built.interfaces.law._replace(carries_tension=every)
-        jumps = discretise(scene, "jointed").jumps
-        return built._replace(interfaces=interfaces(jumps, law, None, scene))
-
-    assert np.array_equal(waves(scene, "jointed"), waves(scene, "jointed", change))
-
-
-def test_barred_tension_changes_nothing_while_all_is_compressed(pillar):
-    """A step that has not reached the far end pulls no joint. Linear elements, for higher ones
-    send ripples of 1e-11 of it ahead of the front."""
-    step = {"load": {"shape": "step", "amplitude": 1e6}, "numerics__continuum__order": 1}
-    places = np.arange(0.5, 50.0, 0.5).tolist()
-    changes = {"joints__damping_ratio": 0.05, "time__duration": 0.03, "record__stress": places}
-    free = simulate(pillar(**step, **changes))
-    assert float(free["stress"].min()) >= 0.0
-    barred = simulate(pillar(joints__tension=False, **step, **changes))
-    assert barred["stress"].equals(free["stress"])
-    assert barred["velocity"].equals(free["velocity"])
 
 
 @pytest.mark.parametrize(
@@ -99,70 +61,10 @@ def test_strength_that_nothing_reaches_changes_nothing(idle, short):
         assert other[quantity].equals(one[quantity]), quantity
 
 
-@pytest.mark.parametrize("model", ["jointed", "equivalent"])
-def test_quiet_end_without_impedance_changes_nothing(pillar, waves, model):
-    scene = pillar(time__duration=0.06)
-
-    def change(built):
-        quiet = Quiet(np.array([0, built.rock.mass.size - 1]), np.zeros(2), np.zeros(2))
-        return built._replace(ends=built.ends._replace(quiet=quiet))
-
-    assert np.array_equal(waves(scene, model), waves(scene, model, change))
-
-
 def test_ledger_changes_nothing(pillar, waves):
     scene = pillar(joints__damping_ratio=0.02, time__duration=0.06)
     silent = pillar(joints__damping_ratio=0.02, time__duration=0.06, **SILENT)
     assert np.array_equal(waves(scene, "jointed"), waves(silent, "jointed"))
-
-
-def test_absent_effects_leave_no_array(short, ready):
-    at = ready(short(**SILENT), "equivalent")
-    assert at.model.interfaces is None and at.model.weight is None
-    assert at.model.ends.quiet is None and at.model.ends.fixed is None
-    assert at.model.rock.viscosity is None and at.model.rock.decay is None
-    receivers = at.model.receivers
-    assert (receivers.turn, receivers.viscous, receivers.contact, receivers.constant) == (None,) * 4
-    state = at.state
-    assert (state.rate, state.drag, state.loads, state.drags) == (None,) * 4
-    assert (state.jump, state.jump_rate, state.slip_rate) == (None,) * 3
-    assert (state.opening, state.slide, state.cohesion, state.path) == (None,) * 4
-    assert (state.closure, state.reaction, state.base_force, state.ledger) == (None,) * 4
-    assert state.fields.size == 3 * at.model.rock.mass.size
-
-
-def test_alike_undamped_joints_are_one_number(short, ready):
-    at = ready(short(), "jointed")
-    law = at.model.interfaces.law
-    assert isinstance(law.normal_stiffness, float)
-    assert law[1:] == (None,) * (len(law) - 1)
-    assert at.model.interfaces.table.shape == (len(law), 1)
-    state = at.state
-    assert (state.opening, state.slide, state.cohesion, state.path) == (None,) * 4
-    assert (state.rate, state.drag, state.drags, state.jump_rate, state.slip_rate) == (None,) * 5
-    assert state.loads.shape == state.jump.shape == (1, 3)
-
-
-@pytest.mark.parametrize(
-    ("joints", "kept"),
-    [
-        ({}, ()),
-        ({"cohesion": 1e5}, ("slide",)),
-        ({"tension": False}, ("slide",)),
-        (
-            {"cohesion": 1e5, "residual_cohesion": 1e4},
-            ("slide", "cohesion"),
-        ),
-        ({"friction_angle": 30.0, **WEAKENS}, ("slide", "path")),
-        ({"friction_angle": 30.0, **DILATES}, ("slide", "path")),
-        (BREAKS, ("opening", "slide")),
-    ],
-)
-def test_joints_remember_what_their_law_asks_for(joints, kept, short, ready):
-    at = ready(short(joints=joints), "jointed", 3)
-    history = {name: getattr(at.state, name) for name in KEPT}
-    assert {name for name, values in history.items() if values is not None} == set(kept)
-    assert at.state.drags is None
 
 
 @pytest.fixture
@@ -213,10 +115,6 @@ def test_elastic_joints_in_space_compare_and_divide_nothing(kind, changes, count
     """Joints that hold, with no load before, are sums and products."""
     assert count(kind, dim=2) == 0
     assert in_runs(kind, dim=2) < in_runs(kind, dim=2, **changes)
-
-
-def test_a_prestress_divides(count):
-    assert count("fdiv", dim=2) == 0 < count("fdiv", dim=2, prestress={"normal": 1e5})
 
 
 @pytest.fixture
@@ -283,19 +181,6 @@ def test_homogenised_rock_keeps_a_joint_that_can_fail_as_stiff_as_ten(pillar):
     law = discretise(scene, "equivalent", 2).joints.law
     assert law.normal_stiffness == pytest.approx(10 * p.regular_stiffness, rel=1e-12)
     assert law.shear_stiffness == pytest.approx(10 * p.regular_shear_stiffness, rel=1e-12)
-
-
-def test_joint_that_differs_in_shear_alone_is_there_where_rock_moves_across(pillar):
-    """By its excess of shear compliance; along the axis it is as stiff as ten. In axial motion
-    neither that nor its strength calls for a joint."""
-    layer = [{"y": 20.0, "shear_stiffness": 1e9}, {"y": 30.0, "cohesion": 1e5}]
-    scene = pillar(soft_layers=layer)
-    p = calibrate(scene)
-    joints = discretise(scene, "equivalent", 2).joints
-    excess = 1 / p.shear_stiffness[39] - 1 / p.regular_shear_stiffness
-    assert joints.law.shear_stiffness.min() == pytest.approx(1 / excess, rel=1e-12)
-    assert joints.law.normal_stiffness == pytest.approx(10 * p.regular_stiffness, rel=1e-12)
-    assert discretise(scene, "equivalent", 1).joints is None
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from jointwave.continuum import simulate
-from jointwave.continuum.state import TERMS
-from jointwave.results.dataset import energy_residual, imbalance
+from jointwave.results.dataset import energy_residual
 
 LAYER = {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4.375e8}]}
 DAMPED = {"joints__damping_ratio": 0.05}
@@ -87,7 +86,6 @@ def never_falls(energy):
 
 
 SLIP = {"friction_angle": 20.0, "cohesion": 1e4}
-BREAKS = {**SLIP, "tensile_strength": 5e4, "fracture_energy": 1.0}
 
 
 @pytest.mark.parametrize("damping", [{}, {"damping_ratio": 0.05}], ids=["elastic", "damped"])
@@ -101,49 +99,6 @@ def test_ledger_closes_to_round_off_while_joints_slide(short, damping):
     if not damping:
         never_falls(friction)
     assert friction[-1] > 1e-3 * float(result["energy"].sel(term="work").max())
-
-
-@pytest.mark.parametrize(
-    "joints",
-    [{"tension": False}, {"tension": False, **SLIP}, BREAKS],
-    ids=["no tension", "no tension, slip", "softening"],
-)
-def test_ledger_closes_but_for_the_corners_of_the_law(short, ready, joints):
-    """The trapezoid is exact along straight lines; each corner inside a step costs a little.
-
-    At a point of area A a corner that changes the slope by at most K + K_soft, passed in a step of
-    the gap delta, is cut by at most A (K + K_soft) delta^2 / 8: the chord under two lines.
-    """
-    run = ready(in_space(short, 2, {"joints": joints}), "jointed", 2, fraction=0.2, samples=600)
-    opening, gaps = run.discrete.jumps.matrices[0], []
-    for n in range(run.time.samples):
-        gaps.append(opening @ run.state.u)
-        run.take(n, n + 1)
-    energy = run.samples.energy
-    work = energy[TERMS.index("work")].max()
-    lost = imbalance(energy, TERMS) * np.abs(energy[TERMS.index("work")]).max()
-    assert lost <= corner_cost(run, np.array(gaps)) + 1e-11 * work
-    never_falls(energy[TERMS.index("friction")])
-    if "tensile_strength" in joints:
-        never_falls(energy[TERMS.index("fracture")])
-        assert energy[TERMS.index("fracture"), -1] > 1e-3 * work
-
-
-def corner_cost(run, gaps: np.ndarray) -> float:
-    """Return the sum over steps and points of A (K + K_soft) delta^2 / 8 for each corner passed.
-
-    gaps : [steps, q], m.
-    """
-    law, area = run.model.interfaces.law, run.model.interfaces.area
-    low, high = np.minimum(gaps[1:], gaps[:-1]), np.maximum(gaps[1:], gaps[:-1])
-    steepest, corners = law.normal_stiffness, [0.0]
-    if law.tensile_strength is not None:
-        first, last = law.tensile_strength / law.normal_stiffness, law.critical_opening
-        largest = np.maximum.accumulate(np.maximum(gaps, 0.0))[:-1]
-        steepest = law.normal_stiffness + law.tensile_strength / (last - first)
-        corners += [first, last, np.maximum(largest, first)]
-    passed = sum(((low < corner) & (corner < high)).astype(int) for corner in corners)
-    return float((area * steepest / 8 * (high - low) ** 2 * passed).sum())
 
 
 @pytest.mark.parametrize("model", ["jointed", "equivalent"])
@@ -176,15 +131,3 @@ def test_no_tension_joints_never_pull_and_lose_no_energy(pillar, zeta):
     assert float(result["stress"].min()) > -1e-10 * peak
     assert energy_residual(result) < 1e-3
     assert 0.5e6 < peak < 1.1e6
-
-
-def test_terms_are_those_of_the_scene(short):
-    """Friction where a joint can slide, fracture where one can break, gravity where it acts."""
-    basic = ["kinetic", "elastic", "viscous", "boundary", "work"]
-    assert simulate(short(), "jointed").term.values.tolist() == basic
-    assert simulate(short(joints=SLIP), "jointed").term.values.tolist() == basic
-    assert set(simulate(short(joints=BREAKS), "jointed", 2).term.values) == {
-        *basic,
-        "fracture",
-        "friction",
-    }

@@ -16,9 +16,7 @@ SHORT = {
     "time__duration": 4e-3,
     "record": {"velocity": [0.0, 0.25, 2.0], "interval": 2e-5, "fields": 4e-4},
 }
-BRIEF = 4e-4  # s, two snapshots: all have the same cells
 KINDS = {1: "line", 2: "quad", 3: "hexahedron"}
-SIZE = {1: LENGTH, 2: LENGTH * SIDE, 3: LENGTH * SIDE**2}
 
 
 @pytest.fixture(params=KINDS)
@@ -30,29 +28,6 @@ def dim(request):
 def short(pillar):
     """Return a function of the dimension that gives four blocks of rock, keys changed."""
     return lambda dim, **changes: pillar(**SHORT | {"numerics__continuum__dim": dim} | changes)
-
-
-def extents(found):
-    """Return the extents of every cell along x, y, z [cells, 3]."""
-    return np.ptp(found.points[found.cells], axis=1)
-
-
-@pytest.mark.parametrize("order", [1, 2, 3])
-@pytest.mark.parametrize("model", ["jointed", "equivalent"])
-def test_cells_fill_the_pillar_and_know_their_block(short, dim, model, order):
-    scene = short(dim, numerics__continuum__order=order, time__duration=BRIEF)
-    found = snapshots_of(continuum.simulate(scene, model=model))
-    assert found.kind == KINDS[dim]
-    axes = {1: [1], 2: [0, 1], 3: [0, 1, 2]}[dim]
-    assert extents(found)[:, axes].prod(axis=1).sum() == pytest.approx(SIZE[dim], rel=1e-12)
-    middle = found.points[found.cells].mean(axis=1)
-    np.testing.assert_array_equal(found.block, (middle[:, 1] / BLOCK).astype(int))
-
-
-def test_blocks_share_no_node(short, dim):
-    found = snapshots_of(continuum.simulate(short(dim, time__duration=BRIEF)))
-    blocks = [set(found.cells[found.block == i].ravel()) for i in range(4)]
-    assert sum(map(len, blocks)) == len(set().union(*blocks)) == len(found.points)
 
 
 def test_a_run_with_snapshots_is_the_same_to_the_last_bit(short, dim):

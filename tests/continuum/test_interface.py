@@ -55,15 +55,6 @@ def measured(body: Body, u: np.ndarray) -> np.ndarray:
 
 
 @cells
-def test_bodies_that_move_together_do_not_part(dim, cell, order, body):
-    at = body(dim, cell, order)
-    for c in range(at.section.components):
-        together = np.eye(at.section.components)[c]
-        u = displaced(at, lambda block, x, way=together: np.tile(way, (len(x), 1)))
-        assert np.abs(measured(at, u)).max() < 1e-13
-
-
-@cells
 def test_jump_is_exact_for_any_motion_of_the_elements_own_degree(dim, cell, order, body):
     """Far side less near side, along y, x and z."""
     at = body(dim, cell, order)
@@ -88,26 +79,6 @@ def test_jump_across_an_inclined_joint_is_along_its_own_axes(dim, cell, order, b
     assert not found.flat.any()
     area = np.bincount(found.joint, found.weight)
     assert area == pytest.approx(np.full(2, 0.25 * np.hypot(1, 0.6)), rel=1e-12)
-
-
-@cells
-def test_weights_of_each_joint_sum_to_its_area(dim, cell, order, body):
-    found = jumps(body(dim, cell, order))
-    area = np.bincount(found.joint, found.weight)
-    assert area == pytest.approx(np.full(BLOCKS - 1, 0.25), rel=1e-13)
-    assert (found.weight > 0).all() and found.flat.all()
-
-
-@pytest.mark.parametrize("dim", [1, 2, 3])
-@pytest.mark.parametrize("order", [1, 2, 3, 4])
-def test_points_on_hexahedra_are_nodes_and_couple_two_alone(dim, order, body):
-    """The near node and the far one: a joint does not couple nodes of its own side."""
-    found = jumps(body(dim, "hexahedron", order))
-    for matrix in found.matrices:
-        assert (np.diff(matrix.indptr) == 2).all()
-        assert np.sort(matrix.data.reshape(-1, 2)) == pytest.approx(
-            np.tile([-1.0, 1.0], (matrix.shape[0], 1)), abs=1e-13
-        )
 
 
 #: Corners of a cell turned in its own frame, without mirroring it.

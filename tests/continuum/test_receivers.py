@@ -5,8 +5,7 @@ import pytest
 
 from jointwave.continuum.space.body import Body, axis, whole
 from jointwave.continuum.space.elasticity import Material
-from jointwave.continuum.space.interface import jumps
-from jointwave.continuum.space.receivers import _by_stress, points, sections
+from jointwave.continuum.space.receivers import points, sections
 
 ROCK = Material(modulus=8.64e10, poisson=0.25, density=2400.0, time_constant=1e-5)
 HEXAHEDRA = [(dim, "hexahedron", order) for dim in (1, 2, 3) for order in (1, 2, 3, 4)]
@@ -31,50 +30,6 @@ def moved_by(body: Body, motion) -> np.ndarray:
     return u
 
 
-def axis_of(dim: int, places: list[float]) -> np.ndarray:
-    """Return points on the axis [n, dim], m."""
-    return np.array(places)[:, None] * np.eye(dim)[min(1, dim - 1)]
-
-
-@cells
-def test_points_read_polynomials_exactly_and_the_mean_on_a_joint(dim, cell, order, body):
-    """Of the elements' own degree; each block is shifted by as many metres as it is far."""
-    at = body(dim, cell, order)
-    blocks = np.repeat(np.arange(3), len(at.x) // 3)[:, None]
-    slope = GRADIENT[:dim, :dim]
-    u = moved_by(at, lambda x: 1.0 + x @ slope + x**order @ slope.T + blocks)
-    on_axis, side = axis_of(dim, PLACES), np.array([0, 0, 0, 0.5, 1, 1.5, 2])
-    expected = 1.0 + on_axis @ slope + on_axis**order @ slope.T + side[:, None]
-    read = (points(at, PLACES).motion @ u).reshape(dim, -1).T
-    assert read == pytest.approx(expected, rel=1e-12, abs=1e-12)
-
-
-def test_both_sides_of_a_joint_count_alike_however_many_cells_meet_there(body, rebuilt):
-    """Three triangles meet the axis at the joint from one side, four from the other."""
-    at = body(2, "simplex", 1, blocks=2)
-    x = np.array([[-0.25, 0], [0, 0], [0.25, 0], [-0.25, 0.5], [0, 0.5], [0.25, 0.5]])
-    few = np.array([[0, 1, 3], [1, 4, 3], [1, 2, 4], [2, 5, 4]])
-    many = np.array([[0, 1, 3], [1, 4, 3], [1, 5, 4], [1, 2, 5]])
-    part = at.mesh.parts[0]
-    halves = [
-        part._replace(
-            x=x + np.array([0.0, y]),
-            cells=cells,
-            material=np.zeros(4, int),
-            shifts=np.zeros((1, 2)),
-        )
-        for y, cells in ((0.0, few), (0.5, many))
-    ]
-    left, right = np.array([1, 3]), np.array([4, 7])
-    corners = np.array([[[-0.25, 0.5], [0, 0.5]], [[0, 0.5], [0.25, 0.5]]])
-    joints = at.mesh.joints._replace(
-        left=left, right=right, corners=corners, joint=np.zeros(2, int)
-    )
-    at = rebuilt(at, at.mesh._replace(parts=tuple(halves), joints=joints))
-    far = np.repeat([0.0, 1.0], 6)[:, None] * np.ones(2)
-    assert points(at, [0.5]).motion @ moved_by(at, lambda x: far) == pytest.approx([0.5, 0.5])
-
-
 @deep
 def test_rotation_is_half_the_curl(dim, cell, order, body):
     """Of an affine motion, everywhere: (A - A^T) / 2 as a vector; in dim 2 about z alone."""
@@ -85,18 +40,6 @@ def test_rotation_is_half_the_curl(dim, cell, order, body):
         curl[:2] = a[2, 1] - a[1, 2], a[0, 2] - a[2, 0]
     curl[2] = a[1, 0] - a[0, 1]
     assert np.abs(turn.reshape(3, -1).T - curl / 2).max() < 1e-12
-
-
-@deep
-def test_rotation_on_a_joint_is_the_mean_of_both_sides(dim, cell, order, body):
-    at = body(dim, cell, order)
-    block = np.repeat(np.arange(3), len(at.x) // 3)[:, None]
-    spin = np.zeros((dim, dim))
-    spin[0, 1], spin[1, 0] = -1.0, 1.0
-    u = moved_by(at, lambda x: block * (x @ spin.T))
-    turn = (points(at, PLACES).turn @ u).reshape(3, -1)
-    assert turn[2] == pytest.approx([0, 0, 0, 0.5, 1, 1.5, 2], abs=1e-12)
-    assert np.abs(turn[:2]).max() < 1e-12
 
 
 def stress_of(gradient: np.ndarray, dim: int) -> np.ndarray:
@@ -127,17 +70,6 @@ def test_sections_read_uniform_stress_exactly(dim, cell, order, body):
     damped = (read.viscous @ u).reshape(dim, -1).T
     assert np.abs(damped - 1e-5 * force).max() < 1e-17 * np.abs(force).max()
     assert bool(read.inertia.nnz) == (cell == "hexahedron")
-
-
-@deep
-def test_sections_by_stress_alone_read_it_too(dim, cell, order, body):
-    """On hexahedra this is what remains where cells do not follow the section."""
-    at = body(dim, cell, order, along=2, rock=ROCK)
-    u, force = moved_by(at, lambda x: x @ GRADIENT[:dim, :dim].T), uniform_force(dim)
-    for place in INSIDE:
-        elastic, _, inertia = _by_stress(at, [ROCK], place)
-        assert np.abs(elastic @ u - force).max() < 1e-12 * np.abs(force).max()
-        assert inertia.nnz == 0
 
 
 def bent(x: np.ndarray) -> np.ndarray:
@@ -180,16 +112,3 @@ def test_section_force_of_a_bar_pushed_at_one_end_falls_linearly(dim, cell, orde
     found = (read.elastic @ u + read.inertia @ rate).reshape(dim, -1)
     assert found[0] == pytest.approx(force * (1 - places / 0.5), abs=1e-11)
     assert np.abs(found[1:]).max(initial=0.0) < 1e-11
-
-
-@cells
-def test_section_on_a_joint_reads_the_traction_of_its_points(dim, cell, order, body):
-    """Area times traction, whole joint; the section away from joints reads none."""
-    at = body(dim, cell, order)
-    read = sections(at, jumps(at), [ROCK], [0.25, 0.5, 1.0])
-    every = read.contact @ np.ones(read.contact.shape[1])
-    assert every == pytest.approx([0.0, 0.25, 0.25], rel=1e-13)
-    which = jumps(at).joint
-    assert (read.contact @ (which == 1)) == pytest.approx([0.0, 0.0, 0.25], rel=1e-13)
-    rows = np.diff(read.elastic.indptr).reshape(at.section.components, -1)
-    assert (rows[:, 1:] == 0).all() and (rows[:, 0] > 0).all()

@@ -9,9 +9,7 @@ import pytest
 from closed_forms.spall import lattice_spall
 from jointwave import cases, dem
 from jointwave.cases.loads import load_history
-from jointwave.cases.material.calibrate import calibrate
 from jointwave.compare.scenes import SHIPPED
-from jointwave.dem.fragments import fragments
 
 FREE = {"ends.start": "free", "load.quantity": "stress"}
 
@@ -55,12 +53,6 @@ def test_fragments_of_several_rocks_share_mass_and_impulse():
     assert momentum(pieces) == pytest.approx(impulse(scene), rel=1e-12)
 
 
-def test_pieces_do_not_meet_again():
-    """Each flies off faster than the one before it, once all have parted."""
-    speeds = [p["velocity"] for p in json.loads(dem.simulate(spalled()).attrs["fragments"])]
-    assert speeds == sorted(speeds)
-
-
 def test_break_time_is_when_a_joint_carries_its_last_tension():
     """Each broken joint is pulled up to its break time and never after; none before the exact
     chain has reached its strength anywhere.
@@ -88,12 +80,3 @@ def test_fragments_in_space_share_the_impulse_along_its_direction():
     assert len(pieces) > 1
     off = momentum(pieces) - impulse(scene) * np.array(along)
     assert np.abs(off).max() < 1e-12 * impulse(scene)
-
-
-def test_whole_row_is_one_fragment(pillar):
-    """Nothing broken: all blocks, with their mean velocity in space."""
-    p = calibrate(pillar())
-    velocity = np.arange(3.0 * p.block_count).reshape(-1, 3)
-    (whole,) = fragments(p, np.zeros(p.block_count - 1, dtype=bool), velocity)
-    assert whole["velocity"] == velocity.mean(axis=0).tolist()
-    assert (whole["from_y"], whole["to_y"]) == (0.0, 50.0)

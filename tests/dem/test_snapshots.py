@@ -53,18 +53,6 @@ def row(pillar, request):
     return scene
 
 
-def test_blocks_of_unequal_thickness_are_drawn_as_they_are(pillar):
-    """Each from its contact to the next, across the whole section."""
-    thin = {"segments": [{"y": [2.0, 4.0], "block": 0.25, "density": 3000.0}]}
-    scene = pillar(**{**EVERYWHERE, **thin, "record": {"stress": [1.0], "fields": 5e-3}})
-    shown = dem.simulate(scene)
-    corners = shown.field_points.values[shown.field_cells.values]
-    edges = np.r_[np.arange(0.0, 2.0, 0.5), np.arange(2.0, 4.0, 0.25), np.arange(4.0, 8.1, 0.5)]
-    assert np.abs(corners[..., 1].min(axis=1) - edges[:-1]).max() < 1e-12
-    assert np.abs(corners[..., 1].max(axis=1) - edges[1:]).max() < 1e-12
-    assert np.abs(np.ptp(corners[..., [0, 2]], axis=1) - SIDE).max() < 1e-12
-
-
 def test_a_run_with_snapshots_is_the_same_to_the_last_bit(row):
     bare, filmed = dem.simulate(row(None)), dem.simulate(row(7e-4))
     assert {str(v) for v in filmed.data_vars} - {str(v) for v in bare.data_vars} == {
@@ -94,30 +82,6 @@ def test_snapshots_are_what_receivers_record(row):
         )
     contacts = result.stress.values[:, rows].T
     np.testing.assert_array_equal(found.stress, (contacts[:, :-1] + contacts[:, 1:]) / 2)
-
-
-def test_blocks_are_boxes_that_share_no_node(row):
-    found = snapshots_of(dem.simulate(row(0.02)))
-    assert found.kind == "hexahedron" and found.block.tolist() == list(range(BLOCKS))
-    assert sorted(found.cells.ravel()) == list(range(8 * BLOCKS)) == list(range(len(found.points)))
-    for i, corners in enumerate(found.points[found.cells]):
-        assert corners.min(axis=0).tolist() == [-SIDE / 2, i * SPACING, -SIDE / 2]
-        assert corners.max(axis=0).tolist() == [SIDE / 2, (i + 1) * SPACING, SIDE / 2]
-        edges = corners[[1, 3, 4]] - corners[0]
-        assert np.linalg.det(edges) == pytest.approx(SIDE**2 * SPACING)
-
-
-@pytest.mark.parametrize("name", ["axial", "translation", "small rotation", "slip"])
-def test_velocity_is_the_mean_of_the_steps_around(pillar, name):
-    """u[n+1] - u[n-1] = 2 dt v[n] at every corner, as leapfrog has it; sampled at every step."""
-    record = EVERYWHERE["record"] | {"interval": 5e-6, "fields": 5e-6, "energy": name in LEDGER}
-    changes = EVERYWHERE | MOTIONS[name] | {"record": record, "time__duration": 1e-3}
-    result = dem.simulate(pillar(**changes))
-    found = snapshots_of(result)
-    assert result.attrs["steps"] == len(found.time) - 1 == 200
-    u, v = found.displacement, found.velocity
-    scale = np.abs(v).max()
-    np.testing.assert_allclose((u[2:] - u[:-2]) / 1e-5, v[1:-1], rtol=0, atol=1e-12 * scale)
 
 
 def test_small_rotations_turn_corners_as_vectors(pillar):
@@ -205,17 +169,6 @@ def test_a_broken_joint_opens_between_its_own_nodes(pillar):
     critical = 2 * 5.0 / 1e5
     assert 0 < broke.sum() < BLOCKS - 1
     assert gaps[broke].max() > critical > gaps[~broke].max()
-
-
-def test_threads_change_no_snapshot(pillar):
-    long = EVERYWHERE | OBLIQUE | SLIPS | {"pillar__length": 200.0, "time__duration": 2e-3}
-    long["record"] = {"velocity": [1.0], "interval": 1e-4, "fields": 5e-4, "energy": False}
-    one, two = (
-        snapshots_of(dem.simulate(pillar(**long, numerics__dem__threads=n))) for n in (1, 2)
-    )
-    assert one.displacement.any()
-    for name in ("displacement", "velocity", "stress"):
-        np.testing.assert_array_equal(getattr(one, name), getattr(two, name))
 
 
 def test_too_many_snapshots_of_too_many_blocks_are_refused(pillar, monkeypatch):

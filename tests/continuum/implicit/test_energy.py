@@ -106,9 +106,3 @@ def test_dissipation_of_the_scheme_is_that_of_theory(short, implicit):
     # Twelve steps are nearly one period, after which the shape of the motion is the same.
     found = np.log(whole[36:-24] / whole[12:-48]) / 24
     assert found == pytest.approx(decay, rel=0.02)
-
-
-def test_ledger_is_not_kept_where_it_is_not_asked_for(short, implicit):
-    run = implicit(short(record__energy=False), ledger=False).go()
-    assert run.samples.energy is None and run.state.ledger is None
-    assert np.abs(run.samples.stress).max() > 0

@@ -3,13 +3,10 @@
 import numpy as np
 import pytest
 
-from jointwave.cases.errors import StoppedError, UnstableError
+from jointwave.cases.errors import StoppedError
 from jointwave.continuum import simulate
 from jointwave.continuum.implicit import step as implicit_step
 from jointwave.continuum.implicit.run import HALVINGS
-from jointwave.continuum.implicit.substeps import end_resistance, shortened
-from jointwave.joints.ends import half_spring
-from jointwave.results.arrays import arrays
 
 
 def watched(run, refuse):
@@ -97,42 +94,6 @@ def follow(fine, whole):
     fine.implicit.stepper.fixed = fine.implicit.stepper.fixed._replace(motion=finer)
 
 
-@pytest.mark.parametrize("share", [0.5, 1 / 1024])
-def test_half_joints_are_those_of_the_shorter_step(short, implicit, share):
-    """As `half_spring` makes them for that step, in every entry."""
-    run = implicit(short(ends__start="matched", joints__damping_ratio=0.05))
-    p, dt = run.discrete.properties, run.clock.dt
-    quiet = shortened(run.model, share).ends.quiet
-    one = half_spring(2 * p.regular_own_stiffness, p.time_constant, p.impedance, share * dt)
-    assert quiet.springs.decay == pytest.approx([one.decay], rel=1e-13)
-    assert quiet.springs.gain == pytest.approx([one.gain], rel=1e-12)
-    freedom, resistance = end_resistance(quiet, 7.0, share * dt)
-    assert freedom.tolist() == run.model.ends.quiet.freedom.tolist()
-    expected = p.area * (7.0 * one.viscosity + one.stiffness * one.gain / (share * dt))
-    assert resistance == pytest.approx([expected], rel=1e-12)
-
-
-def test_what_was_computed_outlives_a_step_that_is_given_up(short, implicit):
-    """The load stops being a number after step 40: one line says when, the samples are kept."""
-    undisturbed = implicit(short(), stride=4).go()
-
-    def broken(model):
-        pressure = model.ends.loaded.pressure.copy()
-        pressure[41:] = np.nan
-        loaded = model.ends.loaded._replace(pressure=pressure)
-        return model._replace(ends=model.ends._replace(loaded=loaded))
-
-    run = implicit(short(), stride=4, change=broken)
-    with pytest.raises(StoppedError, match=r"do not converge at t = .* s: .* N") as caught:
-        run.go()
-    assert "\n" not in str(caught.value)
-    assert f"t = {40 * run.clock.dt:.6g} s" in str(caught.value)
-    assert run.implicit.counts[1] == 40 and run.implicit.halvings == HALVINGS
-    assert (run.samples.velocity[:, :11] == undisturbed.samples.velocity[:, :11]).all()
-    assert not run.samples.velocity[:, 11:].any()
-    assert isinstance(caught.value, UnstableError) and caught.value.result is None
-
-
 def test_simulate_hands_over_what_was_computed(short, monkeypatch):
     """The same from outside: the error carries a result like any other, up to the last sample."""
     scene = short(numerics__continuum__scheme="implicit", numerics__continuum__steps_per_period=400)
@@ -149,14 +110,3 @@ def test_simulate_hands_over_what_was_computed(short, monkeypatch):
     assert result.sizes["time"] == 21  # two steps a sample
     assert (result.stress == whole.stress.isel(time=slice(21))).all()
     assert result.attrs["halved_steps"] == HALVINGS
-
-
-def test_compiling_changes_nothing(short, implicit):
-    """State and samples are as before, and the run is the same to the last bit."""
-    scene = short(joints__tensile_strength=1e5, joints__fracture_energy=10.0)
-    plain, warm = implicit(scene), implicit(scene)
-    warm.implicit.compile()
-    assert not any(rows.any() for rows in arrays(warm.samples))
-    plain.go(), warm.go()
-    assert (plain.samples.stress == warm.samples.stress).all()
-    assert (plain.samples.energy == warm.samples.energy).all()

@@ -108,11 +108,6 @@ def test_end_faces_without_a_group_are_found_by_their_place(doubled, given):
         assert (one.cell == other.cell).all() and (one.corners == other.corners).all()
 
 
-def test_one_tagged_side_is_enough(given):
-    mesh = given("hexahedron", doubled=True, untagged=[0])
-    assert np.bincount(mesh.joints.joint).tolist() == [4, 4]
-
-
 def test_inclined_facets_of_one_group_follow_one_law(given):
     """Each by itself would be nearest to either joint; together they are nearest to the first."""
     steep = (0.3, 1.1)
@@ -128,11 +123,6 @@ def test_groups_apart_follow_laws_apart(given):
     apart = given("quadrilateral", cuts)
     assert (one.joints.joint == 1).all()  # their mean is 0.816 m
     assert apart.joints.joint.tolist() == [0, 0, 0, 0, 1, 1]
-
-
-def test_joints_across_count_by_themselves_in_one_group(given):
-    mesh = given("triangle", names=["Joint"] * 2)
-    assert mesh.joints.joint.tolist() == [0, 0, 1, 1]
 
 
 def test_a_mirrored_file_is_turned(given, drawn, column, volumes):

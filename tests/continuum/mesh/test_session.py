@@ -28,13 +28,6 @@ def test_interrupts_and_notation_stay(capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_session_ends_with_an_error_too():
-    with pytest.raises(ZeroDivisionError), gmsh_session():
-        raise ZeroDivisionError
-    with gmsh_session() as gmsh:
-        assert gmsh.model.getEntities() == []
-
-
 def test_an_open_session_is_refused_where_gmsh_can_tell():
     with gmsh_session() as gmsh:
         if not hasattr(gmsh, "isInitialized"):

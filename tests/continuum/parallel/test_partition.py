@@ -73,25 +73,6 @@ def test_processes_follow_one_another_along_the_pillar_with_equal_loads(counts, 
             assert np.ptp(rank_of[first : first + cells]) == 0
 
 
-def test_parts_of_a_share_are_those_of_the_mesh_where_they_stand():
-    """Whole copies stay together, so that they share an operator; of others what is held."""
-    mesh = bar([(2, 6), (30, 1)])
-    rank_of = ranks_of_cells(mesh, 3)
-    x = np.concatenate(
-        [(p.x[p.cells] + p.shifts[:, None, None]).reshape(-1, 2, 1) for p in mesh.parts]
-    )
-    for rank in range(3):
-        share = restrict(mesh, rank_of, rank)
-        here = np.concatenate(
-            [(p.x[p.cells] + p.shifts[:, None, None]).reshape(-1, 2, 1) for p in share.parts]
-        )
-        assert (here == x[share.cell]).all()
-        material = np.concatenate([np.tile(p.material, p.copies) for p in share.parts])
-        assert ((material == 1) == share.ghost).all()
-        together = [p.copies for p in share.parts if len(p.cells) == 2 and not p.material.any()]
-        assert len(together) <= 1
-
-
 def grid(width: int, height: int) -> csr_matrix:
     """Return the graph of a grid of squares, row by row, each joined to its neighbours."""
     across, up = (diags(np.ones(n - 1), 1, (n, n)) for n in (width, height))
@@ -116,14 +97,3 @@ def test_a_graph_is_halved_into_equal_parts_with_short_borders(width, height, si
     assert counts.min() > 0 and np.ptp(counts) <= 1 + np.log2(size)
     if size == 2:
         assert cut_edges(graph, part) <= 2 * min(width, height) + 1
-
-
-def test_a_body_that_is_bent_is_cut_across_both_arms():
-    """An L of two arms is cut where it is narrow, not along the arm that holds half of it."""
-    x, y = (c.ravel() for c in np.meshgrid(np.arange(40), np.arange(40)))
-    inside = (x < 6) | (y < 6)
-    graph = grid(40, 40)[inside][:, inside]
-    part = halved(graph, np.ones(inside.sum()), 2)
-    assert cut_edges(graph, part) <= 12
-    leftmost = np.argsort(x[inside], kind="stable") < inside.sum() / 2
-    assert cut_edges(graph, leftmost) > 2 * cut_edges(graph, part)

@@ -9,12 +9,9 @@ from jointwave.continuum.explicit.march import readings
 from jointwave.continuum.implicit.balance import implicit_matrices, trial_forces
 from jointwave.continuum.implicit.static import settle_static
 from jointwave.continuum.implicit.substeps import UNLOADED
-from jointwave.continuum.plane.receivers import receivers
-from jointwave.continuum.plane.rock import discretise
 from jointwave.continuum.run import run_of
 from jointwave.results.arrays import copied
 
-STEP = {"shape": "step", "amplitude": 1e6}
 HELD = {"bottom": "fixed"}
 
 
@@ -167,37 +164,6 @@ def test_gravity_that_acts_later_is_no_part_of_the_excavation(rock_mass):
     assert np.abs(result.stress - result.stress[:, :1]).max() < 1e-6 * 6e6
 
 
-def drive_of(scene):
-    """Return the forces of the first step, as vectors at the nodes that they act on [n, 2], N/m,
-    and the places of these."""
-    run = run_of(scene, "jointed")
-    driven, body = run.model.ends.driven, run.discrete.body
-    force = np.zeros(body.mass.size)
-    force[driven.freedom] = driven.at(1, 2)[0]
-    return force[body.freedom(np.arange(len(body.x))[:, None], np.arange(2))], body.x
-
-
-@pytest.mark.parametrize("order", [1, 2, 3])
-def test_a_pressure_on_a_part_of_a_side_has_its_force_and_its_moment(order, rock_mass):
-    load = {"kind": "pressure", "side": "top", "between": [[1.3, 6.0], [4.4, 6.0]], **STEP}
-    scene = rock_mass([{"dip": 90.0, "through": [2.0, 0.0]}], {"order": order}, loads=[load])
-    force, x = drive_of(scene)
-    assert force.sum(axis=0) == pytest.approx([0.0, -3.1e6], rel=1e-12, abs=1e-4)
-    assert (force[:, 1] * x[:, 0]).sum() == pytest.approx(-3.1e6 * 2.85, rel=1e-12)
-
-
-def test_a_pressure_in_an_opening_pushes_it_apart_alike(rock_mass):
-    opening = [[2.0, 2.0], [4.0, 2.0], [4.0, 4.0], [2.0, 4.0]]
-    sets = [{"dip": 0.0, "spacing": 2.0}, {"dip": 90.0, "spacing": 2.0}]
-    load = {"kind": "pressure", "opening": 0, **STEP}
-    domain = {"size": [6.0, 6.0], "openings": [opening]}
-    record = {"points": [[1.0, 1.0]]}
-    force, x = drive_of(rock_mass(sets, domain=domain, loads=[load], record=record))
-    assert np.abs(force.sum(axis=0)).max() < 1e-6
-    assert np.abs(force[x[:, 0] > 4 - 1e-9][:, 0]).sum() == pytest.approx(2e6, rel=1e-12)
-    assert ((x - 3.0) * force).sum() == pytest.approx(8e6, rel=1e-12)
-
-
 def test_a_shaken_side_moves_as_it_is_told(rock_mass):
     base = {"kind": "base", "side": "bottom", "direction": [0.6, 0.8], "quantity": "velocity"}
     pulse = {"shape": "sine", "amplitude": 0.1, "period": 1e-3}
@@ -229,18 +195,3 @@ def test_quadrilaterals_where_blocks_have_other_shapes_are_refused(rock_mass):
         run_of(scene, "jointed")
     with pytest.raises(SceneError, match=r"numerics.continuum.order = 3.*triangles"):
         run_of(rock_mass([{"dip": 30.0, "through": [3.0, 0.5]}], {"order": 3}), "jointed")
-
-
-def test_a_process_without_joints_reads_as_many_rows_as_others(rock_mass):
-    """Their sum is the recorded waveforms: tractions at the start are among the rows."""
-    scene = rock_mass(
-        [{"dip": 30.0, "through": [3.0, 3.0], "friction_angle": 35.0}],
-        prestress={"xx": 4e6, "yy": 4e6, "xy": 1e6},
-        record={"points": [[1.0, 1.0]], "joints": [[3.0, 3.0]]},
-    )
-    discrete = discretise(scene, "jointed")
-    whole, own = (
-        receivers(scene, one) for one in (discrete, discrete._replace(joints=None, jumps=None))
-    )
-    assert own.constant.size == whole.constant.size == whole.elastic.shape[0] == 5
-    assert own.elastic.shape == whole.elastic.shape and own.turn.shape == whole.turn.shape

@@ -7,11 +7,10 @@ from closed_forms.quiet_face import coefficients
 from jointwave.cases.errors import UnstableError
 from jointwave.cases.incident import FreeField, PlaneWave, plane_wave
 from jointwave.cases.loads import history_of
-from jointwave.compare.exact.rock_mass.effective_medium import medium_field
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.compare.exact.rock_mass.line_force import SOLVER as LINE_FORCE
 from jointwave.compare.exact.rock_mass.oblique_joint import SOLVER as ONE_JOINT
-from jointwave.continuum import applies, simulate
+from jointwave.continuum import simulate
 from jointwave.results.arrays import copied, fill
 
 
@@ -117,39 +116,6 @@ def test_a_turned_scene_has_a_turned_result(struck):
     assert np.abs(found.velocity.values @ turn.T - other.velocity.values).max() < 1e-9 * size
     assert np.abs(found.gap - other.gap).max() < 1e-9 * np.abs(found.gap).max()
     assert np.abs(found.traction - other.traction).max() < 1e-9 * np.abs(found.traction).max()
-
-
-def test_a_joint_across_periodic_sides_is_like_one_within(struck):
-    """Joints each 5 m, in a domain of 10 m: what is 5 m apart moves alike."""
-    scene = struck(
-        joints=[{"dip": 90.0, "spacing": 5.0}],
-        domain={"size": [10.0, 10.0]},
-        boundaries={"bottom": "quiet", "top": "quiet", "left": "periodic", "right": "periodic"},
-        record={"points": [[1.0, 5.0], [6.0, 5.0]], "joints": [[5.0, 5.0]]},
-    )
-    found = simulate(scene)
-    one, other = found.velocity.values
-    assert np.abs(one[:, 0]).max() > 1e-3 * np.abs(one).max()
-    assert np.abs(one - other).max() < 1e-10 * np.abs(one).max()
-    assert gap_of_ledger(found) < 1e-11
-
-
-@pytest.mark.parametrize("kind", ["P", "S"])
-def test_an_effective_medium_has_the_speeds_of_christoffel(kind, struck):
-    """After 15 m of way a speed that is off by 0.1 % would shift the pulse by 1e-5 s and more: some
-    2 % of its motion, 2 pi 15 m / (c T) times 0.1 %."""
-    joints = [{"dip": 20.0, "spacing": 2.0}, {"dip": 80.0, "spacing": 3.0}]
-    medium = {
-        "record": {"points": [[8.0, 9.0]]},
-        "time": {"duration": 0.024},
-        "continuum": {"size": 0.8},
-    }
-    scene = struck(kind, (0.6, 0.8), joints=joints, through=(-2.0, -2.0), **medium)
-    assert applies(scene, "equivalent") == ""
-    found, exact = simulate(scene, "equivalent", incident=medium_field(scene)), medium_field(scene)
-    motion = exact(np.array(scene.record.points), found.time.values)
-    assert misfit(found.velocity.values, motion.velocity.swapaxes(1, 2)).max() < 5e-3
-    assert gap_of_ledger(found) < 1e-11
 
 
 def test_a_force_at_a_point_moves_the_rock_as_a_line_force_does(struck):

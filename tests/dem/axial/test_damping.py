@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from closed_forms.leapfrog import frequencies
-from jointwave import dem
 from jointwave.cases.material.calibrate import calibrate
 
 
@@ -38,31 +37,3 @@ def test_modes_decay_at_the_rayleigh_rate(pillar, step_matrix, alpha, ratio):
     ]
     assert (errors[0] < (natural * 2e-5) ** 2).all()
     assert errors[0] == pytest.approx(4 * errors[1], rel=0.02)
-
-
-def test_two_frequencies_and_ratios_are_met(pillar):
-    """Alpha and beta of damping.rayleigh give zeta = alpha / 2 omega + beta omega / 2 at both."""
-    frequencies, ratios = [50.0, 400.0], [0.02, 0.03]
-    p = calibrate(pillar(damping__rayleigh={"frequencies": frequencies, "ratios": ratios}))
-    omega = 2 * np.pi * np.array(frequencies)
-    zeta = p.mass_damping / (2 * omega) + p.time_constant * omega / 2
-    assert zeta == pytest.approx(ratios, rel=1e-12)
-
-
-def test_local_damping_brakes_a_fall(pillar):
-    """Free blocks under sudden gravity gain (1 - local) g t, to round-off.
-
-    The brake takes its part of the work; only the step around t = 0 knows no direction yet.
-    """
-    scene = pillar(
-        load={"shape": "step", "amplitude": 0.0},
-        gravity={"direction": [0, 1, 0], "acceleration": 10.0, "static": False},
-        damping__local=0.25,
-        record={"velocity": [0.25, 20.0], "interval": 1e-3},
-    )
-    result = dem.simulate(scene)
-    v, t = result.velocity.values[..., 0], result.time.values
-    gained = 7.5 * (t - t[1])
-    assert np.abs(v - v[:, 1:2] - gained)[:, 1:].max() < 1e-12 * gained[-1]
-    taken, fallen = (float(result.energy.sel(term=k)[-1]) for k in ("viscous", "gravity"))
-    assert taken == pytest.approx(-0.25 * fallen, rel=1e-2)

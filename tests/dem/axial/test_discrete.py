@@ -5,7 +5,6 @@ import pytest
 
 from closed_forms import leapfrog
 from jointwave import dem
-from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import Clock
 from jointwave.compare.exact.bar import images
@@ -56,16 +55,3 @@ def test_bar_is_exact_where_a_wave_crosses_one_block_a_step(pillar):
     assert result.attrs["dt"] == pytest.approx(p.spacing / p.bar_speed, rel=1e-14)
     u, expected = result.displacement.values, exact.displacement.values
     assert np.abs(u - expected).max() < 1e-12 * np.abs(expected).max()
-
-
-def test_sampled_load_would_not_be_exact_there(pillar):
-    """The load's value at the step instead of its mean over it costs 3e-3: the mean matters."""
-    scene = pillar()
-    p = calibrate(scene)
-    dt = p.spacing / p.bar_speed
-    clock = Clock(dt, 1, 51)
-    u, _ = blocks_after(scene, clock)
-    sampled = p.area * load_history(scene).value(dt * np.arange(clock.steps))
-    other, _ = blocks_after(scene, clock, sampled)
-    error = np.abs(other - u).max() / np.abs(u).max()
-    assert 1e-3 < error < 1e-2

@@ -5,11 +5,9 @@ import numpy as np
 import pytest
 
 from jointwave import dem
-from jointwave.cases.material.calibrate import calibrate
 from jointwave.dem.axial.build import build
 from jointwave.dem.axial.leapfrog import arguments, loop_for
 from jointwave.dem.axial.samples import buffers
-from jointwave.joints.law import Law
 
 COMPRESSION = {"load": {"shape": "step", "amplitude": 1e6}, "time__duration": 0.03}
 
@@ -56,28 +54,6 @@ def test_idle_effect_changes_no_bit(pillar, idle):
     assert (waveforms(without) == waveforms(with_idle)).all()
 
 
-def test_base_that_stands_is_a_wall(pillar):
-    """A base shaken by nothing changes no bit against the fixed start it moves."""
-    standing = {"ends__start": "fixed", "gravity": {"direction": [0, 1, 0]}}
-    still = {"shape": "step", "amplitude": 0.0}
-    wall = dem.simulate(pillar(load=still, **standing))
-    base = dem.simulate(pillar(load={**still, "quantity": "velocity"}, **standing))
-    assert (waveforms(wall) == waveforms(base)).all()
-
-
-def test_absent_effects_leave_no_array(pillar):
-    """A plain chain holds three numbers a block and the load, and one law for all joints."""
-    model, state, _, _ = build(pillar(record__energy=False))
-    assert not any(model.effects.joints) and not any(model.effects[1:])
-    law = dict.fromkeys(Law._fields, 0.0)
-    law["normal_stiffness"] = calibrate(pillar()).regular_stiffness
-    assert model.laws.tolist() == [[value] for value in law.values()]
-    assert model.base.size == 0 and model.blocks is None
-    present = {name for name, array in state._asdict().items() if array is not None}
-    assert present == {"u", "v", "force", "start", "end"}
-    assert state.start.tolist() == state.end.tolist() == [0.0, 0.0]
-
-
 SOFTENING = {"joints__tensile_strength": 1e6, "joints__fracture_energy": 500.0}
 SHAKEN = {"load": {"shape": "step", "amplitude": 1.0, "quantity": "velocity"}}
 ADDED = {
@@ -117,10 +93,6 @@ def test_a_shaken_base_adds_instructions(counted):
     """To those of a fixed start: a quotient."""
     still = {"ends__start": "fixed", "load": {"shape": "step", "amplitude": 0.0}}
     assert counted("fdiv", **still) < counted("fdiv", **(still | SHAKEN))
-
-
-def test_a_plain_loop_divides_stresses_alone(counted):
-    assert counted("fdiv") == 1
 
 
 @pytest.mark.parametrize(

@@ -89,23 +89,3 @@ def test_no_tension_closes_to_second_order(pillar, ratio):
     ]
     assert residual[1] < 1e-3
     assert residual[1] < residual[0]
-
-
-def test_dashpots_take_what_the_wave_loses(pillar):
-    """The viscous term grows to what kinetic and elastic energy have lost of the work."""
-    energy = dem.simulate(pillar(joints__damping_ratio=0.1)).energy
-    last = energy.isel(time=-1)
-    lost = last.sel(term="work") - last.sel(term="kinetic") - last.sel(term="elastic")
-    assert float(last.sel(term="viscous")) == pytest.approx(float(lost), rel=1e-9)
-    assert float(last.sel(term="viscous")) > 0.5 * float(last.sel(term="work"))
-
-
-def test_ledger_has_a_term_for_each_effect_and_no_other(pillar):
-    """The basic five, and fracture and gravity where the scene has them."""
-    basic = ["kinetic", "elastic", "viscous", "boundary", "work"]
-    assert dem.simulate(pillar()).term.values.tolist() == basic
-    softens = {"joints__tensile_strength": 2e6, "joints__fracture_energy": 500.0}
-    result = dem.simulate(pillar(gravity=DOWN, ends__end="fixed", **softens))
-    assert result.term.values.tolist() == [
-        *("kinetic", "elastic", "viscous", "fracture", "boundary", "gravity", "work")
-    ]

@@ -97,9 +97,3 @@ def test_chain_is_as_near_to_the_jointed_bar_as_without(pillar, changes):
     found, elastic = (misfit(solve("dem", s), solve("jointed-bar", s)) for s in scenes)
     assert found < 1.05 * elastic < 7e-4
     assert misfit(*(solve("jointed-bar", s) for s in scenes)) > 1e-2
-
-
-def test_chain_without_a_quality_factor_has_nothing_of_it(pillar):
-    model, state, _, _ = build(pillar())
-    assert model.relaxation is None and model.effects.relaxes == 0
-    assert state.elongation is None and state.viscous is None

@@ -53,20 +53,6 @@ def test_wave_on_top_of_gravity_is_the_wave_without(pillar, start):
         assert np.abs(wave - light[name].values).max() < 1e-11 * np.abs(light[name].values).max()
 
 
-def test_free_fall_is_a_parabola(pillar):
-    """Gravity that acts suddenly: u = g t^2 / 2 to round-off from the first step on."""
-    scene = pillar(
-        load=NO_LOAD,
-        gravity={**DOWN, "static": False},
-        record={"velocity": [0.25, 30.0]},
-        record__interval=1e-4,
-    )
-    result = dem.simulate(scene)
-    t = result.time.values
-    assert np.abs(result.displacement.values[..., 0] - G * t**2 / 2).max() < 1e-12
-    assert np.abs(result.velocity.values[..., 0] - G * t).max() < 1e-11
-
-
 def test_base_in_acceleration_is_gravity_against_it(pillar):
     """In the frame of a base accelerated at a, the pillar has the weight -a: to round-off."""
     held = {"ends__start": "fixed", "record__stress": [0.0, 20.0]}

@@ -1,24 +1,10 @@
-"""What the tests of blocks in the plane share: a periodic lattice, and scenes in few words."""
+"""What the tests of blocks in the plane share: scenes in few words."""
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from jointwave.cases.material.contact_points import points_of
 from jointwave.cases.validate import validated
-from jointwave.dem.blocks.model import (
-    Blocks,
-    KernelFlags,
-    PlaneModel,
-    held_by,
-)
-from jointwave.dem.blocks.tiles import contacts_of
-from jointwave.joints.law import Law, parts_of, table_of
-
-SIDE, DENSITY, K_N, K_S = 0.5, 2600.0, 9e9, 4e9
-NUMBER = np.array([6, 5])  # blocks along x and y
-
 
 JOINT = {
     "name": "joint",
@@ -74,53 +60,3 @@ def rock_mass():
         return validated(given, Path("scene.toml"), frozenset())
 
     return scene
-
-
-@pytest.fixture
-def lattice():
-    """Return a function that gives a periodic patch of square blocks, or of bricks of a length, a
-    height and an offset, with all joints alike, and the cell of each block [N, 2]."""
-    return _lattice
-
-
-def _lattice(law=None, points=0, ledger=False, brick=None, **form):
-    law = law or Law(normal_stiffness=K_N, shear_stiffness=K_S)
-    length, height, offset = brick or (SIDE, SIDE, 0.0)
-    vectors = np.array([[length, 0.0], [offset * length, height]])
-    at = np.stack(np.meshgrid(*map(np.arange, NUMBER), indexing="ij"), axis=-1).reshape(-1, 2)
-    number = np.arange(len(at)).reshape(NUMBER)
-    # Beside, above to the right, above to the left: cells between, normal, ends in sides.
-    faces = [
-        ((1, 0), (1, 0), (0.5, -0.5), (0.5, 0.5)),
-        ((0, 1), (0, 1), (0.5, 0.5), (offset - 0.5, 0.5)),
-        ((-1, 1), (0, 1), (offset - 0.5, 0.5), (-0.5, 0.5)),
-    ]
-    pairs, normal, near, far, ends = [], [], [], [], ([], [])
-    for step, outward, *corners in faces[: 3 if offset else 2]:
-        beyond = at + step
-        pairs.append(np.stack([number.ravel(), number[tuple((beyond % NUMBER).T)]], axis=1))
-        normal.append(np.broadcast_to(outward, at.shape))
-        near.append(at @ vectors)
-        far.append(beyond @ vectors)
-        for end, corner in zip(ends, corners, strict=True):
-            end.append(at @ vectors + np.array(corner) * (length, height))
-    pairs, normal, near, far = map(np.concatenate, (pairs, normal, near, far))
-    ends = [np.concatenate(end) for end in ends]
-    rule = np.array(points_of("gauss", points or 2))
-    rule[0] -= 0.5
-    second = None if points else rule[1] @ rule[0] ** 2
-    contacts = contacts_of(pairs, *ends, normal, (near, far), len(at), second=second)
-    mass = DENSITY * length * height
-    inertia = np.tile([mass, mass, mass * (length**2 + height**2) / 12], (len(at), 1))
-    omega = np.sqrt(4 * (K_N + K_S) * max(length, height) / mass)
-    dt = form.pop("step", 0.25) * 2 / omega
-    drag = 0.5 * dt * form.pop("mass_damping", 0.0)
-    local, gravity = form.pop("local", 0.0), form.pop("gravity", (0.0, 0.0))
-    blocks = Blocks(inertia, dt, (1 - drag) / (1 + drag), local, *gravity)
-    held = form.pop("held", None)
-    held = held and held_by(*held, inertia, dt)
-    effects = drag > 0, local > 0, any(gravity), held is not None
-    form = KernelFlags(parts_of(law), points, *effects, ledger)
-    none = np.zeros(0, dtype=np.int64)
-    model = PlaneModel(form, blocks, contacts, table_of(law), rule[None], held, none, none)
-    return model, at

@@ -4,12 +4,10 @@ import numpy as np
 import pytest
 
 from jointwave.dem import simulate
-from jointwave.dem.blocks.leapfrog import samples_for
 from jointwave.dem.blocks.model import state_at_rest
-from jointwave.dem.blocks.simulate import step
-from jointwave.dem.blocks.start import PARTS, start
+from jointwave.dem.blocks.start import start
 from jointwave.dem.blocks.system import prepared
-from jointwave.dem.blocks.tile import FORCE_X, FORCE_Y, relative
+from jointwave.dem.blocks.tile import relative
 from jointwave.dem.blocks.tiles import LENGTH
 
 STRESS = {"xx": 4e6, "yy": 5e6, "xy": 5e5}
@@ -91,25 +89,6 @@ def test_the_state_after_excavation_is_that_of_the_assembled_equations(excavated
     assert off < 1e-9 * np.abs(q).max()
 
 
-@pytest.mark.parametrize("law", [{}, SLIPS], ids=["elastic", "slips"])
-def test_the_rock_beside_an_opening_bears_what_was_in_it(law, excavated):
-    """No block has a resultant, and a cut through the opening carries what the whole width did,
-    12 m of the tensor; to the relaxation's tolerance of 1e-13 of 5 MPa on 54 m for each block."""
-    system, state = at_rest(excavated(law))
-    left, blocks = TOLERANCE * 5e6 * 54.0, system.blocks
-    contacts = blocks.partition.contacts
-    cut = (contacts.start[:, 1] == 5.0) & (contacts.end[:, 1] == 5.0)
-    assert cut.sum() == 9  # m, beside 3 m of opening
-    system = system._replace(model=system.model._replace(watched=np.flatnonzero(cut)))
-    samples = samples_for(system.model, system.time.samples)
-    step(system, state, samples, 0, 1)
-    resultant = blocks.masses * state.v[: blocks.partition.count] / system.time.dt
-    assert np.abs(resultant).max() < left
-    assert not law or state.history.any()  # what has slid
-    force = np.sign(contacts.normal[cut, 1]) @ samples.contact[:, [FORCE_X, FORCE_Y], 0]
-    assert np.abs(force - 12.0 * TENSOR[1]).max() < blocks.partition.count * left
-
-
 def image(scene, matrix):
     """Return tables of a scene whose places and vectors a rotation or a reflection maps."""
     flips = np.linalg.det(matrix)
@@ -164,18 +143,3 @@ def test_without_a_prestress_an_opening_costs_nothing(excavated):
     system, state = at_rest(excavated(prestress=None))
     assert not system.model.form.stressed and not state.u.any()
     assert "static_steps" not in simulate(excavated(prestress=None)).attrs
-
-
-def test_walls_are_released_slowly_enough_for_slip(excavated, monkeypatch):
-    """What blocks overshoot by falls with the part of the walls that is released at a time. Between
-    fixed sides, where nothing but the opening acts on blocks."""
-    fixed = dict.fromkeys(("left", "right", "bottom", "top"), "fixed")
-    scene, slid = excavated(SLIPS, boundaries=fixed), {}
-    for parts in (1, 10, PARTS, 4 * PARTS):
-        monkeypatch.setattr("jointwave.dem.blocks.start.PARTS", parts)
-        slid[parts] = at_rest(scene)[1].history
-    finest = slid.pop(4 * PARTS)
-    off = [np.linalg.norm(found - finest) / np.linalg.norm(finest) for found in slid.values()]
-    assert off[0] > 1.0
-    assert off[2] < 0.03
-    assert off[1] > 2 * off[2]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jointwave.compare.exact.rock_mass import oblique_joint, parallel_joints
+from jointwave.compare.exact.rock_mass import oblique_joint
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.dem import simulate
 
@@ -53,24 +53,3 @@ def test_triangles_have_the_poisson_effect_that_squares_lack(rock_mass, joint, w
     own = scene(rock_mass, joint, wave, 45.0, 0.25, 2.0)
     assert simulate(own).left_over < 1e-7
     assert misfits(own)["velocity"] < 0.15
-
-
-def test_parallel_joints_converge_alike(rock_mass, joint, wave):
-    """Joints 6 m apart, thirds and sixths of that in triangles."""
-    before, after = (
-        misfits(
-            rock_mass(
-                domain={"size": [40.0, 40.0]},
-                joint_sets=[joint(through=[20.0, 20.0], spacing=6.0)],
-                waves=[wave(period=0.005, through=[20.0, -25.0])],
-                numerics={"dem": {"block": block, "step_fraction": 0.5}},
-                time={"duration": 0.03},
-                record={"points": [[20.0, 10.0], [20.0, 30.0]], "joints": [[20.0, 20.0]]},
-            ),
-            parallel_joints.SOLVER,
-        )
-        for block in (2.0, 1.0)
-    )
-    for name in QUANTITIES:
-        assert before[name] < 0.1, name
-        assert after[name] < 0.6 * before[name], name

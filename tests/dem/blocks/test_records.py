@@ -5,8 +5,6 @@ import pytest
 
 from jointwave.cases.errors import InterruptedRun
 from jointwave.dem import simulate
-from jointwave.dem.blocks.build import rigid_blocks
-from jointwave.joints.law import Law
 from jointwave.results.snapshots import snapshots_of
 
 CROSSED = ({"dip": 10.0, "spacing": 2.5}, {"dip": 80.0, "spacing": 3.0, "name": "cross"})
@@ -59,43 +57,6 @@ def test_a_run_that_goes_on_is_the_same_to_the_last_bit(crossed, joint, keeper_a
     again = simulate(own, keeper=keeper)
     for name in whole.data_vars:
         assert (whole[name].values == again[name].values).all(), name
-
-
-def test_every_key_of_a_joint_set_is_in_its_law(crossed, joint):
-    """Columns of two sets: strengths as given, w_c = 2 G / s_t, none where a set has none; rules of
-    points as given, the shorter with a point of no weight."""
-    first = joint(
-        through=None, **CROSSED[0], tension=False, friction_angle=30.0, cohesion=1e4,
-        residual_cohesion=2e3, contact_points=3, point_rule="midpoint",
-    )  # fmt: skip
-    second = joint(
-        through=None, **CROSSED[1], tensile_strength=1e5, fracture_energy=20.0, contact_points=2,
-        point_rule="gauss",
-    )  # fmt: skip
-    columns = rigid_blocks(crossed(joint_sets=[first, second])).columns
-    law: Law = columns.law
-    assert law.carries_tension.tolist() == [False, True]
-    assert law.friction == pytest.approx([np.tan(np.radians(30)), 0])
-    assert law.cohesion[0] == 1e4 and law.cohesion[1] > 1e50
-    assert law.residual_cohesion[0] == 2e3
-    assert law.tensile_strength[1] == 1e5 and law.tensile_strength[0] > 1e50
-    assert law.critical_opening[1] == pytest.approx(4e-4)
-    assert law.normal_viscosity is None and columns.points == 3
-    thirds, gauss = columns.rules
-    assert thirds == pytest.approx(np.array([[-1 / 3, 0, 1 / 3], [1 / 3] * 3]))
-    assert gauss == pytest.approx(np.array([[-0.5 / 3**0.5, 0.5 / 3**0.5, 0], [0.5, 0.5, 0]]))
-
-
-def test_a_dashpot_of_a_joint_loses_what_the_rock_takes_of_its_motion(crossed, joint):
-    """eta K'^2 / K of (K, eta K) and the rock's spring in series, to the first order in omega:
-    the imaginary part of 1 / (1 / K (1 - i omega eta) + 1 / k)."""
-    damped = [joint(through=None, damping_ratio=0.05, **one) for one in CROSSED]
-    blocks = rigid_blocks(crossed(joint_sets=damped))
-    eta = 2 * 0.05 * np.sqrt(2600 * 2.5 / 1e10)
-    rock = 1 / (1 / blocks.joints.normal[0] - 1e-10)
-    omega = 1e-3 / eta
-    exact = 1 / (1 / (1e10 * (1 - 1j * omega * eta)) + 1 / rock)
-    assert blocks.columns.law.normal_viscosity[0] * omega == pytest.approx(-exact.imag, rel=1e-5)
 
 
 def test_the_gap_and_the_slip_are_those_of_the_joint_alone(crossed, joint):

@@ -68,22 +68,6 @@ def test_waves_in_layers_are_the_exact_ones(rock_mass, wave, kind, least):
     assert fine[2] < 1e-11
 
 
-def test_contacts_are_both_rocks_in_series(rock_mass, wave):
-    """Half a square of either beside a welded boundary; with a joint along it, and that."""
-    blocks = rigid_blocks(layers(rock_mass, wave, "P", 1.0))
-    links, (lower, upper) = blocks.links, (5e10, 2e10)
-    across = np.abs(links.normal[:, 1]) > 0.5
-    at = {y: np.flatnonzero(across & (np.abs(links.start[:, 1] - y) < 1e-9)) for y in (8.0, 14.0)}
-    K = blocks.columns.normal[links.column]
-    assert at[8.0].size == at[14.0].size == 2
-    heights = np.array([8 / 7.5, 1.0, 6 / 6.5])  # half a block short of the quiet sides
-    halves = heights / [lower, upper, 7e10] / 2
-    assert K[at[8.0]] == pytest.approx(1 / halves[:2].sum(), rel=1e-6)
-    assert K[at[14.0]] == pytest.approx(1 / (1e-10 + halves[1:].sum()), rel=1e-6)
-    mass = blocks.inertia.mass / blocks.partition.area
-    assert set(mass.round(6)) == {2200.0, 2600.0, 2900.0}
-
-
 def test_waves_need_the_field_of_layers(rock_mass, wave):
     """The engine alone knows waves of one rock; boundaries that are not parallel know none."""
     scene = layers(rock_mass, wave, "P", 1.0)

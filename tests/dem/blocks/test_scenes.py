@@ -8,11 +8,6 @@ from jointwave.cases.incident import free_field
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.dem import simulate
 from jointwave.dem.blocks.build import rigid_blocks
-from jointwave.dem.blocks.leapfrog import samples_for
-from jointwave.dem.blocks.model import state_at_rest
-from jointwave.dem.blocks.simulate import step
-from jointwave.dem.blocks.start import PlaneRelaxation
-from jointwave.dem.blocks.system import prepared
 
 SINE = {"shape": "sine", "amplitude": 1e6, "period": 0.002}
 PRESSURE = SINE | {"kind": "pressure", "side": "bottom"}
@@ -129,36 +124,6 @@ def test_a_row_is_the_row_in_space(law, rock_mass, pillar, plain):
         assert energy.sel(term="friction") > 0.01 * energy.sel(term="work")
 
 
-def mirrored(scene):
-    """Return tables of a scene in the mirror x -> -x about the middle of its domain."""
-    width = scene.domain.size[0]
-
-    def place(points):
-        return [[width - x, y] for x, y in points]
-
-    (joint,), (wave,) = scene.joint_sets, scene.waves
-    x, y = wave.direction
-    through = {"dip": -joint.dip, "through": place([joint.through])[0]}
-    return {
-        "joint_sets": [joint.model_dump(exclude_none=True) | through],
-        "waves": [wave.model_dump(exclude_none=True) | {"direction": [-x, y]}],
-        "record": {"points": place(scene.record.points), "joints": place(scene.record.joints)},
-    }
-
-
-def test_a_scene_in_the_mirror_records_its_image(rock_mass, wave, joint):
-    """Slip and motion across change their signs; to the round-off of some 300 steps."""
-    slips = joint(friction_angle=20.0, cohesion=1e4, damping_ratio=0.02)
-    own = rock_mass(joint_sets=[slips], waves=[wave(direction=[0.6, 0.8])])
-    one, other = simulate(own), simulate(rock_mass(**mirrored(own)))
-    assert np.abs(one.slip).max() > 1e-6
-    across = [-1, 1]
-    signs = {"velocity": across, "displacement": across, "traction": [1, -1], "gap": 1, "slip": -1}
-    for name, sign in signs.items():
-        off = np.abs(other[name].values * sign - one[name].values).max()
-        assert off < 1e-12 * np.abs(one[name].values).max(), name
-
-
 def turned(scene, angle, shift):
     """Return tables of a scene that is turned by an angle, degrees, and shifted, as an outline."""
     c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
@@ -268,35 +233,6 @@ def test_a_prestress_that_joints_cannot_carry_is_refused_in_one_line(law, what, 
     assert "\n" not in str(caught.value)
 
 
-def test_a_static_start_takes_the_kernel_of_the_motion_without_its_damping(rock_mass, joint, wave):
-    """One kernel and one kind of arrays, so that a first run compiles once. Motion without damping
-    comes back when all velocities are turned round, to the round-off in 81 steps of what the
-    prestress closes, 3e-4 m."""
-    damped = joint(friction_angle=30.0, cohesion=2e5, residual_cohesion=0.0, damping_ratio=0.05)
-    own = rock_mass(
-        joint_sets=[damped],
-        prestress={"xx": 2e6, "yy": 3e6},
-        gravity={"static": False},
-        damping={"mass_proportional": 5.0, "local": 0.05},
-        waves=[wave()],
-    )
-    system = prepared(own)
-    relaxation = PlaneRelaxation(system, weighed=False)
-    u, v = relaxation.state.u, relaxation.state.v
-    relaxation.advance(1, 0.0)
-    at_first = 1e-8 * np.random.default_rng(1).normal(size=u.shape)  # m: too little to slide
-    u[:], v[:] = at_first, 0.0
-    for steps in (10, 10, 10, 10, 1):
-        relaxation.advance(steps, 0.0)
-    u -= relaxation.model.blocks.dt * v
-    v *= -1
-    for _ in range(4):
-        relaxation.advance(10, 0.0)
-    assert np.abs(u - at_first).max() < 81 * 1e-16 * 3e-4
-    step(system, state_at_rest(system.model), samples_for(system.model, 100), 0, 40)
-    assert relaxation.model.form == system.model.form
-
-
 def test_gravity_at_rest_is_the_weight_above(rock_mass):
     """A column of rock, nu = 0: sigma_yy = rho g (h - y) in the middle of each block."""
     own = rock_mass(
@@ -341,37 +277,6 @@ def test_a_shaken_base_moves_all_like_a_force_of_inertia(rock_mass):
     assert result.displacement.values[0, -1] == pytest.approx(moved, rel=0.02)
 
 
-def test_a_force_at_a_point_gives_its_momentum(rock_mass):
-    """A free body: after the sine's half cycle of impulse nothing is left of a whole one, so a
-    table would be needed; a step gives F t."""
-    own = rock_mass(
-        boundaries=dict.fromkeys(("left", "right", "bottom", "top"), "free"),
-        joint_sets=None,
-        loads=[
-            {
-                "kind": "force", "at": [6.2, 5.3], "direction": [0.6, 0.8], "shape": "step",
-                "quantity": "force", "amplitude": 1e6,
-            }
-        ],
-        record={"points": [[3.0, 3.0]], "joints": None},
-    )  # fmt: skip
-
-    system = prepared(own)
-    state = state_at_rest(system.model)
-    steps = system.time.steps
-    step(system, state, samples_for(system.model, system.time.samples), 0, steps + 1)
-    momentum = (system.blocks.masses * state.v)[:, :2].sum(axis=0)
-    aim = 1e6 * (steps + 0.5) * system.time.dt * np.array([0.6, 0.8])
-    assert momentum == pytest.approx(aim, rel=1e-12)
-    # About the origin: the force's own, from its place.
-    arms, masses = system.blocks.partition.centroid, system.blocks.masses
-    spin = (
-        arms[:, 0] * masses[:, 1] * state.v[:, 1] - arms[:, 1] * masses[:, 0] * state.v[:, 0]
-    ).sum()
-    spin += (masses[:, 2] * state.v[:, 2]).sum()
-    assert spin == pytest.approx(6.2 * aim[1] - 5.3 * aim[0], rel=1e-11)
-
-
 def test_a_rigid_motion_meets_no_resistance(rock_mass, joint):
     """Free sides, gravity from t = 0 on: all blocks fall, and joints carry nothing."""
     own = rock_mass(
@@ -386,21 +291,6 @@ def test_a_rigid_motion_meets_no_resistance(rock_mass, joint):
     assert np.abs(result.traction).max() < 1e-6
 
 
-def test_a_pressure_on_a_part_of_a_side_adds_up(rock_mass):
-    """From x = 2.3 to 7.9 m of the top: 5.6 m of pressure, and its moment about the origin."""
-
-    load = {"kind": "pressure", "side": "top", "shape": "step", "amplitude": 1e6}
-    own = rock_mass(
-        boundaries={"top": "free"}, loads=[load | {"between": [[7.9, 10.0], [2.3, 10.0]]}]
-    )
-    system = prepared(own)
-    (shape,), rows = system.sources.shapes, system.sources.rows
-    force, centroid = shape[:, :2], system.blocks.partition.centroid[rows]
-    assert force.sum(axis=0) == pytest.approx([0, -5.6], rel=1e-12, abs=1e-12)
-    moment = shape[:, 3] - shape[:, 4] + centroid[:, 0] * force[:, 1]
-    assert moment.sum() == pytest.approx(-5.6 * 5.1, rel=1e-12)
-
-
 def test_an_unstable_run_is_stopped_with_what_is_sound(rock_mass, wave):
     """Three times the critical step: the monitor ends the run in one line."""
     own = rock_mass(
@@ -412,20 +302,3 @@ def test_an_unstable_run_is_stopped_with_what_is_sound(rock_mass, wave):
     with pytest.raises(StoppedError, match=r"fastest at \[") as caught:
         simulate(own)
     assert "\n" not in str(caught.value)
-
-
-def test_rare_samples_do_not_hide_a_pulse_from_the_divergence_monitor(rock_mass, wave):
-    """What waves and forces can cause is the same whether a sample falls on the pulse or none."""
-    from jointwave.dem.blocks.bounds import highest_energy
-
-    force = {
-        "kind": "force", "at": [6.2, 5.3], "direction": [0.6, 0.8], "shape": "ricker",
-        "quantity": "force", "amplitude": 1e6, "period": 0.004,
-    }  # fmt: skip
-    for acting in ({"waves": [wave()]}, {"loads": [force]}):
-        bounds = []
-        for interval in (2e-5, 0.1):
-            own = rock_mass(record={"interval": interval}, time={"duration": 0.1}, **acting)
-            system = prepared(own)
-            bounds.append(highest_energy(system, state_at_rest(system.model)))
-        assert bounds[1] == pytest.approx(bounds[0], rel=0.01)

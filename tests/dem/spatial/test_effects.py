@@ -5,7 +5,6 @@ import pytest
 
 from jointwave import dem
 from jointwave.dem.spatial.build import buffers_for
-from jointwave.dem.spatial.layout import KernelFlags
 from jointwave.dem.spatial.march import arguments, march_for
 
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
@@ -55,18 +54,6 @@ def test_idle_joint_law_changes_round_off_alone(row, idle, prestress):
     with_idle = waveforms(dem.simulate(row(**changes, joints=idle)))
     for name, values in without.items():
         assert np.abs(values - with_idle[name]).max() < 1e-12 * np.abs(values).max()
-
-
-def test_absent_effects_leave_no_array(row, at_rest):
-    """An elastic row of free ends holds its motion and the load, nothing else."""
-    blocks = at_rest(row(record__energy=False))
-    model, state, form = blocks.model, blocks.state, blocks.model.form
-    assert (state.history, state.ends, state.sums) == (None,) * 3
-    assert (model.ends, model.load.base) == (None,) * 2
-    assert buffers_for(model, 1).ledgers is None and blocks.samples.energy is None
-    assert form == KernelFlags(parts=form.parts, turns=True, **dict.fromkeys(ABSENT, False))
-    assert [name for name, there in form.parts._asdict().items() if there] == ["shear"]
-    assert form.motion_rows == 12 and len(model.table) == 1
 
 
 def test_absent_effects_leave_no_instruction(row, at_rest, instructions):

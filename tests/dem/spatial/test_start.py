@@ -1,42 +1,13 @@
 """What a spatial scene starts from, and what waves on top of it do."""
 
 import numpy as np
-import pytest
 
 from jointwave import dem
 from jointwave.cases.material.calibrate import calibrate
 
-SLIP = {"friction_angle": 30.0, "damping_ratio": 0.02}
 UNLOADED = {"load": {"shape": "step", "amplitude": 0.0, "direction": [1, 0, 0]}}
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
 G = 9.81
-
-#: Of a pair of blocks, as plain Python: test_static_by_hand.py.
-OTHER_ENDS = [
-    pytest.param(*x, marks=pytest.mark.slow) for x in (("quiet", "matched"), ("free", "fixed"))
-]
-
-
-@pytest.mark.parametrize(("start", "end"), [("free", "free"), *OTHER_ENDS])
-def test_prestressed_row_with_friction_is_at_rest_at_once(row, start, end):
-    """Displacements count from there; A sigma^2 / 2 K' a joint is stored, nothing moves."""
-    y = (0.25 + 0.5 * np.arange(16)).tolist()
-    scene = row(
-        **UNLOADED,
-        joints=SLIP,
-        prestress={"normal": 2e6},
-        ends={"start": start, "end": end},
-        record={"stress": [0.0, 2.0, 8.0], "velocity": y, "interval": 1e-3},
-    )
-    p, result = calibrate(scene), dem.simulate(scene)
-    gap = 2e6 / p.regular_stiffness
-    assert np.abs(result.displacement.values).max() < 1e-12 * gap * 16
-    assert np.abs(result.stress.values - 2e6).max() < 1e-6
-    assert np.abs(result.velocity.values).max() < 1e-12
-    assert result.attrs["static_steps"] == 0
-    elastic = result.energy.sel(term="elastic").values
-    assert elastic == pytest.approx(15 * p.area * 2e6 * gap / 2, rel=1e-12)
-    assert not result.energy.sel(term="friction").values.any()
 
 
 def test_row_under_its_weight_stays_at_rest(row):
@@ -81,15 +52,6 @@ def test_tighter_balance_gives_a_smaller_difference(row):
     assert rough["static_steps"] < fine["static_steps"]
 
 
-@pytest.mark.slow
-def test_local_damping_leaves_the_static_state(row):
-    """Damping decides how blocks come to rest, not where: the same state, bit by bit."""
-    still = {**UNLOADED, "gravity": {"direction": [1, 0, 0]}, "ends__end": "fixed"}
-    with_it, without = (dem.simulate(row(**still, **x)) for x in ({"damping__local": 0.5}, {}))
-    for name in ("stress", "displacement", "rotation"):
-        assert (with_it[name].values[:, 0] == without[name].values[:, 0]).all()
-
-
 def test_free_fall_is_a_parabola(row):
     """Gravity that acts suddenly: u = g t^2 / 2 along it, to round-off from the first step on."""
     direction = [0.48, 0.6, -0.64]
@@ -97,17 +59,3 @@ def test_free_fall_is_a_parabola(row):
     t = result.time.values[None, :, None]
     assert np.abs(result.displacement.values - G * t**2 / 2 * direction).max() < 1e-12
     assert np.abs(result.velocity.values - G * t * direction).max() < 1e-11
-
-
-@pytest.mark.slow  # of the chain: tests/dem/axial/test_start.py
-def test_base_in_acceleration_is_gravity_against_it(row):
-    """In the frame of a base accelerated at a, the row has the weight -a: to round-off."""
-    held = {"ends__start": "fixed", "load__at": [0.0, 0.0]}
-    direction = np.array([0.48, 0.6, -0.64])
-    base = {"shape": "step", "amplitude": 3.0, "quantity": "acceleration"}
-    shaken = dem.simulate(row(**{**held, "load": {**base, "direction": direction.tolist()}}))
-    gravity = {"direction": (-direction).tolist(), "acceleration": 3.0, "static": False}
-    heavy = dem.simulate(row(**{**held, **UNLOADED}, gravity=gravity))
-    for name in ("stress", "shear", "rotation"):
-        error = np.abs(shaken[name].values - heavy[name].values).max()
-        assert error < 1e-9 * np.abs(heavy[name].values).max()
