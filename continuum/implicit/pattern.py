@@ -7,7 +7,6 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from jointwave.continuum.implicit.balance import Matrices
-from jointwave.continuum.implicit.factors import Factors
 from jointwave.continuum.model import Interfaces, Model
 from jointwave.continuum.space.tractions import NN, NX, NZ, XN, XX, XZ, ZN, ZZ
 
@@ -95,9 +94,11 @@ class System:
         """Return x of A x = right, [n]."""
         return self._factors.solve(right)
 
-    def _factors_of(self, rock: Matrices) -> Factors:
+    def _factors_of(self, rock: Matrices):
         start, column, communicator = self.pattern.start, self.pattern.column, rock.communicator
         if communicator.size == 1:
+            from jointwave.continuum.implicit.factors import Factors  # with PETSc
+
             return Factors(start, column)
         from jointwave.continuum.parallel.communicator import Communicator
         from jointwave.continuum.parallel.factors import SharedFactors

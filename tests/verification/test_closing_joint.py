@@ -12,10 +12,10 @@ import pytest
 from jointwave import continuum, dem
 from jointwave.cases.errors import StoppedError
 from jointwave.cases.histories import Sine
-from jointwave.cases.material import closure
 from jointwave.compare.exact.joint import closing_joint
 from jointwave.compare.exact.joint.closing_joint import ClosingJoint, Passed
 from jointwave.dem.spatial import simulate as row
+from jointwave.joints import law
 
 PERIOD, DENSITY, SPEED, PEAK = 0.02, 2400.0, 2000.0, 1e6
 MODULUS = DENSITY * SPEED**2
@@ -152,7 +152,7 @@ def test_a_run_beyond_the_stress_in_reach_is_stopped(closing, monkeypatch, engin
         },
     )
     assert np.isfinite(engine(scene).stress).all()
-    monkeypatch.setattr(closure, "stress_in_reach", lambda scene: 0.0)
+    monkeypatch.setattr(law, "stress_in_reach", lambda scene: 0.0)
     with pytest.raises(StoppedError) as stopped:
         engine(scene)
     assert "\n" not in str(stopped.value) and "stiffen" in str(stopped.value)

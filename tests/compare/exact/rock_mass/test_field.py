@@ -76,7 +76,7 @@ def test_all_engines_take_it(rock_mass, joint, monkeypatch, package, name):
         taken["incident"] = named.get("incident", arguments[-1])
         return result
 
-    monkeypatch.setattr(f"{package}.simulate", simulate)
+    monkeypatch.setattr(f"jointwave.{package}.simulate", simulate)
     spaced = rock_mass(joint_sets=[joint(spacing=6.0)])
     assert solver(name).run(spaced) is result and isinstance(taken["incident"], StackField)
     solver(name).run(rock_mass(waves=[]))
