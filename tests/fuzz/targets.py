@@ -179,18 +179,18 @@ def mesh(data: bytes, folder: Path) -> str:
 
 #: What would solve something: a command that gets so far has read all that it was given.
 SOLVERS = (
-    "compare.runs.run.execute",
-    "compare.runs.comparison.compare",
-    "compare.studies.sweep.run",
-    "compare.studies.effects.run",
-    "compare.studies.plan.plan",
-    "compare.studies.work_precision.run",
-    "compare.studies.hard_cases.make_study",
-    "compare.report.report.build",
-    "compare.figures.publication_file.make",
-    "compare.figures.animation.snapshots.take",
-    "compare.cli.explain.explanation",
-    "compare.cli.doctor.examine",
+    "jointwave.compare.runs.run.execute",
+    "jointwave.compare.runs.comparison.compare",
+    "jointwave.compare.studies.sweep.run",
+    "jointwave.compare.studies.effects.run",
+    "jointwave.compare.studies.plan.plan",
+    "jointwave.compare.studies.work_precision.run",
+    "jointwave.compare.studies.hard_cases.make_study",
+    "jointwave.compare.report.report.build",
+    "jointwave.compare.figures.publication_file.make",
+    "jointwave.compare.figures.animation.snapshots.take",
+    "jointwave.compare.cli.explain.explanation",
+    "jointwave.compare.cli.doctor.examine",
 )
 
 
