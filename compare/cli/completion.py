@@ -1,4 +1,5 @@
-"""Shell completion of scenes, variants, keys with their values, models and studies.
+"""Shell completion of shipped scenes and studies, variants, keys and models; the shell itself
+completes files.
 
 Called at every press of the tab key: nothing heavy is imported, and errors are silent.
 """
@@ -6,8 +7,6 @@ Called at every press of the tab key: nothing heavy is imported, and errors are 
 import os
 from collections.abc import Iterable
 from contextlib import suppress
-from glob import escape, glob
-from typing import Any, Literal, get_args, get_origin
 
 import typer
 
@@ -19,8 +18,8 @@ LARGEST_FILE = 1_000_000  # bytes: larger files take too long to read at a key p
 
 
 def scenes(incomplete: str) -> list[str]:
-    """Return shipped scenes, scene files, and the folders on the way to them."""
-    return [*_begun(names(), incomplete), *_files(incomplete)]
+    """Return shipped scenes."""
+    return _begun(names(), incomplete)
 
 
 def variants(context: typer.Context, incomplete: str) -> list[str]:
@@ -36,13 +35,10 @@ def variants(context: typer.Context, incomplete: str) -> list[str]:
 
 
 def settings(incomplete: str) -> list[str]:
-    """Return keys of a scene, `KEY=`; once the key is there its values, where they are few."""
+    """Return keys of a scene, `KEY=`."""
     from jointwave.cases.schema.keys import keys
 
-    known = {key: f for key, f in keys() if not key.startswith(("soft_layers.", "segments."))}
-    key, equals, _ = incomplete.partition("=")
-    if equals and key in known:
-        return _begun([f"{key}={v}" for v in _values(known[key].annotation)], incomplete)
+    known = [key for key, _ in keys() if not key.startswith(("soft_layers.", "segments."))]
     found = _begun([f"{key}=" for key in known], incomplete)
     # bash ends the word where only one fits, so offer a second.
     return [*found, f"{found[0]}VALUE"] if _is_bash() and len(found) == 1 else found
@@ -56,22 +52,8 @@ def models(incomplete: str) -> list[str]:
 
 
 def studies(incomplete: str) -> list[str]:
-    """Return shipped studies and study files."""
-    shipped = sorted(path.stem for path in SHIPPED.glob("*.toml"))
-    return [*_begun([*shipped, *IN_CODE], incomplete), *_files(incomplete)]
-
-
-def _files(incomplete: str) -> list[str]:
-    found = [f"{p}/" if os.path.isdir(p) else p for p in sorted(glob(f"{escape(incomplete)}*"))]
-    return [one for one in found if one.endswith(("/", ".toml"))]
-
-
-def _values(kind: Any) -> list[str]:
-    if kind is bool:
-        return ["true", "false"]
-    if get_origin(kind) is Literal:
-        return [str(value) for value in get_args(kind)]
-    return [value for part in get_args(kind) for value in _values(part)]
+    """Return shipped studies."""
+    return _begun([*sorted(path.stem for path in SHIPPED.glob("*.toml")), *IN_CODE], incomplete)
 
 
 def _is_bash() -> bool:
