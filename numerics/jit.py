@@ -13,7 +13,7 @@ import numba
 
 from jointwave.numerics.cache import cache_directory, make, mark_used
 
-WAIT = 0.5  # s, after which compiling is announced: cached kernels load in less
+WAIT = 1.5  # s, after which compiling is announced: cached kernels load in less, also under load
 
 #: Where kernels are cached; numba forgets its own setting when one of its variables changes.
 DIRECTORY = cache_directory(Path(__file__).resolve().parent.parent)

@@ -125,11 +125,12 @@ def run(
         lost=lambda one: [one.row(effect, DIED) for effect in active_effects(one.scene)],
     )
     found = {one.key: some for one, some in zip(new, results, strict=True)}
+    full: dict[str, StepCost] = {}  # of the scenes with every effect, which variants share
     with alone():
         measured = saved.compute(
             wanted,
             lambda one: one.key,
-            lambda one: timed(one, found[one.key]),
+            lambda one: timed(one, found[one.key], full),
             progress=lambda part: tell(SOLVING + (1 - SOLVING) * part),
         )
     return pd.DataFrame([row for some in measured for row in some], columns=EffectRow._fields)
@@ -173,18 +174,24 @@ def influence(without: xr.Dataset, result: xr.Dataset) -> tuple[float, str]:
     return misfit, next(iter(at_rest), "")
 
 
-def timed(variant: Variant, rows: list[EffectRow]) -> list[EffectRow]:
-    """Return the rows of a variant with the costs of its effects."""
+def timed(variant: Variant, rows: list[EffectRow], full: dict[str, StepCost]) -> list[EffectRow]:
+    """Return the rows of a variant with the costs of its effects.
+
+    full : the costs with every effect by the hash of their scene, completed here.
+    """
     scene = variant.scene
+    everything = with_every_effect(scene)
+    if (name := scene_hash(everything)) not in full:
+        (full[name],) = step_costs([everything])
     found: list[EffectRow] = []
     without = {one.effect: left_out(scene, one.effect) for one in rows if not one.reason}
-    full, own, *rest = step_costs([with_every_effect(scene), scene, *without.values()])
+    own, *rest = step_costs([scene, *without.values()])
     blocks, rock = dict(zip(without, rest, strict=True)), _rock_costs(scene, without)
     for row in rows:
         ns, ns_noise = _difference(own, blocks.get(row.effect))
         ns_rock, ns_rock_noise = _difference(rock.get(""), rock.get(row.effect))
         row = row._replace(ns=ns, ns_noise=ns_noise, ns_rock=ns_rock, ns_rock_noise=ns_rock_noise)
-        found.append(row._replace(share=ns / own.ns, own=own.ns, everything=full.ns))
+        found.append(row._replace(share=ns / own.ns, own=own.ns, everything=full[name].ns))
     return found
 
 

@@ -112,6 +112,7 @@ def draw(name: str, done: pd.DataFrame) -> Figure:
                     (line,) = ax.plot(own[VARIED[name][0]], own[wave], marker, label=label, **look)
                     line.set_gid(f"{name}-{k}-{j}-{w}")
             ax.set(ylim=(-0.03, 1.1), xlabel=VARIED[name][1], title=f"{kind} wave")
+            ax.margins(x=0.03)  # so that no marker is cut
             ax.grid(color="#e4e7ea", linewidth=0.6)
         axes[0].set_ylabel("amplitude over the incident one")
         figure.legend(loc="outside upper center", ncols=4, frameon=False)

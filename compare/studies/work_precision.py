@@ -155,5 +155,6 @@ def _draw_panel(ax: Axes, table: pd.DataFrame, error: str, cost: str, name: str)
         ax.plot(crossed[cost], crossed[shown], "x", color="#c0392b", markersize=6, label=words)
     if least := floor(table, error):
         ax.axhspan(0, least, color="#f2f2f2", zorder=0, label="fine runs differ")
+    ax.margins(x=0.04)  # so that no marker is cut
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.grid(which="major", color="#e4e7ea", linewidth=0.6)

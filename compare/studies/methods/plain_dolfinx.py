@@ -71,8 +71,11 @@ def applies(scene: Scene) -> Answer:
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement of the scene's homogenised bar."""
+    from jointwave.continuum.space.dolfinx_export import quiet_logging
+
     began = perf_counter()
-    bar = _bar(scene)
+    with quiet_logging():
+        bar = _bar(scene)
     numerics = scene.numerics.continuum
     time = clock(scene, bar.critical, numerics.step_fraction, numerics.allow_unstable, "continuum")
     record = scene.record
@@ -138,8 +141,7 @@ def _bar(scene: Scene) -> PlainBar:
     stiffness = p.modulus * ufl.inner(ufl.grad(ufl.TrialFunction(space)), ufl.grad(w)) * ufl.dx
     rule = {"quadrature_rule": "GLL", "quadrature_degree": max(2 * order - 1, 1)}
     mass = dolfinx_export.vector(p.density * w * ufl.dx(metadata=rule))
-    with dolfinx_export.quiet_logging():
-        form = fem.form(-ufl.action(stiffness, motion), dtype=np.float64)
+    form = fem.form(-ufl.action(stiffness, motion), dtype=np.float64)
     at = space.tabulate_dof_coordinates()[:, 0]
     places = (scene.ends.start, int(at.argmin())), (scene.ends.end, int(at.argmax()))
     dashpot = np.zeros_like(mass)

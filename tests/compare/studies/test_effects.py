@@ -80,7 +80,7 @@ def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, known):
     load = {"shape": "sine", "amplitude": 0.1, "period": 0.01, "quantity": "velocity"}
     scene = pillar(ends__start="fixed", load=load, damping={"local": 0.1}, time__duration=0.01)
     variant = Variant("a/b", scene)
-    rows = {one.effect: one for one in effects.timed(variant, effects.without_each(variant))}
+    rows = {one.effect: one for one in effects.timed(variant, effects.without_each(variant), {})}
     fixed, local = rows["fixed ends"], rows["local damping"]
     assert "is the motion of a base" in fixed.reason
     assert np.isnan([fixed.ns, fixed.share, fixed.ns_rock, fixed.misfit]).all()
@@ -166,7 +166,7 @@ def test_files_hold_every_number(tmp_path):
 
 def test_the_command_prints_a_scene_and_keeps_its_files(command, tmp_path, monkeypatch):
     monkeypatch.setattr(effects, "without_each", lambda case: [row("energy ledger", 0, 3, 0.75)])
-    monkeypatch.setattr(effects, "timed", lambda case, rows: rows)
+    monkeypatch.setattr(effects, "timed", lambda case, rows, full: rows)
     scene = ["effects", "guo-li-2002/fig-09", "--variant", "no tension", "--workers", "1"]
     said = command(*scene).out
     assert "energy ledger" in said and "10.0 % of 40 ns" in said
