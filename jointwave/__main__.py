@@ -1,6 +1,6 @@
 """`python -m jointwave` is the command `jointwave`."""
 
-from jointwave.compare.cli.start import main
+from jointwave.compare.cli.program import main
 
 __all__ = ["main"]
 

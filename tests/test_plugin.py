@@ -3,7 +3,6 @@
 import re
 import subprocess
 import sys
-import tempfile
 
 import pytest
 
@@ -190,32 +189,6 @@ def test_every_engine_runs_once_for_each_variant(run, monkeypatch):
     )
     run(scene=scene() + '"dem ~ equivalent-bar" = 1.0\n').assert_outcomes(passed=2)
     assert sorted(solved) == ["dem", "equivalent-bar", "lattice"]
-
-
-def test_workers_share_what_one_of_them_has_solved(run, pytester, monkeypatch):
-    """Each is held to the pair, the first that asks for a result solves it, and no file is left."""
-    (folder := pytester.path / "temporary").mkdir()
-    monkeypatch.setattr(tempfile, "tempdir", str(folder))
-    pytester.makeconftest(
-        """
-        from jointwave.compare import engines
-
-        solve = engines.solve
-
-        def noted(name, scene):
-            with open("solved", "a") as file:
-                file.write(f"{name}\\n")
-            return solve(name, scene)
-
-        def pytest_sessionstart(session):
-            if hasattr(session.config, "workerinput"):  # not in the process of the test itself
-                engines.solve = noted
-        """
-    )
-    pair = scene("lattice ~ equivalent-bar")
-    run("-n", "2", "--dist", "each", scene=pair).assert_outcomes(passed=2)
-    assert sorted((pytester.path / "solved").read_text().split()) == ["equivalent-bar", "lattice"]
-    assert not list(folder.glob("jointwave-*"))
 
 
 def test_a_run_without_scenes_imports_nothing_heavy(pytester):

@@ -23,7 +23,7 @@ from jointwave.cases.files import is_number
 from jointwave.cases.read import load, load_variant
 from jointwave.cases.records import read_columns
 from jointwave.cases.schema.values import CONTROL
-from jointwave.compare.cli import program, start, terminal
+from jointwave.compare.cli import program, terminal
 from jointwave.compare.figures.export import save
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.runs.jobs import plan
@@ -347,7 +347,6 @@ def test_every_line_that_is_printed_was_made_printable():
 #: Modules that print what is safe already, and what it is.
 PRINTED = {
     "compare/runs/processes.py",  # a message of compare/cli/program.py, which made it printable
-    "compare/cli/start.py",  # `fault`, in ASCII
     "compare/cli/terminal.py",  # JSON, dumped the line before
 }
 
@@ -393,7 +392,7 @@ def told(monkeypatch, capfd, *arguments):
     """Run the command here; return its exit code and what is on standard output and error."""
     monkeypatch.setattr(sys, "argv", ["jointwave", *map(str, arguments)])
     with pytest.raises(SystemExit) as end:
-        start.main()
+        program.main()
     return end.value.code, *capfd.readouterr()
 
 
@@ -429,16 +428,15 @@ def test_a_mistake_is_told_without_its_escape_sequences(monkeypatch, capfd, argu
     ],
 )
 def test_whatever_goes_wrong_is_one_line(monkeypatch, capfd, raised, code, words):
-    def app(**_):
+    def run(arguments):
         raise raised
 
-    monkeypatch.setattr(program, "app", app)
+    monkeypatch.setattr(program, "run", run)
     found, out, error = told(monkeypatch, capfd, "list")
     assert found == code and not out and error.count("\n") == 1 and re.search(words, error)
     if code == 1:
-        monkeypatch.setenv(start.SHOWN, "1")
-        with pytest.raises(type(raised)):
-            start.main()
+        monkeypatch.setenv(program.SHOWN, "1")
+        assert "Traceback (most recent call last)" in told(monkeypatch, capfd, "list")[2]
 
 
 #: How a command is started whose streams are closed, full, or of a locale without the letters.

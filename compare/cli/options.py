@@ -16,7 +16,7 @@ from jointwave.compare.cli import completion
 from jointwave.compare.cli.terminal import say_warnings
 from jointwave.compare.engines import selection
 from jointwave.compare.runs.processes import started
-from jointwave.compare.scenes import find
+from jointwave.compare.scenes import find, names
 
 app = typer.Typer(
     epilog="Start with: jointwave list, jointwave compare guo-li-2002/fig-03, jointwave report",
@@ -28,11 +28,9 @@ SceneArgument = Annotated[
     str,
     typer.Argument(
         help="A scene file, or a shipped scene such as guo-li-2002/fig-03.",
-        autocompletion=completion.scenes,
+        autocompletion=names,
     ),
 ]
-
-
 #: What can simulate or solve a scene, as --engine selects it.
 Engine = StrEnum("Engine", list(selection()))  # type: ignore[misc]
 EngineOption = Annotated[list[Engine], typer.Option(help="Repeatable.")]
@@ -141,7 +139,7 @@ def warn(
     strict: bool = False,
     of: Callable[[AnyScene], Iterable[str]] | None = None,
 ) -> None:
-    """Print what scenes say but hardly mean, a line each; strict : it is an error.
+    """Print what scenes say but hardly mean, each line once; strict : it is an error.
 
     of : returns the lines of a scene; None: what the scene itself says. Raises SceneError of all
     lines.
@@ -149,19 +147,9 @@ def warn(
     from jointwave.cases.warnings import warnings
     from jointwave.compare.solvers.incident import side_warnings
 
-    found: dict[str, list[AnyScene]] = {}
-    for scene in scenes:
-        for line in of(scene) if of else [*warnings(scene), *side_warnings(scene)]:
-            found.setdefault(line, []).append(scene)
-    lines = [f"{line}{_whose(said, scenes)}" for line, said in found.items()]
+    of = of or (lambda scene: [*warnings(scene), *side_warnings(scene)])
+    lines = list(dict.fromkeys(line for scene in scenes for line in of(scene)))
     if strict and lines:
         where, why = scenes[0].where, "(an error by --strict)"
         raise all_of(SceneError(where, "", None, f"{line} {why}") for line in lines)
     say_warnings(lines)
-
-
-def _whose(said: Sequence[AnyScene], scenes: Sequence[AnyScene]) -> str:
-    """Return which variants say what is warned of, where not all do."""
-    if len(said) == len(scenes):
-        return ""
-    return f" [{', '.join(scene.name or 'without a variant' for scene in said)}]"

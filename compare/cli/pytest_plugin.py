@@ -4,20 +4,17 @@
 it imports nothing heavy before a scene is met; any other TOML file is left alone.
 """
 
-import fcntl
 import shlex
 import tomllib
-from collections.abc import Callable, Iterator
-from functools import partial
+from collections.abc import Iterator
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 from warnings import warn
 
 import pytest
 
 LARGEST_FILE = 10_000_000  # bytes, as of any scene
-SHARED = pytest.StashKey[str]()  # the folder of results that all workers of pytest-xdist read
+KINDS = "pillar", "domain"
 
 
 class SceneWarning(UserWarning):
@@ -26,31 +23,6 @@ class SceneWarning(UserWarning):
 
 class Misfit(Exception):
     """A pair that is further apart than its scene expects, or that cannot be measured."""
-
-
-@pytest.hookimpl(optionalhook=True)
-def pytest_configure_node(node: Any) -> None:
-    """Give each worker of pytest-xdist one folder for the results of all, until the tests end."""
-    config = node.config
-    if SHARED not in config.stash:
-        folder = TemporaryDirectory(prefix="jointwave-")
-        config.add_cleanup(folder.cleanup)
-        config.stash[SHARED] = folder.name
-    node.workerinput["jointwave"] = config.stash[SHARED]
-
-
-def _once(file: Path, make: Callable[[], Any]) -> Any:
-    """Return the result that the first worker that asks makes and writes, for which others wait."""
-    from jointwave.compare.runs.output import write_dataset
-    from jointwave.results.netcdf import load_netcdf
-
-    with file.with_suffix(".lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if file.is_file():
-            return load_netcdf(file)
-        result = make()
-        write_dataset(file, result)
-        return result
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "SceneFile | None":
@@ -74,11 +46,11 @@ def _is_scene(path: Path) -> bool:
         return False
     except (ValueError, RecursionError):
         lines = {line.split("#")[0].strip() for line in text.splitlines()}
-        return "[expect]" in lines and not lines.isdisjoint({"[pillar]", "[domain]"})
+        return "[expect]" in lines and any(f"[{kind}]" in lines for kind in KINDS)
     variants = table.get("variants", [])
     tables = [table, *(variants if isinstance(variants, list) else [])]
-    kinds = {"pillar", "domain"}
-    return not kinds.isdisjoint(table) and any("expect" in t for t in tables if isinstance(t, dict))
+    expects = any("expect" in one for one in tables if isinstance(one, dict))
+    return expects and any(kind in table for kind in KINDS)
 
 
 class SceneFile(pytest.File):
@@ -96,6 +68,8 @@ class SceneFile(pytest.File):
         self.results.clear()
 
     def collect(self) -> Iterator["PairItem"]:
+        """Yield the tests; one that fails for a file that is no scene, and for each pair that
+        applies to no variant."""
         from jointwave.cases import SceneError
         from jointwave.compare.scenes import load
 
@@ -104,19 +78,17 @@ class SceneFile(pytest.File):
         except SceneError as error:
             yield PairItem.from_parent(self, name="scene", reason=str(error))
             return
+        reasons: dict[str, list[str]] = {}
         for scene in scenes:
             for pair, bound in scene.expect.items():
-                if not _reason(pair, scene):
+                reason = _reason(pair, scene)
+                reasons.setdefault(pair, []).append(reason)
+                if not reason:
                     name = f"{scene.name}: {pair}" if scene.name else pair
                     yield PairItem.from_parent(self, name=name, scene=scene, pair=pair, bound=bound)
-        yield from self._never(scenes)
-
-    def _never(self, scenes) -> Iterator["PairItem"]:
-        """Yield a failing test for each pair that applies to no variant."""
-        for pair in dict.fromkeys(pair for scene in scenes for pair in scene.expect):
-            reasons = [_reason(pair, scene) for scene in scenes if pair in scene.expect]
-            if all(reasons):
-                reason = f"{pair} does not apply to any variant: {reasons[0]}"
+        for pair, each in reasons.items():
+            if all(each):
+                reason = f"{pair} does not apply to any variant: {each[0]}"
                 yield PairItem.from_parent(self, name=pair, reason=reason)
 
 
@@ -131,10 +103,13 @@ class PairItem(pytest.Item):
         """Measure the pair; raises Misfit with all that the user needs to know."""
         if self.reason:
             raise Misfit(self.reason)
-        self._warn()
         from jointwave.cases.errors import SceneError, UnstableError
+        from jointwave.cases.warnings import warnings
         from jointwave.compare.misfit.metrics import worst
+        from jointwave.compare.solvers.incident import side_warnings
 
+        for line in [*warnings(self.scene), *side_warnings(self.scene)]:
+            warn(SceneWarning(f"{self.scene.where}: {line}"), stacklevel=1)
         try:
             one, other = (self._solved(name) for name in self.pair.split(" ~ "))
         except (SceneError, UnstableError) as error:
@@ -149,26 +124,15 @@ class PairItem(pytest.Item):
             least = f"the reference's own error is {found.floor:.2g}; it can verify ten times that"
             raise Misfit(f"{self.pair}: {least}; the bound is {self.bound:g}")
 
-    def _warn(self) -> None:
-        """Warn of what the scene hardly means; an error where pytest takes warnings for errors."""
-        from jointwave.cases.warnings import warnings
-        from jointwave.compare.solvers.incident import side_warnings
-
-        for line in [*warnings(self.scene), *side_warnings(self.scene)]:
-            warn(SceneWarning(f"{self.scene.where}: {line}"), stacklevel=1)
-
     def _solved(self, name: str):
-        """Return a result; each engine runs once for the same scene of a file, in one worker."""
+        """Return a result; each engine runs once for the same scene of a file."""
         from jointwave.compare.engines import solve
         from jointwave.results.dataset import scene_hash
 
         assert isinstance(self.parent, SceneFile)
         results, key = self.parent.results, (scene_hash(self.scene), name)
         if key not in results:
-            folder = Path(getattr(self.config, "workerinput", {}).get("jointwave", ""))
-            make = partial(solve, name, self.scene)
-            is_shared = folder.name and folder.is_dir()  # a worker may run on another machine
-            results[key] = _once(folder / f"{'-'.join(key)}.nc", make) if is_shared else make()
+            results[key] = solve(name, self.scene)
         return results[key]
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style=None):

@@ -94,7 +94,7 @@ def is_linear(scene):
 def added_to(items, release):
     """Return collected tests with that of each shipped file behind its pairs; release : called
     after each of them. Long ones come before short ones: near the end, processes take tests from
-    one another, and wait for the results that they share."""
+    one another."""
     # tests/hard holds hard scenes, by every scheme.
     files, found = {path for path in shipped() if path.parent.name != "hard"}, []
     items = sorted(items, key=lambda item: item.path.suffix == ".toml" and _is_short(item.path))

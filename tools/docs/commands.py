@@ -12,7 +12,7 @@ def all_commands() -> dict[str, Any]:
     """Return the commands of jointwave by name."""
     import typer
 
-    from jointwave.compare.cli.program import app
+    from jointwave.compare.cli.commands import app
 
     return typer.main.get_command(app).commands
 

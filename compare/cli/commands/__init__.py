@@ -1,1 +1,13 @@
-"""The commands of `jointwave`."""
+"""The commands: the import of each module puts its own into the app."""
+
+from jointwave.compare.cli.commands import (
+    animation,
+    experiments,
+    fit,
+    installation,
+    scenes,
+    solutions,
+)
+from jointwave.compare.cli.options import app
+
+__all__ = ["animation", "app", "experiments", "fit", "installation", "scenes", "solutions"]

@@ -22,6 +22,7 @@ from jointwave.compare.cli.options import (
     load,
 )
 from jointwave.compare.runs.checkpoint.lock import locked
+from jointwave.compare.scenes import names
 
 
 @app.command()
@@ -30,7 +31,7 @@ def effects(
         str | None,
         typer.Argument(
             help="A scene file or a shipped scene (default: every shipped pillar but hard cases).",
-            autocompletion=completion.scenes,
+            autocompletion=names,
         ),
     ] = None,
     changes: SetOption = [],
@@ -152,7 +153,7 @@ def report(
         typer.Argument(
             metavar="SCENE",
             help="Scene files or shipped scenes (default: the figures of Guo & Li (2002)).",
-            autocompletion=completion.scenes,
+            autocompletion=names,
         ),
     ] = None,
     out: OutOption = Path("report"),

@@ -5,8 +5,9 @@ from typing import Annotated
 import typer
 
 from jointwave.cases.errors import SceneError
-from jointwave.compare.cli import completion, terminal
+from jointwave.compare.cli import terminal
 from jointwave.compare.cli.options import JsonOption, app
+from jointwave.compare.scenes import names
 
 
 @app.command()
@@ -18,7 +19,7 @@ def new(
             "--from",
             metavar="SCENE",
             help="Copy this scene with its comments and files.",
-            autocompletion=completion.scenes,
+            autocompletion=names,
         ),
     ] = None,
     rock_mass: Annotated[
@@ -47,6 +48,6 @@ def doctor(as_json: JsonOption = False) -> None:
     from jointwave.compare.cli.doctor import examine, show_health
 
     with terminal.progress("looking") as advance:
-        parts, checks = examine(advance)
-    show_health(parts, checks, as_json)
-    raise typer.Exit(0 if all(one.holds for one in checks) else 1)
+        found = examine(advance)
+    show_health(found, as_json)
+    raise typer.Exit(0 if found["well"] else 1)

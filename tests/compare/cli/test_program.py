@@ -1,4 +1,4 @@
-"""The way in to the command."""
+"""The entry of the command."""
 
 import os
 import subprocess
@@ -13,7 +13,7 @@ class Interrupting:
             raise KeyboardInterrupt
 
 sys.meta_path.insert(0, Interrupting())
-from jointwave.compare.cli.start import main
+from jointwave.compare.cli.program import main
 main()
 """
 
@@ -41,7 +41,7 @@ reinit = deinit = init
 
 MESSAGE = """
 import sys
-from jointwave.compare.cli.start import main
+from jointwave.compare.cli.program import main
 
 sys.argv = ["jointwave", "--version"]
 try:
