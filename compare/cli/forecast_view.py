@@ -1,54 +1,49 @@
-"""The output of `--dry-run`: estimates of runs, and of the parts of a study or the report."""
+"""The output of `--dry-run`: the estimates of runs, one by one or summed by part."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from typing import Any
+
+import pandas as pd
 
 from jointwave.cases.size import spoken
 from jointwave.compare.cli.terminal import print_json, progress, say, show_table
-from jointwave.compare.studies.forecast import UNKNOWN, Forecast, Part, Run, forecasts, total
+from jointwave.compare.studies.forecast import Run, forecasts
 
-COLUMNS = ["", "variant", "engine", "scheme", "steps", "size", "time", "memory"]
+UNKNOWN = "no estimate"  # no such run has been timed on this machine
 
 
-def show_runs(
-    wanted: Sequence[Run], as_json: bool, failing: Mapping[str, str] | None = None
+def show_forecasts(
+    wanted: Sequence[Run],
+    as_json: bool,
+    failing: Mapping[str, str] | None = None,
+    by_part: bool = False,
 ) -> None:
-    """Print the estimated cost of each run by its point of a sweep, and the total.
+    """Print the estimated cost of each run, or of the parts of a command, and of all together.
 
-    failing : points that would not run, with the reason. Raises SceneError for a run that is not
-    possible and no point of a sweep.
+    failing : points of a sweep that would not run, with the reason; more are found here. Raises
+    SceneError for a run that is not possible and no point of a sweep.
     """
     with progress(f"{len(wanted)} runs") as advance:
-        found, failed = forecasts(wanted, advance)
+        table, failed = forecasts(wanted, advance)
     failed = {**(failing or {}), **failed}
-    seconds, untimed = total(one.seconds for one in found)
     if as_json:
-        runs = [one._asdict() for one in found]
+        facts: dict[str, Any] = {"runs": table.to_dict("records"), "seconds": table.seconds.sum()}
+        facts |= {"untimed": int(table.seconds.isna().sum())}
         failures = [{"point": point, "message": text} for point, text in failed.items()]
-        print_json({"runs": runs, "seconds": seconds, "untimed": untimed, "failing": failures})
+        print_json(facts | {"failing": failures})
         return
-    first = 0 if any(one.point for one in found) else 1
-    show_table(COLUMNS[first:], [_cells(one)[first:] for one in found])
-    for point, message in failed.items():
-        say(f"would fail: {point}: {message}", "red")
-    most = max((one.bytes for one in found), default=0.0)
-    say(
-        f"{len(found)} would run, {_together(seconds, untimed)}; the largest needs about "
-        f"{spoken(most)} of memory; nothing was run or written"
-    )
-
-
-def show_parts(found: Sequence[Part], as_json: bool) -> None:
-    """Print the parts of a command: numbers of points, in all and remaining, and their time."""
-    if as_json:
-        print_json([asdict(one) for one in found])
-        return
-    rows = [
-        [one.part, f"{one.to_do} of {one.count} to do", _together(one.seconds, one.untimed)]
-        for one in found
-    ]
-    show_table(["part", "", "time"], rows)
-    say("nothing was run or written")
+    if by_part:
+        parts = table.groupby("point", sort=False)
+        rows = [[part, f"{len(some)} to run", _time(some.seconds)] for part, some in parts]
+        show_table(["part", "", "time"], rows)
+    else:
+        first = 0 if table.point.any() else 1
+        columns = ["", "variant", "engine", "scheme", "steps", "size", "time", "memory"][first:]
+        show_table(columns, [_cells(one)[first:] for one in table.itertuples()])
+        for point, message in failed.items():
+            say(f"would fail: {point}: {message}", "red")
+    most = f"the largest needs about {spoken(table.bytes.max())} of memory; " if len(table) else ""
+    say(f"{len(table)} would run, {_time(table.seconds)}; {most}nothing was run or written")
 
 
 def in_words(seconds: float) -> str:
@@ -59,15 +54,16 @@ def in_words(seconds: float) -> str:
     return "under 1 ms"
 
 
-def _together(seconds: float, untimed: int) -> str:
+def _time(seconds: pd.Series) -> str:
     """Return in words the total seconds of runs, some of which were never timed."""
-    if untimed and not seconds:
+    untimed = int(seconds.isna().sum())
+    if untimed and not seconds.sum():
         return f"{UNKNOWN} of the time: nothing of the kind was timed on this machine"
     others = f", plus {untimed} not timed on this machine" if untimed else ""
-    return f"about {in_words(seconds)} of CPU time{others}"
+    return f"about {in_words(seconds.sum())} of CPU time{others}"
 
 
-def _cells(one: Forecast) -> list[str]:
+def _cells(one: Any) -> list[str]:
     return [
         one.point,
         one.variant or "-",
@@ -75,6 +71,6 @@ def _cells(one: Forecast) -> list[str]:
         one.scheme,
         f"{one.steps:,}" if one.steps else "-",
         one.size,
-        UNKNOWN if one.seconds is None else in_words(one.seconds),
+        UNKNOWN if pd.isna(one.seconds) else in_words(one.seconds),
         spoken(one.bytes) if one.steps else f"over {spoken(one.bytes)}",
     ]

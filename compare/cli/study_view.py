@@ -4,7 +4,7 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 
-from jointwave.compare.cli.forecast_view import show_runs
+from jointwave.compare.cli.forecast_view import show_forecasts
 from jointwave.compare.cli.frames import show_frame
 from jointwave.compare.cli.options import warn
 from jointwave.compare.cli.terminal import print_json, progress, say
@@ -48,7 +48,7 @@ def sweep(
     warn(asked.scenes, strict)
     if dry:
         runs, failing = asked.runs(work)
-        show_runs(runs, as_json, failing)
+        show_forecasts(runs, as_json, failing)
         return
 
     def done(pool: Pool | None, advance: Progress) -> Summary:

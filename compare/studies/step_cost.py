@@ -15,9 +15,7 @@ from jointwave.compare.solvers.record import OF_BLOCK_IN_PLANE
 
 SCENES = Path(__file__).parent / "scenes"
 UNIT_STEPS = 1_000_000  # steps of one block or freedom in a timed run, about
-REPEATS = 5
-ENOUGH = 0.02  # s of stepping: shorter runs are repeated more often, for the clock's resolution
-MOST_REPEATS = 40
+REPEATS = 10
 BLOCKS = 1000  # with every effect, at most
 
 
@@ -39,16 +37,14 @@ def step_costs(scenes: Sequence[AnyScene], name: str = DEM.name) -> list[StepCos
     short = [shortened(scene, name) for scene in scenes]
     for scene in short:
         solve(name, scene)  # compiles
-    rounds: list[list[float]] = []
-    spent = 0.0
-    while len(rounds) < REPEATS or (spent < ENOUGH and len(rounds) < MOST_REPEATS):
-        results = [solve(name, scene) for scene in short]
-        spent += min(float(one.attrs["seconds_stepping"]) for one in results)
-        rounds.append([_nanoseconds(name, *pair) for pair in zip(short, results, strict=True)])
-    for scene, result in zip(short, results, strict=True):
-        timings.note(name, scene, result.attrs)
-    each = list(zip(*rounds, strict=True))
-    return [StepCost(min(ns), median(ns) - min(ns)) for ns in each]
+    found: list[list[float]] = [[] for _ in short]
+    for _ in range(REPEATS):
+        for scene, costs in zip(short, found, strict=True):
+            about = solve(name, scene).attrs
+            timings.note(name, scene, about)
+            steps = about["steps"] * ENGINES[name].units(scene, about["degrees_of_freedom"])
+            costs.append(1e9 * float(about["seconds_stepping"]) / steps)
+    return [StepCost(min(ns), median(ns) - min(ns)) for ns in found]
 
 
 def shortened(scene: AnyScene, name: str = DEM.name) -> AnyScene:
@@ -61,12 +57,6 @@ def shortened(scene: AnyScene, name: str = DEM.name) -> AnyScene:
     dem = scene.numerics.dem.model_copy(update={"threads": 1})
     numerics = scene.numerics.model_copy(update={"dem": dem})
     return scene.model_copy(update={"time": time, "record": record, "numerics": numerics})
-
-
-def _nanoseconds(name: str, scene: AnyScene, result) -> float:
-    about = result.attrs
-    units = ENGINES[name].units(scene, about["degrees_of_freedom"])
-    return 1e9 * float(about["seconds_stepping"]) / (about["steps"] * units)
 
 
 def with_every_effect(scene: AnyScene) -> AnyScene:

@@ -55,10 +55,10 @@ def effects(
 
     wanted = _cases(scene, changes, variant, strict)
     if dry:
-        from jointwave.compare.cli.forecast_view import show_parts
+        from jointwave.compare.cli.forecast_view import show_forecasts
         from jointwave.compare.studies import parts
 
-        show_parts(parts.of_effects(wanted, out), as_json)
+        show_forecasts(parts.of_effects(wanted, out), as_json, by_part=True)
         return
     run_and_show(
         f"{len(wanted)} variants",
@@ -115,10 +115,10 @@ def study(
     and transmission of P and SV waves at one joint, over the angle, `parallel-joints` at several.
     """
     if dry:
-        from jointwave.compare.cli.forecast_view import show_parts
+        from jointwave.compare.cli.forecast_view import show_forecasts
         from jointwave.compare.studies import parts
 
-        show_parts(parts.of_study(name, out), as_json)
+        show_forecasts(parts.of_study(name, out), as_json, by_part=True)
         return
     from jointwave.compare.cli.study_view import run_and_show
 
@@ -179,14 +179,15 @@ def report(
     from jointwave.compare.cli import views
 
     if dry:
-        from jointwave.compare.cli.forecast_view import show_parts
+        from jointwave.compare.cli.forecast_view import show_forecasts
         from jointwave.compare.report.scenes import ROCK_MASSES, asked_for
         from jointwave.compare.scenes import load as load_variants
         from jointwave.compare.studies import parts
 
         asked = [*asked_for(scenes or ()), *(() if scenes else asked_for(ROCK_MASSES))]
         variants = [load_variants(one.file) for one in asked]
-        show_parts(parts.of_report(variants, None if scenes else out), as_json)
+        runs = parts.of_report(variants, None if scenes else out)
+        show_forecasts(runs, as_json, by_part=True)
         return
     from jointwave.compare.report.report import build
 

@@ -104,9 +104,9 @@ def run(
     scenes = load(scene, changes, variant, strict)
     asked = jobs.plan(scenes, wanted, out)
     if dry:
-        from jointwave.compare.cli.forecast_view import show_runs
+        from jointwave.compare.cli.forecast_view import show_forecasts
 
-        show_runs([("", job.scene, job.name) for job in asked], as_json)
+        show_forecasts([("", job.scene, job.name) for job in asked], as_json)
         return
     processes = started()
     folders, settings = (

@@ -89,10 +89,10 @@ def compare(
     scenes = load(scene, changes, variant, strict)
     curves = _read_curves(given, scenes, align, strict)
     if dry:
-        from jointwave.compare.cli.forecast_view import show_runs
+        from jointwave.compare.cli.forecast_view import show_forecasts
         from jointwave.compare.studies.forecast import all_runs
 
-        show_runs(all_runs(scenes), as_json)
+        show_forecasts(all_runs(scenes), as_json)
         return
     shows_all = every or as_json or out is not None or bool(curves)
     found = []
