@@ -18,45 +18,36 @@ def show_plans(found: list[Plan], as_json: bool) -> None:
 
 
 def _show(one: Plan) -> None:
-    say(f"{one.scene.title}{f', {one.scene.name}' if one.scene.name else ''}")
+    say(", ".join(filter(None, [one.scene.title, one.scene.name])))
     say(f"modelling error: from {_named(one.finest)} ({one.reason})")
-    best = one.chosen or one.nearest
-    for reason in dict.fromkeys(one.skipped.values()) if best is None else ():
-        say(f"skipped: {reason}")
-    after = f"after {len(one.runs)} runs and {one.planning:.2g} s of planning"
+    best, asked = one.chosen, percent(one.asked)
     if best is None:
-        asked = percent(one.asked)
-        say(f"{asked} %: missed, every engine's model is further from the finest physics")
+        for reason in dict.fromkeys(one.skipped.values()):
+            say(f"skipped: {reason}")
+        say(f"{asked} %: missed, no engine's model is near enough to the finest physics in time")
         return
-    own = one.own_reference(best)
-    same = "the same" if own is one.finest else _named(own)
-    say(f"numerical error: from {same}, the engine's own model")
-    columns = ["", "numerical, %", "modelling, %", "sum, %", "stepping, s"]
-    errors = map(percent, (best.numerical, best.modelling, best.misfit))
-    word = "nearest" if one.chosen is None else "chosen"
-    show_table(columns, [[word, *errors, f"{best.seconds:.3g}"]])
-    if (worst := one.accuracy(best)) > best.misfit:
-        say(f"smaller steps are further off: {percent(worst)} %")
+    say(f"numerical error: from {_named(best.reference)}, the engine's own model")
+    errors = [percent(x) for x in (best.numerical, best.modelling, best.misfit, best.worst)]
+    columns = ["numerical, %", "modelling, %", "sum, %", "with smaller steps, %", "stepping, s"]
+    show_table(columns, [[*errors, f"{best.seconds:.3g}"]])
     say(f"{best.elements.name} {' '.join(f'--set {option}' for option in best.options)}")
-    say(f"{percent(one.asked)} %: {'met' if one.is_met else 'missed'} by the sum, {after}")
+    met = "met by the sum" if one.is_met else "missed, this is the nearest"
+    say(f"{asked} %: {met}, after {len(one.runs)} runs and {one.planning:.2g} s of planning")
 
 
 def _named(reference: Reference) -> str:
     """Describe the reference of errors, its accuracy, and its time limit."""
     until = reference.result.attrs.get("known_until")
-    known = "" if until is None else f", known until {float(until):.3g} s"
-    if reference.settings:
-        return (
-            f"{reference.name} at {reference.settings}, within {percent(reference.error)} % of "
-            f"the run before it{known}"
-        )
-    own = f", known to {percent(reference.error)} %" if reference.error else ""
-    return f"the exact solution {reference.name}{own}{known}"
+    words = "" if until is None else f", known until {float(until):.3g} s"
+    if reference.error:
+        words = f", known to {percent(reference.error)} %{words}"
+    how = f"{reference.name} at " if reference.settings else "the exact solution "
+    return f"{how}{reference.settings or reference.name}{words}"
 
 
 def _facts(one: Plan) -> dict[str, Any]:
     best = one.chosen
-    facts = {
+    return {
         "variant": one.scene.name,
         "reference": _reference_facts(one.finest) | {"reason": one.reason},
         "planning_seconds": one.planning,
@@ -64,10 +55,8 @@ def _facts(one: Plan) -> dict[str, Any]:
         "skipped": one.skipped,
         "met": one.is_met,
         "engine": best and best.elements.name,
+        **({"own": _reference_facts(best.reference), **_run_facts(best)} if best else {}),
     }
-    if best is None:
-        return facts
-    return facts | {"own": _reference_facts(one.own_reference(best)), **_run_facts(best)}
 
 
 def _reference_facts(reference: Reference) -> dict[str, Any]:

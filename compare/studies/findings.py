@@ -15,7 +15,7 @@ import pandas as pd
 from jointwave.compare.misfit.metrics import JUDGED
 from jointwave.compare.studies.measure import PointRow
 from jointwave.compare.studies.study import ARGUMENTS, Curve, FineRun, Study
-from jointwave.compare.text import percent
+from jointwave.compare.text import in_seconds, percent
 
 TARGETS = (0.1, 0.01, 1e-3, 1e-4)
 CLEARLY = 0.9  # of the expected error: a smaller one is due to cancellation
@@ -30,14 +30,14 @@ def judged(rows: Sequence[PointRow]) -> pd.DataFrame:
     unknown, the numerical one; cancels, whether the point measures less than that.
     """
     table = pd.DataFrame(rows, columns=list(PointRow._fields))
-    held = assured(table, "total").fillna(assured(table, "numerical"))
+    held = _held(table, "total").fillna(_held(table, "numerical"))
     alone = table[["numerical", "modelling"]].max(axis=1)
     counted = table["total"].fillna(table["numerical"])
     cancels = (table["measured"] < CLEARLY * alone) | (counted < CLEARLY * held)
     return table.assign(held=held, cancels=cancels)
 
 
-def assured(table: pd.DataFrame, error: str) -> pd.Series:
+def _held(table: pd.DataFrame, error: str) -> pd.Series:
     """Return the largest error of each point and of all finer ones of its curve, with the same
     physics; nan where a point has no error.
 
@@ -68,36 +68,21 @@ def done(table: pd.DataFrame, error: str, cost: str) -> pd.DataFrame:
     return table[(table["state"] == "done") & (table[error] > 0) & (table[cost] > 0)]
 
 
-class Cheapest(NamedTuple):
-    """The cheapest point within a misfit, and that of another curve; None if there is none."""
-
-    misfit: float
-    point: Any
-    next_best: Any | None
-
-
-def cheapest(table: pd.DataFrame) -> list[Cheapest]:
-    """Return the cheapest point within each of `TARGETS`, if there is one and if the reference of
-    errors is known to a tenth of the target."""
-    found = []
-    by_cost = done(table, "total", "seconds").sort_values("seconds")
-    for target in TARGETS:
-        known = JUDGED * by_cost["total_floor"] <= target
-        within = list(by_cost[(by_cost["held"] <= target) & known].itertuples())
-        if within:
-            others = (point for point in within if point.curve != within[0].curve)
-            found.append(Cheapest(target, within[0], next(others, None)))
-    return found
+def cheapest(table: pd.DataFrame, target: float) -> pd.DataFrame:
+    """Return the cheapest point of each curve within a misfit, the cheapest of all first; none if
+    their reference is not known to a tenth of it."""
+    points = done(table, "total", "seconds").sort_values("seconds")
+    within = (points["held"] <= target) & (JUDGED * points["total_floor"] <= target)
+    return points[within].drop_duplicates("curve")
 
 
 def floor(table: pd.DataFrame, error: str) -> float:
     """Return the error below which errors are not known; 0 against exact solutions. For totals it
     is that of the finest physics, without that of each curve's own model."""
-    largest = float(table[f"{error}_floor"].max())
+    largest = table[f"{error}_floor"].max()
     if error == "total":
-        of_finest = float((table["total_floor"] - table["numerical_floor"]).max())
-        largest = of_finest or largest
-    return 0.0 if isnan(largest) else largest
+        largest = (table["total_floor"] - table["numerical_floor"]).max() or largest
+    return 0.0 if isnan(largest) else float(largest)
 
 
 class Order(NamedTuple):
@@ -139,7 +124,7 @@ def sentences(study: Study, table: pd.DataFrame) -> list[str]:
     if it is a fine run."""
     found = []
     if study.timed and table["total"].notna().any():
-        found += [_cheapest(target) for target in cheapest(table)]
+        found += filter(None, (_cheapest(table, target) for target in TARGETS))
         if isinstance(study.finest, FineRun):
             found.append(
                 f"The finest physics is a fine run of {study.finest.method}; a coarser one is "
@@ -153,11 +138,13 @@ def sentences(study: Study, table: pd.DataFrame) -> list[str]:
     ]
 
 
-def _cheapest(target: Cheapest) -> str:
-    best, other = target.point, target.next_best
+def _cheapest(table: pd.DataFrame, target: float) -> str:
+    best, other, *_ = [*cheapest(table, target).itertuples(), None, None]
+    if best is None:
+        return ""
     text = (
-        f"Within {percent(target.misfit)} % of the finest physics the cheapest is {best.curve} "
-        f"({_errors(best)}; {_seconds(best.seconds)})"
+        f"Within {percent(target)} % of the finest physics the cheapest is {best.curve} "
+        f"({_errors(best)}; {in_seconds(best.seconds)})"
     )
     if other is None:
         return f"{text}; no other curve reaches it."
@@ -168,7 +155,3 @@ def _cheapest(target: Cheapest) -> str:
 def _errors(point: Any) -> str:
     parts = f"numerical {percent(point.numerical)} % + modelling {percent(point.modelling)} %"
     return f"{parts} = {percent(point.total)} %"
-
-
-def _seconds(value: float) -> str:
-    return f"{value:.2g} s" if value >= 0.1 else f"{max(1e3 * value, 0.1):.2g} ms"

@@ -16,10 +16,10 @@ Run = tuple[str, AnyScene, str]  # its point of a sweep or part of a command; it
 class Forecast(NamedTuple):
     """The estimate of a run.
 
-    point : of a sweep, or part of a command; "" without. steps : of time, exactly; 0 for exact solutions. size : blocks or freedoms, in words.
-    seconds : of stepping, at the rate last measured here; None if never measured. bytes : of
-        memory, as the run itself estimates it at its start; for exact solutions that of their
-        waveforms, a lower bound.
+    point : of a sweep, or part of a command; "" without. steps : of time, exactly; 0 for exact
+    solutions. size : blocks or freedoms, in words. seconds : of stepping, at the rate last measured
+    here; None if never measured. bytes : of memory, as the run itself estimates it at its start;
+    for exact solutions that of their waveforms, a lower bound.
     """
 
     point: str

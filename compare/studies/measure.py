@@ -1,6 +1,5 @@
 """One point of a study, measured: its errors, counts, time and memory."""
 
-from collections.abc import Callable
 from math import nan
 from statistics import median
 from time import perf_counter
@@ -13,7 +12,7 @@ from jointwave.cases.scene_type import AnyScene, pillar_of
 from jointwave.compare.engines import applies, solve, solver
 from jointwave.compare.solvers.record import Answer
 from jointwave.compare.studies.methods import METHODS
-from jointwave.compare.studies.reference import UNKNOWN, error, finest_of, known, own_of
+from jointwave.compare.studies.reference import errors
 from jointwave.compare.studies.store import FAILURES
 from jointwave.compare.studies.study import StudyPoint
 
@@ -59,34 +58,34 @@ class PointRow(NamedTuple):
 def measure(point: StudyPoint) -> PointRow:
     """Run a point and return its row; a point that fails gives a row with the reason."""
     row = PointRow(point.curve.label, point.curve.method, point.settings, "done", "")
+    study = point.study
     try:
-        run = runner(point)
-        result = run()
-        seconds = _timed(run, result, point.study.repeats if point.study.timed else 1)
-        found = _errors(point, result) | _counts(result) | seconds
-        return row._replace(**found)  # type: ignore[arg-type]
+        result = _run(point)
+        seconds = [float(result.attrs["seconds_stepping"])]
+        if study.timed and study.repeats > 1 and seconds[0] <= LONG:  # all is compiled by now
+            again = (_run(point) for _ in range(study.repeats))
+            seconds = [float(one.attrs["seconds_stepping"]) for one in again]
+        found = errors(point, result) | _counts(result)
+        spread = (max(seconds) - min(seconds)) / 2
+        return row._replace(**found, seconds=median(seconds), spread=spread)  # type: ignore[arg-type]
     except FAILURES as failure:
         return row._replace(state="failed", message=str(failure))
 
 
-def runner(point: StudyPoint) -> Callable[[], xr.Dataset]:
-    """Return the function that solves a point once."""
-    method, scene, arguments = point.curve.method, point.scene, point.arguments
+def _run(point: StudyPoint) -> xr.Dataset:
+    """Return the result of a point; raises SceneError if its method does not apply."""
+    method, scene = point.curve.method, point.scene
     if not (answer := method_applies(method, scene)):
         raise SceneError(scene.title, "", None, f"{method} does not apply: {answer.reason}")
-
-    def run() -> xr.Dataset:
-        began = perf_counter()
-        if method in METHODS:
-            result = METHODS[method].solve(pillar_of(scene, method), **arguments)
-        elif arguments:
-            result = solver(method).run(scene, **arguments)
-        else:
-            result = solve(method, scene)
-        result.attrs.setdefault("seconds_stepping", perf_counter() - began)  # of exact solutions
-        return result
-
-    return run
+    began = perf_counter()
+    if method in METHODS:
+        result = METHODS[method].solve(pillar_of(scene, method), **point.arguments)
+    elif point.arguments:
+        result = solver(method).run(scene, **point.arguments)
+    else:
+        result = solve(method, scene)
+    result.attrs.setdefault("seconds_stepping", perf_counter() - began)  # of exact solutions
+    return result
 
 
 def method_applies(method: str, scene: AnyScene) -> Answer:
@@ -94,23 +93,6 @@ def method_applies(method: str, scene: AnyScene) -> Answer:
     if method in METHODS:
         return METHODS[method].applies(pillar_of(scene, method))
     return applies(method, scene)
-
-
-def _errors(point: StudyPoint, result: xr.Dataset) -> dict[str, float]:
-    study = point.study
-    own = known(own_of(point), study, point.physics)
-    finest = known(finest_of(study), study, {})
-    numerical = error(result, own, study)
-    modelling = UNKNOWN if own is None else error(own.result, finest, study)
-    floor = numerical.floor + modelling.floor
-    return {
-        "numerical": numerical.misfit,
-        "modelling": modelling.misfit,
-        "total": numerical.misfit + modelling.misfit + floor,
-        "measured": error(result, finest, study).misfit,
-        "numerical_floor": numerical.floor,
-        "total_floor": floor,
-    }
 
 
 def _counts(result: xr.Dataset) -> dict[str, float]:
@@ -129,12 +111,3 @@ def _counts(result: xr.Dataset) -> dict[str, float]:
         "setup": first("seconds_setup"),
         "compile": first("seconds_compile"),
     }
-
-
-def _timed(run: Callable[[], xr.Dataset], result: xr.Dataset, repeats: int) -> dict[str, float]:
-    """Return the seconds of stepping of repeats, now that everything is compiled, or those of the
-    result if they are long or need no repeats."""
-    seconds = [float(result.attrs["seconds_stepping"])]
-    if repeats > 1 and seconds[0] <= LONG:
-        seconds = [float(run().attrs["seconds_stepping"]) for _ in range(repeats)]
-    return {"seconds": median(seconds), "spread": (max(seconds) - min(seconds)) / 2}

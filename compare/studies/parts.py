@@ -34,7 +34,7 @@ def of_study(name: str, out: Path, brief: bool = False) -> list[Run]:
             (
                 f"{Path(name).stem}: {x.curve.label} ({x.curve.method})",
                 work_precision.key(x),
-                partial(x.study.changed, x.changes),
+                partial(getattr, x, "scene"),
                 [x.curve.method],
             )
             for x in load(name).points()

@@ -28,14 +28,10 @@ class Reference(NamedTuple):
     settings: str = ""
 
 
-class Error(NamedTuple):
-    """A misfit, and its floor, below which it is not known: 0 against a closed form."""
-
-    misfit: float
-    floor: float
-
-
-UNKNOWN = Error(nan, nan)
+def exact_reference(name: str, scene: AnyScene) -> Reference:
+    """Return an exact solution with the bound of its own error."""
+    result = _solved(name, scene)
+    return Reference(name, result, worst(result, result).floor)
 
 
 def finest_of(study: Study) -> str | FineRun | None:
@@ -63,29 +59,51 @@ def own_of(point: StudyPoint) -> str | FineRun | None:
     return study.finest.model_copy(update={"method": engine}) if alike else None
 
 
-def known(against: str | FineRun | None, study: Study, physics: dict[str, Any]) -> Reference | None:
+def errors(point: StudyPoint, result: xr.Dataset) -> dict[str, float]:
+    """Return the errors of a result and their floors, as `PointRow` has them; nan if unknown."""
+    study = point.study
+    own = _known(own_of(point), study, point.physics)
+    finest = _known(finest_of(study), study, {})
+    numerical, numerical_floor = _error(result, own, study)
+    modelling, modelling_floor = _error(own.result, finest, study) if own else (nan, nan)
+    floor = numerical_floor + modelling_floor
+    return {
+        "numerical": numerical,
+        "modelling": modelling,
+        "total": numerical + modelling + floor,
+        "measured": _error(result, finest, study)[0],
+        "numerical_floor": numerical_floor,
+        "total_floor": floor,
+    }
+
+
+def _known(
+    against: str | FineRun | None, study: Study, physics: dict[str, Any]
+) -> Reference | None:
     """Return a reference of the study's scene with some physics changed; None without."""
     if against is None:
         return None
     if isinstance(against, str):
         scene = study.changed(physics)  # an exact solution has no numerics
-        plain = scene.model_copy(update={"numerics": type(scene.numerics)(), "expect": {}})
-        exact = _solved(against, plain)
-        return Reference(against, exact, worst(exact, exact).floor)
+        numerics = {"numerics": type(scene.numerics)(), "expect": {}}
+        return exact_reference(against, scene.model_copy(update=numerics))
     changes = physics | against.changes
     fine = _solved(against.method, study.changed(changes))
     coarse = _solved(against.method, study.changed(changes | against.coarser))
     return Reference(against.method, fine, _misfit(coarse, fine, study), str(against.changes))
 
 
-def error(result: xr.Dataset, against: Reference | None, study: Study) -> Error:
-    """Return the error of a result, over the quantity of the study; 0 of a reference itself,
-    unknown without one."""
+def _error(result: xr.Dataset, against: Reference | None, study: Study) -> tuple[float, float]:
+    """Return the error of a result, and its floor, below which it is not known; 0 of a reference
+    itself, nan without one."""
     if against is None:
-        return UNKNOWN
+        return nan, nan
     if result is against.result:
-        return Error(0.0, 0.0)
-    return Error(_misfit(result, against.result, study), against.error)
+        return 0.0, 0.0
+    return _misfit(result, against.result, study), against.error
+
+
+_solutions: dict[tuple[str, str], xr.Dataset] = {}
 
 
 def _solved(name: str, scene: AnyScene) -> xr.Dataset:
@@ -94,9 +112,6 @@ def _solved(name: str, scene: AnyScene) -> xr.Dataset:
     if key not in _solutions:
         _solutions[key] = solve(name, scene)
     return _solutions[key]
-
-
-_solutions: dict[tuple[str, str], xr.Dataset] = {}
 
 
 def _misfit(one: xr.Dataset, other: xr.Dataset, study: Study) -> float:

@@ -130,50 +130,36 @@ def in_processes(
 ) -> Iterator[tuple[str, T | None]]:
     """Compute points in so many processes of this machine.
 
-    All processes end with one that dies. Which point it had is then unknown: each of those that
-    were begun is repeated alone.
+    All processes end with one that dies. The points that are left are then computed one at a time.
     """
     left = dict(points)
-    while left:
-        begun: list[str] = []
-        try:
-            for name, result in _parallel(count, work, left, begun):
-                del left[name]
-                yield name, result
-        except BrokenProcessPool:
-            for name in [name for name in begun if name in left]:
-                yield name, _isolated(work, left.pop(name))
+    try:
+        for name, result in _parallel(count, work, points):
+            del left[name]
+            yield name, result
+    except BrokenProcessPool:
+        for name, point in left.items():
+            try:
+                yield from _parallel(2, work, {name: point})  # 1 would be this process
+            except BrokenProcessPool:
+                yield name, None
 
 
 def _parallel(
-    count: int, work: Callable[[P], T], points: Mapping[str, P], begun: list[str]
+    count: int, work: Callable[[P], T], points: Mapping[str, P]
 ) -> Iterator[tuple[str, T]]:
-    """Yield named results, in the order in which they are done; `begun` gets the names."""
-
-    def calls() -> Iterator[Any]:
-        for name, point in list(points.items()):
-            begun.append(name)
-            yield delayed(_named)(name, work, point, Path.cwd())
-
+    """Yield named results, in the order in which they are done."""
     # joblib replaces a worker that has grown: no point is lost
     warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
     run = Parallel(
         count, return_as="generator_unordered", pre_dispatch=count, batch_size=1, max_nbytes=None
     )
-    yield from run(calls())
+    yield from run(delayed(_named)(*one, work, Path.cwd()) for one in points.items())
 
 
-def _named(name: str, work: Callable[[P], T], point: P, folder: Path) -> tuple[str, T]:
+def _named(name: str, point: P, work: Callable[[P], T], folder: Path) -> tuple[str, T]:
     os.chdir(folder)  # processes outlive a call, and remember the folder of the first one
     return name, work(point)
-
-
-def _isolated(work: Callable[[P], T], point: P) -> T | None:
-    try:
-        ((_, result),) = _parallel(2, work, {"": point}, [])  # 1 would be this process
-        return result
-    except BrokenProcessPool:
-        return None
 
 
 def on_executor(

@@ -1,5 +1,6 @@
 """Studies: a scene, curves of varied keys, and the references of errors, read from TOML."""
 
+import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,7 +23,7 @@ from jointwave import cases
 from jointwave.cases.errors import SceneError, nearest
 from jointwave.cases.files import read_toml
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import names, solvers
+from jointwave.compare.engines import names, solver
 from jointwave.compare.scenes import find
 from jointwave.compare.studies import IN_CODE, SHIPPED
 from jointwave.compare.studies.methods import METHODS
@@ -33,18 +34,6 @@ FINEST, NONE = "finest", "none"  # references of errors other than solutions
 #: Settings that are arguments of a method, not keys of a scene, with their type.
 ARGUMENTS: dict[str, type[int] | type[float]] = {"n_terms": int, "rtol": float}
 LARGEST_ARGUMENT = 1e9
-
-
-def _plain(value: Any) -> Any:
-    """Refuse values not allowed in scenes or in tables of studies: dates, huge numbers."""
-    if isinstance(value, dict | list):
-        for part in value.values() if isinstance(value, dict) else value:
-            _plain(part)
-    elif isinstance(value, int) and value.bit_length() > 64:
-        raise ValueError("must be a number of at most 64 bits")
-    elif not isinstance(value, int | float | str):
-        raise ValueError("must be a number, a text, or true or false")
-    return value
 
 
 def _one_of(*others: str) -> BeforeValidator:
@@ -65,10 +54,8 @@ def combinations(values: Mapping[str, Sequence[Any]]) -> Iterator[dict[str, Any]
         yield dict(zip(values, one, strict=True))
 
 
-Value = Annotated[Any, AfterValidator(_plain)]
-Values = Annotated[list[Value], Field(min_length=1)]
-Changes = Annotated[dict[str, Value], Field(default_factory=dict)]
-Varied = Annotated[dict[str, Values], Field(default_factory=dict)]
+Changes = dict[str, Any]
+Varied = dict[str, Annotated[list[Any], Field(min_length=1)]]
 
 
 class StudyTable(BaseModel):
@@ -85,8 +72,8 @@ class FineRun(StudyTable):
     """
 
     method: Annotated[str, _one_of()]
-    changes: Changes
-    coarser: dict[str, Value]
+    changes: Changes = {}
+    coarser: Changes
 
 
 class Curve(StudyTable):
@@ -106,25 +93,20 @@ class Curve(StudyTable):
 
     label: str
     method: Annotated[str, _one_of(*METHODS)]
-    changes: Changes
-    vary: Varied
-    each: Varied
+    changes: Changes = {}
+    vary: Varied = {}
+    each: Varied = {}
     own: Annotated[str | FineRun | None, _one_of(FINEST, NONE)] = None
     order: float | None = None
 
     @model_validator(mode="after")
-    def _arguments_are_of_the_method(self) -> "Curve":
+    def _arguments_are_positive(self) -> "Curve":
         given = {key: [value] for key, value in self.changes.items()} | self.vary
-        for name in given.keys() & ARGUMENTS.keys():
-            takers = [one.name for one in solvers() if name in one.arguments]
-            takers += [one for one, module in METHODS.items() if name in module.ARGUMENTS]
-            if self.method not in takers:
-                raise ValueError(f"{name} is an argument of {', '.join(takers)}")
-            kind = ARGUMENTS[name]
-            for value in given[name]:
-                if type(value) is not kind or not 0 < value < LARGEST_ARGUMENT:
-                    number = "a whole number" if kind is int else "a number"
-                    raise ValueError(f"{name} = {value}: must be {number} above 0")
+        for key in given.keys() & ARGUMENTS.keys():
+            kind = ARGUMENTS[key]
+            if not all(type(x) is kind and 0 < x < LARGEST_ARGUMENT for x in given[key]):
+                number = "whole numbers" if kind is int else "numbers"
+                raise ValueError(f"{key} must be {number} above 0, not {given[key]}")
         return self
 
     def expanded(self) -> Iterator["Curve"]:
@@ -159,7 +141,7 @@ class Study(StudyTable):
     title: str
     scene: str
     variant: str = ""
-    changes: Changes
+    changes: Changes = {}
     finest: Annotated[str | FineRun | None, _one_of(NONE)] = None
     quantity: Literal["stress", "velocity", "displacement"] | None = None
     note: str = ""
@@ -190,21 +172,22 @@ class StudyPoint:
     settings: dict[str, Any]
 
     @property
+    def arguments(self) -> dict[str, Any]:
+        """The settings that the method takes beside a scene, such as the terms of a series."""
+        method, given = self.curve.method, self.curve.changes | self.settings
+        taken = METHODS[method].ARGUMENTS if method in METHODS else solver(method).arguments
+        return {k: v for k, v in given.items() if k in taken}
+
+    @property
     def changes(self) -> dict[str, Any]:
         """The changes of the scene."""
         given = self.curve.changes | self.settings
-        return {k: v for k, v in given.items() if k not in ARGUMENTS}
+        return {k: v for k, v in given.items() if k not in self.arguments}
 
     @property
     def physics(self) -> dict[str, Any]:
         """The changes of the scene besides its numerics."""
         return {k: v for k, v in self.changes.items() if not k.startswith("numerics.")}
-
-    @property
-    def arguments(self) -> dict[str, Any]:
-        """The settings that are not keys of the scene, such as the terms of a series."""
-        given = self.curve.changes | self.settings
-        return {k: v for k, v in given.items() if k in ARGUMENTS}
 
     @cached_property
     def scene(self) -> AnyScene:
@@ -228,7 +211,9 @@ def load(name: str) -> Study:
         allowed = f"is not a file, nor one of {', '.join(known)}{nearest(name, known)}"
         raise SceneError(name, "", None, allowed)
     try:
-        study = Study.model_validate(read_toml(path, LARGEST_FILE))
+        table = read_toml(path, LARGEST_FILE)
+        json.dumps(table)  # the store and the results hold all values
+        study = Study.model_validate(table)
     except ValidationError as error:
         first = error.errors()[0]
         given = first["input"]
@@ -238,5 +223,7 @@ def load(name: str) -> Study:
         raise SceneError(str(path), key, value, allowed[0].lower() + allowed[1:]) from None
     except ValueError as error:
         raise SceneError(str(path), "", None, str(error)) from None
+    except TypeError:
+        raise SceneError(str(path), "", None, "dates are no values of a study") from None
     beside = path.parent / study.scene
     return study.model_copy(update={"scene": str(beside)}) if beside.is_file() else study

@@ -23,7 +23,7 @@ from jointwave.compare.studies.measure import PointRow, measure
 from jointwave.compare.studies.store import Pool, Store, alone
 from jointwave.compare.studies.store import key as store_key
 from jointwave.compare.studies.study import Study, StudyPoint
-from jointwave.compare.studies.summary import Summary, number, text_table, write_tables
+from jointwave.compare.studies.summary import Summary, write_tables
 
 #: The studies of the report, in its order.
 REPORTED = ("free-pillar", "convergence", "uniform-chain", "one-joint")
@@ -39,10 +39,20 @@ LEGEND = (
     "Sum: numerical and modelling error with what their references are not known to; it counts. "
     f"Measured: from the finest physics; {CANCELS} where errors cancel, or a finer point is worse."
 )
-COLUMNS = [
-    *("point", "numerical, %", "modelling, %", "sum, %", "measured, %", "steps", "work", "kB"),
-    *("set-up, s", "compiling, s", "stepping, s", "±"),
-]
+#: Columns of the table, with those of `PointRow` and their factors.
+COLUMNS = {
+    "numerical, %": ("numerical", 100),
+    "modelling, %": ("modelling", 100),
+    "sum, %": ("total", 100),
+    "measured, %": ("measured", 100),
+    "steps": ("steps", 1),
+    "work": ("work", 1),
+    "kB": ("bytes", 1e-3),
+    "set-up, s": ("setup", 1),
+    "compiling, s": ("compile", 1),
+    "stepping, s": ("seconds", 1),
+    "±": ("spread", 1),
+}
 
 
 def run(
@@ -95,22 +105,16 @@ def summarise(folder: Path, name: str, study: Study, rows: list[PointRow]) -> Su
 
 
 def shown(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the table as text, the points of each curve under its name."""
-    return text_table(COLUMNS, ((point.curve, _cells(point)) for point in table.itertuples()))
-
-
-def _cells(point: Any) -> list[str]:
-    errors = (point.numerical, point.modelling, point.total, point.measured)
-    numbers = [
-        *((100 * error, ".3g") for error in errors),
-        (point.steps, ".0f"),
-        (point.work, ".2e"),
-        (point.bytes / 1e3, ".3g"),
-        *((t, ".2g") for t in (point.setup, point.compile, point.seconds, point.spread)),
-    ]
-    cells = [number(value, form) for value, form in numbers]
-    cells[3] += f" {CANCELS}" * point.cancels
-    return [_settings(point.settings) or "base scene", *cells]
+    """Return the table in display units, the points of each curve under its name."""
+    labels = table["settings"].map(_settings).replace("", "base scene")
+    found = pd.DataFrame(
+        {head: factor * table[column] for head, (column, factor) in COLUMNS.items()}
+    )
+    measured = found["measured, %"].map("{:.3g}".format) + table["cancels"].map(
+        {True: f" {CANCELS}", False: ""}
+    )
+    found["measured, %"] = measured.where(table["measured"].notna(), "")
+    return found.set_index(pd.MultiIndex.from_arrays([table["curve"], labels], names=["", "point"]))
 
 
 def _settings(settings: dict[str, Any]) -> str:

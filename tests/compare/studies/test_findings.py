@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from jointwave.compare.studies.findings import cheapest, floor, judged, orders, sentences
+from jointwave.compare.studies.findings import TARGETS, cheapest, floor, judged, orders, sentences
 from jointwave.compare.studies.measure import PointRow
 from jointwave.compare.studies.study import load, shipped
 from jointwave.compare.studies.work_precision import run
@@ -64,9 +64,10 @@ def test_a_point_counts_for_what_all_finer_ones_hold(pairs):
     held = list(judged(rows)["held"])
     assert held == [max(one.total for one in rows[i:]) for i in range(len(rows))]
     assert list(judged(rows[::-1])["held"]) == held[::-1]
-    for target in cheapest(judged(rows)):
-        finer = [one for one in rows if one.steps >= target.point.steps]
-        assert all(one.total <= target.misfit for one in finer)
+    for target in TARGETS:
+        for point in cheapest(judged(rows), target).itertuples():
+            finer = [one for one in rows if one.steps >= point.steps]
+            assert all(one.total <= target for one in finer)
 
 
 def test_points_of_other_physics_or_of_more_elements_in_fewer_steps_are_not_finer():
@@ -83,9 +84,9 @@ def test_no_point_is_the_cheapest_within_a_misfit_that_is_not_known():
     """The reference of errors must be known to a tenth of the misfit."""
     points = [("a", 0.05), ("b", 1e-4)]
     rows = [row(total=e, total_floor=3e-3, seconds=1.0, curve=name) for name, e in points]
-    assert [c.misfit for c in cheapest(judged(rows))] == [0.1]
+    assert [len(cheapest(judged(rows), target)) for target in TARGETS] == [2, 0, 0, 0]
     known = [one._replace(total_floor=0.0) for one in rows]
-    assert [c.misfit for c in cheapest(judged(known))][-1] == 1e-4
+    assert list(cheapest(judged(known), 1e-4).curve) == ["b"]
 
 
 def test_the_floor_of_totals_is_that_of_the_finest_physics():
@@ -123,7 +124,7 @@ def test_a_headline_by_cancellation_is_marked_and_not_counted(tmp_path):
     table = judged(run(blocks, tmp_path))
     assert list(100 * table.measured) == pytest.approx([7.1, 2.1, 0.96, 1.7, 1.9, 1.95], 0.02)
     assert list(100 * table.modelling) == pytest.approx([1.97] * 6, rel=0.01)
-    assert [target.misfit for target in cheapest(table)] == [0.1]
+    assert [len(cheapest(table, target)) for target in TARGETS] == [1, 0, 0, 0]
     assert list(table.cancels) == [True, True, True, True, False, False]
     assert table.held[2] == pytest.approx(0.0298, rel=0.01)
     said = " ".join(sentences(blocks, table))

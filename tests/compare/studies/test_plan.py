@@ -15,6 +15,7 @@ from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.runs import timings
 from jointwave.compare.scenes import find
 from jointwave.compare.studies import plan as plans
+from jointwave.compare.studies import reference as references
 from jointwave.compare.studies.elements import coarsest, configured, elements, halved, plain, rock
 from jointwave.compare.studies.plan import Plan, PlannedRun, plan
 from jointwave.compare.studies.reference import Reference
@@ -95,7 +96,7 @@ def test_options_make_the_configuration(planned):
     overrides = SHORT | {"record.interval": found.scene.interval, "record.energy": False}
     overrides |= dict(parse_override(text) for text in found.chosen.options)
     again = cases.load_variant(PILLAR, "", overrides)
-    reference = found.own_reference(found.chosen)
+    reference = found.chosen.reference
     own, finest = (solve(x.name, plain(found.scene)) for x in (reference, found.finest))
     result = solve(found.chosen.elements.name, again)
     assert misfit(result, own) + reference.error == found.chosen.numerical
@@ -255,27 +256,29 @@ def made_of(*runs):
     """Return a plan of runs, the misfit 1 %: (elements, steps, numerical error, seconds)."""
     known = {name: elements(short(), "dem", {}) for name in dict.fromkeys(run[0] for run in runs)}
     found = Plan(short(), 0.01, None, Reference("lattice", None, 0.0), "")
-    found.runs = [PlannedRun(known[name], n, error, 0.0, cost) for name, n, error, cost in runs]
+    for name, n, error, cost in runs:
+        found.add(PlannedRun(known[name], n, found.finest, error, 0.0, cost))
     return found
 
 
 def test_a_finer_step_that_is_worse_takes_the_credit_of_a_coarser_one():
     """7.1, 2.1, 0.96, 1.7, 1.9 %: only what no finer step undoes is met, nor a run without one."""
     errors = (0.071, 0.021, 0.0096, 0.017, 0.019)
-    found = made_of(*(("a", 2**k, e, 2.0**k) for k, e in enumerate(errors)))
-    assert found.chosen is None and found.nearest.numerical == 0.019
-    found.runs = found.runs[:3]
-    assert found.chosen is None and found.nearest.numerical == 0.0096
+    runs = [("a", 2**k, e, 2.0**k) for k, e in enumerate(errors)]
+    for few, nearest in ((5, 0.019), (3, 0.0096)):
+        found = made_of(*runs[:few])
+        assert not found.is_met and found.chosen.numerical == nearest
     found.asked = 0.02
-    assert found.chosen is None
-    found.runs = made_of(*(("a", 2**k, e, 2.0**k) for k, e in enumerate(errors))).runs
-    assert found.chosen.numerical == 0.0096 and found.misfit == 0.019
+    assert not found.is_met
+    found = made_of(*runs)
+    found.asked = 0.02
+    assert found.is_met and found.chosen.numerical == 0.0096 and found.misfit == 0.019
 
 
 @pytest.mark.parametrize(
     ("target", "seconds", "expected"),
     [
-        *((0.1, None, 0.05), (0.01, None, 0.01), (0.001, None, None)),
+        *((0.1, None, 0.05), (0.01, None, 0.01), (0.001, None, 0.01)),
         *((0.01, 2.0, 0.02), (0.1, 2.0, 0.05), (0.1, 0.1, None)),
     ],
 )
@@ -294,11 +297,12 @@ def test_a_reference_that_does_not_know_itself_well_enough_judges_nothing(monkey
     exact = solve("jointed-bar", plain(scene))
     rms = float(np.sqrt((exact.stress**2).mean()))
     bounded = exact.assign(stress_error=("stress_y", [2e-4 * rms]))
-    monkeypatch.setattr(plans, "solve", lambda name, asked: bounded)
+    monkeypatch.setattr(references, "solve", lambda name, asked: bounded)
+    monkeypatch.setattr(references, "_solutions", {})
     with pytest.raises(SceneError, match=r"jointed-bar knows itself to 0.02 %, not to 0.01 %"):
         plan(scene, 1e-3)
     monkeypatch.undo()
     reference = Reference("jointed-bar", bounded, 2e-4)
     found = Plan(scene, 1e-2, None, reference, "")
     own = plans.own_model(found, elements(scene, "continuum-jointed", rock(scene, 1)))
-    assert own.modelling == 0 and own.least == 2e-4
+    assert own.modelling == 0 and own.reference.error == 2e-4
