@@ -122,7 +122,7 @@ def sentences(study: Study, table: pd.DataFrame) -> list[str]:
     """Return the findings of a study: the measured orders; of a timed one the cheapest point within
     each misfit, and the extra cost of the next best curve; and the accuracy of the finest physics,
     if it is a fine run."""
-    found = []
+    found: list[str] = []
     if study.timed and table["total"].notna().any():
         found += filter(None, (_cheapest(table, target) for target in TARGETS))
         if isinstance(study.finest, FineRun):
@@ -139,9 +139,10 @@ def sentences(study: Study, table: pd.DataFrame) -> list[str]:
 
 
 def _cheapest(table: pd.DataFrame, target: float) -> str:
-    best, other, *_ = [*cheapest(table, target).itertuples(), None, None]
-    if best is None:
+    if not (within := list(cheapest(table, target).itertuples())):
         return ""
+    best: Any = within[0]
+    other: Any = within[1] if len(within) > 1 else None
     text = (
         f"Within {percent(target)} % of the finest physics the cheapest is {best.curve} "
         f"({_errors(best)}; {in_seconds(best.seconds)})"

@@ -85,7 +85,7 @@ def _known(
         return None
     if isinstance(against, str):
         scene = study.changed(physics)  # an exact solution has no numerics
-        numerics = {"numerics": type(scene.numerics)(), "expect": {}}
+        numerics: dict[str, Any] = {"numerics": type(scene.numerics)(), "expect": {}}
         return exact_reference(against, scene.model_copy(update=numerics))
     changes = physics | against.changes
     fine = _solved(against.method, study.changed(changes))
