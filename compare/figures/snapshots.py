@@ -11,18 +11,14 @@ from jointwave import cases, dem
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import pillar_of
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.figures.animation.bodies import SpaceView
-from jointwave.compare.figures.animation.frame import colours_of
-from jointwave.compare.figures.animation.polygons import polygons_of
+from jointwave.compare.figures.animation.bodies import OBLIQUE, BodyView, body_of, colours_of
 from jointwave.compare.figures.animation.settings import settings_for
 from jointwave.compare.figures.export import Drawn, blank, save
-from jointwave.compare.figures.style import WIDTH
 from jointwave.compare.runs.field_files import read_pvd, write_pvd
 from jointwave.compare.scenes import find
 from jointwave.results.snapshots import Snapshots, snapshots_of
 
-HEAD, STRIP, LEFT = 0.7, 0.95, 0.75  # inches above, of a pillar, and beside it
-
+HEAD, STRIP = 0.7, 0.95  # inches above, and of a pillar
 SCENE = "beyond/eccentric-blow"  # and its changes for the snapshots
 CHANGES = {"record.fields": 5e-3, "time.duration": 0.035, "record.energy": False}
 
@@ -54,24 +50,19 @@ def draw_snapshots(name: str, scene: Scene, s: Snapshots) -> Figure:
     The pillar of instant i is the SVG group NAME-i.
     """
     settings = settings_for(scene, {"": s})
-    body = polygons_of(s, scene, settings)
+    body = body_of(s, scene, settings)
     colours = colours_of([body], settings)
-    height = HEAD + STRIP * len(s.time)
-    with blank(height, WIDTH, True) as figure:
-        for i, time in enumerate(s.time):
-            bottom = (height - HEAD - STRIP * (i + 1)) / height
-            box = LEFT / WIDTH, bottom, 1 - LEFT / WIDTH, STRIP / height
-            view = SpaceView(figure, box, body, colours)
+    with blank(HEAD + STRIP * len(s.time)) as figure:
+        axes = figure.subplots(len(s.time), 1, squeeze=False)[:, 0]
+        for i, (ax, time) in enumerate(zip(axes, s.time, strict=True)):
+            view = BodyView(ax, body, colours, OBLIQUE)
             view.show(i)
             view.faces.set_gid(f"{name}-{i}")
-            middle = bottom + box[3] / 2
-            figure.text(box[0], middle, f"{1e3 * time:g} ms", ha="right", va="center")
-        bar = figure.add_axes((LEFT / WIDTH, 1 - 0.32 / height, 0.3, 0.14 / height))
-        figure.colorbar(colours, cax=bar, orientation="horizontal")
-        bar.set_title(settings.quantity.label, loc="left", pad=3)
-        words = f"y to the right; displacements × {settings.scale:,g}"
-        words += f", thickness × {settings.stretch:.2g}" * (settings.stretch != 1)
-        figure.text(1 - 0.1 / WIDTH, 1 - 0.3 / height, words, ha="right")
+            ax.set(xticks=[], yticks=[], frame_on=False)
+            ax.set_ylabel(f"{1e3 * time:g} ms", rotation=0, ha="right", va="center")
+        axes[-1].set_xlabel(f"y to the right; {settings.caption}")
+        label = settings.quantity.label
+        figure.colorbar(colours, ax=axes, label=label, location="top", shrink=0.4, aspect=30)
     return figure
 
 

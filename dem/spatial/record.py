@@ -60,6 +60,8 @@ def rotation_vectors(quaternions: np.ndarray) -> np.ndarray:
     """Return the rotation vectors [..., 3] (rad, up to pi) of quaternions [..., 4], scalar last."""
     from scipy.spatial.transform import Rotation
 
+    if not quaternions.size:
+        return quaternions[..., :3]
     lengths = np.linalg.norm(quaternions, axis=-1, keepdims=True)
     turns = Rotation.from_quat((quaternions / lengths).reshape(-1, 4))
     return turns.as_rotvec().reshape(*quaternions.shape[:-1], 3)

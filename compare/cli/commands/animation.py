@@ -50,23 +50,26 @@ def animate(
     """
     _require_positive("--scale", scale)
     _require_positive("--seconds", seconds)
-    from jointwave.compare.figures.animation import video
-    from jointwave.compare.figures.animation.frame import Frame
-    from jointwave.compare.figures.animation.settings import settings_for
+    from jointwave.compare.figures.animation.video import refuse, write_video
 
     (one,) = load(scene, changes, variant, strict)
     path = out or Path(f"{_name(scene, one)}.mp4")
-    video.refuse(path, frames)
-    simulated = _simulate(one, frames)
-    settings = settings_for(simulated.scene, simulated.found, scale)
+    refuse(path)
+    frame = _frame(one, one.time.duration / (frames - 1), scale)
     with terminal.progress("pictures") as advance:
-        frame = Frame(simulated, settings, video.DOTS[path.suffix])
-        video.write_video(path, frame.figure, frame.show, frames, seconds, advance)
+
+        def images():
+            for i in range(frames):
+                yield frame.image(i)
+                advance((i + 1) / frames)
+
+        write_video(path, images(), frame.pixels, frames / seconds)
     if not as_json:
-        _say(path, simulated, settings.scale)
+        _say(path, frame)
         return
-    facts = {"file": str(path), "engines": list(simulated.found)}
-    terminal.print_json(facts | {"not_shown": simulated.reasons, "scale": settings.scale})
+    shown = frame.simulated
+    facts = {"file": str(path), "engines": list(shown.found), "not_shown": shown.reasons}
+    terminal.print_json(facts | {"scale": frame.settings.scale})
 
 
 @app.command()
@@ -85,60 +88,46 @@ def view(
 ) -> None:
     """Show a scene by both engines, displaced and coloured by the wave.
 
-    Pillars are shown in three dimensions, rock masses in their plane, coloured by displacement
-    magnitude. Opens a window of PyVista with a slider over time; with --out, or without a display
-    or PyVista, writes an image at the time T.
+    Pillars are shown in three dimensions, rock masses in their plane, coloured by particle speed.
+    Opens a window of PyVista with a slider over time; with --out, or without a display or PyVista,
+    writes an image at the time T.
     """
     _require_positive("--scale", scale)
     (one,) = load(scene, changes, variant, strict)
-    at = one.time.duration / 2 if time is None else time
-    if not 0 < at <= one.time.duration:
-        allowed = f"must be greater than 0 and at most time.duration = {one.time.duration:g} s"
+    at, end = one.time.duration / 2 if time is None else time, one.time.duration
+    if not 0 < at <= end:
+        allowed = f"must be greater than 0 and at most time.duration = {end:g} s"
         raise SceneError("--time", "", None, f"{allowed}, not {at:g}")
     if out is None and _has_display() and find_spec("pyvista") is not None:
-        _open_window(one, at, scale)
-    else:
-        _write_picture(out or Path(f"{_name(scene, one)}.png"), one, at, scale)
+        from jointwave.compare.figures.animation.window import open_window
 
-
-def _open_window(scene: AnyScene, time: float, scale: float | None) -> None:
-    from jointwave.compare.figures.animation.frame import colours_of
-    from jointwave.compare.figures.animation.polygons import polygons_of
-    from jointwave.compare.figures.animation.rendered import open_window
-    from jointwave.compare.figures.animation.settings import DISPLACEMENT, settings_for
-
-    simulated = _simulate(scene, FRAMES)
-    settings = settings_for(simulated.scene, simulated.found, scale, DISPLACEMENT)
-    bodies = {n: polygons_of(s, scene, settings) for n, s in simulated.found.items()}
-    i = round(time / scene.time.duration * (FRAMES - 1))
-    colours = colours_of(list(bodies.values()), settings)
-    open_window(bodies, colours, settings.quantity.label, simulated.time, i)
-
-
-def _write_picture(path: Path, scene: AnyScene, time: float, scale: float | None) -> None:
-    from jointwave.compare.figures.animation.frame import Frame
-    from jointwave.compare.figures.animation.settings import DISPLACEMENT, settings_for
-    from jointwave.compare.figures.animation.snapshots import until
+        frame = _frame(one, end / (FRAMES - 1), scale)
+        open_window(frame, round(at / end * (FRAMES - 1)))
+        return
     from jointwave.compare.figures.export import write_drawing
     from jointwave.compare.runs.output import refuse_foreign
 
+    path = out or Path(f"{_name(scene, one)}.png")
     if path.suffix != ".png":
         raise SceneError("--out", str(path), None, "must end in .png")
     refuse_foreign(path, (b"\x89PNG",))
-    simulated = _simulate(until(scene, time), 2)
-    settings = settings_for(simulated.scene, simulated.found, scale, DISPLACEMENT)
-    frame = Frame(simulated, settings, in_space=True)
+    frame = _frame(one, at, scale, in_space=True)
     frame.show(1)
     write_drawing(path, frame.figure)
-    _say(path, simulated, settings.scale)
+    _say(path, frame)
 
 
-def _simulate(scene: AnyScene, count: int) -> Any:
-    """Return this many snapshots of a scene by both engines."""
+def _frame(scene: AnyScene, interval: float, scale: float | None, in_space: bool = False) -> Any:
+    """Simulate a scene by both engines and return the frame of its instants, one per interval."""
+    from jointwave.compare.figures.animation.frame import Frame
+    from jointwave.compare.figures.animation.settings import settings_for
     from jointwave.compare.figures.animation.snapshots import take
 
     with terminal.progress("both engines") as advance:
-        return take(scene, count, advance)
+        simulated = take(scene, interval, advance)
+    return Frame(
+        simulated, settings_for(simulated.scene, simulated.found, scale), in_space=in_space
+    )
 
 
 def _require_positive(key: str, value: float | None) -> None:
@@ -158,7 +147,8 @@ def _has_display() -> bool:
     return any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY"))
 
 
-def _say(path: Path, shown: Any, scale: float) -> None:
-    terminal.say(f"{path}: {' and '.join(shown.found)}, displacements × {scale:,g}")
+def _say(path: Path, frame: Any) -> None:
+    shown = frame.simulated
+    terminal.say(f"{path}: {' and '.join(shown.found)}, displacements × {frame.settings.scale:,g}")
     for name, reason in shown.reasons.items():
         terminal.say(f"{name} is not shown: {reason}")

@@ -1,96 +1,142 @@
-"""Bodies drawn by matplotlib into axes: from the front, or in space."""
+"""Bodies as the faces of their cells: moved, coloured, and projected onto a picture."""
 
-from math import atan2, degrees, hypot
+from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
-from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d import Axes3D, proj3d
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+from matplotlib.colors import Normalize
 
-from jointwave.compare.figures.animation.polygons import Polygons
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.figures.animation.settings import STRESS, VELOCITY, ViewSettings
+from jointwave.compare.figures.style import FIELD, UNSIGNED
+from jointwave.results.snapshots import Snapshots
 
-EDGE, WIDTH = "#333333", 0.4  # of the polygons' edges, points
-DENSE = 2.5  # points: closer edges would hide the colours
-TOWARDS = 0.05, -1.0, 0.35  # to the viewer of bodies in space, in the axes of `Polygons`
-MARGIN = 1.04  # of the size of a body, of a picture of it
-
-Box = tuple[float, float, float, float]  # left, bottom, width and height, of a figure
-
-
-class FrontView:
-    """A body in the plane: the faces nearest to the viewer, in axes with metres."""
-
-    def __init__(self, figure: Figure, box: Box, body: Polygons, colours: ScalarMappable) -> None:
-        self.body, self.colours = body.front(), colours
-        self.ax = ax = figure.add_axes(box)
-        low, high = body.reach()[:, [0, 2]]
-        margin = (MARGIN - 1) * (high - low).min()
-        ax.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin))
-        points = 72 * box[2] * figure.get_figwidth()
-        spacing = points * np.ptp(self.body.at(0)[..., 0], axis=1).max() / (high - low)[0]
-        shown = spacing > DENSE and self.body.faces.shape[1] > 3  # triangles are parts of blocks
-        edges = EDGE if shown else "face"
-        self.faces = PolyCollection([], edgecolors=edges, linewidths=WIDTH)
-        ax.add_collection(self.faces, autolim=False)
-
-    def show(self, i: int) -> None:
-        """Update the picture to an instant."""
-        self.faces.set_verts(list(self.body.at(i)[..., [0, 2]]))
-        self.faces.set(facecolor=self.colours.to_rgba(self.body.values[i]))
+#: Corners of the faces of a cell.
+FACES = {
+    "triangle": [[0, 1, 2]],
+    "quad": [[0, 1, 2, 3]],
+    "tetra": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+    "hexahedron": [
+        *[[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4]],
+        *[[1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]],
+    ],
+}
+FRONT, OBLIQUE = (0.0, 0.0), (0.1, 0.4)  # to the right and up per metre away from the viewer
+EDGE, WIDTH = "#333333", 0.4  # of the faces' edges, points
+MANY = 4000  # faces whose edges would hide the colours
+LOUDEST = 99.8  # percentile of an unsigned quantity shown by the last colour
 
 
-class SpaceView:
-    """A body in space, by matplotlib: in orthogonal projection, filling a box of a figure."""
+class Body(NamedTuple):
+    """The outside of a body in the axes of a picture: to the right, away from the viewer, up.
+
+    rest : float array [nodes, 3], m, thickness as drawn. motion : float array [snapshots, nodes,
+    3], m, as drawn. faces : int array [faces, corners], nodes. values : float array [snapshots,
+    faces], shown by the colours, in the quantity's unit.
+    """
+
+    rest: np.ndarray
+    motion: np.ndarray
+    faces: np.ndarray
+    values: np.ndarray
+
+    def profile(self) -> pd.DataFrame:
+        """Return the mean value of the faces nearest to the viewer by instant, in columns by the
+        place along the axis."""
+        along, away, _ = self.rest[self.faces].mean(axis=1).T
+        near = away <= away.min() + 1e-6 * np.ptp(along)
+        values = pd.DataFrame(self.values[:, near].T)
+        return values.groupby(along[near].round(9)).mean().T
+
+
+def body_of(s: Snapshots, scene: object, settings: ViewSettings) -> Body:
+    """Return the body of snapshots; lines and sheets of a pillar have its thickness."""
+    up, right = settings.up, np.array([1.0, 0.0, 0.0])
+    if isinstance(scene, Scene):
+        s, right = _solid(s, scene.pillar.side), np.array([0.0, 1.0, 0.0])
+    axes = np.stack([right, np.cross(up, right), up], axis=1)
+    thick = np.array([1.0, settings.stretch, settings.stretch])
+    faces, cells = _outside(s)
+    if settings.quantity == STRESS:
+        assert s.stress is not None
+        values = s.stress[:, cells]
+    elif settings.quantity == VELOCITY:
+        values = (s.velocity @ up)[:, faces].mean(axis=2)
+    else:
+        values = np.linalg.norm(s.velocity, axis=2)[:, faces].mean(axis=2)
+    motion = settings.scale * thick * (s.displacement @ axes)
+    return Body(thick * (s.points @ axes), motion, faces, settings.quantity.factor * values)
+
+
+def _outside(s: Snapshots) -> tuple[np.ndarray, np.ndarray]:
+    """Return the faces that one cell has, and their cells."""
+    rings = np.array(FACES[s.kind])
+    faces = s.cells[:, rings].reshape(-1, rings.shape[1])
+    cells = np.repeat(np.arange(len(s.cells)), len(rings))
+    once = ~pd.DataFrame(np.sort(faces, axis=1)).duplicated(keep=False).to_numpy()
+    return faces[once], cells[once]
+
+
+def _solid(s: Snapshots, side: float) -> Snapshots:
+    """Return snapshots with lines along y, and then sheets, thickened to the side of a section."""
+    for kind, thick, axis in (("line", "quad", 0), ("quad", "hexahedron", 2)):
+        if s.kind != kind:
+            continue
+        half, other = np.zeros(3), s.cells + len(s.points)
+        half[axis] = side / 2
+        ends = (s.cells, other[:, ::-1]) if kind == "line" else (s.cells, other)
+        s = s._replace(
+            kind=thick,
+            points=np.concatenate([s.points - half, s.points + half]),
+            cells=np.concatenate(ends, axis=1),
+            displacement=np.concatenate([s.displacement, s.displacement], axis=1),
+            velocity=np.concatenate([s.velocity, s.velocity], axis=1),
+        )
+    return s
+
+
+def colours_of(bodies: list[Body], settings: ViewSettings) -> ScalarMappable:
+    """Return the colours of a quantity, symmetric around zero where it has a sign."""
+    every = [np.abs(body.values) for body in bodies]
+    if settings.quantity.sign:
+        peak = max(float(values.max()) for values in every) or 1.0
+        return ScalarMappable(Normalize(-peak, peak), FIELD)
+    peak = max(float(np.percentile(values, LOUDEST)) for values in every) or 1.0
+    return ScalarMappable(Normalize(0.0, peak), UNSIGNED)
+
+
+class BodyView:
+    """A body in axes, m, from the front or by an oblique parallel projection.
+
+    per_away : what is farther by a metre is drawn by these to the right and up, m.
+    """
 
     def __init__(
         self,
-        figure: Figure,
-        box: Box,
-        body: Polygons,
+        ax: Axes,
+        body: Body,
         colours: ScalarMappable,
-        towards: tuple[float, float, float] = TOWARDS,
+        per_away: tuple[float, float] = FRONT,
     ) -> None:
-        self.body, self.colours = body, colours
-        low, high = body.reach()
-        right, away, up = towards
-        square = _square(figure, box)
-        ax = figure.add_axes(square, projection="3d", proj_type="ortho")
-        assert isinstance(ax, Axes3D)
-        ax.set_axis_off()
-        ax.patch.set_visible(False)
-        ax.view_init(degrees(atan2(up, hypot(right, away))), degrees(atan2(away, right)))
-        size = np.maximum(high - low, 1e-9 * np.ptp(body.rest))
-        ax.set(xlim=(low[0], low[0] + size[0]), ylim=(low[1], low[1] + size[1]))
-        ax.set(zlim=(low[2], low[2] + size[2]))
-        ax.set_box_aspect(size)
-        first, last = _seen(ax, low, high)
-        ax.set_box_aspect(size, zoom=float(min(box[2:] / (last - first))) / MARGIN)
-        shift = box[:2] + np.array(box[2:]) / 2 - _seen(ax, low, high).mean(axis=0)
-        ax.set_position((*(square[:2] + shift), *square[2:]))
-        self.ax, self.faces = ax, Poly3DCollection(body.at(0), edgecolors=EDGE, linewidths=WIDTH)
-        ax.add_collection3d(self.faces)
+        self.body, (right, up) = body, per_away
+        self.projection = np.array([[1.0, 0.0], [right, up], [0.0, 1.0]])
+        self.farther = np.array([-right, 1.0, -up])  # along the line of sight
+        drawn = (body.rest + body.motion) @ self.projection
+        self.low, self.high = drawn.min(axis=(0, 1)), drawn.max(axis=(0, 1))
+        shown = body.faces.shape[1] > 3 and len(body.faces) < MANY  # triangles are parts of blocks
+        self.faces = PolyCollection([], edgecolors=EDGE if shown else "face", linewidths=WIDTH)
+        self.faces.set(cmap=colours.get_cmap(), norm=colours.norm, clip_on=False)
+        ax.add_collection(self.faces, autolim=False)
+        margin = 0.02 * (self.high - self.low).min()
+        ax.set(xlim=(self.low[0] - margin, self.high[0] + margin), aspect="equal")
+        ax.set_ylim(self.low[1] - margin, self.high[1] + margin)
 
     def show(self, i: int) -> None:
-        """Update the picture to an instant."""
-        self.faces.set_verts(list(self.body.at(i)))
-        self.faces.set(facecolor=self.colours.to_rgba(self.body.values[i]))
-
-
-def _square(figure: Figure, box: Box) -> Box:
-    """Return the square around the middle of a box, as wide as the figure: axes in space keep to
-    one, whatever is in them."""
-    left, bottom, width, height = box
-    across, up = figure.get_size_inches()
-    tall = across / up
-    return left + width / 2 - 0.5, bottom + height / 2 - tall / 2, 1.0, tall
-
-
-def _seen(ax: Axes3D, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Return the lower left and the upper right corner of a cuboid in the figure, fractions."""
-    corners = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
-    x, y, _ = proj3d.proj_transform(*corners.T, ax.get_proj())
-    to_figure = ax.transData - ax.figure.transFigure
-    seen = to_figure.transform(np.stack([x, y], axis=1))
-    return np.stack([seen.min(axis=0), seen.max(axis=0)])
+        """Update the picture to an instant; the nearest faces are drawn last."""
+        corners = (self.body.rest + self.body.motion[i])[self.body.faces]
+        order = np.argsort(-(corners.mean(axis=1) @ self.farther), kind="stable")
+        self.faces.set_verts(corners[order] @ self.projection)
+        self.faces.set_array(self.body.values[i, order])

@@ -1,18 +1,16 @@
 """Films as MP4 or GIF, by the ffmpeg of imageio-ffmpeg."""
 
-from collections.abc import Callable
+from collections.abc import Iterable
+from contextlib import suppress
 from errno import EIO
+from fractions import Fraction
 from pathlib import Path
-from subprocess import CalledProcessError
-from typing import Any
+from subprocess import PIPE, Popen
 
-import matplotlib
+import numpy as np
 from imageio_ffmpeg import get_ffmpeg_exe
-from matplotlib.animation import FFMpegWriter
-from matplotlib.figure import Figure
 
 from jointwave.cases.errors import SceneError
-from jointwave.compare.engines import Progress
 from jointwave.compare.runs.output import refuse_foreign, write
 
 #: First bytes of the files, by suffix: MP4 begins with the size of its first box, `ftyp`.
@@ -20,49 +18,40 @@ BEGINS = {
     ".mp4": tuple(bytes([0, 0, 0, size]) + b"ftyp" for size in (0x14, 0x18, 0x1C, 0x20, 0x24)),
     ".gif": (b"GIF87a", b"GIF89a"),
 }
-DOTS = {".mp4": 100, ".gif": 75}  # pixels per inch; sizes are even, as H.264 with 4:2:0 needs
-#: Every player shows H.264 in 4:2:0; its index comes first, so that it plays while it loads.
-ENCODING = {".mp4": ["-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart"], ".gif": []}
-MOST_OF_A_GIF = 400  # frames, 2.3 MB each: one palette is made of all
+#: Every player shows H.264 in 4:2:0; its index comes first, so that it plays while it loads. Each
+#: frame of a GIF has a palette, so that ffmpeg need not have all frames in memory.
+PALETTES = "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1:dither=none"
+ENCODING = {
+    ".mp4": ["-c:v", "libx264", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart"],
+    ".gif": ["-filter_complex", PALETTES],
+}
 
 
-def refuse(path: Path, count: int = 0) -> None:
-    """Raise SceneError if `path` cannot be an animation with this many frames."""
+def refuse(path: Path) -> None:
+    """Raise SceneError if `path` cannot be an animation."""
     if path.suffix not in BEGINS:
         raise SceneError("--out", str(path), None, f"must end in {' or '.join(BEGINS)}")
-    if path.suffix == ".gif" and count > MOST_OF_A_GIF:
-        allowed = f"at most {MOST_OF_A_GIF} for a GIF, whose frames must all fit in memory"
-        raise SceneError("--frames", "", None, f"{allowed}, not {count:,}; .mp4 takes more")
     refuse_foreign(path, BEGINS[path.suffix])
 
 
 def write_video(
-    path: Path,
-    figure: Figure,
-    show: Callable[[int], object],
-    count: int,
-    seconds: float,
-    progress: Progress | None = None,
+    path: Path, images: Iterable[np.ndarray], size: tuple[int, int], rate: float
 ) -> Path:
-    """Write `count` frames of a figure, lasting `seconds` in total; the suffix selects the format.
+    """Write images, uint8 arrays [height, width, 4], as MP4 or GIF by the path's suffix.
 
-    show : of (frame), changes the figure to it.
+    size : width and height, even. rate : images per second.
     """
-    refuse(path, count)
-    codec = "libx264" if path.suffix == ".mp4" else "gif"
+    refuse(path)
+    raw = f"-f rawvideo -pix_fmt rgba -s {size[0]}x{size[1]} -r {Fraction(rate)} -i -".split()
 
     def save(new: Path) -> None:
-        rate: Any = count / seconds  # ffmpeg takes fractions
-        writer = FFMpegWriter(rate, codec=codec, extra_args=ENCODING[path.suffix])
-        with writer.saving(figure, str(new), figure.dpi):
-            for i in range(count):
-                show(i)
-                writer.grab_frame()
-                if progress is not None:
-                    progress((i + 1) / count)
+        command = [get_ffmpeg_exe(), "-y", "-v", "error", *raw, *ENCODING[path.suffix], str(new)]
+        with Popen(command, stdin=PIPE) as ffmpeg:
+            assert ffmpeg.stdin is not None
+            with suppress(BrokenPipeError):  # its return code tells
+                for image in images:
+                    ffmpeg.stdin.write(image.tobytes())
+        if ffmpeg.returncode:
+            raise OSError(EIO, f"ffmpeg ended with code {ffmpeg.returncode}", str(path))
 
-    with matplotlib.rc_context({"animation.ffmpeg_path": get_ffmpeg_exe()}):
-        try:
-            return write(path, save)
-        except CalledProcessError as error:
-            raise OSError(EIO, f"ffmpeg ended with code {error.returncode}", str(path)) from None
+    return write(path, save)

@@ -138,8 +138,6 @@ STRICT = {
 @pytest.mark.parametrize("command", STRICT)
 def test_strict_refuses_what_is_warned_of(jointwave, command, tmp_path, monkeypatch):
     """Before anything is run or written, a line each."""
-    if command == "view":
-        pytest.importorskip("pyvista")
     monkeypatch.chdir(tmp_path)
     said = jointwave(command, *STRICT[command], *SLIPS, "--strict", code=2)
     first, second = said.err.splitlines()

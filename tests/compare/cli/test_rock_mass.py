@@ -84,7 +84,6 @@ def test_effects_of_what_rigid_blocks_cannot_be_are_refused_in_one_line(says):
 
 
 def test_a_view_of_it_is_a_picture_of_both_engines(jointwave, says, tmp_path, monkeypatch):
-    pytest.importorskip("pyvista")
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
     said = says("view joint.toml --time 0.06", code=2)

@@ -180,3 +180,8 @@ def test_a_block_topples_where_its_weight_leaves_its_base(pillar):
     centre, its centroid d/2 above, so it topples beyond tan(slope) = 1/2 and not before."""
     assert incline(pillar, 0.46) < 1e-3
     assert incline(pillar, 0.54) > 0.3
+
+
+def test_a_row_without_points_has_no_rotations(pillar):
+    found = dem.simulate(pillar(**(BLOW | {"record__velocity": []})))
+    assert found.rotation.shape == (0, found.sizes["time"], 3)

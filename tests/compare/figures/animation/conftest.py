@@ -52,4 +52,4 @@ def row():
 @pytest.fixture(scope="session")
 def simulated(scene_with):
     """Return a function that gives a number of snapshots of a short pillar by both engines."""
-    return cache(lambda count=41: take(scene_with(**SHORT), count))
+    return cache(lambda count=41: take(scene_with(**SHORT), 0.02 / (count - 1)))

@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
-from jointwave.cases import SceneError
 from jointwave.cases.read import load_tables
+from jointwave.compare.figures.animation.bodies import body_of
 from jointwave.compare.figures.animation.frame import Frame
-from jointwave.compare.figures.animation.polygons import polygons_of
-from jointwave.compare.figures.animation.settings import DISPLACEMENT, settings_for
-from jointwave.compare.figures.animation.snapshots import SceneSnapshots, at_instants, until
+from jointwave.compare.figures.animation.settings import settings_for
+from jointwave.compare.figures.animation.snapshots import SceneSnapshots
 from jointwave.results.snapshots import snapshots
 
 TABLES = {
@@ -35,14 +34,12 @@ def simulated():
     return SceneSnapshots(load_tables(TABLES), {"dem": taken}, reasons, {})
 
 
-@pytest.mark.parametrize(("quantity", "largest"), [(None, 2.0), (DISPLACEMENT, 0.1)])
-def test_cells_are_displaced_and_coloured_by_their_motion(simulated, quantity, largest):
-    """2 m/s; 0.1 mm."""
-    chosen = {} if quantity is None else {"of_mass": quantity}
-    settings = settings_for(simulated.scene, simulated.found, 1000.0, **chosen)
-    body = polygons_of(simulated.found["dem"], simulated.scene, settings)
-    np.testing.assert_allclose(body.values, [[0, 0], [0, largest]])
-    corners = body.front().at(1)[..., [0, 2]]
+def test_cells_are_displaced_and_coloured_by_their_speed(simulated):
+    """2 m/s."""
+    settings = settings_for(simulated.scene, simulated.found, 1000.0)
+    body = body_of(simulated.found["dem"], simulated.scene, settings)
+    np.testing.assert_allclose(body.values, [[0, 0], [0, 2.0]])
+    corners = (body.rest + body.motion[1])[body.faces][..., [0, 2]]
     np.testing.assert_allclose(corners[0], SQUARE)
     np.testing.assert_allclose(corners[1], SQUARE + np.array([1.06, 0.08]))
 
@@ -70,15 +67,3 @@ def test_the_picture_shows_the_block_that_moves_where_it_is(simulated):
     assert (colour(end, 2.04, 0.5) == colour(end, 1.5, 0.5)).all()  # beyond where it was
     assert (colour(start, 2.04, 0.5) == 255).all()
     assert "t = 10 ms" in frame.clock.get_text()
-
-
-def test_instants_are_asked_of_a_rock_mass_as_of_a_pillar():
-    asked = at_instants(load_tables(TABLES), 5)
-    assert asked.record.fields == 0.0025 and asked.interval <= 0.0025
-
-
-def test_a_rock_mass_is_cut_short_as_a_pillar_is():
-    assert until(load_tables(TABLES), 0.004).time.duration == 0.004
-    sparse = load_tables(TABLES | {"record": {"points": [[0.5, 0.5]], "interval": 0.005}})
-    with pytest.raises(SceneError, match=r"record\.interval = 0\.005: must not exceed"):
-        until(sparse, 0.004)

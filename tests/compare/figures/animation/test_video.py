@@ -5,9 +5,6 @@ import subprocess
 import numpy as np
 import pytest
 from imageio_ffmpeg import count_frames_and_secs, get_ffmpeg_exe, read_frames
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 from PIL import Image
 
 from jointwave.cases import SceneError
@@ -16,24 +13,19 @@ from jointwave.compare.figures.animation.video import refuse, write_video
 COUNT, SECONDS, SIZE = 12, 1.5, (64, 48)
 
 
-@pytest.fixture
-def film():
-    """A figure of a black bar over white, and what moves the bar."""
-    figure = Figure(figsize=(SIZE[0] / 100, SIZE[1] / 100), dpi=100)
-    FigureCanvasAgg(figure)
-    bar = figure.add_artist(Rectangle((0.0, 0.0), 8 / SIZE[0], 1.0, color="black"))
-    return figure, lambda i: bar.set_x(4 * i / SIZE[0])
-
-
 def picture(i):
-    """What the figure shows in frame i."""
-    found = np.full((SIZE[1], SIZE[0], 3), 255)
-    found[:, 4 * i : 4 * i + 8] = 0
+    """A black bar over white."""
+    found = np.full((SIZE[1], SIZE[0], 4), 255, dtype=np.uint8)
+    found[:, 4 * i : 4 * i + 8, :3] = 0
     return found
 
 
-def test_mp4_is_what_every_player_shows(film, tmp_path):
-    path = write_video(tmp_path / "deep" / "bar.mp4", *film, COUNT, SECONDS)
+def write(path, count=COUNT, seconds=SECONDS):
+    return write_video(path, map(picture, range(count)), SIZE, count / seconds)
+
+
+def test_mp4_is_what_every_player_shows(tmp_path):
+    path = write(tmp_path / "deep" / "bar.mp4")
     count, seconds = count_frames_and_secs(str(path))
     assert count == COUNT and seconds == pytest.approx(SECONDS, abs=0.01)
     frames = read_frames(str(path))
@@ -42,17 +34,17 @@ def test_mp4_is_what_every_player_shows(film, tmp_path):
     assert about["fps"] == pytest.approx(COUNT / SECONDS)
     for i, data in enumerate(list(frames)):
         shown = np.frombuffer(data, dtype=np.uint8).reshape(SIZE[1], SIZE[0], 3)
-        assert np.abs(shown.astype(int) - picture(i)).mean() < 8, i
+        assert np.abs(shown.astype(int) - picture(i)[..., :3]).mean() < 8, i
 
 
-def test_mp4_can_begin_before_it_is_whole(film, tmp_path):
+def test_mp4_can_begin_before_it_is_whole(tmp_path):
     """Its index comes first: a page shows it while it loads."""
-    path = write_video(tmp_path / "bar.mp4", *film, COUNT, SECONDS)
+    path = write(tmp_path / "bar.mp4")
     assert 0 < path.read_bytes().index(b"moov") < path.read_bytes().index(b"mdat")
 
 
-def test_gif_has_every_picture_and_the_whole_time(film, tmp_path):
-    path = write_video(tmp_path / "bar.gif", *film, COUNT, 1.0)
+def test_gif_has_every_picture_and_the_whole_time(tmp_path):
+    path = write(tmp_path / "bar.gif", seconds=1.0)
     with Image.open(path) as file:
         assert file.n_frames == COUNT and file.size == SIZE and file.info["loop"] == 0
         lasted = []
@@ -60,14 +52,8 @@ def test_gif_has_every_picture_and_the_whole_time(film, tmp_path):
             file.seek(i)
             lasted.append(file.info["duration"])
             shown = np.asarray(file.convert("RGB")).astype(int)
-            assert np.abs(shown - picture(i)).mean() < 8, i
+            assert np.abs(shown - picture(i)[..., :3]).mean() < 8, i
     assert sum(lasted) == 1000 and set(lasted) == {80, 90}  # ms; 12 do not divide a second
-
-
-def test_progress_reaches_each_picture(film, tmp_path):
-    seen = []
-    write_video(tmp_path / "bar.gif", *film, COUNT, 1.0, seen.append)
-    assert seen == [(i + 1) / COUNT for i in range(COUNT)]
 
 
 @pytest.mark.parametrize("name", ["bar.avi", "bar", "bar.mp4.txt"])
@@ -77,26 +63,33 @@ def test_other_endings_are_refused(name, tmp_path):
 
 
 @pytest.mark.parametrize("ending", [".mp4", ".gif"])
-def test_a_foreign_file_stays_and_an_older_animation_goes(film, ending, tmp_path):
+def test_a_foreign_file_stays_and_an_older_animation_goes(ending, tmp_path):
     path = tmp_path / f"bar{ending}"
-    write_video(path, *film, COUNT, SECONDS)
-    write_video(path, *film, COUNT - 2, SECONDS)
+    write(path)
+    write(path, COUNT - 2)
     path.write_text("notes of mine")
     with pytest.raises(SceneError, match="is not a result"):
-        write_video(path, *film, COUNT, SECONDS)
+        write(path)
     assert path.read_text() == "notes of mine"
 
 
 @pytest.mark.parametrize("ending", [".mp4", ".gif"])
-def test_a_picture_that_fails_leaves_nothing(film, ending, tmp_path):
-    def fails(i):
-        if i == 5:
-            raise OSError(28, "No space left on device")
-        return film[1](i)
+def test_a_picture_that_fails_leaves_nothing(ending, tmp_path):
+    def images():
+        yield picture(0)
+        raise OSError(28, "No space left on device")
 
     with pytest.raises(OSError, match="No space"):
-        write_video(tmp_path / f"bar{ending}", film[0], fails, COUNT, SECONDS)
+        write_video(tmp_path / f"bar{ending}", images(), SIZE, 8.0)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_failure_of_ffmpeg_is_one_line_and_leaves_nothing(tmp_path):
+    """H.264 in 4:2:0 has no odd sizes."""
+    odd = np.full((3, 5, 4), 255, dtype=np.uint8)
+    with pytest.raises(OSError, match="ffmpeg ended with code") as caught:
+        write_video(tmp_path / "bar.mp4", [odd], (5, 3), 8.0)
+    assert "\n" not in str(caught.value) and not list(tmp_path.iterdir())
 
 
 def test_the_bundled_ffmpeg_runs():

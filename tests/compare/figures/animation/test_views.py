@@ -1,65 +1,46 @@
-"""Bodies in space by both libraries: where they are, in the colours of their values."""
+"""Bodies in a picture: where they are, in the colours of their values, near before far."""
 
 import numpy as np
 import pytest
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
-from jointwave.compare.figures.animation.bodies import SpaceView
-from jointwave.compare.figures.animation.polygons import Polygons
-from jointwave.compare.figures.animation.rendered import RenderedView, Stage, can_render
+from jointwave.compare.figures.animation.bodies import FRONT, OBLIQUE, Body, BodyView
 from jointwave.compare.figures.export import blank
 
-#: A plate that faces the viewer, 4 m x 1 m, in two halves; at the second instant it is elsewhere.
-POINTS = np.array([[0.0, 0, 0], [2, 0, 0], [4, 0, 0], [4, 0, 1], [2, 0, 1], [0, 0, 1]])
-FRONT = 0.0, -1.0, 0.0
+PLATE = np.array([[0.0, 0, 0], [2, 0, 0], [4, 0, 0], [4, 0, 1], [2, 0, 1], [0, 0, 1]])
+COLOURS = ScalarMappable(Normalize(-1.0, 1.0), "RdBu_r")
 
 
-@pytest.fixture
-def plate():
+def picture(body, per_away, i):
+    """Return the picture of a body at an instant."""
+    with blank(2.0, 10.0, True) as figure:
+        ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        ax.set_axis_off()
+        BodyView(ax, body, COLOURS, per_away).show(i)
+        figure.canvas.draw()
+    return np.asarray(figure.canvas.buffer_rgba())[..., :3].astype(int)
+
+
+def test_a_body_is_where_it_moves_to_in_the_colours_of_its_faces():
+    """A plate in two halves moves by its length: the left one red, the right one blue."""
     motion = np.zeros((2, 6, 3))
     motion[1, :, 0] = 4.0
     faces, values = np.array([[0, 1, 4, 5], [1, 2, 3, 4]]), np.array([[0.0, 0.0], [1.0, -1.0]])
-    return Polygons(POINTS, motion, faces, values)
-
-
-@pytest.fixture
-def colours():
-    return ScalarMappable(Normalize(-1.0, 1.0), "RdBu_r")
-
-
-def halves(picture):
-    """Return the colours in the middle of each quarter of a picture's width."""
-    height, width = picture.shape[:2]
-    return [picture[height // 2, int((k + 0.5) / 4 * width), :3].astype(int) for k in range(4)]
-
-
-def is_drawn(picture):
-    """Hold the plate to the right half of the picture, the left one red, the right one blue."""
-    empty, _, red, blue = halves(picture)
+    shown = picture(Body(PLATE, motion, faces, values), FRONT, 1)
+    height, width = shown.shape[:2]
+    empty, _, red, blue = (shown[height // 2, int((k + 0.5) / 4 * width)] for k in range(4))
     assert (empty == 255).all()
     assert red[0] > red[2] + 50 and blue[2] > blue[0] + 50
 
 
-def test_matplotlib_draws_polygons_where_they_are(plate, colours):
-    with blank(2.0, 10.0, True) as figure:
-        view = SpaceView(figure, (0.0, 0.0, 1.0, 1.0), plate, colours, FRONT)
-        view.show(1)
-        figure.canvas.draw()
-    is_drawn(np.asarray(figure.canvas.buffer_rgba()))
-
-
-def test_pyvista_draws_the_same(plate, colours):
-    if not can_render():
-        pytest.skip("PyVista cannot render here")
-    is_drawn(Stage([plate], colours, (1000, 200), FRONT).image(1))
-
-
-def test_a_rendered_body_is_a_part_of_a_figure(plate, colours):
-    if not can_render():
-        pytest.skip("PyVista cannot render here")
-    with blank(2.0, 10.0, True) as figure:
-        view = RenderedView(figure.add_axes((0.0, 0.0, 1.0, 1.0)), plate, colours)
-        before = view.picture.get_array()
-        view.show(1)
-    assert (view.picture.get_array() != before).any()
+@pytest.mark.parametrize("order", [[0, 1], [1, 0]])
+@pytest.mark.parametrize("per_away", [FRONT, OBLIQUE])
+def test_what_is_near_hides_what_is_far(per_away, order):
+    """Two plates of which the first is nearer to the viewer by 0.1 m, in any order."""
+    rest = np.concatenate([PLATE, PLATE + np.array([0.0, 0.1, 0.0])])
+    faces = np.array([[0, 2, 3, 5], [6, 8, 9, 11]])[order]
+    body = Body(rest, np.zeros((1, 12, 3)), faces, np.array([[1.0, -1.0]])[:, order])
+    shown = picture(body, per_away, 0)
+    middle = shown[shown.shape[0] // 2, shown.shape[1] // 2]
+    assert middle[0] > middle[2] + 50
