@@ -47,7 +47,7 @@ types:
 	@MYPYPATH=out/tree $(RUN) mypy
 	@cd out/tree && ../../$(RUN) lint-imports --config ../../pyproject.toml
 
-bench: setup  ## both engines: start-up, kernels compared with bare loops and other solvers, threads, MPI, memory
+bench: setup  ## both engines: start-up, kernels compared with bare loops and other solvers, threads, MPI
 	@$(RUN) python tools/bench
 
 bench-peers: setup  ## the same pillar in LAMMPS and Akantu, a lattice in LAMMPS, installed separately in .peers, compared with ours

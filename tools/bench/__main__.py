@@ -1,7 +1,7 @@
 """All benchmarks, as ratios and costs of one run on this machine.
 
 usage: python tools/bench [PART ...], of
-    startup, kernels, plane, continuum, masses, memory
+    startup, kernels, plane, continuum, masses
 """
 
 import sys
@@ -9,7 +9,6 @@ import sys
 import deformable
 import kernels
 import masses
-import memory
 import plane
 import startup
 
@@ -19,7 +18,6 @@ PARTS = {
     "plane": plane.main,
     "continuum": deformable.main,
     "masses": masses.main,
-    "memory": memory.main,
 }
 
 if __name__ == "__main__":
