@@ -1,59 +1,33 @@
 """Fit keys of a scene to measured waveforms by nonlinear least squares.
 
-lmfit searches and gives standard errors and correlations from the Jacobian at the best fit; the
-95 % interval is that of Student's t. Positive keys are searched on a logarithmic scale.
+lmfit searches and gives the Jacobian at the best fit, from which standard errors and correlations
+follow; the 95 % interval is that of Student's t. Positive keys are searched on a logarithmic scale.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy.stats import qmc
 from scipy.stats import t as student
 
 from jointwave.cases.errors import SceneError, StoppedError
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import Progress
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import Progress, applies
+from jointwave.compare.exact.blocks import lattice
 from jointwave.compare.misfit.external import Curves
-from jointwave.compare.misfit.places import Place
+from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies.fit_keys import CLOCK, FreeKey, changed, free_keys
-from jointwave.compare.studies.fit_trials import Trials, solver_of, started, trials_of
+from jointwave.compare.studies.fit_trials import started, trials_of
 
-POOR = 0.2  # misfit above which other starts are tried
-STARTS, OTHERS = 12, 2  # other starts for each key, and the best of them that are searched from
-DECADES = 2.0  # in which other starts lie, on either side
+SHORT = 200  # blocks, up to which matrix exponentials are cheap
+POOR = 0.2  # misfit above which another start may fit better
 NEAR = 1e-6  # of an unknown to its bound
 ALIKE = 0.99  # correlation above which two keys are indistinguishable
-SINGULAR = 1e-9  # of the largest eigenvalue: accuracy of derivatives by differences
-
-
-class Estimate(NamedTuple):
-    """A fitted key: its value, its standard error, its 95 % interval (infinite if the waveforms do
-    not bound it), and its starting value, SI; at_bound : whether it is at a bound of the key."""
-
-    key: str
-    value: float
-    error: float
-    low: float
-    high: float
-    start: float
-    at_bound: bool
-
-
-class Fitted(NamedTuple):
-    """One measured waveform [n] and the fitted one at the same times, s on the scene's clock, SI;
-    before, after : relative L2 misfit of the motion at the start and at the end."""
-
-    name: str
-    place: Place
-    time: np.ndarray
-    measured: np.ndarray
-    fitted: np.ndarray
-    before: float
-    after: float
+LOST = 3e4  # times the error of a key fitted alone: derivatives by differences tell no more
 
 
 @dataclass(frozen=True)
@@ -61,32 +35,30 @@ class Fit:
     """The result of a fit.
 
     scene : with the fitted keys, else as given. solver : the engine or exact solution.
-    estimates : one per key. correlation : [p, p] of the keys. waveforms : both measured and fitted.
-    trials : number of solutions of the scene. notes : warnings, one sentence each.
+    values : a row per key: its value, its standard error, `low` and `high`, its 95 % interval
+    (infinite if the waveforms do not bound it), its `start`, all SI, and whether it is `at_bound`.
+    correlation : of the keys. waveforms : a row per measured waveform: its file's `name`, its
+    `place`, and the relative L2 misfit of the motion `before` and `after`. trials : number of
+    solutions of the scene. notes : warnings, one sentence each.
     """
 
     scene: AnyScene
     solver: str
-    estimates: list[Estimate]
-    correlation: np.ndarray
-    waveforms: list[Fitted]
+    values: pd.DataFrame
+    correlation: pd.DataFrame
+    waveforms: pd.DataFrame
     trials: int
     notes: list[str]
 
     @property
     def settings(self) -> list[str]:
         """The fitted keys of the scene as arguments of `--set`."""
-        return [f"{e.key}={e.value:.12g}" for e in self.estimates if e.key != CLOCK]
+        return [f"{key}={value:.12g}" for key, value in self.values.value.items() if key != CLOCK]
 
     @property
-    def before(self) -> float:
-        """Misfit of the worst waveform at the start."""
-        return max(one.before for one in self.waveforms)
-
-    @property
-    def after(self) -> float:
-        """Misfit of the worst waveform at the end."""
-        return max(one.after for one in self.waveforms)
+    def table(self) -> pd.DataFrame:
+        """The values, a row per key, with their intervals and correlations."""
+        return self.values.join(self.correlation.add_prefix("correlation with "))
 
 
 def fit(
@@ -108,124 +80,97 @@ def fit(
     Raises SceneError for keys and curves that cannot be fitted, StoppedError if the search does not
     converge.
     """
+    if not curves or not free:
+        raise SceneError(scene.where, "", None, "a fit needs a curve of this scene and a free key")
     keys = free_keys(list(free), scene)
     first = changed(scene, {k.key: k.start for k in keys if k.key != CLOCK})
-    name = solver_of(first, solver)
-    mine = list(curves)
-    if not mine or not keys:
-        raise SceneError(scene.where, "", None, "a fit needs a curve of this scene and a free key")
-    keys = [started(key, first, name, mine) if key.key == CLOCK else key for key in keys]
-    trials = trials_of(first, name, mine, keys, progress or (lambda fraction: None))
-    start = np.array([key.unknown(key.start) for key in keys])
-    begun = trials.residuals(start)
-    assert begun is not None  # it was solved before
-    return _finished(scene, trials, trials.misfits(begun), _best(trials, start))
-
-
-def table(found: Fit) -> pd.DataFrame:
-    """Return the values of a fit, a row per key, with their intervals and correlations."""
-    correlations = pd.DataFrame(
-        found.correlation, columns=[f"correlation with {e.key}" for e in found.estimates]
-    )
-    return pd.DataFrame(found.estimates).join(correlations)
-
-
-def _best(trials: Trials, start: np.ndarray) -> Any:
-    """Return lmfit's result of the best search, also from other starts if the first is poor.
-
-    Raises StoppedError if no search has converged.
-    """
-    first = trials.search(start)
-    found = [first]
-    if first is None or trials.worst(first.x) > POOR:
-        found += [trials.search(x) for x in _other_starts(trials, start)]
-    converged = [one for one in found if one is not None]
-    if not converged:
+    name = _solver_of(first, solver)
+    keys = [started(key, first, name, curves[0]) if key.key == CLOCK else key for key in keys]
+    trials = trials_of(first, name, curves, keys, progress)
+    before = trials.misfits(np.array([key.unknown(key.start) for key in keys]))
+    best = trials.search()
+    if best is None:
         raise StoppedError(
             f"fit: not converged after {trials.count} solutions: start closer "
             "(--free KEY=START), bound the keys, or free fewer"
         )
-    return min(converged, key=lambda one: one.chisqr)
+    after = trials.misfits(best.x)
+    waveforms = pd.DataFrame(
+        [(one.name, one.place) for one in trials.measured], columns=["name", "place"]
+    ).assign(before=before, after=after)
+    values, correlation = _estimates(keys, best)
+    fitted = changed(scene, {k: v for k, v in values.value.items() if k != CLOCK})
+    notes = _notes(values, correlation, max(after))
+    if trials.refused:
+        notes.append(f"{trials.refused} of {trials.count} trials had no solution and were skipped")
+    return Fit(fitted, name, values, correlation, waveforms, trials.count, notes)
 
 
-def _other_starts(trials: Trials, start: np.ndarray) -> list[np.ndarray]:
-    """Return the best of some starts that fill the decades around the first (Latin hypercube)."""
-    p = len(start)
-    reach = DECADES * np.log(10)
-    low = [max(k.unknown(k.low), x - reach) for k, x in zip(trials.keys, start, strict=True)]
-    high = [min(k.unknown(k.high), x + reach) for k, x in zip(trials.keys, start, strict=True)]
-    points = qmc.scale(qmc.LatinHypercube(p, seed=0).random(STARTS * p), low, high)
-    ranked = sorted((trials.worst(x), i) for i, x in enumerate(points))
-    return [points[i] for misfit, i in ranked[:OTHERS] if np.isfinite(misfit)]
+def _solver_of(scene: AnyScene, asked: str | None) -> str:
+    """Return the solver of every trial; raises SceneError if it does not apply."""
+    if asked is None and isinstance(scene, Scene) and scene.block_count <= SHORT:
+        asked = lattice.SOLVER.name if lattice.applies(scene) else None
+    name = asked or DEM.name
+    answer = applies(name, scene)
+    if not answer:
+        raise SceneError(scene.where, "", None, f"{name} does not apply: {answer.reason}")
+    return name
 
 
-def _finished(scene: AnyScene, trials: Trials, before: list[float], best: Any) -> Fit:
-    keys, measured = trials.keys, trials.measured
-    residuals = trials.residuals(best.x)
-    assert residuals is not None
-    errors, correlation = _uncertainty(best)
-    quantile = float(student.ppf(0.975, max(best.nfree, 1)))
-    estimates = [
-        _estimate(*one, quantile) for one in zip(keys, best.x.tolist(), errors, strict=True)
-    ]
-    values = {e.key: e.value for e in estimates}
-    clock = values.get(CLOCK, 0.0)
-    waveforms = [
-        Fitted(m.name, m.place, m.time + clock, m.values, m.values + r, b, a)
-        for m, r, b, a in zip(measured, residuals, before, trials.misfits(residuals), strict=True)
-    ]
-    fitted = changed(scene, {k: v for k, v in values.items() if k != CLOCK})
-    notes = _notes(estimates, correlation, trials)
-    return Fit(fitted, trials.solver, estimates, correlation, waveforms, trials.count, notes)
+def _estimates(keys: list[FreeKey], best: Any) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Return the values of a fit and the correlations of its keys, from lmfit's result.
 
-
-def _uncertainty(best: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Return the standard errors of the unknowns [p] and their correlations [p, p].
-
-    Their covariance is that of lmfit, (J^T J)^-1 times the reduced chi-square; an error is infinite
+    The covariance of the unknowns is (J^T J)^-1 times the reduced chi-square; an error is infinite
     where waveforms do not change with an unknown, or with a combination that has it.
     """
+    names = pd.Index([key.key for key in keys], name="key")
     size = np.linalg.norm(best.jac, axis=0)
-    scale = np.where(size > 0, size, 1.0)
-    values, vectors = np.linalg.eigh((best.jac / scale).T @ (best.jac / scale))
-    lost = (np.abs(vectors[:, values < SINGULAR * values[-1]]) > 0.01).any(axis=1) | (size == 0)
-    covariance = (vectors / np.maximum(values, 1e-16)) @ vectors.T
+    jac = best.jac / np.where(size > 0, size, 1.0)
+    squares, vectors = np.linalg.eigh(jac.T @ jac)
+    covariance = (vectors / np.maximum(squares, 1e-16)) @ vectors.T
     deviation = np.sqrt(np.diag(covariance))
-    errors = np.where(lost, inf, deviation / scale * np.sqrt(best.redchi))
-    return errors, covariance / np.outer(deviation, deviation)
+    known = deviation < LOST
+    errors = np.where(known, deviation / np.where(size > 0, size, 1.0) * np.sqrt(best.redchi), inf)
+    half = errors * student.ppf(0.975, max(best.nfree, 1))
+    rows = [_row(*one) for one in zip(keys, best.x.tolist(), errors, half, strict=True)]
+    correlation = covariance / np.outer(deviation, deviation)
+    return pd.DataFrame(rows, names), pd.DataFrame(correlation, names, names)
 
 
-def _estimate(key: FreeKey, x: float, error: float, quantile: float) -> Estimate:
-    ends = key.unknown(key.low), key.unknown(key.high)
-    at_bound = bool(min(x - ends[0], ends[1] - x) <= NEAR)
+def _row(key: FreeKey, x: float, error: float, half: float) -> dict[str, Any]:
+    """Return the value of a key, its error and its interval from those of its unknown."""
     value = key.value(x)
-    if not np.isfinite(error):
-        low = 0.0 if key.logarithmic else -inf
-        return Estimate(key.key, value, inf, low, inf, key.start, at_bound)
-    low, high = (key.value(x + s * quantile * error) for s in (-1, 1))
-    own = error * (value if key.logarithmic else key.size)
-    return Estimate(key.key, value, own, low, high, key.start, at_bound)
+    if np.isfinite(error):
+        low, high = key.value(x - half), key.value(x + half)
+    else:
+        low, high = 0.0 if key.logarithmic else -inf, inf
+    return {
+        "value": value,
+        "error": error * (value if key.logarithmic else key.size),
+        "low": low,
+        "high": high,
+        "start": key.start,
+        "at_bound": min(x - key.unknown(key.low), key.unknown(key.high) - x) <= NEAR,
+    }
 
 
-def _notes(estimates: list[Estimate], correlation: np.ndarray, trials: Trials) -> list[str]:
+def _notes(values: pd.DataFrame, correlation: pd.DataFrame, misfit: float) -> list[str]:
     """Return warnings about the values, in sentences."""
     found = [
-        f"{e.key} stopped at its bound, {e.value:.6g}: its interval is not valid"
-        for e in estimates
-        if e.at_bound
+        f"{key} stopped at its bound, {value:.6g}: its interval is not valid"
+        for key, value in values.value[values.at_bound].items()
     ]
     found += [
-        f"{e.key} is not determined by these waveforms: they do not depend on it, or only "
-        "in combination with another key"
-        for e in estimates
-        if not np.isfinite(e.high)
+        f"{key} is not determined by these waveforms: they do not depend on it, or only in "
+        "combination with another key"
+        for key in values.index[np.isinf(values.high)]
     ]
     found += [
-        f"{one.key} and {other.key} cannot be distinguished: correlation {correlation[i, j]:+.5f}"
-        for i, one in enumerate(estimates)
-        for j, other in enumerate(estimates[:i])
-        if abs(correlation[i, j]) > ALIKE
+        f"{one} and {other} cannot be distinguished: correlation {correlation[one][other]:+.5f}"
+        for i, one in enumerate(correlation)
+        for other in correlation.columns[:i]
+        if abs(correlation[one][other]) > ALIKE
     ]
-    if trials.refused:
-        found.append(f"{trials.refused} of {trials.count} trials had no solution and were skipped")
+    if misfit > POOR:
+        found.append(f"a misfit of {misfit:.0%} is left: another start may fit better")
     return found

@@ -2,15 +2,16 @@
 
 from collections.abc import Mapping
 from fnmatch import fnmatch
-from math import exp, inf, isfinite, log, nan, nextafter
-from typing import Annotated, Any, NamedTuple
+from functools import reduce
+from itertools import pairwise
+from math import exp, inf, isfinite, log, nan
+from typing import Any, NamedTuple
 
-from pydantic import TypeAdapter, ValidationError
-from pydantic.fields import FieldInfo
+from pydantic import ValidationError
 
 from jointwave.cases.errors import SceneError, nearest
 from jointwave.cases.scene_type import AnyScene, Either, checked
-from jointwave.cases.schema.keys import keys, model_in
+from jointwave.cases.schema.keys import in_words, keys
 
 CLOCK = "clock"  # shift added to the times of the files, s
 FACTOR = 1000.0  # by which a positive key may change, if nothing else bounds it
@@ -22,34 +23,32 @@ FIXED = (
     *("expect.*", "domain.*", "regions.*.dip", "segments.*.y", "segments.*.block"),
     *("joint_sets.*.dip", "joint_sets.*.spacing", "joint_sets.*.offset", "joint_sets.*.scatter*"),
 )
-FORMS = "must be KEY, KEY=START or KEY=LOW:START:HIGH"
+FORMS = "must be KEY, KEY=START or KEY=LOW:START:HIGH, LOW first"
 
 
 class FreeKey(NamedTuple):
-    """A key that is fitted.
-
-    start : nan if it is to be found (clock only). low, high : bounds. logarithmic : whether it is
-    positive and searched on such a scale.
-    """
+    """A key that is fitted, between two bounds; start : nan if it is to be found (clock only)."""
 
     key: str
     start: float
-    low: float
-    high: float
-    logarithmic: bool
+    low: float = -inf
+    high: float = inf
+
+    @property
+    def logarithmic(self) -> bool:
+        """Whether it stays positive and is searched on a logarithmic scale."""
+        return self.low > 0 and self.key != CLOCK
 
     @property
     def size(self) -> float:
         """The change of the value for a change of 1 in the unknown, on a linear scale."""
-        if self.key == CLOCK:
-            return (self.high - self.low) / 2
-        return abs(self.start) or (self.high - self.low if isfinite(self.high) else 1.0)
+        reach = self.high - self.low
+        return reach if self.key == CLOCK else abs(self.start) or (reach if isfinite(reach) else 1)
 
     def unknown(self, value: float) -> float:
         """Return the search variable of a value."""
-        if self.logarithmic:
-            return ORIGIN + log(value / self.start)
-        return ORIGIN + (value - self.start) / self.size
+        change = log(value / self.start) if self.logarithmic else (value - self.start) / self.size
+        return ORIGIN + change
 
     def value(self, unknown: float) -> float:
         """Return the value of a search variable, within the bounds."""
@@ -60,109 +59,76 @@ class FreeKey(NamedTuple):
 
 def free_keys(texts: list[str], scene: AnyScene) -> list[FreeKey]:
     """Return the keys of `--free`, several in one text separated by commas; raises SceneError."""
-    found: dict[str, FreeKey] = {}
-    for text in ",".join(texts).split(","):
-        key, numbers = _parsed(text)
-        if key in found:
+    found = [_free_key(text, scene) for text in ",".join(texts).split(",")]
+    names = [one.key for one in found]
+    for key in names:
+        if names.count(key) > 1:
             raise SceneError("--free", key, None, "must be given only once")
-        found[key] = _free_key(key, numbers, scene)
-    return list(found.values())
+    return found
 
 
-def changed(scene: Either, values: Mapping[str, float]) -> Either:
-    """Return a scene with dotted keys set; raises SceneError if that is invalid."""
-    try:
-        for key, value in values.items():
-            scene = _with(scene, key.split("."), value)
-    except ValidationError as error:
-        allowed = str(error.errors()[0]["msg"]).lower()
-        raise SceneError(scene.where, key, value, allowed) from None
-    return checked(scene)
-
-
-def _with(table: Any, parts: list[str], value: float) -> Any:
-    name, *rest = parts
-    if not rest:
-        new = table.model_copy(update={name: value})
-        # A load retains the history that it has read.
-        return new if getattr(new, "file", None) else type(new).model_validate(dict(new))
-    old = getattr(table, name)
-    if isinstance(old, list):
-        i = int(rest[0])
-        new = [*old[:i], _with(old[i], rest[1:], value), *old[i + 1 :]]
-    elif old is None:
-        model: Any = model_in(type(table).model_fields[name].annotation)
-        new = model.model_validate({rest[0]: value})
-    else:
-        new = _with(old, rest, value)
-    return table.model_copy(update={name: new})
-
-
-def _parsed(text: str) -> tuple[str, list[float]]:
-    """Return a key, and its start alone or between its bounds; empty if not given."""
+def _free_key(text: str, scene: AnyScene) -> FreeKey:
+    """Return a key with its start and bounds: as given, else from the scene and its models."""
     key, equals, numbers = (part.strip() for part in text.partition("="))
     try:
-        found = [float(part) for part in numbers.split(":")] if equals else []
+        given = [float(part) for part in numbers.split(":")] if equals else []
     except ValueError:
         raise SceneError("--free", text, None, f"{FORMS}, of numbers") from None
-    if not key or len(found) not in (0, 1, 3) or not all(map(isfinite, found)):
+    ordered = all(one < other for one, other in pairwise(given))
+    if not key or len(given) not in (0, 1, 3) or not (ordered and all(map(isfinite, given))):
         raise SceneError("--free", text, None, FORMS)
-    if len(found) == 3 and not found[0] < found[1] < found[2]:
-        raise SceneError("--free", text, None, "must have its bounds in order, LOW first")
-    return key, found
-
-
-def _free_key(key: str, numbers: list[float], scene: AnyScene) -> FreeKey:
-    """Return a key with its start and bounds, as given or else from the scene and its models."""
-    least, most, logarithmic, old = -inf, inf, False, nan
-    if key != CLOCK:
-        field, old = _find(key, scene)
-        limits = _limits(field)
-        if limits is None or any(fnmatch(key, fixed) for fixed in FIXED):
-            raise SceneError("--free", key, None, "must be a continuous number")
-        least, most, logarithmic = limits
-    if old is None and not numbers:
+    words, held = ("number", nan) if key == CLOCK else _held(key, scene)
+    if held is None and not given:
         allowed = f"is not in {scene.where}: give a start, --free {key}=START"
         raise SceneError("--free", key, None, allowed)
-    start = numbers[len(numbers) // 2] if numbers else old
-    low, high = (numbers[0], numbers[2]) if len(numbers) == 3 else (least, most)
-    if key != CLOCK and not least <= low <= start <= high <= most:
-        allowed = f"must start and stay within {max(low, least):.6g} to {min(high, most):.6g}"
-        raise SceneError("--free", key, start, allowed)
-    if logarithmic:
-        low, high = max(low, start / FACTOR), min(high, start * FACTOR)
-    return FreeKey(key, start, low, high, logarithmic)
+    if len(given) == 3:
+        return FreeKey(key, given[1], given[0], given[2])
+    start = given[0] if given else held
+    if "> 0" in words and start > 0:
+        return FreeKey(key, start, start / FACTOR, start * FACTOR)
+    return FreeKey(key, start, 0.0 if "≥ 0" in words else -inf)
 
 
-def _find(key: str, scene: AnyScene) -> tuple[FieldInfo, Any]:
-    """Return the field of a dotted key and its value, None if the scene has none."""
+def _held(key: str, scene: AnyScene) -> tuple[str, Any]:
+    """Return a dotted key's allowed values in words and its value, None if the scene leaves it
+    out."""
     known, parts = dict(keys(type(scene))), key.split(".")
     name = ".".join(part for part in parts if not part.isdecimal())
     if name not in known:
         allowed = f"is not a key of a scene{nearest(name, list(known))}"
         raise SceneError("--free", key, None, allowed)
-    table: Any = scene
-    for i, part in enumerate(parts):
-        if not isinstance(table, list):
-            table = getattr(table, part, None)
-        elif part.isdecimal() and int(part) < len(table):
-            table = table[int(part)]
-        else:
-            above, last = ".".join(parts[:i]), len(table) - 1
-            allowed = f"must be {above}.0 to {above}.{last}" if table else "the scene has none"
-            raise SceneError("--free", key, None, allowed)
-    return known[name], table
+    words = in_words(known[name])
+    if not words.startswith("number") or any(fnmatch(key, fixed) for fixed in FIXED):
+        raise SceneError("--free", key, None, "must be a continuous number")
+    try:
+        return words, reduce(_part, parts, scene)
+    except (AttributeError, IndexError, ValueError):
+        raise SceneError("--free", key, None, "is in a table that the scene has not") from None
 
 
-def _limits(field: FieldInfo) -> tuple[float, float, bool] | None:
-    """Return the smallest and largest number allowed by a field, and whether it is positive; None
-    if it is not a number."""
-    kind: Any = Annotated[field.annotation, field]
-    allowed = TypeAdapter(kind).json_schema()
-    for one in allowed.get("anyOf", [allowed]):
-        if one.get("type") == "number":
-            above, below = one.get("exclusiveMinimum"), one.get("exclusiveMaximum")
-            low = one.get("minimum", -inf) if above is None else nextafter(above, inf)
-            high = one.get("maximum", inf) if below is None else nextafter(below, -inf)
-            return low, high, above == 0
-    return None
+def _part(table: Any, name: str) -> Any:
+    return table[int(name)] if isinstance(table, list) else getattr(table, name)
+
+
+def changed(scene: Either, values: Mapping[str, float]) -> Either:
+    """Return a scene with dotted keys set; raises SceneError if that is invalid."""
+    for key, value in values.items():
+        try:
+            scene = _with(scene, key.split("."), value)
+        except ValidationError as error:
+            allowed = str(error.errors()[0]["msg"]).lower()
+            raise SceneError(scene.where, key, value, allowed) from None
+    return checked(scene)
+
+
+def _with(table: Any, parts: list[str], value: float) -> Any:
+    """Return a table, or a list of tables, with one of its keys set and validated."""
+    if isinstance(table, list):
+        i = int(parts[0])
+        return [*table[:i], _with(table[i], parts[1:], value), *table[i + 1 :]]
+    if len(parts) > 1:
+        inner = _with(getattr(table, parts[0]), parts[1:], value)
+        return table.model_copy(update={parts[0]: inner})
+    new = table.model_copy(update={parts[0]: value})
+    # A load retains the history that it has read.
+    return new if getattr(new, "file", None) else type(new).model_validate(dict(new))

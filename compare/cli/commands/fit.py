@@ -1,9 +1,8 @@
 """The command `jointwave fit`."""
 
-import math
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -24,9 +23,6 @@ from jointwave.compare.cli.options import (
     warn,
 )
 from jointwave.compare.runs import jobs
-
-if TYPE_CHECKING:
-    from jointwave.compare.studies.fit import Estimate, Fit
 
 
 @app.command()
@@ -72,83 +68,55 @@ def fit(
     from jointwave.compare.misfit.external import read_curves, slips
     from jointwave.compare.runs.output import write_csv
     from jointwave.compare.studies.fit import fit as fitted
-    from jointwave.compare.studies.fit import table
 
     (one,) = load(scene, changes, variant or "", strict)
     curves = read_curves(given, [one])
     warn([one], strict, lambda scene: slips(curves, scene))
-    solver = _solver(one, engine, model)
     with terminal.progress(one.name or one.title) as advance:
-        found = fitted(one, curves, free, solver, advance)
-    files = [write_csv(out / "fit.csv", table(found), 12)] if out is not None else []
+        found = fitted(one, curves, free, _solver(one, engine, model), advance)
+    files = [write_csv(out / "fit.csv", found.table.reset_index(), 12)] if out is not None else []
+    values, waveforms = found.values.reset_index(), found.waveforms.astype({"place": str})
     if as_json:
-        terminal.print_json({**_facts(found), "files": list(map(str, files))})
-    else:
-        _show(found, scene, given, changes)
-        for path in files:
-            terminal.say(f"wrote {path}")
+        facts = {
+            "title": one.title,
+            "variant": one.name,
+            "solver": found.solver,
+            "keys": values.to_dict("records"),
+            "correlation": found.correlation.values.tolist(),
+            "waveforms": waveforms.to_dict("records"),
+            "trials": found.trials,
+            "notes": found.notes,
+            "set": found.settings,
+            "files": list(map(str, files)),
+        }
+        terminal.print_json(facts)
+        return
+    title = f"{one.title} {one.name}".strip()
+    terminal.say(f"{title}, fitted by {found.solver} in {found.trials} solutions", "bold")
+    worst = waveforms.loc[waveforms.after.idxmax()]
+    where = f"; worst {worst['name']}, {worst.place}" if len(waveforms) > 1 else ""
+    terminal.say(f"misfit {waveforms.before.max():.3%} before, {worst.after:.3%} after{where}")
+    cells = values[["value", "low", "high", "start"]].map("{:.6g}".format)
+    rows = [[key, *numbers] for key, numbers in zip(values.key, cells.values.tolist(), strict=True)]
+    columns = ["key", "value", "from", "to", "start"]
+    terminal.show_numbers(columns, {"values, with 95 % intervals": rows})
+    for note in found.notes:
+        terminal.say(f"note: {note}")
+    terminal.say("The intervals assume the model: jointwave compare shows how far models differ.")
+    arguments = ["jointwave", "compare", scene, "--variant", one.name]
+    arguments += [part for setting in [*changes, *found.settings] for part in ("--set", setting)]
+    arguments += [part for file in given for part in ("--with", file)]
+    arguments += ["--align"] * ("clock" in found.values.index)
+    terminal.say(f"compare: {shlex.join(arguments)}")
 
 
 def _solver(scene: AnyScene, engine: Engine | None, models: list[str] | None) -> str | None:
     """Return the solution selected by --engine and --model; None without them."""
     if engine is None and not models:
         return None
-    if engine is None:
-        engine = Engine(jobs.engine_of((models or [""])[0]))
-    ((of, model), *more) = jobs.wanted([engine.value], models or [])
-    found = jobs.names_of(of, model, scene)
-    if more or len(found) > 1:
-        allowed = f"must be one of {', '.join(found)}" if not more else "must be given once"
-        raise SceneError("--model", "", None, allowed)
+    of = engine.value if engine else jobs.engine_of((models or [""])[0])
+    runs = jobs.wanted([of], models or [])
+    found = [name for run in runs for name in jobs.names_of(*run, scene)]
+    if len(found) > 1:
+        raise SceneError("--model", "", None, f"must be one of {', '.join(found)}")
     return found[0]
-
-
-def _show(found: "Fit", scene: str, given: list[str], changes: list[str]) -> None:
-    """Print values with intervals, misfits, and the command to continue."""
-    name = f"{found.scene.title} {found.scene.name}".strip()
-    terminal.say(f"{name}, fitted by {found.solver} in {found.trials} solutions", "bold")
-    worst = max(found.waveforms, key=lambda one: one.after)
-    terminal.say(
-        f"misfit {found.before:.3%} before, {found.after:.3%} after"
-        + (f"; worst {worst.name}, {worst.place}" if len(found.waveforms) > 1 else "")
-    )
-    terminal.show_numbers(
-        ["key", "value", "from", "to", "start"],
-        {"values, with 95 % intervals": [_cells(e) for e in found.estimates]},
-    )
-    for note in found.notes:
-        terminal.say(f"note: {note}")
-    terminal.say("The intervals assume the model: jointwave compare shows how far models differ.")
-    arguments = ["jointwave", "compare", scene, "--variant", found.scene.name]
-    arguments += [part for setting in [*changes, *found.settings] for part in ("--set", setting)]
-    arguments += [part for file in given for part in ("--with", file)]
-    arguments += ["--align"] * any(e.key == "clock" for e in found.estimates)
-    terminal.say(f"compare: {shlex.join(arguments)}")
-
-
-def _facts(found: "Fit") -> dict[str, Any]:
-    """Return a fit for JSON, which has null for unbounded values."""
-    of = ("name", "before", "after")
-    return {
-        "title": found.scene.title,
-        "variant": found.scene.name,
-        "solver": found.solver,
-        "keys": [e._asdict() for e in found.estimates],
-        "correlation": found.correlation.tolist(),
-        "waveforms": [
-            {"place": str(one.place)} | {key: getattr(one, key) for key in of}
-            for one in found.waveforms
-        ],
-        "trials": found.trials,
-        "notes": found.notes,
-        "set": found.settings,
-    }
-
-
-def _cells(e: "Estimate") -> list[str]:
-    if not math.isfinite(e.high):
-        return [e.key, f"{e.value:.6g}", "not", "determined", f"{e.start:.6g}"]
-    half = (e.high - e.low) / 2 or abs(e.value)
-    digits = 3 + max(0, math.ceil(math.log10(abs(e.value) / half))) if e.value else 6
-    numbers = [f"{x:.{min(digits, 10)}g}" for x in (e.value, e.low, e.high)]
-    return [e.key, *numbers, f"{e.start:.6g}"]

@@ -52,9 +52,9 @@ def test_known_values_are_found_to_round_off(solver, name, scene):
     """Of a point and a joint, by rigid blocks unless asked otherwise, and by the exact solution."""
     curves = heard(solve(name, changed(scene, TRUE)))
     found = jointwave.fit(scene, [curves], list(TRUE), solver)
-    assert found.solver == name and found.before > 0.1 and found.after < 1e-6
-    for estimate in found.estimates:
-        assert estimate.value == pytest.approx(TRUE[estimate.key], rel=1e-6)
+    before, after = found.waveforms[["before", "after"]].max()
+    assert found.solver == name and before > 0.1 and after < 1e-6
+    assert found.values.value.to_dict() == pytest.approx(TRUE, rel=1e-6)
 
 
 def test_every_number_of_a_rock_mass_is_free_or_refused(scene):
