@@ -240,19 +240,16 @@ def plan(
 
 
 def figure(
-    comparisons: Sequence[Comparison],
-    columns: int = 2,
-    style: str = "journal",
-    language: str = "en",
+    comparisons: Sequence[Comparison], width: float = 190.0, font_size: float = 8.0
 ) -> Figure:
     """Return a figure for a paper of a scene's comparisons, a variant each.
 
-    columns : of the page, 1 or 2. style : "journal" or "screen".
-    language : "en" or "zh". Raises SceneError where it would be taller than a page.
+    width : mm. font_size : points.
     """
-    from jointwave.compare.figures.publication import STYLES, draw
+    from jointwave.compare.figures.charts.waveforms import draw_solutions
+    from jointwave.compare.figures.style import printed
 
-    return draw(list(comparisons), STYLES[style], columns, language)
+    return draw_solutions(list(comparisons), False, printed(width, font_size))
 
 
 def _file(scene: str | Path) -> Path:

@@ -47,7 +47,7 @@ def test_a_scene_is_solved_measured_and_drawn():
     assert jw.properties(scene).block_count == 10
     found = jw.compare(scene)
     assert {"dem", "lattice"} <= found.results.keys()
-    assert len(jw.figure([found], columns=1).axes) == 1
+    assert len(jw.figure([found], width=90.0).axes) == 1
 
 
 def test_keys_are_fitted_and_numerics_planned():

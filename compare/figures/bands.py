@@ -11,18 +11,21 @@ from matplotlib.figure import Figure
 
 from jointwave.cases.errors import SceneError
 from jointwave.compare.engines import in_order
-from jointwave.compare.figures.export import blank
-from jointwave.compare.figures.style import RC, WIDTH, style
+from jointwave.compare.figures.charts.axes import chart, label_of, set_heading
+from jointwave.compare.figures.style import RC, style
 from jointwave.compare.figures.units import UNITS
 from jointwave.compare.misfit.places import Place, places_of
 from jointwave.results.netcdf import load_netcdf
 
 END = "-ensemble.nc"  # of the files of statistics, after the name of a result
 SEEN = ("stress", "velocity", "traction", "gap", "slip")  # of a result
-MOST, COLUMNS = 12, 2  # waveforms drawn, and side by side
+MOST, ACROSS, HEIGHT = 12, 2, 1.6  # waveforms drawn, side by side, and inches of each
 FAINT = 1e-6  # of the largest of its quantity: a waveform of round-off
-LOW, MIDDLE, HIGH = "p5", "p50", "p95"
+LOW, MIDDLE, HIGH = PERCENTILES = "p5", "p50", "p95"
 TITLE = "Waveforms of an ensemble: median and 5 to 95 % of its members"
+
+#: PERCENTILES over time (s), SI, by the place of the waveform and the name of the solver.
+Bands = dict[Place, dict[str, pd.DataFrame]]
 
 
 def statistics_in(folder: Path) -> dict[str, xr.Dataset]:
@@ -34,72 +37,54 @@ def statistics_in(folder: Path) -> dict[str, xr.Dataset]:
     return {file.name.removesuffix(END): load_netcdf(file) for file in files}
 
 
-def draw(results: dict[str, xr.Dataset], width: float = WIDTH, rc: dict[Any, Any] = RC) -> Figure:
-    """Return the bands of an ensemble.
+def bands_of(results: dict[str, xr.Dataset]) -> Bands:
+    """Return the bands of at most MOST waveforms, those that exceed round-off.
 
     results : mean and percentiles of every waveform by the name of the solver, with `statistic` as
-    their first dimension. width : inches. rc : settings of matplotlib.
+    their first dimension.
     """
-    places, names = shown_places(results), in_order(results)
-    columns = min(COLUMNS, len(places))
-    rows = -(-len(places) // columns)
-    with blank(0.5 + 1.9 * rows, width, rc=rc) as figure:
-        grid = figure.subplots(rows, columns, squeeze=False, sharex=True).ravel()
-        for ax, place in zip(grid, places, strict=False):
-            for name in names:
-                waves = _waves(results[name], place)
-                if waves is None:
-                    continue
-                look, ms = style(name), 1e3 * results[name].time.values
+    found: Bands = {}
+    for name in in_order(results):
+        by_percentile = {q: results[name].sel(statistic=q) for q in PERCENTILES}
+        for quantity in (one for one in SEEN if one in results[name]):
+            at, components = places_of(by_percentile[MIDDLE], quantity)
+            for place in (Place(quantity, part, one) for one in at for part in components):
+                waves = {q: place.waveform(one) for q, one in by_percentile.items()}
+                frame = pd.DataFrame(waves, np.round(results[name].time.values, 12))
+                found.setdefault(place, {})[name] = frame
+    sizes = {
+        place: max(float(one[MIDDLE].abs().max()) for one in waves.values())
+        for place, waves in found.items()
+    }
+    largest = {place.quantity: 0.0 for place in found}
+    for place, size in sizes.items():
+        largest[place.quantity] = max(largest[place.quantity], size)
+    moving = [place for place in found if sizes[place] > FAINT * largest[place.quantity]]
+    return {place: found[place] for place in moving[:MOST]}
+
+
+def draw(bands: Bands, rc: dict[Any, Any] = RC) -> Figure:
+    """Return the figure of bands; rc : settings of matplotlib."""
+    across = min(ACROSS, len(bands))
+    with chart(-(-len(bands) // across), across, [HEIGHT], "time (ms)", rc) as (figure, axes):
+        for ax, (place, waves) in zip(axes.flat, bands.items(), strict=False):
+            for name, wave in waves.items():
+                look, ms = style(name), 1e3 * wave.index.to_numpy()
                 shade: dict[str, Any] = {"color": look.colour, "alpha": 0.2, "linewidth": 0}
-                ax.fill_between(ms, waves[LOW], waves[HIGH], zorder=1 + look.order, **shade)
-                ax.plot(ms, waves[MIDDLE], label=name, **look.of_line() | {"linewidth": 1.3})
-            ax.set(title=place.heading, ylabel=UNITS[place.quantity])
-        for ax in grid[len(places) :]:
-            ax.set_axis_off()
-        for ax in grid[len(places) - columns : len(places)]:
-            ax.set_xlabel("time (ms)")
-            ax.tick_params(labelbottom=True)
-        entries = {
-            label: line
-            for ax in grid
-            for line, label in zip(*ax.get_legend_handles_labels(), strict=True)
-        }
-        lines = [entries[name] for name in names if name in entries]
-        figure.legend(handles=lines, loc="outside upper left", ncols=len(lines), frameon=False)
+                ax.fill_between(ms, wave[LOW], wave[HIGH], zorder=1 + look.order, **shade)
+                thin = look._replace(width=1.3)
+                ax.plot(ms, wave[MIDDLE], label=label_of(name), **thin.of_line())
+            set_heading(ax, place.heading)
+            ax.set_ylabel(UNITS[place.quantity])
     return figure
 
 
-def shown_places(results: dict[str, xr.Dataset]) -> list[Place]:
-    """Return the waveforms drawn: those that some solution has and that exceed round-off, at most
-    MOST."""
-    found: dict[Place, None] = {}
-    for result in results.values():
-        middle = result.sel(statistic=MIDDLE)
-        for quantity in (name for name in SEEN if name in result):
-            at, components = places_of(middle, quantity)
-            sizes = {}
-            for place in (Place(quantity, part, one) for one in at for part in components):
-                wave = place.waveform(middle)
-                sizes[place] = 0.0 if wave is None else float(np.nanmax(np.abs(wave), initial=0.0))
-            largest = max(sizes.values(), default=0.0)
-            found |= {place: None for place, size in sizes.items() if size > FAINT * largest}
-    return list(found)[:MOST]
-
-
-def _waves(result: xr.Dataset, place: Place) -> dict[str, np.ndarray] | None:
-    """Return the percentiles of a waveform; None if the solution does not have it."""
-    waves = {q: place.waveform(result.sel(statistic=q)) for q in (LOW, MIDDLE, HIGH)}
-    found = {q: wave for q, wave in waves.items() if wave is not None}
-    return found if len(found) == len(waves) else None
-
-
-def table(results: dict[str, xr.Dataset]) -> pd.DataFrame:
+def table(bands: Bands) -> pd.DataFrame:
     """Return the data of the bands, SI: time first."""
-    columns = {"time (s)": next(iter(results.values())).time.values}
-    for name, result in results.items():
-        for place in shown_places(results):
-            for q, wave in (_waves(result, place) or {}).items():
-                if len(wave) == len(columns["time (s)"]):
-                    columns[f"{name} {q} | {place.heading} ({UNITS[place.quantity]})"] = wave
-    return pd.DataFrame(columns)
+    columns = {
+        f"{name} {q} | {place.heading} ({UNITS[place.quantity]})": wave[q]
+        for place, waves in bands.items()
+        for name, wave in waves.items()
+        for q in PERCENTILES
+    }
+    return pd.DataFrame(columns).rename_axis("time (s)").reset_index()

@@ -17,7 +17,7 @@ def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
     curves, comparison-misfits.csv, and where there are velocities or curves of others
     comparison-readings.csv and comparison-alignment.csv."""
     folder = Path(out)
-    curves = curve_table(comparisons).reset_index()
+    curves = curve_table(comparisons)
     save(draw_solutions(comparisons), folder, NAME, comparisons[0].scene.title, curves)
     write_csv(folder / f"{NAME}-misfits.csv", distance_frame(comparisons))
     for name, table in (

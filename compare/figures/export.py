@@ -11,25 +11,21 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from pandas import DataFrame
 
-from jointwave.compare.figures.style import RC, WIDTH
+from jointwave.compare.figures.style import RC
 from jointwave.compare.runs.output import write, write_csv
 
-DOTS = 160  # per inch of the PNG, and of images in the SVG and the PDF
 DIGITS = 6  # of the numbers behind a figure
 
 
 @contextmanager
-def blank(
-    height: float,
-    width: float = WIDTH,
-    laid_out: bool = False,
-    rc: dict[Any, Any] = RC,
-    dpi: float | None = None,
-) -> Iterator[Figure]:
-    """Yield an empty figure, sizes in inches; matplotlib lays it out by constraints, unless the
-    drawing lays it out itself."""
+def blank(height: float, laid_out: bool = False, rc: dict[Any, Any] = RC) -> Iterator[Figure]:
+    """Yield an empty figure, as wide as matplotlib's settings `rc` have it; height : inches.
+
+    matplotlib lays it out by constraints, unless the drawing lays it out itself.
+    """
     with matplotlib.rc_context(rc):
-        figure = Figure((width, height), dpi=dpi, layout=None if laid_out else "constrained")
+        width = matplotlib.rcParams["figure.figsize"][0]
+        figure = Figure((width, height), layout=None if laid_out else "constrained")
         FigureCanvasAgg(figure)
         yield figure
 
@@ -66,18 +62,16 @@ def save(
     drawn = Drawn(name, title, folder)
     if table is not None:
         write_csv(drawn.file("csv"), table, DIGITS)
-    with matplotlib.rc_context(RC | {"svg.hashsalt": name}):
-        for kind, dated in (("svg", "Date"), ("pdf", "CreationDate")):
-            about = {"Title": title, dated: None}
-            write_drawing(drawn.file(kind), figure, dpi=DOTS, metadata=about)
-        if png:
-            write_drawing(drawn.file("png"), figure, dpi=DOTS)
+    for path in drawn.drawings[: 3 if png else 2]:
+        write_drawing(path, figure, title)
     return drawn
 
 
-def write_drawing(path: Path, figure: Figure, **options: Any) -> Path:
-    """Write a figure created in memory, in the format of the suffix: matplotlib's writers fail in
-    many ways on a full disk."""
-    content = io.BytesIO()
-    figure.savefig(content, format=path.suffix[1:], **options)
+def write_drawing(path: Path, figure: Figure, title: str = "", rc: dict[Any, Any] = RC) -> Path:
+    """Write a figure in the format of the suffix, .svg, .pdf or .png; the same figure is the same
+    file. It is created in memory: matplotlib's writers fail in many ways on a full disk."""
+    kind, content = path.suffix[1:], io.BytesIO()
+    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind, {})
+    with matplotlib.rc_context(rc | {"svg.hashsalt": title}):
+        figure.savefig(content, format=kind, metadata={"Title": title} | undated)
     return write(path, lambda place: place.write_bytes(content.getbuffer()))

@@ -1,5 +1,5 @@
-"""Contents of a figure's panels: at each receiver the component with the largest motion, minus its
-static state; and the table of all their waveforms, as recorded.
+"""Panels of a comparison: every waveform that moves at its receivers, of all solutions; and the
+names of its variants.
 """
 
 from collections.abc import Iterator, Sequence
@@ -20,175 +20,144 @@ from jointwave.compare.misfit.ranking import finest
 from jointwave.compare.misfit.weight import FAINT
 
 FORCES, MOTION, ROTATION = ("stress", "shear"), ("velocity",), ("rotation",)
-#: Quantities of panels at the receivers of a pillar, by their key of [record]: the first group that
-#: moves; and at those of a rock mass: every component that moves.
-OF_PILLAR = {"stress": (FORCES, ROTATION), "velocity": (MOTION, ROTATION)}
-IN_PLANE = {"points": "velocity", "joints": "traction"}
+#: By key of [record] the quantities at its receivers, of which the first group that moves is shown.
+SHOWN = {
+    "stress": (FORCES,),
+    "velocity": (MOTION, ROTATION),
+    "points": (MOTION,),
+    "joints": (("traction",),),
+}
 
 
 class Panel(NamedTuple):
-    """One panel: a place in one variant, the receiver-th of its quantity.
+    """One place in one variant, with its waveforms in SI over time (s).
 
-    component : the index of the one shown, None if the quantity has only one.
+    recorded, curves : of every solution, a column each; curves are less their static state. given :
+    external curves by file, their own samples. reference : the solution that residuals are taken
+    from, "" if none resolves the scene.
     """
 
     comparison: Comparison
     variant: str
     place: Place
-    receiver: int
-    component: int | None = None
-
-    @property
-    def quantity(self) -> str:
-        """The quantity shown."""
-        return self.place.quantity
-
-    @property
-    def heading(self) -> str:
-        """Quantity, component and receiver, in words."""
-        return self.place.heading
-
-    @property
-    def given(self) -> dict[str, pd.Series]:
-        """External curves here: their own samples during the scene, by file."""
-        along = not self.place.component and self.quantity in ("velocity", "displacement")
-        place = self.place._replace(component="y") if along else self.place
-        return {
-            beside.curves.name: beside.series(place)
-            for beside in self.comparison.besides
-            if place in beside.curves.waveforms
-        }
-
-    @property
-    def recorded(self) -> dict[str, pd.Series]:
-        """Every waveform of the panel in SI over time in s, by its solution, in drawing order."""
-        return {name: self._waveform(name, False) for name in self._names}
-
-    @property
-    def curves(self) -> dict[str, pd.Series]:
-        """The waveforms minus their static state: the motion, which is drawn."""
-        return {name: self._waveform(name, True) for name in self._names}
+    recorded: pd.DataFrame
+    curves: pd.DataFrame
+    given: dict[str, pd.Series]
+    reference: str
 
     @property
     def at_rest(self) -> float:
         """The static state subtracted from the first curve, SI; 0 if there is none."""
-        first = self._names[0]
-        return float((self._waveform(first, False) - self._waveform(first, True)).iloc[0])
+        return float(self.recorded.iloc[0, 0] - self.curves.iloc[0, 0])
 
     @property
-    def reference(self) -> str:
-        """The reference solution, "" if none resolves the scene."""
-        found = finest(self._names, self.comparison.scene)
-        return found.name if found else ""
-
-    @property
-    def residuals(self) -> dict[str, pd.Series]:
+    def residuals(self) -> pd.DataFrame:
         """Each of `curves` minus that of the reference, which itself has no residual."""
-        curves = self.curves
-        if self.reference not in curves:
-            return {}
-        known = curves[self.reference]
-        return {name: c - known for name, c in curves.items() if name != self.reference}
-
-    @property
-    def _names(self) -> list[str]:
-        results = self.comparison.results
-        return [name for name in in_order(results) if self.quantity in results[name]]
-
-    def _waveform(self, name: str, moving: bool) -> pd.Series:
-        result = self.comparison.results[name]
-        found = motion(result, self.quantity) if moving else result[self.quantity].values
-        values = found[self.receiver]
-        values = values.ravel() if self.component is None else values[:, self.component]
-        return pd.Series(values, np.round(result.time.values, 12))
+        if self.reference not in self.curves:
+            return pd.DataFrame()
+        rest = self.curves.drop(columns=self.reference)
+        return rest.sub(self.curves[self.reference], axis="index")
 
 
 def panels(comparisons: list[Comparison]) -> list[list[Panel]]:
-    """Return the panels of every variant, one row each.
+    """Return the panels of every variant, one list each.
 
-    For a spatial pillar each shows the largest component: of stress and shear, of velocity, and of
-    rotation if nothing is displaced. For a rock mass there is one for each component of velocity at
-    points, and of traction at joints, that is not faint compared with the other.
+    At each receiver there is one for every component that is not faint compared with the largest:
+    of stress and shear, of velocity, of rotation if nothing is displaced, of traction at joints.
     """
-    found = zip(comparisons, variant_names(comparisons), strict=True)
-    return [[*_panels(comparison, name)] for comparison, name in found]
+    named = zip(comparisons, variant_names(comparisons), strict=True)
+    return [[*_panels(comparison, name)] for comparison, name in named]
 
 
-def _panels(comparison: Comparison, name: str) -> Iterator[Panel]:
-    scene = comparison.scene
-    for key, groups in OF_PILLAR.items():
-        for i, at in enumerate(recorded(scene, key)):
-            yield _panel(comparison, name, groups, i, at)
-    for key, quantity in IN_PLANE.items():
-        for i, at in enumerate(recorded(scene, key)):
-            for component, word in _moving(comparison, quantity, i):
-                yield Panel(comparison, name, Place(quantity, word, at), i, component)
+def in_rows(comparisons: list[Comparison], across: int = 2) -> list[list[Panel]]:
+    """Return the panels in rows of at most `across`; each variant begins a row."""
+    rows = panels(comparisons)
+    return [row[i : i + across] for row in rows for i in range(0, len(row), across)]
 
 
-def _moving(comparison: Comparison, quantity: str, receiver: int) -> list[tuple[int, str]]:
-    """Return the components of a quantity that are not faint compared with the largest at a
-    receiver, from the first solution that has it, with their names; the first without motion."""
-    results = comparison.results
-    result = next((results[n] for n in in_order(results) if quantity in results[n]), None)
-    if result is None:
-        return []
-    peaks = np.abs(motion(result, quantity)[receiver]).max(axis=0)
-    moving = (peaks > 0) & (peaks >= FAINT * peaks.max())
+def _panels(comparison: Comparison, variant: str) -> Iterator[Panel]:
+    results = {name: comparison.results[name] for name in in_order(comparison.results)}
+    for key, groups in SHOWN.items():
+        for i, at in enumerate(recorded(comparison.scene, key)):
+            found = peaks([*results.values()], groups, i)
+            largest = max(found.values(), default=0.0)
+            moving = [one for one, peak in found.items() if peak >= FAINT * largest]
+            for quantity, component in moving if largest else moving[:1]:
+                solved = {n: one for n, one in results.items() if quantity in one}
+                waves = [
+                    pd.DataFrame(
+                        {n: _wave(one, quantity, component, i, m) for n, one in solved.items()}
+                    )
+                    for m in (False, True)
+                ]
+                place, known = Place(quantity, component, at), finest(solved, comparison.scene)
+                given = _given(comparison, place)
+                yield Panel(comparison, variant, place, *waves, given, known.name if known else "")
+
+
+def _wave(result: xr.Dataset, quantity: str, component: str, i: int, moving: bool) -> pd.Series:
+    values = by_component(result, quantity, moving)[component][i]
+    return pd.Series(values, np.round(result.time.values, 12))
+
+
+def _given(comparison: Comparison, place: Place) -> dict[str, pd.Series]:
+    along = not place.component and place.quantity in ("velocity", "displacement")
+    place = place._replace(component="y") if along else place
+    return {
+        beside.curves.name: beside.series(place)
+        for beside in comparison.besides
+        if place in beside.curves.waveforms
+    }
+
+
+def by_component(result: xr.Dataset, quantity: str, moving: bool = True) -> dict[str, np.ndarray]:
+    """Return the waveforms of a quantity [place, time] by component, "" for the only one.
+
+    moving : less their static state.
+    """
+    values = motion(result, quantity) if moving else result[quantity].values
     names = places_of(result, quantity)[1]
-    return [(int(k), names[k]) for k in np.flatnonzero(moving)] or [(0, names[0])]
+    values = values.reshape(*values.shape[:2], -1)
+    return {name if len(names) > 1 else "": values[..., k] for k, name in enumerate(names)}
 
 
-def in_page(rows: list[list[Panel]]) -> list[list[Panel]]:
-    """Return the panels of variants in rows of at most two; each variant begins a row."""
-    return [row[i : i + 2] for row in rows for i in range(0, len(row), 2)]
-
-
-def _panel(
-    comparison: Comparison,
-    name: str,
+def peaks(
+    results: Sequence[xr.Dataset],
     groups: Sequence[tuple[str, ...]],
-    receiver: int,
-    at: tuple[float, ...],
-) -> Panel:
-    """Return the panel of the quantity and component with the largest peak at a receiver."""
-    first = comparison.results[in_order(comparison.results)[0]]
-    quantity, component = loudest(first, groups, receiver)
-    place = Place(quantity, axis_of(quantity, component), at)
-    return Panel(comparison, name, place, receiver, component)
-
-
-def loudest(
-    result: xr.Dataset,
-    groups: Sequence[tuple[str, ...]],
-    receiver: int | None = None,
+    receiver: int | slice = slice(None),
     least: float = 0.0,
-) -> tuple[str, int | None]:
-    """Return the quantity and the component (None: its only one) with the largest peak, of the
-    first group of quantities that moves; without motion, of the last one recorded.
+) -> dict[tuple[str, str], float]:
+    """Return the largest magnitude by quantity and component, SI, of the first group of quantities
+    that moves; without motion, of the last one recorded.
 
-    receiver : the only one considered; None: all. least : SI: smaller values count as no motion.
+    results : the first that has a quantity counts. least : smaller values count as no motion.
     """
-    peaks: dict[tuple[str, int | None], float] = {}
+    found: dict[tuple[str, str], float] = {}
     for group in groups:
-        found = {(q, c): p for q in group for c, p in _peaks(result, q, receiver).items()}
-        peaks = found or peaks
-        if max(found.values(), default=0.0) > least:
+        here: dict[tuple[str, str], float] = {}
+        for quantity in group:
+            result = next((r for r in results if quantity in r and r[quantity].size), None)
+            waves = {} if result is None else by_component(result, quantity)
+            here |= {(quantity, c): float(np.abs(w[receiver]).max()) for c, w in waves.items()}
+        found = here or found
+        if max(here.values(), default=0.0) > least:
             break
-    return max(peaks, key=lambda key: peaks[key])
+    return found
 
 
-def _peaks(result: xr.Dataset, quantity: str, receiver: int | None) -> dict[int | None, float]:
-    """Return the largest magnitude of the motion of every component; empty if not recorded."""
-    if quantity not in result or not result[quantity].size:
-        return {}
-    values = np.abs(motion(result, quantity))[slice(None) if receiver is None else [receiver]]
-    peaks = values.reshape(*values.shape[:2], -1).max(axis=(0, 1)).tolist()
-    return dict(enumerate(peaks)) if len(peaks) > 1 else {None: peaks[0]}
+def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return every drawn waveform as recorded, including its static state, in SI: time first, one
+    column per curve, its unit in the header.
 
-
-def axis_of(quantity: str, component: int | None) -> str:
-    """Return the name of a component, "" for the only one."""
-    return "" if component is None else ("xz" if quantity == "shear" else "xyz")[component]
+    Variants may be sampled at different times; cells without a sample are empty.
+    """
+    columns = {
+        f"{name} | {panel.place.heading} | {panel.variant} ({UNITS[panel.place.quantity]})": curve
+        for row in panels(comparisons)
+        for panel in row
+        for name, curve in [*panel.recorded.items(), *panel.given.items()]
+    }
+    return pd.DataFrame(columns).rename_axis("time (s)").reset_index()
 
 
 def variant_names(comparisons: list[Comparison]) -> list[str]:
@@ -216,18 +185,3 @@ def _words(scene: Any) -> dict[str, str]:
         "layers": "soft layer" if scene.soft_layers else "no soft layer",
         "tension": "no tension" if scene.joints.tension is False else "tension",
     }
-
-
-def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return every drawn waveform as recorded, including its static state, in SI: time first, one
-    column per curve, its unit in the header.
-
-    Variants may be sampled at different times; cells without a sample are empty.
-    """
-    columns = {}
-    for row in panels(comparisons):
-        for panel in row:
-            unit = UNITS[panel.quantity]
-            for name, curve in [*panel.recorded.items(), *panel.given.items()]:
-                columns[f"{name} | {panel.heading} | {panel.variant} ({unit})"] = curve
-    return pd.DataFrame(columns).rename_axis("time (s)")

@@ -120,8 +120,8 @@ def _of(model: str, **about: Any) -> Solver:
 JOINTED_ROCK = _of(
     "jointed",
     rock=Rock.JOINTED,
-    words=Words(JOINTED, "jointed rock", "节理岩体（有限元）", "continuum, every joint resolved"),
-    line=Line("#f0a030", 3.4, 1, printed=(3.5, 0.9), printed_width=2.2, ledger=(5, 2)),
+    words=Words(JOINTED, "jointed rock", "continuum, every joint resolved"),
+    line=Line("#f0a030", 3.4, 1, ledger=(5, 2)),
     distances={
         Kind.BETWEEN: {
             "dem": "two engines, same joints",
@@ -132,7 +132,7 @@ JOINTED_ROCK = _of(
 EQUIVALENT_ROCK = _of(
     "equivalent",
     rock=Rock.HOMOGENISED,
-    words=Words(BAR, "homogenised rock", "等效岩体（有限元）", "homogenised continuum"),
-    line=Line("#8fd4bd", 4.8, 0, printed=(1.1, 0.8), printed_width=2.9, ledger=(1.2, 1.6)),
+    words=Words(BAR, "homogenised rock", "homogenised continuum"),
+    line=Line("#8fd4bd", 4.8, 0, ledger=(1.2, 1.6)),
     distances={Kind.BETWEEN: {"dem": "two engines, with and without joints"}},
 )

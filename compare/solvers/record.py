@@ -81,17 +81,16 @@ def no(reason: str) -> Answer:
 class Words(NamedTuple):
     """The names of a solver.
 
-    heading : of its group in a legend. english, chinese : its label in a figure for print.
-    sentence : of an engine, in the lead of the report.
+    heading : of its model. label : in a legend, beside its name. sentence : of an engine, in the
+    lead of the report.
     """
 
     heading: str
-    english: str
-    chinese: str
+    label: str
     sentence: str = ""
 
 
-#: The headings of legends, in their order.
+#: The models, in the order of legends.
 BLOCKS, JOINTED, BAR, ALONE = HEADINGS = (
     "Rigid blocks",
     "Intact rock and joints",
@@ -103,23 +102,21 @@ BLOCKS, JOINTED, BAR, ALONE = HEADINGS = (
 class Line(NamedTuple):
     """The curve of a solver; widths in points, dashes in line widths, empty: solid.
 
-    slot : the part of each period of dashes that an exact solution's line fills on a screen.
-    order : the largest is drawn on top. printed : dashes in print, no two alike. printed_width :
-    in print. ledger : dashes of an engine in the diagram of energies, whose colours are the terms'.
+    slot : the part of each period of dashes that an exact solution's line fills. order : the
+    largest is drawn on top. ledger : dashes of an engine in the diagram of energies, whose colours
+    are the terms'.
     """
 
     colour: str
     width: float
     order: int
     slot: tuple[float, ...] = ()
-    printed: tuple[float, ...] = ()
-    printed_width: float = 0.8
     ledger: tuple[float, ...] = ()
 
 
-def thin(colour: str, order: int, slot: tuple[float, ...], printed: tuple[float, ...]) -> Line:
+def thin(colour: str, order: int, slot: tuple[float, ...]) -> Line:
     """Return the line of an exact solution: thin and dashed, over those of the engines."""
-    return Line(colour, 1.1, order, slot, printed)
+    return Line(colour, 1.1, order, slot)
 
 
 class Prepared(NamedTuple):

@@ -6,7 +6,6 @@ set. They are points of a sweep, whose key is `member`.
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from functools import partial
 from math import inf, nan
 from pathlib import Path
 from typing import Any
@@ -117,8 +116,6 @@ def ensemble_in(out: Path) -> tuple[Path, list[SceneFigure]]:
 def _figures(files: Iterable[Path]) -> Iterator[tuple[Path, SceneFigure]]:
     """Yield the folders of files of statistics, each with the figure of its bands."""
     for folder in dict.fromkeys(file.parent for file in files):
-        found = bands.statistics_in(folder)
-        if bands.shown_places(found):
-            draw = partial(bands.draw, found)
-            table = bands.table(found)
-            yield folder, SceneFigure("ensemble-waveforms", bands.TITLE, CAPTION, draw, table)
+        if found := bands.bands_of(bands.statistics_in(folder)):
+            drawn = bands.draw(found), bands.table(found)
+            yield folder, SceneFigure("ensemble-waveforms", bands.TITLE, CAPTION, *drawn)

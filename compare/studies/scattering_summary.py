@@ -75,7 +75,7 @@ def make_study(
 
 
 def _heading(name: str, incidence: str) -> str:
-    return f"{solver(name).words.english}: {incidence} wave"
+    return f"{solver(name).words.label}: {incidence} wave"
 
 
 def sentences(done: pd.DataFrame) -> list[str]:

@@ -1,7 +1,7 @@
 """Commands that put the solutions of a scene side by side: as distances, or drawn."""
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import typer
 
@@ -118,45 +118,37 @@ def figure(
     changes: SetOption = [],
     variant: VariantOption = None,
     given: WithOption = [],
-    style: Annotated[
-        Literal["journal", "screen"], typer.Option(help="Style for print or for slides.")
-    ] = "journal",
-    columns: Annotated[
-        int, typer.Option(min=1, max=2, help="Width in columns: 90 or 190 mm in print.")
-    ] = 1,
-    kind: Annotated[
-        Literal["pdf", "svg", "png"] | None,
-        typer.Option("--format", help="File format (default: from the suffix)."),
-    ] = None,
-    language: Annotated[
-        Literal["en", "zh"], typer.Option(help="Language of labels; zh needs a Chinese font.")
-    ] = "en",
+    width: Annotated[float, typer.Option(min=60, max=1000, help="Width, mm.")] = 90.0,
+    font_size: Annotated[float, typer.Option(min=4, max=40, help="Size of letters, pt.")] = 8.0,
     strict: StrictOption = False,
 ) -> None:
     """Draw the waveforms of a scene as a figure for a paper.
 
-    A panel for each variant and receiver, 90 or 190 mm wide, in type of 7.5 and 8 points. Files
-    need no installed fonts. Each solution has its usual colour, and dashes that distinguish it in
-    greyscale. Without --engine, all solvers that apply are drawn.
+    A panel for each variant and receiver, two side by side from a width of 170 mm. Files need no
+    installed fonts. Without --engine, all solvers that apply are drawn.
 
     In place of a scene, a folder that --ensemble has written: median and bands of its waveforms.
     """
-    from jointwave.compare.figures.publication_file import FigureRequest, make, make_bands
+    from jointwave.compare.figures import bands, paper
+    from jointwave.compare.figures.export import write_drawing
+    from jointwave.compare.figures.style import printed
     from jointwave.compare.runs import jobs
 
-    request = FigureRequest(style, columns, kind, language, out)
+    paper.check_file(out)
+    rc = printed(width, font_size)
     if Path(scene).is_dir():
         if model or changes or given or variant is not None:
             allowed = "is a folder of results: --model, --set, --variant and --with are of scenes"
             raise SceneError(scene, "", None, allowed)
-        terminal.say(f"wrote {make_bands(Path(scene), [e.value for e in engine], request)}")
+        drawn = paper.draw_bands(Path(scene), [e.value for e in engine], rc)
+        terminal.say(f"wrote {write_drawing(out, drawn, bands.TITLE, rc)}")
         return
     scenes = load(scene, changes, variant, strict)
     runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []
     curves = _read_curves(given, scenes, False, strict)
     with terminal.progress(scenes[0].title) as advance:
-        path = make(scenes, runs, curves, request, advance)
-    terminal.say(f"wrote {path}")
+        drawn = paper.draw_scenes(scenes, runs, curves, rc, advance)
+    terminal.say(f"wrote {write_drawing(out, drawn, scenes[0].title, rc)}")
 
 
 def _read_curves(given: list[str], scenes: list[AnyScene], align: bool, strict: bool) -> list[Any]:

@@ -57,8 +57,8 @@ def bar(scene: Scene) -> Bar:
 SOLVER = Solver(
     name="equivalent-bar",
     rock=Rock.HOMOGENISED,
-    words=Words(BAR, "homogenised bar, exact", "等效杆（精确解）"),
-    line=thin("#005a3c", 6, (9, 13), (7, 2, 1.2, 2)),
+    words=Words(BAR, "homogenised bar, exact"),
+    line=thin("#005a3c", 6, (9, 13)),
     applies=applies,
     run=solve,
     distances={

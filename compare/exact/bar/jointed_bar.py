@@ -67,8 +67,8 @@ def _end(kind: str, p: Properties) -> End:
 SOLVER = Solver(
     name="jointed-bar",
     rock=Rock.JOINTED,
-    words=Words(JOINTED, "jointed bar, exact", "节理杆（精确解）"),
-    line=thin("#a83200", 8, (4.5, 8.5), (6, 2.4)),
+    words=Words(JOINTED, "jointed bar, exact"),
+    line=thin("#a83200", 8, (4.5, 8.5)),
     applies=applies,
     run=solve,
     distances={

@@ -131,8 +131,8 @@ def _convolutions(
 SOLVER = Solver(
     name="kelvin-voigt",
     rock=Rock.HOMOGENISED,
-    words=Words(BAR, "Kelvin-Voigt bar, exact", "黏弹性杆（精确解）"),
-    line=thin("#00a26d", 5, (13.5, 15.5), (4, 2, 1.2, 2, 1.2, 2)),
+    words=Words(BAR, "Kelvin-Voigt bar, exact"),
+    line=thin("#00a26d", 5, (13.5, 15.5)),
     applies=applies,
     run=solve,
     distances={

@@ -126,8 +126,8 @@ def rigid(load: Sine, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 SOLVER = Solver(
     name="series",
     rock=Rock.HOMOGENISED,
-    words=Words(BAR, "homogenised bar, series", "等效杆（级数解）"),
-    line=thin("#b0307e", 4, (16, 18), (12, 3)),
+    words=Words(BAR, "homogenised bar, series"),
+    line=thin("#b0307e", 4, (16, 18)),
     applies=applies,
     run=solve,
     arguments=("n_terms",),

@@ -89,8 +89,8 @@ def at_rest(scene: Scene, model: Chain) -> np.ndarray:
 SOLVER = Solver(
     name="lattice",
     rock=Rock.RIGID_BLOCKS,
-    words=Words(BLOCKS, "rigid blocks, exact", "块体链（精确解）"),
-    line=thin("#00349a", 9, (0, 4), (1.2, 2.2)),
+    words=Words(BLOCKS, "rigid blocks, exact"),
+    line=thin("#00349a", 9, (0, 4)),
     applies=applies,
     run=solve,
     distances={Kind.NUMERICAL: {"dem": "time stepping of the rigid blocks"}},

@@ -111,8 +111,8 @@ def _known(model: Chain, states: np.ndarray, other: np.ndarray) -> int:
 SOLVER = Solver(
     name="no-tension-chain",
     rock=Rock.RIGID_BLOCKS,
-    words=Words(BLOCKS, "no-tension chain, exact", "无拉力块体链（精确解）"),
-    line=thin("#00349a", 9, (0, 9), (1.2, 1.2)),
+    words=Words(BLOCKS, "no-tension chain, exact"),
+    line=thin("#00349a", 9, (0, 9)),
     applies=applies,
     run=solve,
     distances={Kind.NUMERICAL: {"dem": "time stepping of the rigid blocks that open and close"}},

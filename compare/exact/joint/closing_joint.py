@@ -157,8 +157,8 @@ class Passed:
 SOLVER = Solver(
     name="closing-joint",
     rock=Rock.HOMOGENISED,
-    words=Words(JOINTED, "stiffening joint, exact", "闭合硬化节理（精确解）"),
-    line=thin("#d55e00", 7, (6, 8.5), (4, 2, 1, 2)),
+    words=Words(JOINTED, "stiffening joint, exact"),
+    line=thin("#d55e00", 7, (6, 8.5)),
     applies=applies,
     run=solve,
     distances={

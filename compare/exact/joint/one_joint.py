@@ -149,8 +149,8 @@ def transmitted(
 SOLVER = Solver(
     name="one-joint",
     rock=Rock.HOMOGENISED,
-    words=Words(JOINTED, "one joint, exact", "单节理（精确解）"),
-    line=thin("#d55e00", 7, (6, 8.5), (3, 3)),
+    words=Words(JOINTED, "one joint, exact"),
+    line=thin("#d55e00", 7, (6, 8.5)),
     applies=applies,
     run=solve,
 )

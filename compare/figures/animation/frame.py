@@ -12,7 +12,6 @@ from matplotlib.lines import Line2D
 
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.figures import fonts
 from jointwave.compare.figures.animation.bodies import (
     FRONT,
     OBLIQUE,
@@ -54,10 +53,10 @@ class Frame:
         self.views: dict[str, BodyView] = {}
         self.along: dict[str, pd.DataFrame] = {}
         self.profiles: dict[str, Line2D] = {}
-        self.waveforms: dict[str, pd.Series] = {}
+        self.waveforms = pd.DataFrame()
         self.traces: dict[str, Line2D] = {}
-        rc: dict[Any, Any] = RC | {"font.size": 10.0, "font.family": fonts.families()}
-        with blank(SIZE[1], SIZE[0], rc=rc, dpi=dots) as self.figure:
+        rc: dict[Any, Any] = RC | {"font.size": 10.0, "figure.figsize": SIZE, "figure.dpi": dots}
+        with blank(SIZE[1], rc=rc) as self.figure:
             self.figure.suptitle("\n".join(self._title()), x=0.01, ha="left", parse_math=False)
             if isinstance(scene, Scene):
                 self._add_pillars(OBLIQUE if in_space or is_spatial(scene) else FRONT)
@@ -155,10 +154,9 @@ class Frame:
     def _add_waveform(self, ax: Axes) -> None:
         """Add the first receiver's waveform as it was recorded, to be drawn up to each instant."""
         first = panels([Comparison(self.simulated.scene, self.simulated.results)])[0][0]
-        curves = first.curves
-        peak = max(float(np.abs(curve.values).max()) for curve in curves.values())
-        unit = unit_for(UNITS[first.quantity], 1.001 * peak)
-        self.waveforms = {name: curve / unit.size for name, curve in curves.items()}
+        peak = float(first.curves.abs().max(axis=None))
+        unit = unit_for(UNITS[first.place.quantity], 1.001 * peak)
+        self.waveforms = first.curves / unit.size
         self.traces = {n: ax.plot([], [], **style(n).of_line())[0] for n in self.waveforms}
         reach = 1.08 * peak / unit.size or 1.0
         ax.set(xlim=1e3 * self.time[[0, -1]], ylim=(-reach, reach))

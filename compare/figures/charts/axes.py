@@ -3,47 +3,37 @@
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from textwrap import fill
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
+from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from jointwave.compare.engines import ENGINES, by_model, in_order
+from jointwave.compare.engines import names, solver
 from jointwave.compare.figures.export import blank
-from jointwave.compare.figures.style import WIDTH, Style, given_style, style
-from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.figures.style import RC, SIZE
 
 HEADING, ABSCISSA, LINE = 0.3, 0.45, 0.19  # inches above axes, below the lowest, and of a legend's
 BESIDE = 0.8  # inches beside axes
-LETTER = 0.5  # width of a letter on average, over its size
+LETTER, HANDLE = 0.6, 7.0  # over the size of letters: their width, and that of a legend's line
+SMALL = 5 / 6  # of the size of letters, in small headings
 SMALLER = 0.76  # of the height of axes, for more than two rows
 LONGEST = 28  # letters of a file's name in a legend
-GREY = "#5d6670"  # of marks
-
-
-class Legend(NamedTuple):
-    """The entries of a legend, one column after the other."""
-
-    entries: list[Line2D]
-    columns: int
 
 
 @contextmanager
 def chart(
-    legend: Legend, rows: int, columns: int, heights: list[float], abscissa: str
+    rows: int, columns: int, heights: list[float], abscissa: str, rc: dict[Any, Any] = RC
 ) -> Iterator[tuple[Figure, np.ndarray]]:
     """Yield a figure and its axes [row, part, column], all over one abscissa.
 
-    heights : inches of the parts of a row, one below the other. Axes left empty are hidden, and the
-    abscissa is labelled below the lowest of each column.
+    heights : of the parts of a row, one below the other: inches where letters have the page's size.
+    rc : matplotlib's settings. Axes left empty are hidden, the abscissa is labelled below the
+    lowest of each column, and the legend has every label once.
     """
-    lines = -(-len(legend.entries) // legend.columns)
-    factor = SMALLER if rows > 2 else 1.0
-    heights = [heights[0] * factor, *heights[1:]]
-    height = rows * sum(h + HEADING for h in heights) + ABSCISSA + LINE * lines
-    with blank(height) as figure:
+    heights = [heights[0] * (SMALLER if rows > 2 else 1.0), *heights[1:]]
+    with blank(1.0, rc=rc) as figure:
         ratios = {"height_ratios": heights * rows}
         axes = figure.subplots(
             rows * len(heights), columns, squeeze=False, sharex=True, gridspec_kw=ratios
@@ -55,13 +45,24 @@ def chart(
             lowest = next(ax for ax in column[::-1] if ax.get_visible())
             lowest.tick_params(labelbottom=True)
             lowest.set_xlabel(abscissa)
-        figure.legend(
-            handles=legend.entries,
-            ncols=legend.columns,
-            loc="outside upper center",
-            handlelength=4.0,
-            labelspacing=0.25,
-        )
+        lines = _add_legend(figure)
+        height = rows * sum(h + HEADING for h in heights) + ABSCISSA + LINE * lines
+        figure.set_figheight(height * rcParams["font.size"] / SIZE)
+
+
+def _add_legend(figure: Figure) -> int:
+    """Add a legend of all lines above the axes, within the figure; return its number of lines."""
+    entries: dict[str, Any] = {}
+    for ax in figure.axes:
+        for line, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, line)
+    room = 72 * figure.get_figwidth() / rcParams["font.size"]
+    labels = [fill(label, int((room - HANDLE) / LETTER)) for label in entries]
+    columns = int(room / (HANDLE + LETTER * max(map(len, entries))))
+    columns = min(max(1, columns), len(entries))
+    place = {"loc": "outside upper center", "ncols": columns, "handlelength": 4.0}
+    figure.legend(entries.values(), labels, **place)
+    return -(-len(entries) // columns) + sum(label.count("\n") for label in labels)
 
 
 def share(axes: Iterable[Axes]) -> None:
@@ -73,45 +74,17 @@ def share(axes: Iterable[Axes]) -> None:
 
 def set_heading(ax: Axes, heading: str, small: bool = False) -> None:
     """Set the heading of axes, in as many lines as their width needs."""
-    size = 8.0 if small else 9.0
     columns = ax.get_subplotspec().get_gridspec().ncols  # type: ignore[union-attr]
-    width = 72 * (WIDTH / columns - BESIDE)
-    parts = (fill(part, int(width / (LETTER * size))) for part in heading.split("\n"))
-    ax.set_title("\n".join(parts), fontsize=size, pad=3)
+    width = ax.figure.get_figwidth() / columns - BESIDE
+    size = rcParams["font.size"] * (SMALL if small else 1.0)
+    letters = int(72 * width / (0.85 * LETTER * size))
+    parts = (fill(part, letters) for part in heading.split("\n"))
+    ax.set_title("\n".join(parts), fontsize="small" if small else "medium")
 
 
-def entry(label: str, drawn: Style, marker: str = "") -> Line2D:
-    """Return a legend's entry."""
-    return Line2D([], [], label=label, **drawn.of_line(marker))
-
-
-def solutions_legend(comparisons: list[Comparison], others: dict[str, list[Line2D]]) -> Legend:
-    """Return the entries of all results, a column for each model under its name, and of others."""
-    groups: dict[str, list[Line2D]] = {}
-    models = {name: heading for heading, found in by_model().items() for name in found}
-    for name in in_order(name for comparison in comparisons for name in comparison.results):
-        label = f"{name} ({'engine' if name in ENGINES else 'exact'})"
-        groups.setdefault(models.get(name, "Other"), []).append(entry(label, style(name)))
-    groups |= {heading: entries for heading, entries in others.items() if entries}
-    depth = max(map(len, groups.values()))
-    found: list[Line2D] = []
-    for heading, entries in groups.items():
-        found += [_nothing(heading), *entries, *[_nothing("")] * (depth - len(entries))]
-    return Legend(found, len(groups))
-
-
-def _nothing(label: str) -> Line2D:
-    return Line2D([], [], linestyle="none", label=label)
-
-
-def given_entries(comparisons: list[Comparison]) -> dict[str, list[Line2D]]:
-    """Return the entries of external files under their heading."""
-    found: dict[str, Line2D] = {}
-    for comparison in comparisons:
-        for k, beside in enumerate(comparison.besides):
-            name = beside.curves.name
-            found.setdefault(name, entry(short(name), *given_style(k, len(beside.time))))
-    return {"Given": list(found.values())}
+def label_of(name: str) -> str:
+    """Return the label of a solution in legends, "lattice: rigid blocks, exact"."""
+    return f"{name}: {solver(name).words.label}" if name in names() else name
 
 
 def short(file: str) -> str:

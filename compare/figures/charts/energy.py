@@ -1,7 +1,5 @@
 """The energy ledger over time: the load's work, its stored and dissipated parts, the residual."""
 
-from functools import partial
-
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -9,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from jointwave.compare.engines import ENGINES, in_order
-from jointwave.compare.figures.charts.axes import Legend, chart, entry, set_heading, share
+from jointwave.compare.figures.charts.axes import chart, set_heading, share
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.panels import variant_names
 from jointwave.compare.figures.style import TERMS, Style, style
@@ -29,8 +27,14 @@ def energy(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     if ledgers.empty or not largest:
         return []
     unit = unit_for("J/m" if comparisons[0].scene.kind == "rock mass" else "J", largest)
-    title, draw = "Energy over time", partial(_draw, ledgers, unit)
-    return [SceneFigure(f"{name}-energy", title, _caption(ledgers), draw, ledgers)]
+    worst = ledgers[RESIDUAL].abs().groupby(ledgers["engine"], sort=False).max()
+    caption = (
+        "Work of the load, and the energies that balance it. Below, on an axis of its own, the "
+        "residual over the largest work, at most: "
+        f"{', '.join(f'{engine} {size:.1g}' for engine, size in worst.items())}."
+    )
+    figure = _draw(ledgers, unit)
+    return [SceneFigure(f"{name}-energy", "Energy over time", caption, figure, ledgers)]
 
 
 def ledgers_of(comparisons: list[Comparison]) -> pd.DataFrame:
@@ -60,49 +64,29 @@ def _ledger(variant: str, engine: str, result: xr.Dataset) -> pd.DataFrame:
     return found[:: max(1, -(-(len(found) - 1) // MOST))]
 
 
-def _caption(ledgers: pd.DataFrame) -> str:
-    worst = ledgers[RESIDUAL].abs().groupby(ledgers["engine"]).max()
-    sizes = ", ".join(f"{engine} {worst[engine]:.1g}" for engine in in_order(worst.index))
-    return (
-        "Work of the load, and the energies that balance it. Below, on "
-        f"an axis of its own, the residual over the largest work, at most: {sizes}."
-    )
-
-
-def _terms(ledgers: pd.DataFrame) -> list[str]:
-    """Return the terms that are not zero throughout, in the order of the legend."""
-    return [term for term, column in COLUMNS.items() if ledgers.get(column, pd.Series()).any()]
-
-
 def _draw(ledgers: pd.DataFrame, unit: Unit) -> Figure:
-    entries = [entry(term, _of_term("dem", term)) for term in _terms(ledgers)]
-    entries += [entry(name, _of_engine(name)) for name in in_order(ledgers["engine"])]
-    legend, variants = Legend(entries, min(6, len(entries))), ledgers.groupby("variant", sort=False)
-    with chart(legend, 1, len(variants), [2.2, 0.8], "time (ms)") as (figure, axes):
+    variants = ledgers.groupby("variant", sort=False)
+    with chart(1, len(variants), [2.2, 0.8], "time (ms)") as (figure, axes):
         for row in axes[0]:
             share(row)
         axes[0, 0, 0].set_ylabel(f"energy ({unit.name})")
         for (variant, rows), (upper, lower) in zip(variants, axes[0].T, strict=True):
-            set_heading(upper, variant)
+            set_heading(upper, str(variant))
             set_heading(lower, "residual over the largest work", small=True)
             for engine, of_engine in rows.groupby("engine", sort=False):
-                _draw_ledger(upper, lower, str(engine), of_engine.dropna(axis="columns"), unit)
+                _draw_ledger(upper, lower, str(engine), of_engine, unit)
     return figure
 
 
 def _draw_ledger(upper: Axes, lower: Axes, engine: str, rows: pd.DataFrame, unit: Unit) -> None:
+    """Draw an engine's ledger, but for terms that are zero throughout: colours distinguish terms,
+    dashes engines."""
     time, size = 1e3 * rows["time (s)"].to_numpy(), rows[RESIDUAL].abs().to_numpy()
-    for term in _terms(rows):
-        upper.plot(time, rows[COLUMNS[term]] / unit.size, **_of_term(engine, term).of_line())
-    drawn = np.where(size > LEAST, size, np.nan)  # the axis is logarithmic
-    lower.semilogy(time, drawn, **_of_engine(engine).of_line())
-
-
-def _of_term(engine: str, term: str) -> Style:
-    """Return the style of a term: colours distinguish terms, dashes engines."""
-    return Style(TERMS[term], 2.0 if term == "work" else 1.4, _of_engine(engine).dashes, 1)
-
-
-def _of_engine(engine: str) -> Style:
     dashes = ENGINES[engine].line.ledger
-    return style(engine)._replace(width=1.6, dashes=(0, dashes) if dashes else "-")
+    line = style(engine)._replace(width=1.6, dashes=(0, dashes) if dashes else "-")
+    for term, column in COLUMNS.items():
+        if column in rows and rows[column].any():
+            drawn = Style(TERMS[term], 2.0 if term == "work" else 1.4, line.dashes, 1)
+            upper.plot(time, rows[column] / unit.size, label=term, **drawn.of_line())
+    positive = np.where(size > LEAST, size, np.nan)  # the axis is logarithmic
+    lower.semilogy(time, positive, label=engine, **line.of_line())

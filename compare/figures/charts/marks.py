@@ -19,30 +19,32 @@ class Frequency(NamedTuple):
 
 
 def marks_of(panel: Panel) -> list[Frequency]:
-    """Return the marks of a panel's scene for longitudinal waves or, if blocks do not rotate, shear
-    waves; in order of frequency. Only the load's for other motion, which is dispersive, and for a
-    rock mass."""
-    scene = panel.comparison.scene
+    """Return the marks of a panel in order of frequency: of the load and, of a pillar, of its
+    longitudinal waves or, if blocks do not rotate, of its shear waves."""
+    scene, (quantity, component, _) = panel.comparison.scene, panel.place
     periods = {one.period for one in scene.pulses if one.period}
     found = [Frequency("load", 1 / period, "1/T of the load") for period in periods]
-    if not isinstance(scene, Scene):
-        return sorted(found, key=lambda mark: mark.frequency)
-    p = calibrate(scene)
-    if len(p.each) > 1:
-        least = min(one.bar_speed / (pi * one.spacing) for one in p.each)
-        found.append(Frequency("chain cut-off", least, "least cut-off of the chain of blocks"))
-        return sorted(found, key=lambda mark: mark.frequency)
-    if panel.component is None or (panel.quantity == "velocity" and panel.component == 1):
-        found += _of_waves(scene, p, p.bar_speed) + _of_layers(p) + _of_joints(p)
-    elif scene.motion.rotation == "none" and panel.quantity != "rotation":
-        found += _of_waves(scene, p, p.shear_speed)
+    if isinstance(scene, Scene):
+        p = calibrate(scene)
+        along = quantity in ("stress", "velocity") and component in ("", "y")
+        if len(p.each) > 1:
+            found.append(_cut_off(min(one.bar_speed / one.spacing for one in p.each)))
+        elif along:
+            found += _of_waves(scene, p, p.bar_speed) + _of_layers(p) + _of_joints(p)
+        elif scene.motion.rotation == "none" and quantity != "rotation":
+            found += _of_waves(scene, p, p.shear_speed)
     return sorted(found, key=lambda mark: mark.frequency)
 
 
+def _cut_off(rate: float) -> Frequency:
+    """Return the cut-off of a chain, omega = 2 sqrt(k/m) = 2 c/d (Brillouin 1946); rate : the least
+    c/d, 1/s."""
+    return Frequency("chain cut-off", rate / pi, "cut-off of the chain of blocks")
+
+
 def _of_waves(scene: Scene, p: Properties, speed: float) -> list[Frequency]:
-    """Return the cut-off of the chain, omega = 2 sqrt(k/m) = 2 c/d (Brillouin 1946), and the first
-    mode of a pillar whose ends both reflect."""
-    marks = [Frequency("chain cut-off", speed / (pi * p.spacing), "cut-off of the chain of blocks")]
+    """Return the cut-off of the chain and the first mode of a pillar whose ends both reflect."""
+    marks = [_cut_off(speed / p.spacing)]
     ends = {scene.ends.start, scene.ends.end}
     if ends <= {"free", "fixed"}:
         waves = 2 if len(ends) == 1 else 4  # pillar lengths per wavelength
@@ -54,13 +56,9 @@ def _of_waves(scene: Scene, p: Properties, speed: float) -> list[Frequency]:
 def _of_layers(p: Properties) -> list[Frequency]:
     """Return where a soft layer transmits half the energy, kappa = K / (Z omega) = 1/2
     (Pyrak-Nolte, Myer & Cook 1990)."""
+    words = "half-energy frequency of the soft layer"
     compliances = {c for c in p.excess_compliance[p.soft].tolist() if c > 0}
-    return [
-        Frequency(
-            "soft layer", 1 / (pi * p.impedance * c), "half-energy frequency of the soft layer"
-        )
-        for c in compliances
-    ]
+    return [Frequency("soft layer", 1 / (pi * p.impedance * c), words) for c in compliances]
 
 
 def _of_joints(p: Properties) -> list[Frequency]:

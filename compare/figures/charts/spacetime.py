@@ -2,14 +2,11 @@
 differences between engines or from exact solutions.
 """
 
-from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
@@ -17,16 +14,18 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import ENGINES, in_order
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.figure import SceneFigure
-from jointwave.compare.figures.panels import FORCES, MOTION, ROTATION, axis_of, loudest
+from jointwave.compare.figures.panels import FORCES, MOTION, ROTATION, by_component, peaks
 from jointwave.compare.figures.style import DIFFERENCE, FIELD
 from jointwave.compare.figures.units import UNITS, Unit, unit_for
-from jointwave.compare.misfit.metrics import motion
 from jointwave.compare.misfit.pairs import pairs
 from jointwave.compare.misfit.ranking import own_exact
 
 LEAST = 1e-9  # SI: smaller values count as no motion
 HEIGHT = 3.2  # inches
-LAYER: dict[str, Any] = {"color": "#111111", "linewidth": 1.1, "linestyle": (0, (4, 3))}
+CAPTION = (
+    "Motion relative to the static state: compression is red, tension blue. A difference has its "
+    "own colour scale, up to its largest value. A soft layer is dashed."
+)
 
 
 class Diagram(NamedTuple):
@@ -63,12 +62,6 @@ class Diagrams(NamedTuple):
     y: np.ndarray
     diagrams: list[Diagram]
 
-    def table(self) -> pd.DataFrame:
-        """Return every drawn value: a row per place and time."""
-        y, time = np.meshgrid(self.y, self.time, indexing="ij")
-        columns = {f"{d.name} ({d.unit.name})": d.values.ravel() for d in self.diagrams}
-        return pd.DataFrame({"y (m)": y.ravel(), "time (s)": time.ravel(), **columns})
-
 
 def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
     """Return the diagrams of the first engine and of the differences between engines, then those of
@@ -80,38 +73,26 @@ def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
     if not engines:
         return []
     first = fields[engines[0]]
-    quantity, component = loudest(first, (FORCES, MOTION, ROTATION), least=LEAST)
-    values = {
-        name: np.atleast_3d(motion(result, quantity))[..., component or 0]
-        for name, result in fields.items()
-    }
+    found = peaks([first], (FORCES, MOTION, ROTATION), least=LEAST)
+    quantity, component = max(found, key=lambda one: found[one])
+    values = {n: by_component(one, quantity)[component] for n, one in fields.items()}
     if not any(v.any() for v in values.values()):
         return []
-    between = [(p.one, p.other) for p in pairs() if {p.one, p.other} <= set(engines)]
-    own = [(one, other) for one in engines if (other := own_exact(one, fields, scene))]
-    shown = [_diagram(engines[0], values[engines[0]], quantity)]
-    shown += [_difference(*pair, values, quantity) for pair in between]
-    errors = [_difference(*pair, values, quantity) for pair in own]
-    words = f"{quantity} {axis_of(quantity, component)}".rstrip()
+
+    def diagram(one: str, other: str = "") -> Diagram:
+        shown, share = values[one], None
+        if other:
+            shown, scale = shown - values[other], float(np.abs(values[other]).max())
+            share = float(np.abs(shown).max()) / scale if scale else 0.0
+        unit = unit_for(UNITS[quantity], float(np.abs(shown).max()))
+        return Diagram(f"{one} − {other}" if other else one, shown / unit.size, unit, share)
+
+    between = [diagram(p.one, p.other) for p in pairs() if {p.one, p.other} <= set(engines)]
+    errors = [diagram(n, own) for n in engines if (own := own_exact(n, fields, scene))]
     places = first[first[quantity].dims[0]].values
-    return [
-        Diagrams(exact, words, first.time.values, places, found)
-        for exact, found in ((False, shown), (True, errors))
-        if found
-    ]
-
-
-def _difference(one: str, other: str, values: dict[str, np.ndarray], quantity: str) -> Diagram:
-    found = values[one] - values[other]
-    scale = float(np.abs(values[other]).max())
-    share = float(np.abs(found).max()) / scale if scale else 0.0
-    return _diagram(f"{one} − {other}", found, quantity, share)
-
-
-def _diagram(name: str, values: np.ndarray, quantity: str, share: float | None = None) -> Diagram:
-    """Return the diagram of SI values; share : for a difference."""
-    unit = unit_for(UNITS[quantity], float(np.abs(values).max()))
-    return Diagram(name, values / unit.size, unit, share)
+    about = f"{quantity} {component}".rstrip(), first.time.values, places
+    shown = [Diagrams(False, *about, [diagram(engines[0]), *between])]
+    return [*shown, Diagrams(True, *about, errors)] if errors else shown
 
 
 def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneFigure:
@@ -119,53 +100,35 @@ def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneF
 
     name : unique on the page. variant : its name there.
     """
-    words = f"{shown.words} along the pillar over time, {variant}"
-    title = f"Numerical error of {words}" if shown.exact else f"{words[0].upper()}{words[1:]}"
-    caption, draw = _caption(scene, variant, shown), partial(_draw, scene, shown)
-    return SceneFigure(name, title, caption, draw, shown.table(), shown.exact)
-
-
-def _caption(scene: Scene, variant: str, shown: Diagrams) -> str:
-    """Describe the colours, and the places and times of their values."""
-    sign = "Compression is red, tension blue. " if shown.words == "stress" else ""
-    layers = " Dashed: the soft layer." if scene.soft_layers else ""
-    if shown.exact:
-        sign = "Each engine minus the exact solution of its own model. "
-    return (
-        f"{sign}Drawn from {len(shown.y)} places and {len(shown.time)} times of the variant "
-        f"{variant!r}, minus its static state; a difference has its own colour scale, up to its "
-        f"largest value.{layers}"
-    )
+    title = f"{shown.words} along the pillar over time, {variant}"
+    title = f"Numerical error of {title}" if shown.exact else f"{title[0].upper()}{title[1:]}"
+    y, time = np.meshgrid(shown.y, shown.time, indexing="ij")
+    values = {f"{d.name} ({d.unit.name})": d.values.ravel() for d in shown.diagrams}
+    table = pd.DataFrame({"y (m)": y.ravel(), "time (s)": time.ravel(), **values})
+    return SceneFigure(name, title, CAPTION, _draw(scene, shown), table, shown.exact)
 
 
 def _draw(scene: Scene, shown: Diagrams) -> Figure:
-    columns = max(len(shown.diagrams), 2)
+    columns, ms = max(len(shown.diagrams), 2), 1e3 * shown.time
     with blank(HEIGHT) as figure:
         axes = figure.subplots(1, columns, sharex=True, sharey=True, squeeze=False)[0]
         for ax, diagram in zip(axes, shown.diagrams, strict=False):
-            mesh = _draw_diagram(ax, diagram, shown)
+            limit = float(np.abs(diagram.values).max()) or 1.0
+            mesh = ax.pcolormesh(
+                *(ms, shown.y, diagram.values),
+                vmin=-limit,
+                vmax=limit,
+                cmap=FIELD if diagram.share is None else DIFFERENCE,
+                shading="nearest",  # a smooth image takes four times the bytes
+                rasterized=True,
+            )
+            ax.set(xlim=ms[[0, -1]], ylim=shown.y[[0, -1]], xlabel="time (ms)")
+            ax.set_title(diagram.heading)
             ticks = MaxNLocator(4, symmetric=True)  # few, so that long numbers do not overlap
             figure.colorbar(mesh, ax=ax, location="bottom", aspect=40, ticks=ticks)
             for layer in scene.soft_layers:
-                ax.axhline(layer.y, **LAYER)
+                ax.axhline(layer.y, color="#111111", linewidth=1.1, linestyle=(0, (4, 3)))
         for ax in axes[len(shown.diagrams) :]:
             ax.set_visible(False)
         axes[0].set_ylabel("y (m)")
     return figure
-
-
-def _draw_diagram(ax: Axes, diagram: Diagram, shown: Diagrams) -> QuadMesh:
-    limit = float(np.abs(diagram.values).max()) or 1.0
-    mesh = ax.pcolormesh(
-        1e3 * shown.time,
-        shown.y,
-        diagram.values,
-        vmin=-limit,
-        vmax=limit,
-        cmap=FIELD if diagram.share is None else DIFFERENCE,
-        shading="nearest",  # a smooth image takes four times the bytes
-        rasterized=True,
-    )
-    ax.set(xlim=1e3 * shown.time[[0, -1]], ylim=shown.y[[0, -1]], xlabel="time (ms)")
-    ax.set_title(diagram.heading)
-    return mesh

@@ -1,30 +1,68 @@
-"""Waveforms at every receiver over time: as in the paper, and all solutions of a variant."""
+"""Waveforms at every receiver over time, and below them their residuals from the reference on a
+separate scale: every solution of a variant, or the variants of one engine, as in the paper.
+"""
 
-from functools import partial
+from typing import Any, NamedTuple
 
+import numpy as np
 import pandas as pd
+from matplotlib import rcParams
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from jointwave.compare.figures.charts.axes import Legend, entry, given_entries, solutions_legend
-from jointwave.compare.figures.charts.overlays import (
-    Overlay,
-    by_solution,
-    by_variant,
-    changed_key,
-    draw_overlays,
-)
+from jointwave.compare.engines import ENGINES, in_order
+from jointwave.compare.figures.charts.axes import chart, label_of, set_heading, share, short
 from jointwave.compare.figures.figure import SceneFigure
-from jointwave.compare.figures.panels import Panel, curve_table, in_page, panels
-from jointwave.compare.figures.units import UNITS
+from jointwave.compare.figures.panels import Panel, curve_table, in_rows, panels
+from jointwave.compare.figures.style import PALE, RC, Style, given_style, style
+from jointwave.compare.figures.units import DRAWN, UNITS, Unit, unit_for
 from jointwave.compare.misfit.pairs import Comparison
+
+#: Keys of a scene that do not change its physics, or only its numerical solution.
+ASIDE = {"title", "source", "name", "expect", "numerics", "record", "where"}
+MOST = 6  # variants in one pair of axes
+HEIGHTS = [2.1, 0.75]  # inches of waveforms and of their residuals
+NARROW = 3.3  # inches of a panel: figures of twice its width have two side by side
+THIN = 1.4  # points, the widest line of residuals
+REFERENCE = "reference"
+#: Colours of variants, light to dark: of up to four, then of up to six.
+VARIANTS = (
+    *("#9ad14b", "#e0559f", "#3b6fd4", "#1b0c3f"),
+    *("#a5d65a", "#e68ab8", "#3f8fd6", "#b5432e", "#4b3fa8", "#000000"),
+)
+DOTS = Style("#000000", 0.9, (0, (1.0, 2.0)), 12)  # of references under variants
 
 TITLE = "Waveforms at the receivers"
 STYLES = (
     "Engines are wide and light, exact solutions dark and dashed over them, so that each is seen "
     "where several coincide."
 )
-BELOW = "Below, on a separate scale, the difference from the reference."
-POSITIVE = "Stress is positive in compression."
+BELOW = (
+    "Below, on a separate scale, the difference from the reference. Stress is positive in "
+    "compression; a static state is subtracted."
+)
+
+
+class Trace(NamedTuple):
+    """A waveform, SI over time (s), and its residual from the reference, if it has one."""
+
+    label: str
+    style: Style
+    curve: pd.Series
+    residual: pd.Series | None = None
+
+
+class Overlay(NamedTuple):
+    """Waveforms of one quantity in one pair of axes.
+
+    at_rest : the static state subtracted from them, SI. reference : of the residuals, in words.
+    """
+
+    heading: str
+    quantity: str
+    at_rest: float
+    reference: str
+    traces: list[Trace]
 
 
 def waveforms(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
@@ -33,77 +71,145 @@ def waveforms(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     Variants that differ by one key share one pair of axes per engine, followed by all solutions of
     each variant.
     """
-    receivers = [panel for row in panels(comparisons) for panel in row]
-    overlaid = by_variant(comparisons)
+    overlaid, table = by_variant(comparisons), curve_table(comparisons)
     every = SceneFigure(
         f"{name}-waveforms",
         "Waveforms of every solution, variant by variant" if overlaid else TITLE,
-        f"{STYLES} {BELOW} {POSITIVE}{_at_rest(receivers)}",
-        partial(draw_solutions, comparisons),
-        curve_table(comparisons).reset_index(),
+        f"{STYLES} {BELOW}",
+        draw_solutions(comparisons),
+        table,
         folded=bool(overlaid),
     )
-    return [_of_variants(name, comparisons, overlaid, receivers), every] if overlaid else [every]
-
-
-def draw_solutions(comparisons: list[Comparison]) -> Figure:
-    """Return every solution of all variants; the k-th external file is the part given-k."""
-    grid = [[by_solution(panel) for panel in row] for row in in_page(panels(comparisons))]
-    return draw_overlays(grid, solutions_legend(comparisons, given_entries(comparisons)))
-
-
-def draw_variants(grid: list[list[Overlay]]) -> Figure:
-    """Return the variants of every engine in one pair of axes each."""
-    found = {t.name: t.style for row in grid for overlay in row for t in overlay.traces}
-    in_order = sorted(found.items(), key=lambda one: one[1].order)  # references last
-    return draw_overlays(grid, Legend([entry(*one) for one in in_order], min(6, len(found))))
-
-
-def _of_variants(
-    name: str, comparisons: list[Comparison], grid: list[list[Overlay]], receivers: list[Panel]
-) -> SceneFigure:
+    if not overlaid:
+        return [every]
+    title, figure = "Variants overlaid, engine by engine", draw_overlays(overlaid)
     caption = (
         f"Variants differ by {changed_key(comparisons)}; the first is wide and light, the last "
-        f"thin and dark. Dotted: the reference, {_references(receivers)}. {BELOW} {POSITIVE}"
-        f"{_at_rest(receivers)}"
+        f"thin and dark. Dotted: the reference. {BELOW}"
     )
-    title = "Variants overlaid, engine by engine"
-    table = _variant_table([overlay for row in grid for overlay in row], receivers)
-    return SceneFigure(f"{name}-variants", title, caption, partial(draw_variants, grid), table)
+    return [SceneFigure(f"{name}-variants", title, caption, figure, table), every]
 
 
-def _references(receivers: list[Panel]) -> str:
-    found: dict[str, list[str]] = {}
-    for panel in receivers:
-        found.setdefault(panel.reference, []).append(panel.variant)
-    if len(found) == 1:
-        return next(iter(found))
-    return ", ".join(f"{name} ({', '.join(dict.fromkeys(v))})" for name, v in found.items())
+def draw_solutions(
+    comparisons: list[Comparison], residuals: bool = True, rc: dict[Any, Any] = RC
+) -> Figure:
+    """Return every solution of all variants; each variant begins a row."""
+    across = 2 if rc["figure.figsize"][0] > 2 * NARROW else 1
+    grid = [[by_solution(panel) for panel in row] for row in in_rows(comparisons, across)]
+    return draw_overlays(grid, residuals, rc)
 
 
-def _at_rest(receivers: list[Panel]) -> str:
-    """Describe the static state subtracted from the waveforms; empty without one.
+def draw_overlays(
+    grid: list[list[Overlay]], residuals: bool = True, rc: dict[Any, Any] = RC
+) -> Figure:
+    """Return the figure of overlays in rows; residuals : whether they have axes of their own."""
+    traces = [t for row in grid for overlay in row for t in overlay.traces]
+    residuals = residuals and any(t.residual is not None for t in traces)
+    heights, columns = HEIGHTS if residuals else HEIGHTS[:1], max(map(len, grid))
+    with chart(len(grid), columns, heights, "time (ms)", rc) as (figure, axes):
+        pairs = [
+            (overlay, *axes[i, :, j]) for i, row in enumerate(grid) for j, overlay in enumerate(row)
+        ]
+        if len({overlay.quantity for overlay, *_ in pairs}) == 1:
+            share(upper for _, upper, *_ in pairs)
+        for overlay, upper, *lower in pairs:
+            _draw_waveforms(upper, overlay)
+            if lower:
+                _draw_residuals(lower[0], overlay)
+    return figure
 
-    It has no velocity, except for a remainder of dynamic relaxation.
+
+def _draw_waveforms(ax: Axes, overlay: Overlay) -> None:
+    unit = DRAWN[UNITS[overlay.quantity]]
+    # A velocity has no static state but the remainder of a relaxation.
+    rests = overlay.at_rest and overlay.quantity != "velocity"
+    rest = f"\nless {overlay.at_rest / unit.size:.4g} at rest" if rests else ""
+    set_heading(ax, overlay.heading)
+    ax.set_ylabel(f"{overlay.quantity} ({unit.name}){rest}")
+    _plot(ax, unit, [(t.curve, t.style, t.label) for t in overlay.traces])
+
+
+def _draw_residuals(ax: Axes, overlay: Overlay) -> None:
+    found = [(t, t.residual) for t in overlay.traces if t.residual is not None]
+    if not found:
+        return
+    largest = max(float(residual.abs().max()) for _, residual in found)
+    peak = max(float(t.curve.abs().max()) for t in overlay.traces)
+    unit = unit_for(UNITS[overlay.quantity], largest)
+    size = f", at most {100 * largest / peak:.2g}\u00a0% of the peak" if peak else ""
+    set_heading(ax, f"less {overlay.reference} ({unit.name}){size}", small=True)
+    ax.locator_params(axis="y", nbins=4)
+    thin = [(r, t.style._replace(width=min(t.style.width, THIN)), t.label) for t, r in found]
+    _plot(ax, unit, thin)
+
+
+def _plot(ax: Axes, unit: Unit, curves: list[tuple[pd.Series, Style, str]]) -> None:
+    ax.axhline(0, color=PALE, linewidth=0.4 * rcParams["lines.linewidth"], zorder=1)
+    for curve, drawn, label in curves:
+        time = 1e3 * curve.index.to_numpy()
+        ax.plot(time, curve / unit.size, label=label, **drawn.of_line())
+
+
+def by_solution(panel: Panel) -> Overlay:
+    """Return every solution of one variant at one receiver, and external curves."""
+    residuals = panel.residuals
+    traces = [
+        Trace(label_of(name), style(name), curve, residuals.get(name))
+        for name, curve in panel.curves.items()
+    ]
+    for k, beside in enumerate(panel.comparison.besides):
+        if (name := beside.curves.name) in panel.given:
+            drawn = given_style(k, len(beside.time))
+            traces.append(Trace(short(name), drawn, panel.given[name]))
+    heading = f"{panel.place.heading}, {panel.variant}"
+    return Overlay(heading, panel.place.quantity, panel.at_rest, panel.reference, traces)
+
+
+def by_variant(comparisons: list[Comparison]) -> list[list[Overlay]]:
+    """Return the variants of each engine in one pair of axes, engines across and receivers down.
+
+    Empty if variants differ by more than one key, or share no place that is shown.
     """
-    states = dict.fromkeys(
-        f"{panel.at_rest:.4g} {UNITS[panel.quantity]} ({panel.heading}, {panel.variant})"
-        for panel in receivers
-        if panel.at_rest and panel.quantity != "velocity"
-    )
-    return f" Waveforms are relative to the static state: {'; '.join(states)}." if states else ""
+    if not 2 <= len(comparisons) <= MOST or changed_key(comparisons) is None:
+        return []
+    found = [{panel.place: panel for panel in row} for row in panels(comparisons)]
+    shared = [place for place in found[0] if all(place in row for row in found)]
+    solved = in_order(name for comparison in comparisons for name in comparison.results)
+    engines = [name for name in solved if name in ENGINES]
+    return [[_of_engine(one, [row[at] for row in found]) for one in engines] for at in shared]
 
 
-def _variant_table(overlays: list[Overlay], receivers: list[Panel]) -> pd.DataFrame:
-    """Return curves of engines and of their references, SI: time first, one column each."""
-    columns: dict[str, pd.Series] = {}
-    for overlay in overlays:
-        for trace in overlay.traces:
-            if trace.part.startswith("variant"):
-                name = f"{overlay.heading} | {trace.name} ({UNITS[overlay.quantity]})"
-                columns[name] = trace.curve
-    for panel in receivers:
-        if panel.reference in (curves := panel.curves):
-            name = f"{panel.reference}, {panel.heading} | {panel.variant} ({UNITS[panel.quantity]})"
-            columns[name] = curves[panel.reference]
-    return pd.DataFrame(columns).rename_axis("time (s)").reset_index()
+def _of_engine(engine: str, row: list[Panel]) -> Overlay:
+    """Return an engine's waveform in every variant, and the reference of each as dots."""
+    traces, references = [], list[tuple[str, Trace]]()
+    for panel, drawn in zip(row, variant_styles(len(row)), strict=True):
+        curves, known = panel.curves, panel.reference
+        if engine not in curves:
+            continue
+        traces.append(Trace(panel.variant, drawn, curves[engine], panel.residuals.get(engine)))
+        if known != engine and known in curves:
+            references.append((known, Trace(REFERENCE, DOTS, curves[known])))
+    rest = {panel.at_rest for panel in row}
+    at_rest = rest.pop() if len(rest) == 1 else 0.0
+    known, place = {name for name, _ in references}, row[0].place
+    words = known.pop() if len(known) == 1 else f"the {REFERENCE}"
+    traces += [dots for _, dots in references]
+    return Overlay(f"{engine}, {place.heading}", place.quantity, at_rest, words, traces)
+
+
+def variant_styles(count: int) -> list[Style]:
+    """Return the styles of superposed variants: the first wide and light, the last thin and dark,
+    so that each is visible where they coincide."""
+    few = VARIANTS[:4] if count <= 4 else VARIANTS[4:]
+    at = np.linspace(0, len(few) - 1, count).round().astype(int)
+    widths = np.linspace(3.4, 1.0, count).round(2).tolist()
+    return [Style(few[k], w, "-", i) for i, (k, w) in enumerate(zip(at, widths, strict=True))]
+
+
+def changed_key(comparisons: list[Comparison]) -> str | None:
+    """Return the one key in which the variants of a scene differ, "joints.damping_ratio"; None if
+    they differ in none or in several."""
+    scenes = [comparison.scene.model_dump(exclude=ASIDE) for comparison in comparisons]
+    keys = pd.json_normalize(scenes, max_level=1).map(repr)
+    changed = keys.columns[keys.nunique() > 1]
+    return str(changed[0]) if len(changed) == 1 else None

@@ -1,6 +1,5 @@
 """The figure of a scene: a drawing for each appearance, its load over time and a legend."""
 
-from functools import partial
 from types import ModuleType
 from typing import Any
 
@@ -42,14 +41,14 @@ def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
     tables = pd.concat({words: table(sketch) for words, sketch in sketches.items()})
     numbers = tables.rename_axis(["variant", None]).reset_index("variant").reset_index(drop=True)
     caption = drawing.caption(next(iter(rows.values())))
-    figure = partial(_figure, rows, list(sketches.values()))
+    figure = _figure(rows, list(sketches.values()))
     return SceneFigure(f"{name}-scene", TITLE, caption, figure, numbers)
 
 
 def _figure(rows: dict[str, Any], sketches: list[Sketch]) -> Figure:
     heights = [_height(sketch) for sketch in sketches]
     top = total = sum(heights)
-    with blank(total, WIDTH, True) as figure:
+    with blank(total, True) as figure:
         for k, (words, scene) in enumerate(rows.items()):
             if len(rows) > 1:
                 heading = f"({chr(97 + k)})  {words}"

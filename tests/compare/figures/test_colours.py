@@ -8,7 +8,7 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from jointwave.compare.engines import ENGINES, names
-from jointwave.compare.figures.charts.overlays import variant_styles
+from jointwave.compare.figures.charts.waveforms import variant_styles
 from jointwave.compare.figures.style import DIFFERENCE, FIELD, TERMS, style
 
 #: Of linear RGB, at full severity; normal sight first.

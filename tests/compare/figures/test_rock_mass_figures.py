@@ -31,13 +31,13 @@ def solved(compared, one_joint):
 def test_a_panel_shows_a_component_that_moves(solved):
     """At a level joint a wave that travels upwards moves nothing sideways."""
     oblique, level = panels(solved(30.0, 0.0))
-    assert [panel.heading for panel in oblique] == [
+    assert [panel.place.heading for panel in oblique] == [
         "velocity x at [10, 5] m",
         "velocity y at [10, 5] m",
         "traction n at [10, 10] m",
         "traction s at [10, 10] m",
     ]
-    headings = [panel.heading for panel in level]
+    headings = [panel.place.heading for panel in level]
     assert headings == ["velocity y at [10, 5] m", "traction n at [10, 10] m"]
 
 

@@ -67,5 +67,5 @@ def test_variants_of_other_durations_share_one_table(pillar):
     scenes[1] = scenes[1].model_copy(update={"name": "long"})
     comparisons = [Comparison(scene, {"images": images.solve(scene)}) for scene in scenes]
     table = curve_table(comparisons)
-    assert table.shape == (401, 2)
-    assert table.isna().sum().tolist() == [200, 0]
+    assert table.shape == (401, 3)
+    assert table.isna().sum().tolist() == [0, 200, 0]

@@ -7,6 +7,7 @@ from matplotlib.colors import Normalize
 
 from jointwave.compare.figures.animation.bodies import FRONT, OBLIQUE, Body, BodyView
 from jointwave.compare.figures.export import blank
+from jointwave.compare.figures.style import RC
 
 PLATE = np.array([[0.0, 0, 0], [2, 0, 0], [4, 0, 0], [4, 0, 1], [2, 0, 1], [0, 0, 1]])
 COLOURS = ScalarMappable(Normalize(-1.0, 1.0), "RdBu_r")
@@ -14,7 +15,7 @@ COLOURS = ScalarMappable(Normalize(-1.0, 1.0), "RdBu_r")
 
 def picture(body, per_away, i):
     """Return the picture of a body at an instant."""
-    with blank(2.0, 10.0, True) as figure:
+    with blank(2.0, True, RC | {"figure.figsize": (10.0, 2.0)}) as figure:
         ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         ax.set_axis_off()
         BodyView(ax, body, COLOURS, per_away).show(i)

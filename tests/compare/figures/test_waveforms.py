@@ -9,15 +9,15 @@ from matplotlib.text import Text
 
 from jointwave import cases
 from jointwave.compare.engines import applies, solve
-from jointwave.compare.figures.charts.overlays import (
+from jointwave.compare.figures.charts.waveforms import (
     MOST,
     REFERENCE,
-    by_solution,
     by_variant,
     changed_key,
+    draw_overlays,
+    draw_solutions,
     variant_styles,
 )
-from jointwave.compare.figures.charts.waveforms import draw_solutions, draw_variants
 from jointwave.compare.figures.panels import panels
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import finest
@@ -70,12 +70,12 @@ def test_variants_of_one_key_share_a_pair_of_axes_an_engine(pillar, key):
     assert changed_key(found) == key
     ((dem, jointed, bar),) = by_variant(found)
     for overlay, engine in ((dem, "dem"), (jointed, "continuum-jointed")):
-        waves = [t for t in overlay.traces if t.name != REFERENCE]
-        assert [t.name for t in waves] == ["a", "b"] and engine in overlay.heading
+        waves = [t for t in overlay.traces if t.label != REFERENCE]
+        assert [t.label for t in waves] == ["a", "b"] and engine in overlay.heading
         for trace, comparison in zip(waves, found, strict=True):
             np.testing.assert_array_equal(trace.curve, comparison.results[engine].stress.values[0])
-    assert all(r.abs().max() == 0 for r in jointed.residuals.values())
-    assert bar.residuals and bar.reference == "jointed-bar"
+    assert all(t.residual.abs().max() == 0 for t in jointed.traces if t.label != REFERENCE)
+    assert bar.traces[0].residual.any() and bar.reference == "jointed-bar"
 
 
 def test_variants_that_differ_twice_or_record_something_else_do_not(pillar):
@@ -94,14 +94,13 @@ def test_a_residual_is_a_solution_less_the_reference_on_a_scale_of_its_own(pilla
     (found,) = solved(pillar(**SHORT))
     panel = panels([found])[0][0]
     assert panel.reference == finest(found.results, found.scene).name == "jointed-bar"
-    overlay = by_solution(panel)
     known = found.results["jointed-bar"].stress.values[0]
     sizes = []
-    for name, residual in overlay.residuals.items():
+    for name, residual in panel.residuals.items():
         expected = found.results[name].stress.values[0] - known
         np.testing.assert_array_equal(residual, expected)
         sizes.append(np.abs(expected).max())
-    assert {t.part for t in overlay.traces} - set(overlay.residuals) == {"jointed-bar"}
+    assert set(panel.curves) - set(panel.residuals) == {"jointed-bar"}
     share = 100 * max(sizes) / np.abs(known).max()
     lower = draw_solutions([found]).axes[1]
     low, high = lower.get_ylim()
@@ -128,7 +127,7 @@ def test_every_variant_is_seen_where_all_coincide(count):
 def test_headings_of_a_figure_do_not_meet(pillar):
     """Above panels and residuals, three engines beside each other."""
     found = solved(pillar(**SHORT), pillar(**SHORT, joints__damping_ratio=0.1))
-    figure = draw_variants(by_variant(found))
+    figure = draw_overlays(by_variant(found))
     figure.canvas.draw()
     titles = {ax.get_title(loc="left") for ax in figure.axes}
     boxes = [t.get_window_extent() for t in figure.findobj(Text) if t.get_text() in titles - {""}]

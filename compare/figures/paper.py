@@ -1,0 +1,69 @@
+"""A figure for a paper: the waveforms of a scene, or the bands of an ensemble."""
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import EXACT, Progress, applies
+from jointwave.compare.figures import bands
+from jointwave.compare.figures.charts.waveforms import draw_solutions
+from jointwave.compare.misfit.alignment import align_curve
+from jointwave.compare.misfit.ranking import applicable
+from jointwave.compare.runs.comparison import solved
+from jointwave.compare.runs.jobs import names_of
+from jointwave.compare.runs.output import refuse_foreign
+
+#: First bytes of a file of each kind: only such a file is overwritten.
+BEGINS = {".pdf": (b"%PDF",), ".svg": (b"<?xml", b"<svg"), ".png": (b"\x89PNG",)}
+
+
+def check_file(path: Path) -> None:
+    """Raise SceneError if a figure cannot be written there: for its suffix, or for a file of
+    another kind."""
+    if path.suffix not in BEGINS:
+        raise SceneError("--out", str(path), None, f"must end in {', '.join(BEGINS)}")
+    refuse_foreign(path, BEGINS[path.suffix])
+
+
+def draw_scenes(
+    scenes: list[AnyScene],
+    runs: list[tuple[str, str | None]],
+    curves: list[Any],
+    rc: dict[Any, Any],
+    progress: Progress,
+) -> Figure:
+    """Solve scenes and draw them with external curves.
+
+    runs : (engine, model) each, see `compare.runs.jobs`; empty: all that apply. rc : matplotlib's
+    settings.
+    """
+    asked = [
+        {name: applies(name, scene) for run in runs for name in names_of(*run, scene)}
+        or applicable(scene)
+        for scene in scenes
+    ]
+    found = []
+    for i, (scene, answers) in enumerate(zip(scenes, asked, strict=True)):
+        one = solved(scene, answers, partial(_tell, progress, i, len(scenes)))
+        one.besides += [align_curve(curve, scene, one.results, False) for curve in curves]
+        found.append(one)
+    return draw_solutions(found, False, rc)
+
+
+def _tell(progress: Progress, done: int, count: int, part: float) -> None:
+    progress((done + part) / count)
+
+
+def draw_bands(folder: Path, engines: list[str], rc: dict[Any, Any]) -> Figure:
+    """Draw the bands of an ensemble from its folder; engines : "dem", "continuum", "exact"; empty:
+    all in the folder."""
+    starts = tuple(one for name in engines for one in (EXACT if name == "exact" else [name]))
+    every = bands.statistics_in(folder)
+    found = bands.bands_of({k: v for k, v in every.items() if not engines or k.startswith(starts)})
+    if not found:
+        raise SceneError("--engine", ", ".join(engines), None, f"has no results in {folder}")
+    return bands.draw(found, rc)

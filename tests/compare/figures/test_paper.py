@@ -1,0 +1,112 @@
+"""Figures for papers: their width, letters and fonts, and what is drawn in them."""
+
+import re
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+from matplotlib.text import Text
+
+from jointwave.compare.exact.blocks import lattice
+from jointwave.compare.figures.charts.waveforms import draw_solutions
+from jointwave.compare.figures.export import write_drawing
+from jointwave.compare.figures.paper import draw_scenes
+from jointwave.compare.figures.style import printed
+from jointwave.compare.misfit.pairs import Comparison
+
+SCENE = "guo-li-2002/fig-03"
+SHORT = {"time__duration": 0.01, "record__velocity": [20.25]}
+
+
+@pytest.fixture
+def drawn(pillar):
+    """Return a function that draws variants, solved by the exact chain, at a width (mm)."""
+
+    def draw(width, name="damped", size=8.0):
+        scenes = [pillar(**SHORT), pillar(**SHORT, joints__damping_ratio=0.05)]
+        scenes[1] = scenes[1].model_copy(update={"name": name})
+        found = [
+            Comparison(scene, dict.fromkeys(("lattice", "dem"), lattice.solve(scene)))
+            for scene in scenes
+        ]
+        return draw_solutions(found, False, printed(width, size))
+
+    return draw
+
+
+@pytest.mark.parametrize("width", [90.0, 190.0])
+def test_the_page_is_as_wide_as_asked(drawn, tmp_path, width):
+    """To 0.1 mm, in every format, and the same figure is the same file."""
+    rc, names = printed(width, 8.0), ("a.pdf", "a.svg", "a.png", "b.pdf", "b.svg", "b.png")
+    files = [write_drawing(tmp_path / name, drawn(width), "A title", rc) for name in names]
+    pdf, svg, png = files[:3]
+    box = re.search(rb"/MediaBox \[ 0 0 ([\d.]+) [\d.]+ \]", pdf.read_bytes())
+    assert float(box[1]) * 25.4 / 72 == pytest.approx(width, abs=0.1)
+    points = ET.parse(svg).getroot().get("width").removesuffix("pt")
+    assert float(points) * 25.4 / 72 == pytest.approx(width, abs=0.1)
+    assert imread(png).shape[1] * 25.4 / 600 == pytest.approx(width, abs=0.1)
+    assert [file.read_bytes() for file in files[:3]] == [file.read_bytes() for file in files[3:]]
+
+
+@pytest.mark.parametrize("width", [90.0, 190.0])
+@pytest.mark.parametrize("name", ["damped", "the same joints after a cycle of loading, damped"])
+def test_nothing_is_cut_off_or_overprinted(drawn, collisions, width, name):
+    figure = drawn(width, name)
+    assert collisions(figure) == []
+    across = {round(ax.get_position().x0, 2) for ax in figure.axes}
+    assert len(figure.axes) == 4 and len(across) == (1 if width == 90 else 2)
+    sizes = {t.get_fontsize() for t in figure.findobj(Text) if t.get_text().strip()}
+    assert sizes == {8.0}
+
+
+def test_a_pdf_holds_its_fonts_as_true_type_and_an_svg_outlines(drawn, tmp_path):
+    """Neither needs an installed font."""
+    pdf, svg = tmp_path / "a.pdf", tmp_path / "a.svg"
+    for path in (pdf, svg):
+        write_drawing(path, drawn(90.0), "A title", printed(90.0, 8.0))
+    content = pdf.read_bytes()
+    assert content.count(b"/FontFile2") == content.count(b"/Type /FontDescriptor") > 0
+    assert b"/Type3" not in content
+    assert not list(ET.parse(svg).getroot().iter("{http://www.w3.org/2000/svg}text"))
+
+
+def test_what_is_asked_for_is_drawn(pillar):
+    """By engines and models, and every curve is that of its solution."""
+    scene, done = pillar(**SHORT), []
+    runs = [("dem", None), ("exact", "lattice")]
+    figure = draw_scenes([scene], runs, [], printed(190.0, 8.0), done.append)
+    lines = {line.get_label(): line for line in figure.axes[0].lines}
+    assert {"dem: rigid blocks", "lattice: rigid blocks, exact"} < set(lines)
+    assert not any("jointed" in label for label in lines) and done == [0.5, 1.0]
+    exact = 1e-6 * lattice.solve(scene).stress.values[0]
+    np.testing.assert_allclose(lines["lattice: rigid blocks, exact"].get_ydata(), exact)
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (("--out", "figure.doc"), "must end in .pdf, .svg, .png"),
+        (("--out", "figure.pdf", "--width", "3"), "width"),
+        (("--out", "figure.pdf", "--engine", "exact", "--model", "no-tension-chain"), "tension"),
+        (("--out", "taken.pdf", "--variant", "", "--engine", "dem"), "would be overwritten"),
+        ((), "--out"),
+    ],
+)
+def test_a_mistake_is_one_line(jointwave, tmp_path, monkeypatch, arguments, words):
+    """And no file is written or lost."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "taken.pdf").write_text("mine")
+    said = jointwave("figure", SCENE, *arguments, code=2).err
+    assert said.count("\n") == 1 and words in said
+    assert [path.name for path in tmp_path.iterdir()] == ["taken.pdf"]
+    assert (tmp_path / "taken.pdf").read_text() == "mine"
+
+
+def test_the_command_draws_curves_of_others_too(jointwave, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "curve.csv").write_text("time [ms], stress@20 [MPa]\n0, 0\n5, 0.1\n10, 0.2\n")
+    options = ["--variant", "", "--engine", "dem", "--set", "time.duration=0.02"]
+    said = jointwave("figure", SCENE, *options, "--with", "curve.csv", "--out", "figure.svg")
+    assert said == ("wrote figure.svg\n", "")
+    assert "curve.csv" in (tmp_path / "figure.svg").read_text()
