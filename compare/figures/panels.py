@@ -84,20 +84,26 @@ def _panels(comparison: Comparison, variant: str) -> Iterator[Panel]:
             moving = [one for one, peak in found.items() if peak >= FAINT * largest]
             for quantity, component in moving if largest else moving[:1]:
                 solved = {n: one for n, one in results.items() if quantity in one}
-                waves = [
-                    pd.DataFrame(
-                        {n: _wave(one, quantity, component, i, m) for n, one in solved.items()}
-                    )
-                    for m in (False, True)
-                ]
                 place, known = Place(quantity, component, at), finest(solved, comparison.scene)
-                given = _given(comparison, place)
-                yield Panel(comparison, variant, place, *waves, given, known.name if known else "")
+                yield Panel(
+                    comparison,
+                    variant,
+                    place,
+                    _waves(solved, place, i, moving=False),
+                    _waves(solved, place, i, moving=True),
+                    _given(comparison, place),
+                    known.name if known else "",
+                )
 
 
-def _wave(result: xr.Dataset, quantity: str, component: str, i: int, moving: bool) -> pd.Series:
-    values = by_component(result, quantity, moving)[component][i]
-    return pd.Series(values, np.round(result.time.values, 12))
+def _waves(
+    results: dict[str, xr.Dataset], place: Place, receiver: int, moving: bool
+) -> pd.DataFrame:
+    def wave(one: xr.Dataset) -> pd.Series:
+        values = by_component(one, place.quantity, moving)[place.component][receiver]
+        return pd.Series(values, np.round(one.time.values, 12))
+
+    return pd.DataFrame({name: wave(one) for name, one in results.items()})
 
 
 def _given(comparison: Comparison, place: Place) -> dict[str, pd.Series]:

@@ -60,8 +60,13 @@ def _add_legend(figure: Figure) -> int:
     labels = [fill(label, int((room - HANDLE) / LETTER)) for label in entries]
     columns = int(room / (HANDLE + LETTER * max(map(len, entries))))
     columns = min(max(1, columns), len(entries))
-    place = {"loc": "outside upper center", "ncols": columns, "handlelength": 4.0}
-    figure.legend(entries.values(), labels, **place)
+    figure.legend(
+        list(entries.values()),
+        labels,
+        loc="outside upper center",
+        ncols=columns,
+        handlelength=4.0,
+    )
     return -(-len(entries) // columns) + sum(label.count("\n") for label in labels)
 
 
@@ -75,7 +80,7 @@ def share(axes: Iterable[Axes]) -> None:
 def set_heading(ax: Axes, heading: str, small: bool = False) -> None:
     """Set the heading of axes, in as many lines as their width needs."""
     columns = ax.get_subplotspec().get_gridspec().ncols  # type: ignore[union-attr]
-    width = ax.figure.get_figwidth() / columns - BESIDE
+    width = rcParams["figure.figsize"][0] / columns - BESIDE
     size = rcParams["font.size"] * (SMALL if small else 1.0)
     letters = int(72 * width / (0.85 * LETTER * size))
     parts = (fill(part, letters) for part in heading.split("\n"))

@@ -191,9 +191,9 @@ def _of_engine(engine: str, row: list[Panel]) -> Overlay:
             references.append((known, Trace(REFERENCE, DOTS, curves[known])))
     rest = {panel.at_rest for panel in row}
     at_rest = rest.pop() if len(rest) == 1 else 0.0
-    known, place = {name for name, _ in references}, row[0].place
-    words = known.pop() if len(known) == 1 else f"the {REFERENCE}"
     traces += [dots for _, dots in references]
+    several, place = len({name for name, _ in references}) != 1, row[0].place
+    words = f"the {REFERENCE}" if several else references[0][0]
     return Overlay(f"{engine}, {place.heading}", place.quantity, at_rest, words, traces)
 
 
