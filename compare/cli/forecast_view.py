@@ -1,4 +1,4 @@
-"""The output of `--dry-run`: the estimates of runs, one by one or summed by part."""
+"""The output of `--dry-run`: the estimates of runs, one by one and together."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -13,12 +13,9 @@ UNKNOWN = "no estimate"  # no such run has been timed on this machine
 
 
 def show_forecasts(
-    wanted: Sequence[Run],
-    as_json: bool,
-    failing: Mapping[str, str] | None = None,
-    by_part: bool = False,
+    wanted: Sequence[Run], as_json: bool, failing: Mapping[str, str] | None = None
 ) -> None:
-    """Print the estimated cost of each run, or of the parts of a command, and of all together.
+    """Print the estimated cost of each run, and of all together.
 
     failing : points of a sweep that would not run, with the reason; more are found here. Raises
     SceneError for a run that is not possible and no point of a sweep.
@@ -32,16 +29,11 @@ def show_forecasts(
         failures = [{"point": point, "message": text} for point, text in failed.items()]
         print_json(facts | {"failing": failures})
         return
-    if by_part:
-        parts = table.groupby("point", sort=False)
-        rows = [[part, f"{len(some)} to run", _time(some.seconds)] for part, some in parts]
-        show_table(["part", "", "time"], rows)
-    else:
-        first = 0 if table.point.any() else 1
-        columns = ["", "variant", "engine", "scheme", "steps", "size", "time", "memory"][first:]
-        show_table(columns, [_cells(one)[first:] for one in table.itertuples()])
-        for point, message in failed.items():
-            say(f"would fail: {point}: {message}", "red")
+    first = 0 if table.point.any() else 1
+    columns = ["", "variant", "engine", "scheme", "steps", "size", "time", "memory"]
+    show_table(columns[first:], [_cells(one)[first:] for one in table.itertuples()])
+    for point, message in failed.items():
+        say(f"would fail: {point}: {message}", "red")
     most = f"the largest needs about {spoken(table.bytes.max())} of memory; " if len(table) else ""
     say(f"{len(table)} would run, {_time(table.seconds)}; {most}nothing was run or written")
 

@@ -10,13 +10,13 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import applies, names, solver
 from jointwave.compare.runs import timings
 
-Run = tuple[str, AnyScene, str]  # its point of a sweep or part of a command; its scene; its solver
+Run = tuple[str, AnyScene, str]  # the point of a sweep, empty without; the scene; its solver
 
 
 class Forecast(NamedTuple):
     """The estimate of a run.
 
-    point : of a sweep, or part of a command; "" without. steps : of time, exactly; 0 for exact
+    point : of a sweep, "" without. steps : of time, exactly; 0 for exact
     solutions. size : blocks or freedoms, in words. seconds : of stepping, at the rate last measured
     here; None if never measured. bytes : of memory, as the run itself estimates it at its start;
     for exact solutions that of their waveforms, a lower bound.
@@ -26,17 +26,17 @@ class Forecast(NamedTuple):
     variant: str
     engine: str
     scheme: str
-    steps: int = 0
-    size: str = "-"
-    seconds: float | None = None
-    bytes: float = 0.0
+    steps: int
+    size: str
+    seconds: float | None
+    bytes: float
 
 
 def forecast(scene: AnyScene, name: str, point: str = "") -> Forecast:
-    """Return the estimated cost of a run of an engine or exact solution; nothing is known of other
-    methods. Raises SceneError if it cannot be run, as the run would."""
-    if name not in names():
-        return Forecast(point, scene.name, name, "-")
+    """Return the estimated cost of a run of an engine or exact solution.
+
+    Raises SceneError if it cannot be run, as the run would.
+    """
     one = solver(name)
     run = one.prepare(scene)
     size = f"{one.units(scene, run.freedoms):,} {one.unit}" if run.steps else "-"
@@ -65,6 +65,6 @@ def forecasts(
     return table.astype({"seconds": float}), failing
 
 
-def all_runs(scenes: Iterable[AnyScene], part: str = "") -> list[Run]:
+def all_runs(scenes: Iterable[AnyScene]) -> list[Run]:
     """Return the runs of all solvers that apply to some scenes."""
-    return [(part, scene, name) for scene in scenes for name in names() if applies(name, scene)]
+    return [("", scene, name) for scene in scenes for name in names() if applies(name, scene)]

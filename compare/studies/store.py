@@ -164,14 +164,11 @@ def _named(name: str, point: P, work: Callable[[P], T], folder: Path) -> tuple[s
 
 def on_executor(
     executor: Executor, work: Callable[[P], T], points: Mapping[str, P]
-) -> Iterator[tuple[str, T | None]]:
+) -> Iterator[tuple[str, T]]:
     """Compute points on an executor."""
     futures = {executor.submit(work, point): name for name, point in points.items()}
     for future in as_completed(futures):
-        try:
-            yield futures[future], future.result()
-        except BrokenProcessPool:
-            yield futures[future], None
+        yield futures[future], future.result()
 
 
 def on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]) -> T | None:

@@ -10,7 +10,6 @@ from jointwave.cases.errors import SceneError
 from jointwave.compare.cli import completion, terminal
 from jointwave.compare.cli.options import (
     CORES,
-    DryOption,
     JsonOption,
     OutOption,
     SceneArgument,
@@ -40,7 +39,6 @@ def effects(
         "effects"
     ),
     workers: WorkersOption = CORES,
-    dry: DryOption = False,
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
@@ -54,12 +52,6 @@ def effects(
     from jointwave.compare.studies.effects_summary import summarise
 
     wanted = _cases(scene, changes, variant, strict)
-    if dry:
-        from jointwave.compare.cli.forecast_view import show_forecasts
-        from jointwave.compare.studies import parts
-
-        show_forecasts(parts.of_effects(wanted, out), as_json, by_part=True)
-        return
     run_and_show(
         f"{len(wanted)} variants",
         out,
@@ -103,7 +95,6 @@ def study(
     ],
     out: Annotated[Path, typer.Option(help="Folder for tables and points.")] = Path("studies"),
     workers: WorkersOption = CORES,
-    dry: DryOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Run a study: a scene solved in many ways, each with its error and its cost, as one table
@@ -114,12 +105,6 @@ def study(
     engines on hard cases, each with a criterion from theory; `oblique-joint` compares reflection
     and transmission of P and SV waves at one joint, over the angle, `parallel-joints` at several.
     """
-    if dry:
-        from jointwave.compare.cli.forecast_view import show_forecasts
-        from jointwave.compare.studies import parts
-
-        show_forecasts(parts.of_study(name, out), as_json, by_part=True)
-        return
     from jointwave.compare.cli.study_view import run_and_show
 
     folder = out / Path(name).stem
@@ -165,7 +150,6 @@ def report(
         list[Path],
         typer.Option("--ensemble", help="Folder that --ensemble of compare or run has written."),
     ] = [],
-    dry: DryOption = False,
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
@@ -177,18 +161,6 @@ def report(
     for one in scenes or []:
         load(one, [], None, strict)
     from jointwave.compare.cli import views
-
-    if dry:
-        from jointwave.compare.cli.forecast_view import show_forecasts
-        from jointwave.compare.report.scenes import ROCK_MASSES, asked_for
-        from jointwave.compare.scenes import load as load_variants
-        from jointwave.compare.studies import parts
-
-        asked = [*asked_for(scenes or ()), *(() if scenes else asked_for(ROCK_MASSES))]
-        variants = [load_variants(one.file) for one in asked]
-        runs = parts.of_report(variants, None if scenes else out)
-        show_forecasts(runs, as_json, by_part=True)
-        return
     from jointwave.compare.report.report import build
 
     with (

@@ -167,7 +167,7 @@ def test_strict_refuses_a_sweep_and_a_page(jointwave, tmp_path):
         (("explain", SCENE, "--set", "pillar.lenght=1"), "length"),
         (("explain", SCENE, "--set", "pilar.length=1"), "pillar"),
         (("explain", SCENE, "--variant", "zeta 0.2"), "zeta 0.02"),
-        (("study", "dimension", "--dry-run"), "dimensions"),
+        (("study", "dimension"), "dimensions"),
     ],
 )
 def test_a_name_that_is_unknown_is_told_the_nearest(jointwave, typed, meant):

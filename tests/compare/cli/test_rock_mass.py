@@ -77,10 +77,6 @@ def test_effects_of_what_rigid_blocks_cannot_be_are_refused_in_one_line(says):
     said = says("effects joint.toml --workers 1", code=2)
     assert said.out == "" and said.err.count("\n") == 1
     assert "dem does not apply: numerics.dem.block" in said.err
-    ((part, *_),) = (
-        one.values() for one in json.loads(says("effects joint.toml --dry-run --json").out)
-    )
-    assert part == "joint.toml"
 
 
 def test_a_view_of_it_is_a_picture_of_both_engines(jointwave, says, tmp_path, monkeypatch):

@@ -10,11 +10,8 @@ from jointwave.cases.size import LIMIT, estimates, refuse_beyond_memory
 from jointwave.compare.cli.forecast_view import in_words
 from jointwave.compare.engines import solve
 from jointwave.compare.runs import timings
-from jointwave.compare.studies import parts
 from jointwave.compare.studies.forecast import forecast, forecasts
 from jointwave.compare.studies.step_cost import step_costs
-from jointwave.compare.studies.study import load
-from jointwave.compare.studies.work_precision import run
 
 SHORT = {"time__duration": 0.01, "record__velocity": [20.25]}
 SPACE = {"load__direction": [0.6, 0.8, 0.0]}
@@ -153,11 +150,6 @@ def test_nothing_is_run_or_written(dry):
     assert "12 would run" in said and "7,200" in said and "100 blocks" in said
     said = dry("compare", SCENE, "--variant", "").out
     assert "8 would run" in said and "lattice" in said
-    said = dry("effects", SCENE, "--variant", "zeta 0.05").out
-    assert f"{SCENE} zeta 0.05" in said and " to run" in said
-    assert "jointed rock, order 3" in dry("study", "free-pillar").out
-    said = dry("report").out
-    assert "scenes" in said and "hard cases" in said and "oblique-joint" in said
 
 
 def test_every_point_of_a_sweep_is_told_and_which_would_fail(dry):
@@ -171,23 +163,3 @@ def test_every_point_of_a_sweep_is_told_and_which_would_fail(dry):
 def test_a_scene_that_cannot_run_is_one_line(dry):
     said = dry("run", SCENE, "--set", "numerics.dem.step_fraction=1.5", code=2).err
     assert said.count("\n") == 1 and "critical step" in said
-
-
-def test_the_time_of_a_study_is_that_of_its_runs_that_are_not_done(tmp_path):
-    """Points that are kept are not to do, and take no time."""
-    file = tmp_path / "mine.toml"
-    file.write_text(
-        'title = "mine"\nscene = "guo-li-2002/fig-03"\n'
-        'changes = { "time.duration" = 0.01 }\n[[curves]]\nlabel = "blocks"\nmethod = "dem"\n'
-        'vary = { "numerics.dem.step_fraction" = [0.4, 0.05] }\n'
-    )
-    before, _ = forecasts(parts.of_study(str(file), tmp_path))
-    assert list(before.point) == ["mine: blocks (dem)"] * 2 and before.seconds.isna().all()
-    coarse, fine = (solve("dem", point.scene) for point in load(str(file)).points())
-    scene = load(str(file)).points()[0].scene
-    timings.note("dem", scene, dict(coarse.attrs) | {"seconds_stepping": 2.0})
-    timed, _ = forecasts(parts.of_study(str(file), tmp_path))
-    more = fine.attrs["steps"] / coarse.attrs["steps"]
-    assert more > 2 and list(timed.seconds) == pytest.approx([2.0, 2.0 * more])
-    run(load(str(file)), tmp_path / "mine")
-    assert parts.of_study(str(file), tmp_path) == []
