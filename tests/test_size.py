@@ -1,13 +1,11 @@
 """Runs that would not fit the memory are refused before anything of theirs is made."""
 
-import hashlib
 import os
 import re
 import struct
 import subprocess
 import sys
 import tracemalloc
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -24,10 +22,8 @@ from jointwave.compare.exact.bar import images
 from jointwave.compare.misfit.external_netcdf import read_netcdf
 from jointwave.compare.misfit.places import COMPONENT_DIMENSIONS, QUANTITIES
 from jointwave.compare.report import peers
-from jointwave.compare.runs.checkpoint.files import Checkpoints
 from jointwave.compare.runs.checkpoint.resume import result_of
 from jointwave.compare.runs.output import read_kept
-from jointwave.compare.runs.processes import ALONE
 from jointwave.compare.studies.measure import PointRow
 from jointwave.results.labels import RECEIVERS
 
@@ -249,18 +245,6 @@ def classic(path, count, variables, size):
     return hollow(path, header, size)
 
 
-def checkpoint(path, shape, length, compression):
-    """Write a checkpoint whose digest fits, with one array that is zero."""
-    header = f"{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
-    with zipfile.ZipFile(path, "w", compression) as whole, whole.open("00000.npy", "w") as file:
-        file.write(b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header.encode())
-        for _ in range(length // 1_000_000):
-            file.write(bytes(1_000_000))
-    with path.open("r+b") as file:
-        digest = hashlib.file_digest(file, "sha256").hexdigest()
-        file.write(digest.encode())
-
-
 def scene_of(path):
     path.write_text("a=1\n" * 600_000)
     return cases.load(path)
@@ -269,12 +253,6 @@ def scene_of(path):
 def kept(path, text):
     path.write_text(text)
     return read_kept(path, PointRow)
-
-
-def resumed(path, *content):
-    files = Checkpoints(path, {"scene": "a"}, ALONE)
-    checkpoint(files._path(5), *content)
-    files.load(5, (np.zeros(3),))
 
 
 def lines(path, text):
@@ -296,12 +274,6 @@ BOMBS = {
     "curves in one line": lambda p: read_columns(lines(p / "a.csv", "0," * 1_500_000)),
     "a hollow CSV": lambda p: read_columns(hollow(p / "a.csv", b"0,0\n", 20_000_000)),
     "a load": lambda p: read_history(p, lines(p / "a.csv", "0,0\n" * 5_000_000).name, "stress"),
-    "a checkpoint that is compressed": lambda p: resumed(
-        p / "a.nc", (50_000_000,), 40_000_000, zipfile.ZIP_DEFLATED
-    ),
-    "a checkpoint that is short": lambda p: resumed(
-        p / "a.nc", (50_000_000,), 8_000_000, zipfile.ZIP_STORED
-    ),
     "a row": lambda p: read_kept(hollow(p / "a.json", b"{"), PointRow),
     "a row of lists": lambda p: kept(p / "a.json", "[" + "[]," * 2_000_000 + "0]"),
     "a row of depth": lambda p: kept(p / "a.json", "[" * 500_000),
@@ -323,6 +295,4 @@ def test_a_file_is_refused_before_it_takes_the_memory(name, limit, tmp_path):
     tracemalloc.stop()
     assert most < 0.25e9
     assert len(str(error.value).splitlines()) == 1
-    assert re.search(
-        "would need|too large|longer than|not a checkpoint|not valid JSON", str(error.value)
-    )
+    assert re.search("would need|too large|longer than|not valid JSON", str(error.value))

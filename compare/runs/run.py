@@ -2,9 +2,10 @@
 
 import json
 import os
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import xarray as xr
 
@@ -13,22 +14,25 @@ from jointwave.compare.engines import Progress, solve, solver
 from jointwave.compare.runs import timings
 from jointwave.compare.runs.checkpoint.resume import (
     CheckpointSettings,
-    ResumableRun,
+    RunCheckpointer,
     result_of,
-    resumable,
 )
+from jointwave.compare.runs.checkpoint.signals import Signals
 from jointwave.compare.runs.jobs import Job
 from jointwave.compare.runs.output import write_dataset
 from jointwave.compare.runs.processes import ALONE, Processes
 from jointwave.results.dataset import energy_residual, open_ledger
 
+T = TypeVar("T")
+
 
 class Done(NamedTuple):
     """One computed result with its cost.
 
+    residual, ledger : how far its energy ledger is open, over the work, and the warning of that; ""
+        where it closes.
     fragments : the pieces between broken joints, see `dem.fragments`; None if no joint can break.
     out_of_balance : force ratio of the static state at its start; None without one.
-    ledger : the warning of an energy ledger that is open, "" where it closes.
     fields : the files that show its snapshots; empty without snapshots.
     """
 
@@ -57,72 +61,62 @@ def execute(
     Raises SceneError if a run fails, its file or a VTX file cannot be written, or its checkpoint
     cannot be used; InterruptedRun if a signal has stopped a run.
     """
-    done: list[Done] = []
+    settings = settings or CheckpointSettings(0.0, False, Signals())
     if vtx:
         _refuse_vtx(jobs)
-    watches = [_resumable(job, settings, processes) for job in jobs]
 
-    def part_of(i: int) -> Progress:
-        return lambda fraction: progress((i + fraction) / len(jobs))
-
-    for i, (job, watched) in enumerate(zip(jobs, watches, strict=True)):
-        done += _made(job, watched, part_of(i), vtx, processes)
-        progress((i + 1) / len(jobs))
-        if settings is not None and processes.is_first:
+    keepers = [_shared(job, processes, partial(_keeper, job, settings)) for job in jobs]
+    done: list[Done] = []
+    for i, (job, keeper) in enumerate(zip(jobs, keepers, strict=True)):
+        part: Progress = lambda fraction, i=i: progress((i + fraction) / len(jobs))  # noqa: E731
+        found = _shared(job, processes, partial(_run, job, keeper, part, vtx))
+        done += [found] if found else []
+        part(1.0)
+        if processes.is_first:
             settings.signals.act()
     return done
 
 
-def _resumable(
-    job: Job, settings: CheckpointSettings | None, processes: Processes
-) -> ResumableRun | None:
-    """Return the checkpoints of a job on the processes that share it, None on others.
-
-    Raises SceneError if its result could not be written in the end.
-    """
-
-    def by(who: Processes) -> ResumableRun:
-        if job.path.is_dir():
-            raise SceneError(str(job.path), "", None, "is a folder, must be a file")
-        if job.path.exists() and not os.access(job.path, os.W_OK):
-            raise SceneError(str(job.path), "", None, "is write-protected")
-        return resumable(job.scene, job.name, job.path, settings, who)
-
-    return by(processes) if _is_shared(job) else processes.by_first(lambda: by(ALONE))
+def _shared(job: Job, processes: Processes, work: Callable[[Processes], T]) -> T | None:
+    """Return `work` of the processes that share a job, None on those that do not."""
+    if solver(job.name).shares:
+        return work(processes)
+    return processes.by_first(lambda: work(ALONE))
 
 
-def _is_shared(job: Job) -> bool:
-    """Return whether several processes run a job together."""
-    return solver(job.name).shares
+def _keeper(job: Job, settings: CheckpointSettings, processes: Processes) -> RunCheckpointer:
+    """Return the checkpoints of a job; raises SceneError if its result could not be written."""
+    if job.path.is_dir():
+        raise SceneError(str(job.path), "", None, "is a folder, must be a file")
+    if job.path.exists() and not os.access(job.path, os.W_OK):
+        raise SceneError(str(job.path), "", None, "is write-protected")
+    return RunCheckpointer(job.scene, job.name, job.path, settings, processes)
 
 
-def _made(
-    job: Job, watched: ResumableRun | None, progress: Progress, vtx: bool, processes: Processes
-) -> list[Done]:
-    """Run a job and write its result; return what was done, empty except on the first process."""
-    if watched is None:  # only the first process runs it
-        done = processes.by_first(lambda: None)
-    elif watched.is_made:
-        done = processes.by_first(lambda: _finished(job, watched, vtx))
-    elif _is_shared(job):
-        result = _run(job, watched, progress, processes)
-        done = processes.by_first(lambda: _written(job, watched, result, vtx))
-    else:
-        done = processes.by_first(
-            lambda: _written(job, watched, _run(job, watched, progress, ALONE), vtx)
-        )
-    return [] if done is None else [done]
+def _refuse_vtx(jobs: list[Job]) -> None:
+    from jointwave.compare.runs.field_files import refuse_vtx
+
+    for job in jobs:
+        if job.scene.record.fields is None:
+            raise SceneError(job.scene.where, "record.fields", None, "is required by --vtx")
+    refuse_vtx()
 
 
-def _run(job: Job, watched: ResumableRun, progress: Progress, processes: Processes) -> xr.Dataset:
-    try:
-        return solve(job.name, job.scene, progress, processes.comm, watched.keeper)
-    except StoppedError as error:
-        processes.by_first(partial(_keep, job, error))
-        raise
+def _run(
+    job: Job, keeper: RunCheckpointer, progress: Progress, vtx: bool, processes: Processes
+) -> Done | None:
+    """Run a job, unless its result exists, and write its files; None but on the first process."""
+    result = None
+    if not keeper.is_made:
+        try:
+            result = solve(job.name, job.scene, progress, processes.comm, keeper)
+        except StoppedError as error:
+            processes.by_first(partial(_write_stopped, job, error))
+            raise
+    return processes.by_first(lambda: _written(job, keeper, result, vtx))
 
 
-def _keep(job: Job, error: StoppedError) -> None:
+def _write_stopped(job: Job, error: StoppedError) -> None:
     """Write the partial result of a stopped run, beside the path of its result."""
     result, error.result = error.result, None
     if result is None:
@@ -140,43 +134,31 @@ def _stopped(job: Job) -> Path:
     return job.path.with_suffix(".stopped.nc")
 
 
-def _written(job: Job, watched: ResumableRun, result: xr.Dataset, vtx: bool) -> Done:
-    """Write a result with its snapshots and remove the run's checkpoints."""
-    signed = watched.signed(result)
-    write_dataset(job.path, signed)
-    if watched.keeper is not None and watched.keeper.done:
-        _stopped(job).unlink(missing_ok=True)
-    else:
-        timings.note(job.name, job.scene, result.attrs)
-    return _finished(job, watched, vtx, signed)
-
-
-def _finished(job: Job, watched: ResumableRun, vtx: bool, result: xr.Dataset | None = None) -> Done:
-    """Write the snapshots of a result, by default that of an earlier command."""
+def _written(job: Job, keeper: RunCheckpointer, result: xr.Dataset | None, vtx: bool) -> Done:
+    """Write a result, None: that of an earlier command, and its snapshots; remove checkpoints."""
     if result is None:
-        result = result_of(job.path, watched.signature)
+        result = result_of(job.path, keeper.signature)
         if result is None:
             raise SceneError(str(job.path), "", None, "has changed since this command started")
+    else:
+        write_dataset(job.path, keeper.signed(result))
+        if keeper.done:
+            _stopped(job).unlink(missing_ok=True)
+        else:
+            timings.note(job.name, job.scene, result.attrs)
+    has_ledger = "energy" in result
     done = Done(
-        job,
-        int(result.attrs.get("steps", 0)),
-        float(result.attrs.get("seconds_stepping", 0.0)),
-        *_residual(result),
-        json.loads(result.attrs.get("fragments", "null")),
-        result.attrs.get("static_out_of_balance"),
-        _write_snapshots(job, result, vtx),
+        job=job,
+        steps=int(result.attrs.get("steps", 0)),
+        seconds=float(result.attrs.get("seconds_stepping", 0.0)),
+        residual=energy_residual(result) if has_ledger else None,
+        ledger=open_ledger(result) if has_ledger else "",
+        fragments=json.loads(result.attrs.get("fragments", "null")),
+        out_of_balance=result.attrs.get("static_out_of_balance"),
+        fields=_write_snapshots(job, result, vtx),
     )
-    watched.checkpoints.remove()
+    keeper.files.remove()
     return done
-
-
-def _refuse_vtx(jobs: list[Job]) -> None:
-    from jointwave.compare.runs.field_files import refuse_vtx
-
-    for job in jobs:
-        if job.scene.record.fields is None:
-            raise SceneError(job.scene.where, "record.fields", None, "is required by --vtx")
-    refuse_vtx()
 
 
 def _write_snapshots(job: Job, result: xr.Dataset, vtx: bool) -> list[Path]:
@@ -191,8 +173,3 @@ def _write_snapshots(job: Job, result: xr.Dataset, vtx: bool) -> list[Path]:
         return []
     files = [write_pvd(job.path.with_suffix(".pvd"), found)]
     return [*files, write_vtx(job.path.with_suffix(".bp"), found)] if vtx else files
-
-
-def _residual(result: xr.Dataset) -> tuple[float | None, str]:
-    """Return how far the energy ledger of a result is open, over the work, and its warning."""
-    return (energy_residual(result), open_ledger(result)) if "energy" in result else (None, "")

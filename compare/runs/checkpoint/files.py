@@ -2,36 +2,29 @@
 
 The file name contains the run, the sample and the process. A set of files is complete when every
 process of the run has one; an older set is removed only after that, so that a killed run always
-leaves a complete set. Each file is numpy's .npz, without pickles, followed by the SHA-256 of its
-contents in hexadecimal.
+leaves a complete set. Each file is numpy's .npz, without pickles and with the checksums of zip.
 """
 
 import hashlib
 import io
 import json
-import os
 import re
-import zipfile
+from collections import Counter
 from collections.abc import Iterator
-from contextlib import contextmanager
-from math import prod
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.size import require, within
+from jointwave.cases.size import require
 from jointwave.compare.runs.checkpoint.signature import Signature, differences
 from jointwave.compare.runs.output import write
 from jointwave.compare.runs.processes import Processes
 from jointwave.results.arrays import arrays, fill
 
-DIGEST = 64  # characters of a SHA-256
 COPIES = 2  # of a file: its arrays, and one of them as bytes
-BUFFER = 1 << 20  # bytes
-DIRECTORY = 50_000_000  # bytes, of the zip's own directory in memory
-ABOUT = "about"  # the array that holds the signature
+ABOUT = "about"  # the first array, the signature as JSON
 ANEW = "remove it, or run without --resume"
 
 
@@ -41,7 +34,6 @@ class Name(NamedTuple):
     path: Path
     run: str
     samples: int
-    rank: int
 
 
 class Checkpoints:
@@ -62,7 +54,7 @@ class Checkpoints:
         """
         samples = self.processes.told_by_first(self._newest)
         if samples:
-            self.processes.together(lambda: _check(self._path(samples)))
+            self.processes.together(lambda: _read(self._path(samples)))
         return samples
 
     def load(self, samples: int, parts: Any) -> None:
@@ -70,7 +62,7 @@ class Checkpoints:
         path = self._path(samples)
 
         def read() -> None:
-            values = [values for name, values in _read(path).items() if name != ABOUT]
+            _, *values = _read(path).values()
             if [_kind(a) for a in values] != [_kind(a) for a in arrays(parts)]:
                 raise SceneError(str(path), "", None, f"does not fit this run: {ANEW}")
             fill(parts, values)
@@ -82,10 +74,14 @@ class Checkpoints:
 
         Raises OSError, on all processes, if any of them cannot write; the older ones are then kept.
         """
-        path, text = self._path(samples), json.dumps(self.signature)
-        held = {ABOUT: np.array(text)} | {f"{i:05d}": a for i, a in enumerate(arrays(parts))}
+        path, content = self._path(samples), io.BytesIO()
+        held = {f"{i:05d}": a for i, a in enumerate(arrays(parts))}
+        # In memory first: numpy reports a full disk by errors of its own.
+        np.savez(content, **{ABOUT: np.array(json.dumps(self.signature))}, **held)
         try:
-            self.processes.together(lambda: write(path, lambda place: _write(place, held)))
+            self.processes.together(
+                lambda: write(path, lambda place: place.write_bytes(content.getbuffer()))
+            )
         except OSError:
             path.unlink(missing_ok=True)
             raise
@@ -101,100 +97,51 @@ class Checkpoints:
 
     def _found(self) -> Iterator[Name]:
         """Yield the checkpoints of this result, of any run."""
-        pattern = re.compile(
-            rf"\.{re.escape(self.result.stem)}\.checkpoint-([0-9a-f]+)-(\d+)-(\d+)\.npz"
-        )
+        stem = re.escape(self.result.stem)
+        pattern = re.compile(rf"\.{stem}\.checkpoint-([0-9a-f]+)-(\d+)-\d+\.npz")
         for path in self.result.parent.glob(".*.npz"):
             if match := pattern.fullmatch(path.name):
-                yield Name(path, match[1], int(match[2]), int(match[3]))
+                yield Name(path, match[1], int(match[2]))
 
     def _newest(self) -> int:
-        ranks: dict[int, set[int]] = {}
-        others = []
-        for name in self._found():
-            if name.run == self.run:
-                ranks.setdefault(name.samples, set()).add(name.rank)
-            else:
-                others.append(name.path)
-        whole = set(range(self.processes.size))
-        found = max((n for n, there in ranks.items() if there == whole), default=0)
-        if not found and others:
+        found = list(self._found())
+        counts = Counter(name.samples for name in found if name.run == self.run)
+        complete = [samples for samples, n in counts.items() if n == self.processes.size]
+        others = [name.path for name in found if name.run != self.run]
+        if others and not complete:
             self._refuse(others[0])
-        return found
+        return max(complete, default=0)
 
     def _refuse(self, other: Path) -> None:
         """Raise SceneError with the differences from another run."""
-        with _as_damage(other):
+        try:
             signature: Signature = dict(json.loads(str(_read(other)[ABOUT])))
+        except (ValueError, TypeError):
+            signature = self.signature
         differing = differences(self.signature, signature) or ["run"]
         raise SceneError(str(other), "", None, f"is from another {', '.join(differing)}: {ANEW}")
 
     def _remove_but(self, samples: int) -> None:
-        for name in self._found():
-            if (name.run, name.samples) != (self.run, samples):
-                name.path.unlink(missing_ok=True)
-
-
-def _write(place: Path, held: dict[str, np.ndarray]) -> None:
-    whole = io.BytesIO()  # numpy reports errors of its own if the disk is full
-    np.savez(whole, **held)
-    with place.open("wb") as file:
-        file.write(whole.getbuffer())
-        file.write(hashlib.sha256(whole.getbuffer()).hexdigest().encode())
+        for path, *of in self._found():
+            if of != [self.run, samples]:
+                path.unlink(missing_ok=True)
 
 
 def _read(path: Path) -> dict[str, np.ndarray]:
-    """Return the arrays of a file, in their order; raises SceneError if it is damaged."""
-    size = _check(path)
-    with _as_damage(path), within(COPIES * size + DIRECTORY), zipfile.ZipFile(path) as whole:
-        members = whole.infolist()
-        if sum(member.file_size for member in members) > size:
-            raise ValueError("is truncated")
-        return {m.filename.removesuffix(".npy"): _array(whole, m) for m in members}
-
-
-def _check(path: Path) -> int:
-    """Return the size of a file (bytes), checked without loading it.
+    """Return the arrays of a file, in their order.
 
     Raises SceneError if it is damaged, MemoryError if it is too large for the memory.
     """
-    with path.open("rb") as file:
-        size = os.fstat(file.fileno()).st_size
-        require(COPIES * size, str(path))
-        digest, left = hashlib.sha256(), max(size - DIGEST, 0)
-        while left and (part := file.read(min(left, BUFFER))):
-            digest.update(part)
-            left -= len(part)
-        if digest.hexdigest().encode() != file.read():
-            raise SceneError(str(path), "", None, f"is damaged (its SHA-256 differs): {ANEW}")
-        return size
-
-
-def _array(whole: zipfile.ZipFile, member: zipfile.ZipInfo) -> np.ndarray:
-    """Return an array of a file; raises ValueError if it is not in the format of `_write`.
-
-    Members are uncompressed and have the size of their array, so none is larger than the file.
-    """
-    if member.compress_type != zipfile.ZIP_STORED or member.file_size != member.compress_size:
-        raise ValueError("is compressed")
-    with whole.open(member) as file:
-        if np.lib.format.read_magic(file) != (1, 0):
-            raise ValueError("is from another version")
-        shape, by_columns, kind = np.lib.format.read_array_header_1_0(file)
-        if kind.hasobject or file.tell() + kind.itemsize * prod(shape) != member.file_size:
-            raise ValueError("has the wrong length")
-        return np.frombuffer(file.read(), kind).reshape(shape, order="F" if by_columns else "C")
-
-
-@contextmanager
-def _as_damage(path: Path) -> Iterator[None]:
-    """Turn any error from a file's content into one line: its digest may match nonetheless."""
+    size = path.stat().st_size
+    require(COPIES * size, str(path))
     try:
-        yield
-    except (SceneError, OSError, MemoryError):
-        raise
-    except Exception:
-        raise SceneError(str(path), "", None, f"is not a checkpoint: {ANEW}") from None
+        with path.open("rb") as file, np.load(file) as content:
+            found = dict(content)
+        if next(iter(found), None) != ABOUT:
+            raise ValueError("is without a signature")
+    except Exception:  # numpy and zipfile raise many kinds
+        raise SceneError(str(path), "", None, f"is damaged: {ANEW}") from None
+    return found
 
 
 def _kind(array: np.ndarray) -> tuple:

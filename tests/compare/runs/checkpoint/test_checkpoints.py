@@ -1,7 +1,5 @@
 """Checkpoints restore the saved arrays, or report in one line why they cannot."""
 
-import hashlib
-import io
 import shutil
 import signal
 from contextlib import suppress
@@ -16,7 +14,7 @@ from jointwave import cases
 from jointwave.cases.errors import SceneError
 from jointwave.compare.runs.checkpoint.files import Checkpoints
 from jointwave.compare.runs.processes import ALONE, Processes
-from jointwave.results.arrays import copied
+from jointwave.results.arrays import arrays, copied
 
 SIGNATURE = {"scene": "a", "engine": "dem", "number of processes": "1", "program": "1"}
 BEYOND = Path(cases.__file__).parent / "beyond"
@@ -94,16 +92,24 @@ def test_checkpoint_of_other_shapes_is_refused(tmp_path, parts):
         files.load(5, (np.zeros(3),))
 
 
-def test_any_flipped_bit_is_noticed(tmp_path, parts):
-    """Wherever it is: in the zip's directory, in an array, in the checksum itself."""
+def test_no_flipped_bit_changes_what_comes_back(tmp_path, parts):
+    """Wherever it is: in the zip's directory, in an array, in a checksum."""
     files = Checkpoints(tmp_path / "dem.nc", SIGNATURE, ALONE)
     files.save(5, parts)
     (path,) = tmp_path.iterdir()
-    whole = path.read_bytes()
+    whole, refused = path.read_bytes(), 0
     for at in range(0, len(whole), 7):
         path.write_bytes(whole[:at] + bytes([whole[at] ^ 16]) + whole[at + 1 :])
-        with pytest.raises(SceneError, match="is damaged"):
+        try:
             files.newest()
+        except SceneError as error:
+            refused += "is damaged" in str(error)
+        else:
+            back = emptied(parts)
+            files.load(5, back)
+            for one, other in zip(arrays(back), arrays(parts), strict=True):
+                assert one.tobytes() == other.tobytes()
+    assert refused > len(whole) / 7 / 3
     for end in (0, 1, 63, 64, len(whole) // 2, len(whole) - 1):
         path.write_bytes(whole[:end])
         with pytest.raises(SceneError, match="is damaged"):
@@ -114,22 +120,19 @@ def test_any_flipped_bit_is_noticed(tmp_path, parts):
 
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(at=st.integers(0, 2000), new=st.binary(max_size=4), about=st.sampled_from(["", "1", "{}"]))
-def test_content_that_its_digest_fits_is_one_line(tmp_path_factory, at, new, about):
-    """A forged checkpoint can have a valid SHA-256: it is restored or refused."""
+def test_content_of_another_form_is_one_line(tmp_path_factory, at, new, about):
+    """It is restored or refused."""
     folder = tmp_path_factory.mktemp("checkpoint")
     files = Checkpoints(folder / "dem.nc", SIGNATURE, ALONE)
     parts = (np.arange(6.0).reshape(3, 2), np.array([True]))
     files.save(5, parts)
     (path,) = folder.iterdir()
-    body = path.read_bytes()[:-64]
-    changed = body[:at] + new + body[at + len(new) :]
+    body = path.read_bytes()
+    path.write_bytes(body[:at] + new + body[at + len(new) :])
     if about:
-        buffer = io.BytesIO()
-        np.savez(buffer, **{"00000": parts[0], "00001": parts[1], "about": np.array(about)})
-        changed = buffer.getvalue()
-    path.write_bytes(changed + hashlib.sha256(changed).hexdigest().encode())
-    assert files.newest() == 5
+        np.savez(path, about=np.array(about), **{"00000": parts[0], "00001": parts[1]})
     with suppress(SceneError):
+        files.newest()
         files.load(5, emptied_of(parts))
     with pytest.raises(SceneError) as error:
         Checkpoints(folder / "dem.nc", SIGNATURE | {"engine": "x"}, ALONE).newest()
