@@ -204,7 +204,7 @@ def test_vtx_gets_every_value_at_its_node(two_cells, kind, tmp_path, monkeypatch
             seen.append((time, at, *values))
 
     monkeypatch.setattr(dolfinx_export, "vtx_writer", lambda: Recorder)
-    monkeypatch.setattr(field_files, "write_folder", lambda path, save: save(tmp_path / "made"))
+    monkeypatch.setattr(field_files, "write", lambda path, save: save(tmp_path / "made"))
     write_vtx(tmp_path / "dem.bp", found)
     assert [time for time, *_ in seen] == found.time.tolist()
     for i, (_, at, displacement, velocity) in enumerate(seen):

@@ -11,7 +11,7 @@ import meshio
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.compare.runs.output import refuse_foreign, write, write_folder
+from jointwave.compare.runs.output import refuse_foreign, write
 from jointwave.results.snapshots import Snapshots
 
 #: From VTK's order of corners to dolfinx's tensor-product order.
@@ -33,7 +33,7 @@ def write_pvd(path: Path, s: Snapshots) -> Path:
         for i, name in enumerate(names):
             _mesh(s, i).write(new / name)
 
-    write_folder(folder, save)
+    write(folder, save)
     root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
     collection = ElementTree.SubElement(root, "Collection")
     for time, name in zip(s.time.tolist(), names, strict=True):
@@ -98,7 +98,7 @@ def write_vtx(path: Path, s: Snapshots) -> Path:
                 velocity.x.array.reshape(-1, 3)[at] = s.velocity[i, nodes]
                 file.write(time)
 
-    return write_folder(path, save)
+    return write(path, save)
 
 
 def _functions(s: Snapshots) -> tuple[Any, Any, np.ndarray, np.ndarray]:

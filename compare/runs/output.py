@@ -1,10 +1,9 @@
-"""The only place that writes files: each under a temporary name first, then renamed."""
+"""The only place that writes files: each in a temporary folder first, then moved."""
 
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from errno import EIO
 from pathlib import Path
 from typing import TypeVar
@@ -21,29 +20,35 @@ T = TypeVar("T")
 
 LARGEST_ROW = 100_000_000  # bytes, of a point saved by a study, a sweep or the robustness suite
 FORMULA = ("=", "+", "-", "@")  # first characters of a spreadsheet formula
-UNFINISHED = ".unfinished-"  # in the names of files being written, which begin with a dot
+UNFINISHED = ".unfinished-"  # in the names of folders being filled, which begin with a dot
 
 
 def write(path: Path, save: Callable[[Path], object]) -> Path:
-    """Let `save` write a file and move it to `path` once it is complete and synced to disk.
+    """Let `save` write a file or a folder and move it to `path` once it is complete.
 
-    An existing file at `path` is untouched until then, and kept if `save` fails.
-    Raises OSError, which names `path`, if it cannot be written.
+    A file or folder at `path` is replaced then, and kept if `save` fails.
+    Raises OSError, which names `path`, if it cannot be written; SceneError if a folder there
+    contains files of other kinds.
     """
-    with _names(path):
+    try:
         path.parent.mkdir(parents=True, exist_ok=True)
         prefix = f".{path.stem.lstrip('.')}{UNFINISHED}"
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=prefix, suffix=path.suffix)
-        os.close(handle)
-        temporary = Path(name)
-        try:
-            save(temporary)
-            temporary.chmod(0o644)
-            with temporary.open("rb") as file:
-                os.fsync(file.fileno())  # a full disk may show only now
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
+        with tempfile.TemporaryDirectory(dir=path.parent, prefix=prefix) as place:
+            new = Path(place, path.name)
+            save(new)
+            if new.is_dir():
+                _refuse_foreign_folder(path, new)
+                if path.exists() or path.is_symlink():
+                    path.replace(Path(place, "old"))
+            else:
+                with new.open("rb") as file:
+                    os.fsync(file.fileno())  # a full disk may show only now
+            new.replace(path)
+    except OSError as error:
+        if UNFINISHED not in str(error.filename or UNFINISHED):
+            raise
+        # Some libraries report a full disk with messages of their own.
+        raise OSError(error.errno or EIO, error.strerror or str(error), str(path)) from None
     return path
 
 
@@ -60,25 +65,10 @@ def create(path: Path, content: bytes) -> Path:
     return write(path, save)
 
 
-@contextmanager
-def _names(path: Path) -> Iterator[None]:
-    """Make an OSError name the file, not its temporary one."""
-    try:
-        yield
-    except OSError as error:
-        if UNFINISHED not in str(error.filename or UNFINISHED):
-            raise
-        # Some libraries report a full disk with messages of their own.
-        raise OSError(error.errno or EIO, error.strerror or str(error), str(path)) from None
-
-
 def sweep(folder: Path) -> None:
     """Remove unfinished files of killed processes from a folder."""
     for left in folder.glob(f".*{UNFINISHED}*"):
-        if left.is_dir():
-            shutil.rmtree(left, ignore_errors=True)
-        else:
-            left.unlink(missing_ok=True)
+        shutil.rmtree(left, ignore_errors=True)
 
 
 #: First bytes of a result: NetCDF 3, or NetCDF 4 of other programs; a result may also be empty.
@@ -114,25 +104,6 @@ def _refuse_foreign_folder(path: Path, new: Path) -> None:
     if foreign:
         allowed = "is not a result and would be overwritten: choose another --out"
         raise SceneError(str(min(foreign)), "", None, allowed)
-
-
-def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
-    """Let `save` create and fill a folder, and move it to `path` once it is complete.
-
-    An existing folder at `path` is replaced, and kept unchanged if `save` fails.
-    Raises SceneError if it contains other files.
-    """
-    with _names(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        prefix = f".{path.stem.lstrip('.')}{UNFINISHED}"
-        with tempfile.TemporaryDirectory(dir=path.parent, prefix=prefix) as place:
-            new, old = Path(place, path.name), Path(place, "old")
-            save(new)
-            _refuse_foreign_folder(path, new)
-            if path.exists() or path.is_symlink():
-                path.replace(old)
-            new.replace(path)
-    return path
 
 
 def write_csv(path: Path, table: pd.DataFrame, digits: int = 9) -> Path:

@@ -30,62 +30,44 @@ T = TypeVar("T")
 class Processes:
     """The processes of a command.
 
-    comm : mpi4py's communicator of all of them; None for a single process.
+    comm : mpi4py's communicator of all of them; None for a single process. rank : of this one.
     """
 
     def __init__(self, comm: Any = None) -> None:
         self.comm = comm
-        self._muted: TextIO | None = None
+        self.rank: int = 0 if comm is None else comm.rank
+        self.size: int = 1 if comm is None else comm.size
+        self.is_first = self.rank == 0
+        self._stderr: TextIO | None = None
         # For messages about the command itself: runs do not use this communicator.
         self._own: Any = None if comm is None else comm.Dup()
 
     @property
-    def is_first(self) -> bool:
-        """Whether this process prints and writes for all."""
-        return self.comm is None or self.comm.rank == 0
-
-    @property
     def stderr(self) -> TextIO:
         """Stream for errors, even of a muted process."""
-        return self._muted or sys.stderr
+        return self._stderr or sys.stderr
 
     def mute_others(self) -> None:
-        """Let only the first process print."""
+        """Let only the first process print and write: it does so for all."""
         if not self.is_first:
-            self._muted = sys.stderr
+            self._stderr = sys.stderr
             sys.stdout = sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115
 
-    @property
-    def rank(self) -> int:
-        """Rank of this process."""
-        return 0 if self.comm is None else self.comm.rank
-
-    @property
-    def size(self) -> int:
-        """Number of processes."""
-        return 1 if self.comm is None else self.comm.size
-
-    def largest(self, value: T) -> T:
-        """Return the largest value of all processes, in Python's order."""
-        return value if self._own is None else max(self._own.allgather(value))
+    def all_of(self, value: T) -> list[T]:
+        """Return the values of all processes."""
+        return [value] if self._own is None else self._own.allgather(value)
 
     def together(self, work: Callable[[], object]) -> None:
         """Work on every process; an exception of any one is raised on all, once all are done."""
-        error = None
-        try:
-            work()
-        except Exception as raised:
-            error = raised
-        raised_by = [error] if self._own is None else self._own.allgather(error)
-        for found in raised_by:
+        _, error = _tried(work)
+        for found in self.all_of(error):
             if found is not None:
                 raise found
 
     def told_by_first(self, work: Callable[[], T]) -> T:
         """Return on all processes the result of `work` on the first; exceptions likewise."""
-        if self._own is None:
-            return work()
-        return self._own.bcast(self.by_first(work))
+        done = self.by_first(work)
+        return done if self._own is None else self._own.bcast(done)
 
     def by_first(self, work: Callable[[], T]) -> T | None:
         """Return the result of `work` on the first process, None on the others, which sleep.
@@ -94,15 +76,9 @@ class Processes:
         """
         if self._own is None:
             return work()
-        done, error = None, None
-        if self.is_first:
-            try:
-                done = work()
-            except Exception as raised:
-                error = raised
+        done, error = _tried(work) if self.is_first else (None, None)
         arrive(self._own)
-        error = self._own.bcast(error)
-        if error is not None:
+        if error := self._own.bcast(error):
             raise error
         return done
 
@@ -120,6 +96,14 @@ class Processes:
     def _tell(self, message: str) -> None:
         with suppress(OSError):  # the reader may have closed it
             print(message, file=self.stderr, flush=True)
+
+
+def _tried(work: Callable[[], T]) -> tuple[T | None, Exception | None]:
+    """Return the result of work and what it has raised."""
+    try:
+        return work(), None
+    except Exception as error:
+        return None, error
 
 
 ALONE = Processes()

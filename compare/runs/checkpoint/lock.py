@@ -41,26 +41,14 @@ def exclusive(folder: Path, wait: bool = False) -> Iterator[None]:
     system releases it when a process is killed. Libraries for locks all write a file.
     Raises SceneError if another process has locked it and `wait` is false.
     """
-    handle = _locked(folder, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
+    folder.mkdir(parents=True, exist_ok=True)
+    handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
-        yield
-    finally:
-        os.close(handle)
-
-
-def _locked(folder: Path, operation: int) -> int:
-    while True:
-        folder.mkdir(parents=True, exist_ok=True)
-        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
         try:
-            fcntl.flock(handle, operation)
-            # The process that had locked it may have removed it in between.
-            if os.path.samestat(os.fstat(handle), folder.stat()):
-                return handle
-        except FileNotFoundError:
-            pass
+            fcntl.flock(handle, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            os.close(handle)
             allowed = "another jointwave process is writing here; wait for it"
             raise SceneError(str(folder), "", None, allowed) from None
+        yield
+    finally:
         os.close(handle)

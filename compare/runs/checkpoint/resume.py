@@ -81,7 +81,7 @@ class RunCheckpointer:
             return
         self._last = self._last or monotonic()
         is_due = 0 < every <= monotonic() - self._last
-        asked, is_due = self.processes.largest((signals.asked, is_due))
+        asked, is_due = max(self.processes.all_of((signals.asked, is_due)))
         saved = (is_due or (asked and every > 0)) and self._save(samples, parts)
         if asked:
             message = f"{word(asked)} at t = {self._time(samples):.4g} s"

@@ -23,11 +23,9 @@ BEYOND = Path(cases.__file__).parent / "beyond"
 class Share(Processes):
     """One of two processes, in a test that is all of them."""
 
-    rank, size = 0, 2
-
     def __init__(self, rank):
         super().__init__()
-        self.rank = rank
+        self.rank, self.size, self.is_first = rank, 2, rank == 0
 
 
 @pytest.fixture
