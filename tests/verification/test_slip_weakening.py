@@ -14,8 +14,7 @@ from jointwave import cases, continuum, dem
 from jointwave.cases.histories import Ricker
 from jointwave.cases.validate import validated
 from jointwave.compare.exact.joint import sliding_joint
-from jointwave.compare.exact.joint.sliding_joint import SlipJoint
-from jointwave.compare.exact.joint.slip_weakening import Passed
+from jointwave.compare.exact.joint.slip_phases import Passed, SlipJoint
 from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.compare.scenes import SHIPPED
 from jointwave.results.dataset import energy_residual

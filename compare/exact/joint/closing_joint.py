@@ -15,7 +15,6 @@ joint in intact rock crossed by a P wave along a periodic strip.
 """
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 import xarray as xr
@@ -28,11 +27,11 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.images import ENTERS
 from jointwave.compare.exact.conditions import holds, static_stress
 from jointwave.compare.exact.joint.one_joint import back_in_time, behind_and_before
+from jointwave.compare.exact.joint.trajectory import Trajectory, edges_of, peak_of
 from jointwave.compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, no, thin
 
 HELD = ("closure", "prestress", "soft layers", "stiff layers")
 TOLERANCES = (1e-12, 1e-9)  # of the solution and its twin, relative to the largest stress
-SAMPLES, SHORTEST = 2001, 1e-9  # of the load to find its peak; s, of an integration
 
 
 @dataclass(frozen=True)
@@ -124,32 +123,18 @@ class Passed:
         end: float,
         tolerance: float = TOLERANCES[0],
     ) -> None:
-        from scipy.integrate import solve_ivp
-
         self.joint, self.impedance, self.load = joint, impedance, load
 
         def rate(t: float, stress: np.ndarray) -> np.ndarray:
             off = 2 * (load.value(np.array([t])) - stress)
             return off / (impedance * joint.compliance(joint.prestress + stress))
 
-        first = load.breaks[0]
-        edges = [*(t for t in load.breaks if t < end), max(end, first + SHORTEST)]
-        peak = np.abs(load.value(np.linspace(first, edges[-1], SAMPLES))).max()
-        self._parts, now = [], np.zeros(1)
-        for part in pairwise(edges):
-            found = solve_ivp(
-                rate, part, now, "DOP853", dense_output=True, rtol=tolerance, atol=tolerance * peak
-            )
-            self._parts.append((*part, found.sol))
-            now = found.y[:, -1]
+        peak = peak_of(load, end)
+        self.stress = Trajectory(rate, [0.0], edges_of(load, end), tolerance, peak)
 
     def __call__(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return both at times (s)."""
-        stress, joint = np.zeros(np.shape(times)), self.joint
-        for start, end, solution in self._parts:
-            own = (times > start) & (times <= end)
-            if own.any():
-                stress[own] = solution(times[own])[0]
+        stress, joint = self.stress(times)[0], self.joint
         moved = joint.closure(joint.prestress + stress) - joint.closure(np.array(joint.prestress))
         return stress, self.load.impulse(times) - self.impedance * moved / 2
 

@@ -16,17 +16,17 @@ Newton's method from above. The slip u = s / K + S, S' = V, gives the transmitte
 sigma_I minus Z u / 2.
 """
 
-from itertools import pairwise
 from math import asinh, copysign, exp, log
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from jointwave.cases.histories import LoadHistory
 from jointwave.cases.material.calibrate import Properties
+from jointwave.compare.exact.joint.trajectory import SHORTEST, Trajectory, edges_of, peak_of
 
 SPANS = 500  # of the whole time: no step is longer than one
-SHORTEST = 1e-12  # s, of a part of the time
+TOLERANCES = 1e-11, 1e-9  # of the integration, and of its twin
 LARGE = 300.0  # ln of a rate, or over 1 s of an age, that occurs only in too long a step
 MOST, SETTLED = 100, 1e-15  # corrections of Newton's method, and the last one, relative
 
@@ -111,25 +111,13 @@ class RateStateWave:
         tolerance: float,
         rest: float = 0.0,
     ) -> None:
-        from scipy.integrate import solve_ivp
-
         self.joint, self.impedance, self.load = joint, impedance, load
-        first = load.breaks[0]
-        edges = [*(t for t in load.breaks if t < end), max(end, first + SHORTEST)]
-        span = (edges[-1] - first) / SPANS
-        peak = np.abs(load.value(np.linspace(first, edges[-1], SPANS))).max()
+        first, peak = load.breaks[0], peak_of(load, end)
+        span = max(end - first, SHORTEST) / SPANS
         slip = max(joint.distance, peak * span / impedance)
-        small = tolerance * np.array([slip, 1.0, peak])
-        self.parts: list[tuple[float, float, Any]] = []
-        now = np.array([0.0, np.log(joint.state + rest + first), 0.0])
-        for part in pairwise(edges):
-            with np.errstate(over="ignore", invalid="ignore"):  # of trial steps that are too long
-                found = solve_ivp(
-                    self._rate, part, now, "DOP853", dense_output=True, max_step=span,
-                    rtol=tolerance, atol=small,
-                )  # fmt: skip
-            self.parts.append((*part, found.sol))
-            now = found.y[:, -1]
+        start = [0.0, log(joint.state + rest + first), 0.0]
+        scale = np.array([slip, 1.0, peak])
+        self.state = Trajectory(self._rate, start, edges_of(load, end), tolerance, scale, span)
 
     def _rate(self, t: float, now: np.ndarray) -> list[float]:
         """Return the rates of S, ln theta and s (0 where 1/K = 0)."""
@@ -144,13 +132,7 @@ class RateStateWave:
 
     def __call__(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return both at times (s)."""
-        joint, found = self.joint, np.zeros((3, *np.shape(times)))
-        found[1] = np.log(joint.state)
-        for start, end, solution in self.parts:
-            own = (times > start) & (times <= end)
-            if own.any():
-                found[:, own] = solution(times[own])
-        slide, log_state, stress = found
+        joint, (slide, log_state, stress) = self.joint, self.state(times)
         if joint.compliance == 0:
             both = zip(self.load.value(times).tolist(), log_state.tolist(), strict=True)
             stress = np.array([joint.carries(*each, self.impedance) for each in both])

@@ -1,6 +1,7 @@
-"""A plane shear wave at a joint that slip changes, by Runge-Kutta of order 8.
+"""A plane shear wave at a joint that slips, by Runge-Kutta of order 8 from phase to phase.
 
-With the slip path S and the strength tau(S), which falls by h per path, the joint carries s:
+With the slip path S and the strength tau(S), which falls by h per path or is constant, the joint
+carries s:
 
     sticking: (Z / 2K) s' = sigma_I - s;   sliding along s: s = +-tau(S),
     (Z / 2) (1 - h / K) S' = |sigma_I| - tau(S),
@@ -17,16 +18,66 @@ both sides, Z_n along the normal, and its strength rises by mu(S) p:
 
 from collections.abc import Callable
 from itertools import pairwise
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from jointwave.cases.histories import LoadHistory
-from jointwave.compare.exact.joint.sliding_joint import SlipJoint
+from jointwave.compare.exact.joint.trajectory import SHORTEST, edges_of, peak_of
 
-SPANS = 2000  # of the whole time, in each of which at most one phase ends
-SHORTEST = 1e-12  # s, of a part of the time
+TOLERANCES = 3e-14, 1e-11  # of the integration, and of its twin
+#: Of the whole time, in each of which at most one phase ends; a prime, since solve_ivp fails where a
+#: phase ends with a step.
+SPANS = 1999
 NEAR = 1e-12  # of a strength: tolerated jump between two consecutive phases
+
+
+class SlipJoint(NamedTuple):
+    """A joint: y (m), its additional compliance 1/K (m/Pa), its strength tau (Pa), and the slip
+    path (m) over which it falls to the dynamic one (Pa).
+
+    friction, dynamic_friction : tan(phi) of both. dilation, dilation_distance : initial tan(psi),
+    and the slip path (m) over which it falls to 0.
+    """
+
+    y: float
+    compliance: float
+    strength: float
+    dynamic: float = 0.0
+    distance: float = inf
+    friction: float = 0.0
+    dynamic_friction: float = 0.0
+    dilation: float = 0.0
+    dilation_distance: float = inf
+
+    @property
+    def fall(self) -> float:
+        """Loss of strength per slip path, Pa/m."""
+        return (self.strength - self.dynamic) / self.distance
+
+    def left(self, path: Any) -> Any:
+        """Return the strength (Pa) after a slip path (m)."""
+        return self.strength - self.fall * np.minimum(path, self.distance)
+
+    def friction_at(self, path: Any) -> Any:
+        """Return tan(phi) after a slip path (m)."""
+        fall = (self.friction - self.dynamic_friction) / self.distance
+        return self.friction - fall * np.minimum(path, self.distance)
+
+    def lift(self, path: Any) -> Any:
+        """Return the opening of the joint by dilation after a slip path (m), m."""
+        way = np.minimum(path, self.dilation_distance)
+        return self.dilation * way * (1 - way / self.dilation_distance / 2)
+
+    def lift_rate(self, path: Any) -> Any:
+        """Return the derivative of `lift` with respect to the path."""
+        return self.dilation * np.maximum(1 - path / self.dilation_distance, 0.0)
+
+    def scaled(self, factor: float) -> "SlipJoint":
+        """Return the joint for stresses and slips divided by this factor; both scale alike."""
+        names = ("strength", "dynamic", "distance", "dilation_distance")
+        return self._replace(**{name: getattr(self, name) / factor for name in names})
 
 
 class Phase(NamedTuple):
@@ -50,7 +101,7 @@ class Passed:
 
     def __init__(
         self,
-        joint: "SlipJoint",
+        joint: SlipJoint,
         impedance: float,
         load: LoadHistory,
         end: float,
@@ -59,9 +110,8 @@ class Passed:
     ) -> None:
         self.joint, self.impedance, self.load, self.tolerance = joint, impedance, load, tolerance
         self.normal_impedance = normal_impedance
-        first = load.breaks[0]
-        edges = [*(t for t in load.breaks if t < end), max(end, first + SHORTEST)]
-        self.span = (edges[-1] - first) / SPANS
+        self.peak, edges = peak_of(load, end), edges_of(load, end)
+        self.span = (edges[-1] - edges[0]) / SPANS
         self.phases: list[Phase] = []
         for start, stop in pairwise(edges):
             while start < stop - SHORTEST:
@@ -120,10 +170,10 @@ class Passed:
             last = self.phases[-1]
             stress, slide, path, _ = self._within(last, np.array([last.end]))[:, 0].tolist()
         incident = self._incident(start + SHORTEST)
-        if self.joint.compliance == 0:
+        limit = self.joint.left(path)
+        if self.joint.compliance == 0 or limit == 0:
             stress = incident
         way = int(np.sign(stress))
-        limit = self.joint.left(path)
         slides = abs(stress) >= limit * (1 - NEAR) and way * incident > limit
         if slides:
             phase = self._slide(start, stop, way, path, slide)
@@ -137,7 +187,7 @@ class Passed:
 
     def _stick(self, start: float, stop: float, stress: float, path: float, slide: float) -> Phase:
         joint, limit = self.joint, self.joint.left(path)
-        if joint.compliance == 0:
+        if joint.compliance == 0 or limit == 0:
             times = np.linspace(start + SHORTEST, stop, SPANS)
             beyond = np.flatnonzero(np.abs(self.load.value(times)) > limit)
             if beyond.size and beyond[0] > 0:
@@ -151,7 +201,7 @@ class Passed:
         def yields(t: float, s: np.ndarray) -> float:
             return abs(float(s[0])) - limit
 
-        found = self._solved(rate, start, stop, stress, limit, yields)
+        found = self._solved(rate, start, stop, stress, self.peak, yields)
         return Phase(start, found.t[-1], 0, path, slide, found.sol)
 
     def _crossing(self, limit: float, before: float, after: float) -> float:
@@ -173,7 +223,7 @@ class Passed:
         def is_weak(t: float, s: np.ndarray) -> float:
             return float(s[0]) - joint.distance if weakens and joint.fall else -1.0
 
-        scale = min(joint.distance, joint.strength / self.impedance * SPANS * self.span)
+        scale = min(joint.distance, self.peak / self.impedance * SPANS * self.span)
         found = self._solved(rate, start, stop, path, scale, stops, is_weak)
         return Phase(start, found.t[-1], way, path, slide, found.sol)
 

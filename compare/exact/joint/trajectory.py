@@ -1,0 +1,60 @@
+"""Runge-Kutta of order 8 (Dormand & Prince) from break to break of a load."""
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from jointwave.cases.histories import LoadHistory
+
+SAMPLES = 2001  # of a load to find its peak
+SHORTEST = 1e-12  # s, of an integration
+
+
+def edges_of(load: LoadHistory, end: float) -> list[float]:
+    """Return the breaks of a load up to `end`, and `end`, s."""
+    return [*(t for t in load.breaks if t < end), max(end, load.breaks[0] + SHORTEST)]
+
+
+def peak_of(load: LoadHistory, end: float) -> float:
+    """Return the largest modulus of a load up to `end` (s)."""
+    times = np.linspace(load.breaks[0], max(end, load.breaks[0] + SHORTEST), SAMPLES)
+    return float(np.abs(load.value(times)).max())
+
+
+class Trajectory:
+    """The solution of x' = rate(t, x) at any times, from the state `start` [m] at the first edge.
+
+    tolerance : of each step, relative. scale : float array [m] or float, size of the state.
+    """
+
+    def __init__(
+        self,
+        rate: Callable[[float, np.ndarray], Any],
+        start: Sequence[float],
+        edges: Sequence[float],
+        tolerance: float,
+        scale: np.ndarray | float,
+        longest: float = np.inf,
+    ) -> None:
+        from scipy.integrate import solve_ivp
+
+        self.start, self._parts = np.array(start), []
+        now, steps = self.start, {"max_step": longest, "rtol": tolerance}
+        for part in pairwise(edges):
+            with np.errstate(over="ignore", invalid="ignore"):  # of trial steps that are too long
+                found = solve_ivp(
+                    rate, part, now, "DOP853", dense_output=True, atol=tolerance * scale, **steps
+                )
+            self._parts.append((*part, found.sol))
+            now = found.y[:, -1]
+
+    def __call__(self, times: np.ndarray) -> np.ndarray:
+        """Return the states [m, n] at times [n] (s)."""
+        found = np.multiply.outer(self.start, np.ones(np.shape(times)))
+        for first, last, solution in self._parts:
+            own = (times > first) & (times <= last)
+            if own.any():
+                found[:, own] = solution(times[own])
+        return found
