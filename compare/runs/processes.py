@@ -66,7 +66,7 @@ class Processes:
 
     def told_by_first(self, work: Callable[[], T]) -> T:
         """Return on all processes the result of `work` on the first; exceptions likewise."""
-        done = self.by_first(work)
+        done: Any = self.by_first(work)
         return done if self._own is None else self._own.bcast(done)
 
     def by_first(self, work: Callable[[], T]) -> T | None:

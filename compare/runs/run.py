@@ -5,7 +5,7 @@ import os
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import xarray as xr
 
@@ -65,10 +65,13 @@ def execute(
     if vtx:
         _refuse_vtx(jobs)
 
-    keepers = [_shared(job, processes, partial(_keeper, job, settings)) for job in jobs]
+    keepers: list[Any] = [_shared(job, processes, partial(_keeper, job, settings)) for job in jobs]
     done: list[Done] = []
     for i, (job, keeper) in enumerate(zip(jobs, keepers, strict=True)):
-        part: Progress = lambda fraction, i=i: progress((i + fraction) / len(jobs))  # noqa: E731
+
+        def part(fraction: float, i: int = i) -> None:
+            progress((i + fraction) / len(jobs))
+
         found = _shared(job, processes, partial(_run, job, keeper, part, vtx))
         done += [found] if found else []
         part(1.0)

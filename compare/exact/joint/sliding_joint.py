@@ -95,7 +95,8 @@ def _waveforms(scene: Scene, p: Properties, which: int) -> dict[str, Any]:
     """Return the waveforms, of a joint that slip changes also those of stress; which : 1 for the
     twin, whose tolerances are larger."""
     load, times, joint = load_history(scene), sample_times(scene), the_joint(scene, p)
-    enters, Z, passed = ENTERS[scene.ends.start], p.shear_impedance, None
+    enters, Z = ENTERS[scene.ends.start], p.shear_impedance
+    passed: rate_state_joint.RateStateWave | Passed
     if p.direct_effect is not None:
         j, pressure = int(np.flatnonzero(_slips(p))[0]), static_stress(scene)
         rated = rate_state_joint.rate_joint(p, j, pressure, joint.compliance).scaled(enters)
