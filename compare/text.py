@@ -3,8 +3,6 @@
 from math import isfinite
 from typing import Any
 
-from jointwave.compare.misfit.differences import PeakDifference
-
 NONE = "–"  # where there is no number
 
 
@@ -17,8 +15,8 @@ def percent(x: float) -> str:
     return f"{100 * x:#.3g}".rstrip(".")
 
 
-def mean_and_worst(peak: PeakDifference | None) -> str:
-    """Return a difference of peaks in percent, of all receivers and of the worst."""
+def mean_and_worst(peak: Any) -> str:
+    """Return a `PeakDifference` in percent, of all receivers and of the worst; "" of None."""
     return f"{100 * peak.mean:.2g}, ≤ {100 * peak.worst:.2g}" if peak else ""
 
 

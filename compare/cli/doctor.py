@@ -16,7 +16,7 @@ from typing import Any
 
 from jointwave import cases
 from jointwave.cases.gmsh_file import INSTALL as GMSH
-from jointwave.compare.cli.terminal import print_json, say, show_table
+from jointwave.compare.cli.terminal import print_json, say, show_facts
 from jointwave.compare.engines import solve
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.scenes import SHIPPED
@@ -51,8 +51,6 @@ SEEN = "from mpi4py.MPI import COMM_WORLD as c; c.rank or print(c.size, 'process
 LAUNCHER = ["mpiexec", "-n", str(min(2, os.cpu_count() or 1)), sys.executable, "-c", SEEN]
 LAUNCH = "apt install openmpi-bin; as root set OMPI_ALLOW_RUN_AS_ROOT=1 and "
 LAUNCH += "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"
-COLUMNS = ["part", "state", "found", "hint"]
-COLOURS = {"missing": "yellow", "broken": "bold red"}
 
 Facts = dict[str, Any]
 
@@ -110,11 +108,4 @@ def show_health(found: Facts, as_json: bool) -> None:
         print_json(found)
         return
     say(f"jointwave {version('jointwave')}, Python {platform.python_version()} ({sys.executable})")
-    rows = [[one[key] for key in COLUMNS] for one in found["parts"]]
-    show_table(COLUMNS, rows, [COLOURS.get(one["state"], "") for one in found["parts"]])
-    say(f"compiled kernels: {found['kernel_cache']}")
-    for one in found["self_check"]:
-        verdict = f"self-check {one['pair']}: {'holds' if one['holds'] else 'FAILS'}"
-        why = one["reason"] or f"misfit {one['misfit']:.3g}, at most {one['bound']:g}"
-        say(f"{verdict}, {why}", "green" if one["holds"] else "bold red")
-    say("all checks pass" if found["well"] else "a check fails: see the self-check above")
+    show_facts(found)

@@ -1,30 +1,20 @@
 """Tables of pandas on the terminal."""
 
+from itertools import pairwise
+
 import pandas as pd
 
-from jointwave.compare.cli.terminal import say, show_numbers, show_table
+from jointwave.compare.cli.terminal import show_table
 from jointwave.compare.text import table_cell
-
-LONGEST = 40  # characters of a cell that is not wrapped
 
 
 def show_frame(table: pd.DataFrame) -> None:
-    """Print a table; the first level of its index has the headings of groups, the others label the
-    rows. With sentences in its cells each group is a table of its own, whose cells are wrapped."""
-    groups: dict[str, list[list[str]]] = {}
-    for (heading, *labels), *values in table.itertuples(name=None):
-        cells = [table_cell(x, name) for x, name in zip(values, table.columns, strict=True)]
-        groups.setdefault(heading, []).append([*map(str, labels), *cells])
-    header = [*map(str, table.index.names[1:]), *map(str, table.columns)]
-    lengths = (
-        len(cell)
-        for rows in groups.values()
-        for row in rows
-        for cell in row[table.index.nlevels - 1 :]
-    )
-    if max(lengths, default=0) <= LONGEST:
-        show_numbers(header, groups)
-        return
-    for heading, rows in groups.items():
-        say(heading, "bold")
-        show_table(header, rows)
+    """Print a table, if it has rows; what labels them comes first, an outermost label once."""
+    named = table if isinstance(table.index, pd.RangeIndex) else table.reset_index()
+    columns = [*map(str, named.columns)]
+    rows = [list(map(table_cell, row, columns)) for row in named.itertuples(False, None)]
+    if table.index.nlevels > 1:
+        for before, row in reversed(list(pairwise(rows))):
+            row[0] = "" if row[0] == before[0] else row[0]
+    if rows:
+        show_table(columns, rows)

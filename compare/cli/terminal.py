@@ -7,45 +7,44 @@ import json
 import logging
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from itertools import zip_longest
-from threading import TIMEOUT_MAX, Event, Thread
+from math import inf
 from time import monotonic
 from typing import Any
 
 from jointwave.cases.errors import SceneError, printable
 from jointwave.cases.files import is_number
+from jointwave.compare.text import cell
 
 EVERY = "JOINTWAVE_PROGRESS"  # in the environment: s from one line to the next, 0 for none
-WIDEST, UNFOLDED = 220, 10_000  # of a pipe, which has no width, and of a table of numbers
+PIPE, UNFOLDED = 220, 10_000  # characters: of a pipe, which has no width, and of short cells
+LONGEST = 40  # characters of a cell that is not folded
 
 
 @contextmanager
 def progress(label: str) -> Iterator[Callable[[float], None]]:
-    """Show on standard error what is being done, while it runs.
+    """Show on standard error what is being done, while it runs, and what the engines log.
 
     On a terminal a bar, with the time that it took and the time that is left, cleared at the end;
     elsewhere a line every half minute, or as many seconds as `EVERY` says; 0: none.
     """
-    shown = _bar(label) if _console(stderr=True).is_terminal else _lines(label)
-    with shown as advance, _log_shown():
-        yield advance
-
-
-@contextmanager
-def _log_shown() -> Iterator[None]:
-    """Show what the engines log, such as that kernels are being compiled, on standard error."""
-    if os.environ.get(EVERY) == "0":
-        yield
-        return
+    every = os.environ.get(EVERY, "30")
+    if not (is_number(every) and 0 <= float(every) < inf):
+        raise SceneError(EVERY, "", None, f"must be a number of seconds, not {every!r}")
     log, handler = logging.getLogger("jointwave"), logging.StreamHandler(sys.stderr)
     handler.setFormatter(logging.Formatter("jointwave: %(message)s"))
     before = log.level
-    log.addHandler(handler)
-    log.setLevel(logging.INFO)
+    if float(every):
+        log.addHandler(handler)
+        log.setLevel(logging.INFO)
     try:
-        yield
+        if _console(stderr=True).is_terminal:
+            with _bar(label) as advance:
+                yield advance
+        else:
+            yield _lines(label, float(every))
     finally:
         log.setLevel(before)
         log.removeHandler(handler)
@@ -68,25 +67,19 @@ def _bar(label: str) -> Iterator[Callable[[float], None]]:
         yield lambda fraction: bar.update(task, completed=fraction)
 
 
-@contextmanager
-def _lines(label: str) -> Iterator[Callable[[float], None]]:
-    done, ended, began = [0.0], Event(), monotonic()
-    text = os.environ.get(EVERY, "30")
-    if not (is_number(text) and 0 <= float(text) <= TIMEOUT_MAX):
-        raise SceneError(EVERY, "", None, f"must be a number of seconds, not {text!r}")
+def _lines(label: str, every: float) -> Callable[[float], None]:
+    """Return what prints a line of progress where the last one is so many seconds old."""
+    began = told = monotonic()
 
-    def tell() -> None:
-        while not ended.wait(float(text)):
-            line = f"{printable(label)}: {done[0]:.0%} after {monotonic() - began:.0f} s"
+    def advance(fraction: float) -> None:
+        nonlocal told
+        if every and (now := monotonic()) - told >= every:
+            told = now
+            line = f"{printable(label)}: {fraction:.0%} after {now - began:.0f} s"
             with suppress(OSError, ValueError):  # nobody may be there to read it
                 print(f"jointwave: {line}", file=sys.stderr, flush=True)
 
-    if float(text):
-        Thread(target=tell, daemon=True).start()
-    try:
-        yield lambda fraction: done.__setitem__(0, fraction)
-    finally:
-        ended.set()
+    return advance
 
 
 def say(text: str, style: str = "") -> None:
@@ -101,33 +94,62 @@ def say_warnings(lines: Iterable[str]) -> None:
 
 
 def show_table(columns: list[str], rows: list[list[str]], styles: Sequence[str] = ()) -> None:
-    """Print a table of text, folded to the terminal's width; `styles` are those of the rows."""
+    """Print a table of text; `styles` are those of the rows.
+
+    Long cells are folded to the terminal's width. Short ones are not: a terminal that is too narrow
+    wraps whole lines, which can still be read and copied.
+    """
     from rich.table import Table
 
+    is_short = all(len(text) <= LONGEST for row in rows for text in row)
     table = Table(box=None, pad_edge=False)
     for column in columns:
-        table.add_column(printable(column), overflow="fold")
+        table.add_column(printable(column), overflow="fold", no_wrap=is_short)
     for row, style in zip_longest(rows, styles, fillvalue=""):
         table.add_row(*map(printable, row), style=style or None)
-    _console().print(table)
+    _console(UNFOLDED if is_short else None).print(table, crop=False)
 
 
 def show_numbers(columns: list[str], groups: dict[str, list[list[str]]]) -> None:
-    """Print a table of numbers under group headings; text comes first in a row, never folded.
+    """Print a table under the headings of groups."""
+    rows = [row for heading, own in groups.items() for row in ([heading], *own)]
+    styles = [style for own in groups.values() for style in ("bold", *len(own) * [""])]
+    show_table(columns, rows, styles)
 
-    A terminal that is too narrow wraps whole lines, which can still be read and copied.
-    """
-    from rich.table import Table
-    from rich.text import Text
 
-    table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
-    for i, column in enumerate(columns):
-        table.add_column(printable(column), no_wrap=True, justify="right" if i else "left")
-    for heading, rows in groups.items():
-        table.add_row(Text(printable(heading), style="bold"))
-        for row in rows:
-            table.add_row(*map(printable, row))
-    _console(UNFOLDED).print(table, crop=False)
+def show_facts(facts: Mapping[str, Any], labels: Mapping[str, str] | None = None) -> None:
+    """Print facts: records by name, or in a list, as a table, all others as a line; nothing of what
+    is None or empty. labels : what a fact is called, with its unit, where not by its own name."""
+
+    def label(name: str) -> str:
+        return (labels or {}).get(name, name.replace("_", " "))
+
+    for name, value in facts.items():
+        if isinstance(value, Mapping) and any(isinstance(x, Mapping) for x in value.values()):
+            value = [{name: key, **(x or {})} for key, x in value.items()]
+        if isinstance(value, list):
+            keys = list(dict.fromkeys(key for row in value for key in row))
+            rows = [[fact(row.get(key)) for key in keys] for row in value]
+            if rows:
+                show_table([*map(label, keys)], rows)
+        elif value not in (None, {}):
+            say(f"{label(name)}: {fact(value)}")
+
+
+def fact(value: Any) -> str:
+    """Return a fact as text: a yes or no, a number, a name, or several of them."""
+    match value:
+        case None:
+            return "-"
+        case bool():
+            return "yes" if value else "no"
+        case int():
+            return f"{value:,}"
+        case Mapping():
+            return "; ".join(f"{key} {fact(one)}" for key, one in value.items())
+        case list() | tuple():
+            return ", ".join(map(fact, value))
+    return cell(value)
 
 
 def print_json(value: Any) -> None:
@@ -142,5 +164,5 @@ def _console(width: int | None = None, stderr: bool = False) -> Any:
 
     console = Console(markup=False, highlight=False, emoji=False, stderr=stderr)
     if width or not console.is_terminal:
-        console.width = width or WIDEST
+        console.width = width or PIPE
     return console

@@ -27,6 +27,7 @@ def verdict_table(scores: dict[str, EngineScore]) -> pd.DataFrame:
             **{f"{name} (%)": mean_and_worst(one.peaks.get(name)) for name in (VELOCITY, STRESS)},
             "compared with": one.against,
             "which is a": one.meaning,
+            "own error (%)": 100 * one.own.judged,
             "verdict": f"{one.verdict.sign} {one.verdict.word}",
         }
         for engine, score in scores.items()

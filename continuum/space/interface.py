@@ -87,12 +87,6 @@ def _rule(facet: str, cell: str, order: int) -> tuple[np.ndarray, np.ndarray]:
     return basix_versions.quadrature(facet, 2 * order)
 
 
-def lever(cell: str, order: int, across: int = 1) -> float:
-    """Return how far the outermost points of a joint are from the centre of a face of so many
-    elements across, over its half width: what bears where it has opened as far as it can."""
-    return 1 - 2 * float(_rule(FACETS[cell], cell, order)[0].min()) / across
-
-
 def jumps(body: Body) -> Jumps:
     """Return the jump operators of all joints of a mesh; points on the same nodes are one."""
     joints = body.mesh.joints

@@ -10,7 +10,6 @@ Both engines must find what stands and refuse what falls, and not take for falli
 converged.
 """
 
-import json
 import re
 
 import numpy as np
@@ -185,22 +184,3 @@ def test_a_pillar_is_warned_of_them_where_it_bends(scene_with):
     assert count(**opens) == count(**across) == 0
     assert count(**opens, **across, motion__rotation="none") == 0
     assert count(**opens, **across, joints__contact_points=8, joints__point_rule="gauss") == 0
-
-
-def test_explain_prints_the_lever_of_each_engine(jointwave):
-    """Two midpoints stand at half of the half width, the nodes of elements at its end; points of
-    quadratic tetrahedra inside, at barycentric coordinates of at least 0.0916 (Dunavant 1985)."""
-    common = [
-        "explain",
-        "guo-li-2002/fig-03",
-        "--json",
-        "--variant",
-        "",
-        "--set",
-        "load.at=[0.1, 0.1]",
-    ]
-    said = jointwave(*common).out
-    assert json.loads(said)["levers"] == pytest.approx({"dem": 0.5, "continuum-jointed": 1.0})
-    said = jointwave(*common, "--set", "numerics.continuum.cell=simplex").out
-    inside = json.loads(said)["levers"]["continuum-jointed"]
-    assert inside == pytest.approx(1 - 2 * 0.0916, abs=1e-4)

@@ -76,9 +76,8 @@ def test_a_fault_in_a_pillar_is_judged_by_the_exact_solution_of_its_joint(
     lines = {line.split()[0]: " ".join(line.split()) for line in said.splitlines() if line.split()}
     for engine in ("dem", "continuum-equivalent"):
         assert "slip-joint" in lines[engine]
-        assert re.search(r" slip-joint - \d", lines[engine])  # no "own error"
+        assert re.search(r" slip-joint modelling error – ", lines[engine])  # no "own error"
     assert "reference: slip-joint: homogenised rock, exact" in said
-    assert "a modelling difference of dem, continuum-equivalent" in said
 
 
 @pytest.mark.parametrize(

@@ -160,7 +160,7 @@ def report(
     """
     for one in scenes or []:
         load(one, [], None, strict)
-    from jointwave.compare.cli import views
+    from jointwave.compare.cli.report_view import show_report
     from jointwave.compare.report.report import build
 
     with (
@@ -168,7 +168,7 @@ def report(
         terminal.progress("report") as advance,
     ):
         found = build(out, advance, 2, scenes or (), peers, ensembles=ensembles)
-    views.show_report(found, as_json)
+    show_report(found, as_json)
 
 
 def _cases(scene: str | None, changes: list[str], variant: str | None, strict: bool) -> list[Any]:

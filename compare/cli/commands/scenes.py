@@ -6,7 +6,7 @@ without dolfinx and matplotlib.
 
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -33,17 +33,21 @@ from jointwave.compare.cli.options import (
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.runs.checkpoint.signals import watched
 from jointwave.compare.runs.processes import started
-from jointwave.compare.scenes import shipped
+from jointwave.compare.scenes import find, names
 from jointwave.compare.solvers.dem import DEM
 
 
 @app.command("list")
 def list_scenes(as_json: JsonOption = False) -> None:
     """List the shipped scenes and their variants."""
-    from jointwave.compare.cli import views
-
-    rows = [(path, cases.load(path)) for path in shipped()]
-    views.show_scenes(rows, as_json)
+    facts: list[dict[str, Any]] = [
+        {"scene": name, "title": scenes[0].title, "variants": [one.name for one in scenes[1:]]}
+        for name, scenes in ((name, cases.load(find(name))) for name in names())
+    ]
+    if as_json:
+        terminal.print_json(facts)
+    else:
+        terminal.show_facts({"scenes": facts})
 
 
 @app.command()
@@ -88,7 +92,7 @@ def run(
     points are not run again, failed ones are listed. --ensemble does so for every member of a
     scene with random joints.
     """
-    from jointwave.compare.cli import views
+    from jointwave.compare.cli import run_view
     from jointwave.compare.runs import jobs
     from jointwave.compare.runs import run as runs
     from jointwave.compare.runs.checkpoint.resume import CheckpointSettings
@@ -109,14 +113,12 @@ def run(
         show_forecasts([("", job.scene, job.name) for job in asked], as_json)
         return
     processes = started()
-    folders, settings = (
-        {job.path.parent for job in asked},
-        CheckpointSettings(every, resume, watched()),
-    )
+    folders = {job.path.parent for job in asked}
+    settings = CheckpointSettings(every, resume, watched())
     with ExitStack() as held, terminal.progress(f"{len(asked)} runs") as advance:
         processes.by_first(lambda: held.enter_context(locked(out, *folders)))
         done = runs.execute(asked, advance, vtx, processes, settings)
-    processes.by_first(lambda: views.show_runs(done, as_json))
+    processes.by_first(lambda: run_view.show_runs(done, as_json))
 
 
 @app.command()

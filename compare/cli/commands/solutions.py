@@ -56,8 +56,8 @@ def compare(
 ) -> None:
     """Solve a scene by every solver that applies, and print each engine's misfit from the finest.
 
-    One line per engine: its worst misfit and receiver, its reference, its own numerical error,
-    the stepping time, and the verdict. --all, --json, --out and --with also run all other
+    One line per engine: its worst misfit, variant and receiver, its reference, its own numerical
+    error, the stepping time, and the verdict. --all, --json, --out and --with also run all other
     solvers; --all shows every misfit of every pair, and data over model for external curves.
 
     --with adds a waveform of another code, figure or experiment: a table with a header such as

@@ -190,9 +190,9 @@ def test_run_tells_what_broke(jointwave, tmp_path):
     (fact,) = json.loads(jointwave("run", *options, "--json").out)
     count = len(fact["fragments"]) - 1
     lines = jointwave("run", *options).out
-    assert count > 2 and f"{count} joints broke; fragments: 0 to " in lines
+    assert count > 2 and f"{count} joints broke" in lines
     strong = ("--variant", "strong joints", "--out", tmp_path)
-    assert "no joint broke" in jointwave("run", "beyond/spall", *strong).out
+    assert "no joints broke" in jointwave("run", "beyond/spall", *strong).out
 
 
 def test_compare_tells_numerical_from_modelling_error(jointwave):

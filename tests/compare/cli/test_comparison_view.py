@@ -1,14 +1,14 @@
-"""The output of `jointwave compare`: an answer of at most ten lines, and all facts on request."""
+"""The output of `jointwave compare`: a line for each engine, and all facts on request."""
 
 import json
+import re
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from jointwave.compare.cli.comparison_view import MOST_LINES, in_percent, show_comparisons
+from jointwave.compare.cli.comparison_view import show_comparisons
 from jointwave.compare.misfit.alignment import AlignedCurve
-from jointwave.compare.misfit.metrics import Worst
 from jointwave.compare.misfit.pairs import Comparison, measure, measure_curves
 from jointwave.compare.report.verdict import engine_scores
 
@@ -23,7 +23,7 @@ def compared(pillar):
             one.replace("_", "-"): xr.Dataset(
                 {"stress": (("stress_y", "time"), (1 + x) * wave)},
                 {"stress_y": [20.0], "time": 1e-3 * np.arange(200.0)},
-                {"seconds_stepping": 0.02, "warnings": '["a slip"]'},
+                ABOUT,
             )
             for one, x in far.items()
         }
@@ -34,6 +34,8 @@ def compared(pillar):
     return make
 
 
+ABOUT = {"seconds_stepping": 0.02, "warnings": '["a slip"]', "steps": 100}
+ABOUT |= {"degrees_of_freedom": 1, "dt": 1e-3, "critical_dt": 2e-3}
 FAR = {"dem": 0.03, "continuum_jointed": 1e-4, "continuum_equivalent": 0.3, "jointed_bar": 0.0}
 
 
@@ -42,33 +44,24 @@ def test_the_answer_names_the_worst_of_each_engine_and_the_verdict_of_the_page(c
     show_comparisons(found, False, False)
     lines = capsys.readouterr().out.splitlines()
     stand = engine_scores(found)
-    assert lines[1].split()[0] == "engine" and len(lines) <= MOST_LINES
+    assert lines[1].split()[0] == "engine" and len(lines) < 10
     for engine, line in zip(stand, lines[2:], strict=False):
-        assert line.startswith(engine) and line.rstrip().endswith(stand[engine].verdict.word)
+        assert line.startswith(engine) and stand[engine].verdict.word in line
     dem = " ".join(lines[2].split())
-    assert dem == "dem 8.00 % stress at 20 m, soft - 8, ≤ 8 % jointed-bar 0.0972 % 20 ms △ differs"
+    assert dem == (
+        "dem soft 8.00 stress at 20 m 8, ≤ 8 jointed-bar modelling error – △ differs 0.02"
+    )
     assert "jointed-bar: deformable rock with every joint, exact" in lines[5]
     assert lines[-1].endswith("--all; as JSON: --json") and "its reason" not in " ".join(lines)
 
 
-@pytest.mark.parametrize("variants", [1, 2, 8])
-@pytest.mark.parametrize("files", [0, 1, 8])
-def test_the_answer_has_at_most_ten_lines(compared, curve, capsys, variants, files):
-    """However many variants and files, with bounds that are not met and nothing to check by."""
-    found = []
-    for i in range(variants):
-        one = compared(f"v{i}", {"dem ~ continuum-jointed": 1e-3}, **FAR)
-        if i % 2:
-            del one.results["jointed-bar"]
-        for _ in range(files):
-            curve(one)
-        found.append(one)
+def test_the_answer_names_what_is_not_checked_and_exceeds_its_bound(compared, capsys):
+    found = [compared(f"v{i}", {"dem ~ continuum-jointed": 1e-3}, **FAR) for i in range(2)]
+    del found[1].results["jointed-bar"]
     show_comparisons(found, False, False)
     said = capsys.readouterr().out
-    assert len(said.splitlines()) <= MOST_LINES and "exceeds the scene's bound: dem ~" in said
-    if variants > 1:
-        assert "not checked independently: continuum-jointed (v1" in said
-    assert ("more curves" in said) == (files * variants > (2 if variants == 1 else 1))
+    assert "exceeds the scene's bound: dem ~ continuum-jointed" in said
+    assert "not checked independently: continuum-jointed (v1)" in said
 
 
 @pytest.fixture
@@ -94,8 +87,9 @@ def test_curves_are_data_over_model(compared, curve, capsys):
     curve(one)
     show_comparisons([one], False, False)
     said = capsys.readouterr().out
-    ratio = f"{1.5 / 1.03:.3f}"
-    assert f"gauge.csv: 45.6 % from dem (stress at 20 m, data/model {ratio})" in said
+    ratio = f"{1.5 / 1.03:.4g}"
+    (line,) = (line for line in said.splitlines() if "gauge.csv ~ dem" in line)
+    assert line.split()[-2:] == ["45.6", ratio]
     show_comparisons([one], True, False)
     said = capsys.readouterr().out
     assert "given curves" in said and f"{1.5 / 1.03:.4g}" in said
@@ -105,7 +99,7 @@ def test_everything_is_there_on_request_and_in_json(compared, capsys):
     one = compared(expect={"dem ~ continuum-jointed": 1e-3}, **FAR)
     show_comparisons([one], True, False)
     said = capsys.readouterr().out
-    assert "series does not apply: its reason" in said and "dem ~ continuum-jointed" in said
+    assert re.search("series +all +its reason", said) and "dem ~ continuum-jointed" in said
     show_comparisons([one], False, True)
     (facts,) = json.loads(capsys.readouterr().out)
     assert facts["does_not_apply"] == one.reasons and facts["warnings"] == ["a slip"]
@@ -115,10 +109,3 @@ def test_everything_is_there_on_request_and_in_json(compared, capsys):
     assert dem["against"] == "jointed-bar" and dem["seconds_stepping"] == 0.02
     assert dem["verdict"] == "out of bounds" and dem["out_of_bounds"] == list(one.scene.expect)
     assert facts["engines"]["continuum-equivalent"]["verdict"] == "far off"
-
-
-def test_a_misfit_below_ten_times_the_error_of_its_reference_is_an_upper_bound():
-    assert in_percent(Worst(2e-4, None, 5e-5)) == "< 0.0500 %"
-    assert in_percent(Worst(2e-3, None, 5e-5)) == "0.200 %"
-    assert in_percent(Worst(1e-7)) == "< 0.001 %" and in_percent(Worst(np.nan)) == "-"
-    assert in_percent(Worst(1e-7, None, 2e-7)) == "< 0.001 %"

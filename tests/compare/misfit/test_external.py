@@ -440,5 +440,5 @@ def test_command_reads_what_run_wrote(tmp_path, jointwave):
     assert rows["lattice"]["misfit"] == 0 and rows["lattice"]["kind"] == "given curves"
     assert {"dem", "continuum-jointed", "jointed-bar"} < rows.keys()
     (curve,) = facts["curves"]
-    assert curve["samples"] == 401 and curve["shift"] is None and curve["outside"] == 0
+    assert curve["samples"] == 401 and curve["moved by (s)"] == curve["outside"] == 0
     assert "exact-lattice.nc ~ dem" in said

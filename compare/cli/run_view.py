@@ -1,0 +1,45 @@
+"""Output of `jointwave run`."""
+
+from collections.abc import Sequence
+
+from jointwave.compare.cli.terminal import print_json, say, say_warnings, show_facts
+from jointwave.compare.runs.run import Done
+
+LABELS = {"from_y": "from, m", "to_y": "to, m", "mass": "mass, kg", "velocity": "velocity, m/s"}
+LABELS |= {"seconds_stepping": "stepping, s"}
+TOLD_BELOW = ("fragments", "static_out_of_balance", "fields")
+
+
+def show_runs(done: Sequence[Done], as_json: bool) -> None:
+    """Print what was run, what it cost and where it is."""
+    say_warnings(f"{d.job.scene.name}: {d.ledger}".lstrip(": ") for d in done if d.ledger)
+    facts = [
+        {
+            "variant": one.job.scene.name,
+            "engine": one.job.name,
+            "steps": one.steps,
+            "seconds_stepping": one.seconds,
+            "energy_residual": one.residual,
+            "file": str(one.job.path),
+            "fragments": one.fragments,
+            "static_out_of_balance": one.out_of_balance,
+            "fields": [str(path) for path in one.fields],
+        }
+        for one in done
+    ]
+    if as_json:
+        print_json(facts)
+        return
+    rows = [{key: one[key] for key in one if key not in TOLD_BELOW} for one in facts]
+    show_facts({"runs": rows}, LABELS)
+    for one in done:
+        name, still, pieces = one.job.scene.name or one.job.name, one.out_of_balance, one.fragments
+        if still is not None:
+            say(f"{name}: starts at rest, out-of-balance force ratio {still:.1e}")
+        if pieces is not None:
+            say(f"{name}: {len(pieces) - 1 or 'no'} joints broke")
+            show_facts({"fragments": pieces[1:] and pieces}, LABELS)
+        for path in one.fields:
+            say(f"{name}: snapshots for ParaView, {path}")
+        if one.job.scene.record.fields is not None and not one.fields:
+            say(f"{name}: no snapshots: the solution is known at the receivers only")
