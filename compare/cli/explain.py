@@ -114,12 +114,11 @@ def _pillar(scene: Scene, measured: bool) -> Facts:
         }
         for (start, stop), one, other in zip(spans(p), p.each, before, strict=False)
     ]
+    costs = [timings.block_step(scene), None]
     if measured:
-        own, everything = (one.ns for one in step_costs([scene, with_every_effect(scene)]))
-    else:
-        own, everything = timings.block_step(scene), None
-    cost = {"nanoseconds_per_block_step": own, "nanoseconds_with_everything": everything}
-    return {"segments": segments, **cost}
+        costs = [one.ns for one in step_costs([scene, with_every_effect(scene)])]
+    names = "nanoseconds_per_block_step", "nanoseconds_with_everything"
+    return {"segments": segments, **dict(zip(names, costs, strict=True))}
 
 
 def show_explanation(found: Facts) -> None:
