@@ -3,27 +3,42 @@
 from types import ModuleType
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
-from jointwave.cases.effects import is_spatial
+from jointwave.cases.loads import history_of
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.joint import PARTS, JointLaw
+from jointwave.cases.schema.pulse import Pulse
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.figures.drawing import pillar
-from jointwave.compare.figures.drawing.pulses import draw_pulse
-from jointwave.compare.figures.drawing.sketch import Sketch, draw, legend, table
+from jointwave.compare.figures.drawing.sketch import LOAD, Sketch
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.panels import variant_names
 from jointwave.compare.figures.style import WIDTH
+from jointwave.compare.figures.units import unit_for
 from jointwave.compare.misfit.pairs import Comparison
 
 MOST = 4  # drawings per scene
 TITLE = "The scene"
-EDGE, DRAWING, BESIDE = 0.6, 5.2, 1.25  # inches across: the margin, drawing, and parts beside it
-GAP, TALLEST = 0.55, 6.0  # inches between parts, and of the tallest drawing
-HEAD, FOOT, LINE, PART = 0.3, 0.5, 0.19, 1.0  # inches up
+PULSE, FOOT, TALLEST = 1.3, 0.8, 5.0  # inches: of a pulse, below a drawing, and of the tallest one
+ENTRIES, LINE = 6, 0.25  # of the legend in a line, and inches of one
+SAMPLES = 400
+UNITS = {
+    "stress": "Pa",
+    "incident-stress": "Pa",
+    "force": "N/m",
+    "velocity": "m/s",
+    "acceleration": "m/s²",
+}
+#: What a drawing shows of a pillar or a rock mass.
+SEEN = (
+    *("pillar", "soft_layers", "segments", "scatter", "load", "ends", "domain", "regions"),
+    *("joint_sets", "waves", "loads", "boundaries", "gravity", "prestress", "record"),
+)
 
 
 def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
@@ -34,70 +49,96 @@ def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
 
     groups: dict[str, tuple[list[str], Any]] = {}
     for words, comparison in zip(variant_names(comparisons), comparisons, strict=True):
-        seen = drawing.appearance(comparison.scene)
+        seen = str([getattr(comparison.scene, key, None) for key in SEEN])
         groups.setdefault(seen, ([], comparison.scene))[0].append(words)
-    rows = {", ".join(names): scene for names, scene in list(groups.values())[:MOST]}
-    sketches = {words: drawing.sketch_of(scene) for words, scene in rows.items()}
-    tables = pd.concat({words: table(sketch) for words, sketch in sketches.items()})
-    numbers = tables.rename_axis(["variant", None]).reset_index("variant").reset_index(drop=True)
-    caption = drawing.caption(next(iter(rows.values())))
-    figure = _figure(rows, list(sketches.values()))
+    scenes = {", ".join(names): scene for names, scene in list(groups.values())[:MOST]}
+    sketches = {words: drawing.sketch_of(scene) for words, scene in scenes.items()}
+    numbers = pd.concat({words: sketch.table() for words, sketch in sketches.items()})
+    numbers = numbers.rename_axis(["variant", None]).reset_index("variant").reset_index(drop=True)
+    figure = _figure(scenes, list(sketches.values()))
+    first = comparisons[0].scene
+    caption = f"From the scene file: {drawing.rock_words(first)}. {_joints(first)}"
     return SceneFigure(f"{name}-scene", TITLE, caption, figure, numbers)
 
 
-def _figure(rows: dict[str, Any], sketches: list[Sketch]) -> Figure:
-    heights = [_height(sketch) for sketch in sketches]
-    top = total = sum(heights)
-    with blank(total, True) as figure:
-        for k, (words, scene) in enumerate(rows.items()):
-            if len(rows) > 1:
-                heading = f"({chr(97 + k)})  {words}"
-                figure.text(0.08 / WIDTH, 1 - (total - top + 0.06) / total, heading, va="top")
-            _draw_row(figure, scene, sketches[k], top - HEAD)
-            top -= heights[k]
+def _figure(scenes: dict[str, AnyScene], sketches: list[Sketch]) -> Figure:
+    """Draw pillars one below the other, rock masses in pairs, each with its pulse beside it."""
+    one = isinstance(next(iter(scenes.values())), Scene) or len(scenes) == 1
+    pairs = 1 if one else 2
+    rows, width = -(-len(scenes) // pairs), WIDTH / pairs - PULSE - 0.9
+    ratio = max(sketch.ratio for sketch in sketches)
+    height = max(min(TALLEST, ratio * width), PULSE) + FOOT
+    with blank(rows * height + 2 * LINE) as figure:
+        widths = [width, PULSE] * pairs
+        axes = figure.subplots(rows, 2 * pairs, squeeze=False, width_ratios=widths).reshape(-1, 2)
+        handles: dict[str, Any] = {}
+        for k, ((ax, beside), sketch) in enumerate(zip(axes, sketches, strict=False)):
+            words, scene = list(scenes.items())[k]
+            sketch.draw(ax)
+            if len(scenes) > 1:
+                ax.set_title(f"({chr(97 + k)})  {words}")
+            if isinstance(scene, Scene):
+                ax.set_yticks([])
+                ax.spines["left"].set_visible(False)
+            handles |= {artist.get_label(): artist for artist in ax.get_legend_handles_labels()[0]}
+            _draw_pulse(beside, scene)
+        for ax in axes[len(sketches) :].ravel():
+            ax.remove()
+        figure.legend(handles=list(handles.values()), loc="outside lower center", ncols=ENTRIES)
     return figure
 
 
-def _draw_row(figure: Figure, scene: Any, sketch: Sketch, top: float) -> None:
-    """Draw a scene and what belongs to it below a height, inches."""
-    width, height = figure.get_size_inches()
+def _draw_pulse(ax: Axes, scene: AnyScene) -> None:
+    """Draw the first load or wave over time, to a little after its end."""
+    pulse = next((pulse for pulse in scene.pulses if pulse.amplitude), None)
+    if pulse is None:
+        ax.remove()
+        return
+    time, values = pulse_curve(pulse, scene.time.duration)
+    unit = unit_for(UNITS[pulse.quantity], 1.001 * float(np.abs(values).max()))
+    ax.axhline(0, color="#bbbbbb", linewidth=0.6)
+    ax.plot(1e3 * time, values / unit.size, color=LOAD, linewidth=1.3)
+    kind = getattr(pulse, "kind", "load")
+    words = f"{kind} wave" if kind in ("P", "S") else kind
+    ax.set(xlabel="time (ms)", title=f"{words}, {pulse.shape} ({unit.name})")
+    ax.set(anchor="SW", box_aspect=0.8)
 
-    def axes(left: float, across: float, up: float) -> Axes:
-        place = left / width, (top - up) / height, across / width, up / height
-        return figure.add_axes(place)
 
-    ax = axes(EDGE, DRAWING, _drawing_height(sketch))
-    draw(ax, sketch)
-    beside = EDGE + DRAWING + GAP
+def pulse_curve(pulse: Pulse, duration: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return times (s) and the load or wave there, SI, from its start to a little after its end.
+
+    duration : of the scene, s. An extreme load is scaled, see `cases.loads.load_history`.
+    """
+    scale = getattr(pulse, "scale", 1.0)
+    history = history_of(pulse, pulse.amplitude / scale)
+    end = min(duration, 1.25 * history.end or duration)
+    time = np.linspace(0, end, SAMPLES)
+    return time, scale * np.asarray(history.value(time))
+
+
+def _joints(scene: Any) -> str:
+    """Return the joints and the marks of receivers in words."""
     if isinstance(scene, Scene):
-        _mark_ends(ax, scene)
-        if is_spatial(scene):
-            pillar.draw_section(axes(beside + 0.15, PART, PART), scene)
-            beside += 0.2 + PART + GAP
-    acting = next((pulse for pulse in scene.pulses if pulse.amplitude), None)
-    if acting is not None:
-        kind = getattr(acting, "kind", "load")
-        words = f"{kind} wave" if kind in ("P", "S") else kind
-        draw_pulse(axes(beside, BESIDE, PART), acting, scene.time.duration, words)
-        beside += BESIDE + 0.15
-    free = axes(beside, WIDTH - beside, PART)
-    free.set_axis_off()
-    free.legend(handles=legend(sketch), loc="upper left", frameon=False, fontsize=8, borderpad=0)
+        return (
+            f"Joints: {_law(scene.joints) or 'elastic'}. Triangles: sections whose stress is "
+            "recorded; circles: points whose velocity is."
+        )
+    sets = [
+        f"{one.name}: dip {one.dip:g}°, {f'spacing {one.spacing:g} m' if one.spacing else 'one'}, "
+        f"{one.normal_stiffness / 1e9:.3g} and {one.shear_stiffness / 1e9:.3g} GPa/m"
+        f"{', ' * bool(_law(one))}{_law(one)}"
+        for one in scene.joint_sets
+    ]
+    joints = f"Joints: {'; '.join(sets)}." if sets else "No joints."
+    return f"{joints} Circles: points whose motion is recorded; triangles: points of joints."
 
 
-def _drawing_height(sketch: Sketch) -> float:
-    return min(TALLEST, DRAWING * sketch.ratio)
-
-
-def _height(sketch: Sketch) -> float:
-    """Return the height of a row, inches."""
-    return HEAD + max(_drawing_height(sketch) + FOOT, PART + FOOT, LINE * len(legend(sketch)))
-
-
-def _mark_ends(ax: Axes, scene: Scene) -> None:
-    """Number the axis along the pillar only where it is."""
-    length, (low, high) = scene.pillar.length, ax.get_xlim()
-    ticks = MaxNLocator(max(1, round(10 * length / (high - low)))).tick_values(0, length)
-    ax.set_xticks([y for y in ticks if 0 <= y <= length * (1 + 1e-9)])
-    ax.set_yticks([])
-    ax.spines[["left", "bottom"]].set_visible(False)
+def _law(law: JointLaw) -> str:
+    """Return the nonlinear properties of joints in words; empty for elastic joints."""
+    parts = [
+        f"damping ratio {law.damping_ratio:g}" if law.damping_ratio else "",
+        "no tension" if law.tension is False else "",
+        f"friction {law.friction_angle:g}°" if law.friction_angle is not None else "",
+        *(part.drawn.format_map(vars(law)) for part in PARTS if part.of(law)),
+    ]
+    return ", ".join(part for part in parts if part)

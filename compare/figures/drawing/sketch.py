@@ -1,20 +1,20 @@
-"""A scene as named shapes in metres, and their picture: what pillars and rock masses share."""
+"""A scene as shapes of matplotlib in metres: what pillars and rock masses share."""
 
 from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
+from matplotlib.text import Annotation, Text
+from matplotlib.transforms import IdentityTransform
 
-from jointwave.cases.schema.plane import GravityInPlane
-from jointwave.cases.schema.tables import Gravity
-
-INK, LOAD, RECEIVER, LAYER = "#1c2126", "#b3001b", "#00549e", "#8a3b12"
-ROCK, EDGE, SOFT = "#efe9dd", "#9a917f", "#5d6670"
-#: Colours of the rock of regions or segments, in order.
-REGIONS = ("#cfc8b8", "#b9c4cc", "#d9cfe0", "#c4d2bd")
+INK, LOAD, RECEIVER = "#1c2126", "#b3001b", "#00549e"
+EDGE, SOFT = "#9a917f", "#5d6670"
+#: Colours of the rock, and of that of regions or segments, in order.
+ROCKS = ("#efe9dd", "#cfc8b8", "#b9c4cc", "#d9cfe0", "#c4d2bd")
 #: Line styles of sides and ends by boundary condition: width (points) and dashes.
 SIDES: dict[str, tuple[float, Any]] = {
     "free": (1.0, "-"),
@@ -23,48 +23,23 @@ SIDES: dict[str, tuple[float, Any]] = {
     "fixed": (3.4, "-"),
     "periodic": (1.4, (0, (1.0, 1.5))),
 }
-MANY = 3000  # lines above which they are an image in the drawing
-
-Point = np.ndarray  # float array [2], m
-
-
-class Lines(NamedTuple):
-    """Lines of one name [n, 2, 2], m, and their style as Line2D takes it."""
-
-    segments: np.ndarray
-    style: dict[str, Any]
-
-
-class Arrow(NamedTuple):
-    """An arrow, m; both : with a head at either end."""
-
-    tail: Point
-    tip: Point
-    colour: str = LOAD
-    both: bool = False
+MANY = 3000  # lines of one name above which they are an image in the drawing
 
 
 class Sketch(NamedTuple):
     """What a drawing shows of a scene, places in m to the right and up.
 
-    low, high : the shown rectangle [2]. stretch : of what is up. axes : their names. size : in
-    words. blocks, tones : polygons [corners, 2] and their colours. regions : colours by name.
-    lines : in drawing order; a name that begins with "_" is not in the legend. marks : marker and
-    places [n, 2] of receivers. notes : place, text and its horizontal alignment.
+    shapes : by the functions below, in drawing order; a name that begins with "_" is not in the
+    legend. low, high : the shown rectangle [2]. axes : their names. stretch : of what is up.
+    size : in words.
     """
 
-    low: Point
-    high: Point
-    stretch: float
+    shapes: list[Artist]
+    low: np.ndarray
+    high: np.ndarray
     axes: tuple[str, str]
-    size: str
-    blocks: list[np.ndarray]
-    tones: list[str]
-    regions: dict[str, str]
-    lines: dict[str, Lines]
-    marks: dict[str, tuple[str, np.ndarray]]
-    arrows: list[Arrow]
-    notes: list[tuple[Point, str, str]]
+    stretch: float = 1.0
+    size: str = ""
 
     @property
     def ratio(self) -> float:
@@ -72,75 +47,78 @@ class Sketch(NamedTuple):
         across, up = self.high - self.low
         return float(self.stretch * up / across)
 
+    def draw(self, ax: Axes) -> None:
+        """Draw the scene into axes."""
+        for shape in self.shapes:
+            ax.add_artist(shape)
+        right, up = (f"{name} (m)" for name in self.axes)
+        ax.set(xlabel=f"{right}{self.size}", ylabel=up, aspect=self.stretch, anchor="S")
+        ax.set(xlim=(self.low[0], self.high[0]), ylim=(self.low[1], self.high[1]))
 
-def draw(ax: Axes, sketch: Sketch) -> None:
-    """Draw a sketch into axes."""
-    many = sum(len(lines.segments) for lines in sketch.lines.values()) > MANY
-    rock = PolyCollection(sketch.blocks, facecolors=sketch.tones, rasterized=many, zorder=1)
-    ax.add_collection(rock, autolim=False)
-    for k, (segments, style) in enumerate(sketch.lines.values()):
-        order = {"zorder": 2 + k / 100, "rasterized": many and k == 0}
-        ax.add_collection(LineCollection(list(segments), **order, **style), autolim=False)
-    for marker, places in sketch.marks.values():
-        ax.plot(*places.T, marker, color=RECEIVER, markersize=4.5, zorder=8)
-    for arrow in sketch.arrows:
-        style = {"arrowstyle": "<|-|>" if arrow.both else "-|>", "color": arrow.colour}
-        style |= {"shrinkA": 0, "shrinkB": 0, "linewidth": 1.3}
-        ax.annotate("", tuple(arrow.tip), tuple(arrow.tail), arrowprops=style, zorder=6)
-    plain = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8}
-    for (x, y), text, side in sketch.notes:
-        ax.text(x, y, text, ha=side, va="center", fontsize=8, zorder=7, bbox=plain)
-    ax.set(xlim=(sketch.low[0], sketch.high[0]), ylim=(sketch.low[1], sketch.high[1]))
-    ax.set(aspect=sketch.stretch, anchor="NW")
-    right, up = (f"{name} (m)" for name in sketch.axes)
-    ax.set(xlabel=": ".join(part for part in (right, sketch.size) if part), ylabel=up)
-
-
-def legend(sketch: Sketch) -> list[Line2D]:
-    """Return the entries of the legend: lines, regions, receivers."""
-    entries = [
-        Line2D([], [], label=name, **lines.style)
-        for name, lines in sketch.lines.items()
-        if not name.startswith("_")
-    ]
-    entries += [
-        Line2D([], [], label=name, color=colour, linewidth=6.0)
-        for name, colour in sketch.regions.items()
-    ]
-    entries += [
-        Line2D([], [], label=name, color=RECEIVER, marker=marker, linestyle="none", markersize=4.5)
-        for name, (marker, _) in sketch.marks.items()
-    ]
-    return entries
+    def table(self) -> pd.DataFrame:
+        """Return the ends of every line, and the place of every receiver, with its name."""
+        columns = [f"{way} {axis} (m)" for way in ("from", "to") for axis in self.axes]
+        parts = []
+        for shape in self.shapes:
+            if isinstance(shape, LineCollection):
+                ends = np.array(shape.get_segments()).reshape(-1, 4)
+            elif isinstance(shape, Line2D):
+                ends = np.tile(shape.get_xydata(), 2)
+            else:
+                continue
+            parts.append(pd.DataFrame(ends, columns=columns))
+            parts[-1].insert(0, "what", str(shape.get_label()).removeprefix("_"))
+        return pd.concat(parts)
 
 
-def table(sketch: Sketch) -> pd.DataFrame:
-    """Return the ends of every line, and the place of every receiver, with its name."""
-    ends = {name.removeprefix("_"): lines.segments for name, lines in sketch.lines.items()}
-    ends |= {name: np.stack([places, places], axis=1) for name, (_, places) in sketch.marks.items()}
-    columns = [f"{way} {axis} (m)" for way in ("from", "to") for axis in sketch.axes]
-    found = pd.DataFrame(np.concatenate([x.reshape(-1, 4) for x in ends.values()]), columns=columns)
-    found.insert(0, "what", np.repeat(list(ends), [len(x) for x in ends.values()]))
-    return found
+def rock(name: str, polygons: list[np.ndarray], k: int) -> Artist:
+    """Return blocks of the k-th rock, polygons [corners, 2], m."""
+    return PolyCollection(polygons, facecolors=ROCKS[k % len(ROCKS)], label=name, zorder=1)
 
 
-def side_style(held: str) -> dict[str, Any]:
-    """Return the style of a side or end by its boundary condition."""
-    width, dashes = SIDES[held]
-    return {"color": INK, "linewidth": width, "linestyle": dashes}
+def lines(name: str, segments: Any, colour: str, width: float, dashes: Any = "-") -> list[Artist]:
+    """Return lines [n, 2, 2], m; none if there are none."""
+    style: Any = {"colors": colour, "linewidths": width, "linestyles": [dashes], "zorder": 2}
+    found = LineCollection(list(segments), label=name, rasterized=len(segments) > MANY, **style)
+    return [found] if len(segments) else []
 
 
-def pushing(tip: Point, direction: Point, length: float | Point, colour: str = LOAD) -> Arrow:
+def side(name: str, segments: Any, held: str) -> list[Artist]:
+    """Return the lines of a side or end with a boundary condition."""
+    return lines(f"{held} {name}", segments, INK, *SIDES[held])
+
+
+def receivers(name: str, places: Any, marker: str) -> list[Artist]:
+    """Return the marks of receivers at places [n, 2], m; none if there are none."""
+    style: Any = {"color": RECEIVER, "markersize": 4.5, "linestyle": "none", "zorder": 8}
+    return [Line2D(*np.transpose(places), marker=marker, label=name, **style)] if places else []
+
+
+def arrow(tail: np.ndarray, tip: np.ndarray, colour: str = LOAD, heads: str = "-|>") -> Artist:
+    """Return an arrow between two places, m."""
+    style = {"arrowstyle": heads, "color": colour, "linewidth": 1.3, "shrinkA": 0, "shrinkB": 0}
+    end, start = (tip[0], tip[1]), (tail[0], tail[1])
+    return Annotation("", end, start, arrowprops=style, transform=IdentityTransform(), zorder=6)
+
+
+def pushing(tip: np.ndarray, direction: np.ndarray, length: Any, colour: str = LOAD) -> Artist:
     """Return an arrow of a length (m) along a direction that ends at a place."""
-    return Arrow(tip - length * direction, tip, colour)
+    return arrow(tip - length * direction, tip, colour)
 
 
-def shaking(middle: Point, direction: Point, length: float | Point) -> Arrow:
+def shaking(middle: np.ndarray, direction: np.ndarray, length: Any) -> Artist:
     """Return a double arrow of a length (m) for motion along a direction."""
     half = length / 2 * direction
-    return Arrow(middle - half, middle + half, both=True)
+    return arrow(middle - half, middle + half, heads="<|-|>")
 
 
-def gravity_words(gravity: Gravity | GravityInPlane) -> str:
-    """Return the label of the arrow of gravity."""
-    return f"{gravity.acceleration:g} m/s²"
+def gravity(tip: np.ndarray, down: np.ndarray, length: Any, acceleration: float) -> list[Artist]:
+    """Return the arrow of gravity (m/s²), which ends at a place, with its value to the left."""
+    words = note(tip - 1.3 * length * np.array([1.0, 0.0]), f"{acceleration:g} m/s²", "right")
+    return [pushing(tip, down, length, SOFT), words] if acceleration else []
+
+
+def note(at: np.ndarray, text: str, align: str) -> Artist:
+    """Return text at a place, m, with its horizontal alignment."""
+    plain = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8}
+    return Text(at[0], at[1], text, ha=align, va="center", fontsize=8, zorder=7, bbox=plain)

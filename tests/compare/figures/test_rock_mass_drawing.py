@@ -64,7 +64,7 @@ def test_every_joint_is_drawn_in_the_colour_of_its_set(drawing):
     figure = drawing().figure
     assert length(lines(figure, rock_mass.SETS[0])) == pytest.approx(50 - 3 * 2)
     assert length(lines(figure, rock_mass.SETS[1])) == pytest.approx(24 - 2 * 2)
-    (legend,) = (ax.get_legend() for ax in figure.axes if ax.get_legend())
+    (legend,) = figure.legends
     assert [text.get_text() for text in legend.texts] == [
         *("rows", "cross", "quiet side", "free side", "fixed side", "point", "point of a joint")
     ]
