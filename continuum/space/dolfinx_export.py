@@ -1,6 +1,6 @@
 """Meshes, spaces and forms of dolfinx itself, versions 0.5 to 0.11 told apart by what they offer.
 
-No run needs them, nor the compiler that forms need: VTX files, the study's loop of plain dolfinx
+No run needs them, nor the compiler that forms need: VTX files, the benchmark's loop of plain dolfinx
 and the tests do. Meshes and forms live on one process each; matrices leave as real scipy CSR.
 """
 

@@ -2,8 +2,8 @@
 
 from types import ModuleType
 
-from jointwave.compare.studies.methods import adaptive, plain_dolfinx
+from jointwave.compare.studies.methods import adaptive
 
 #: Each module has NAME, ENGINE, whose model it solves, applies(scene) -> Answer and
 #: solve(scene, **arguments) -> xarray.Dataset, with the names of the ARGUMENTS that a study varies.
-METHODS: dict[str, ModuleType] = {module.NAME: module for module in (adaptive, plain_dolfinx)}
+METHODS: dict[str, ModuleType] = {module.NAME: module for module in (adaptive,)}
