@@ -41,7 +41,7 @@ def sections(
         yield section("study", found, f"jointwave study {name}", id=f"study-{name}")
         progress(done + PARTS["studies"] * i / len(REPORTED))
     done += PARTS["studies"]
-    measured = effects.run(effects.reported(), out / "effects", pool)
+    measured = effects.run(effects.reported(), out / "effects")
     found = summarise_effects(out / "effects", measured)
     yield section("effects", found, "jointwave effects", contents="Effects")
     progress(done := done + PARTS["effects"])

@@ -38,14 +38,14 @@ def effects(
     out: Annotated[Path, typer.Option(help="Folder for table, diagram and points.")] = Path(
         "effects"
     ),
-    workers: WorkersOption = CORES,
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Measure the cost of every effect of a scene, and the misfit of the result without it.
 
     For a pillar, or a rock mass that rigid blocks can represent. Without a scene: every variant of
-    every shipped pillar but the hard cases. Slow; finished scenes are saved in DIR.
+    every shipped pillar but the hard cases. Slow, since steps are timed one scene after the other; finished
+    scenes are saved in DIR.
     """
     from jointwave.compare.cli.study_view import run_and_show
     from jointwave.compare.studies.effects import run
@@ -55,8 +55,8 @@ def effects(
     run_and_show(
         f"{len(wanted)} variants",
         out,
-        workers,
-        lambda pool, advance: summarise(out, run(wanted, out, pool, advance)),
+        1,
+        lambda pool, advance: summarise(out, run(wanted, out, advance)),
         as_json,
     )
 

@@ -74,7 +74,7 @@ def test_a_scene_is_run_and_its_file_says_where_its_receivers_are(says, tmp_path
 
 
 def test_effects_of_what_rigid_blocks_cannot_be_are_refused_in_one_line(says):
-    said = says("effects joint.toml --workers 1", code=2)
+    said = says("effects joint.toml", code=2)
     assert said.out == "" and said.err.count("\n") == 1
     assert "dem does not apply: numerics.dem.block" in said.err
 

@@ -6,7 +6,6 @@ from math import nan
 import numpy as np
 import pandas as pd
 import pytest
-import xarray as xr
 
 from jointwave import dem
 from jointwave.cases.effects import active_effects
@@ -49,57 +48,40 @@ def damped(pillar):
 
 def test_effects_are_measured_by_leaving_them_out(damped, known, tmp_path):
     """The ledger changes nothing; dashpots do, and shorten the step. Costs are differences."""
-    found = run([damped], tmp_path).set_index("effect")
-    assert set(found.index) == {"dashpots", "energy ledger"}
-    ledger, dashpots = found.loc["energy ledger"], found.loc["dashpots"]
+    found = run([damped], tmp_path).set_index(["engine", "effect"])
+    assert set(found.loc["dem"].index) == {"dashpots", "energy ledger"}
+    ledger, dashpots = found.loc["dem", "energy ledger"], found.loc["dem", "dashpots"]
     assert (ledger.misfit, ledger.steps) == (0, 1)
     plain = dem.simulate(left_out(damped.scene, "dashpots"))["stress"].values
     expected = relative_l2(plain, dem.simulate(damped.scene)["stress"].values)
     assert dashpots.misfit == pytest.approx(expected) and expected > 0.01
     assert dashpots.steps > 1
-    assert (dashpots.ns, dashpots.share, dashpots.ns_rock) == (4.0, 4 / 7, 4.0)
-    assert (ledger.ns, ledger.share, ledger.ns_noise, ledger.own) == (3.0, 3 / 7, 0.5, 7.0)
+    assert (dashpots.ns, dashpots.share) == (4.0, 4 / 7)
+    assert (ledger.ns, ledger.share, ledger.noise, ledger.own) == (3.0, 3 / 7, 0.5, 7.0)
+    rock = found.loc["continuum-jointed", "dashpots"]
+    assert rock.ns == 4.0 and 0.01 < rock.misfit < 1 and np.isnan(rock.everything)
 
 
 def test_what_is_done_is_not_done_again(damped, known, tmp_path, monkeypatch):
-    """Also what was solved before an interruption; NaN is read as such."""
-    with monkeypatch.context() as patched, pytest.raises(KeyboardInterrupt):
-        patched.setattr(effects, "timed", lambda *case: (_ for _ in ()).throw(KeyboardInterrupt))
-        run([damped], tmp_path)
-    monkeypatch.setattr(effects, "without_each", lambda case: pytest.fail("solved again"))
+    """NaN is read as such."""
     fractions: list[float] = []
-    first = run([damped], tmp_path, None, fractions.append)
-    monkeypatch.setattr(effects, "step_costs", lambda *some: pytest.fail("timed again"))
+    first = run([damped], tmp_path, fractions.append)
+    monkeypatch.setattr(effects, "measure", lambda *some: pytest.fail("measured again"))
     again = run([damped], tmp_path)
     pd.testing.assert_frame_equal(first, again)
-    assert fractions == sorted(fractions) and fractions[-1] == 1
+    assert fractions[-1] == 1
 
 
 def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, known):
     """The wall that the load shakes; only rigid blocks have local damping."""
     load = {"shape": "sine", "amplitude": 0.1, "period": 0.01, "quantity": "velocity"}
     scene = pillar(ends__start="fixed", load=load, damping={"local": 0.1}, time__duration=0.01)
-    variant = Variant("a/b", scene)
-    rows = {one.effect: one for one in effects.timed(variant, effects.without_each(variant), {})}
+    rows = {one.effect: one for one in effects.measure(Variant("a/b", scene), {})}
     fixed, local = rows["fixed ends"], rows["local damping"]
     assert "is the motion of a base" in fixed.reason
-    assert np.isnan([fixed.ns, fixed.share, fixed.ns_rock, fixed.misfit]).all()
-    assert local.reason == "" and np.isfinite(local.ns) and np.isnan(local.ns_rock)
-
-
-def test_what_stands_still_with_an_effect_has_no_misfit():
-    """A component that is round-off with the effect has none; the moving one has a misfit."""
-    still = [[1.0, 1e-17], [2.0, -1e-17], [1.0, 3e-17]]
-    result, without = (
-        xr.Dataset(
-            {"velocity": (("velocity_y", "time", "axis"), [values])},
-            {"time": [0.0, 1.0, 2.0], "velocity_y": [3.0], "axis": ["x", "y"]},
-        )
-        for values in (still, [[1.1, 0.1], [2.0, 0.2], [1.0, 0.1]])
-    )
-    misfit, at_rest = effects.influence(without, result)
-    assert misfit == pytest.approx(0.1 / 6**0.5) and at_rest.startswith("velocity y")
-    assert effects.influence(result, result) == (0.0, "")
+    assert np.isnan([fixed.ns, fixed.share, fixed.misfit]).all()
+    assert local.reason == "" and np.isfinite(local.ns)
+    assert {one.engine for one in rows.values()} == {"dem"}
 
 
 def test_every_variant_of_every_shipped_scene_is_taken():
@@ -109,21 +91,21 @@ def test_every_variant_of_every_shipped_scene_is_taken():
     assert not any(name.startswith("hard/") for name, _ in every)
 
 
-def row(effect, misfit, ns, share, steps=1.0, ns_rock=nan, of=("set/one", "One", ""), **more):
+def row(effect, misfit, ns, share, steps=1.0, of=("set/one", "One", "", "dem"), **more):
     """Return a row of a scene whose step takes 4 ns, timed to 0.2 ns."""
-    about = {"reason": "", "at_rest": "", "own": 4.0, "everything": 40.0} | more
-    costs = {"ns": ns, "ns_noise": 0.2, "share": share, "ns_rock": ns_rock, "ns_rock_noise": 0.1}
-    return EffectRow(*of, effect=effect, misfit=misfit, steps=steps, **costs, **about)
+    about = {"reason": "", "own": 4.0, "everything": 40.0, "ns": ns, "noise": 0.2, "share": share}
+    return EffectRow(*of, effect=effect, misfit=misfit, steps=steps, **about | more)
 
 
-TWO = {"of": ("set/two", "Two", "hard"), "everything": 20.0}
+TWO = {"of": ("set/two", "Two", "hard", "dem"), "everything": 20.0}
 SUBJECT = "is the subject of the scene"
 FOUND = pd.DataFrame(
     [
         row("joints that differ", 0.8, -0.1, -0.025),
         row("energy ledger", 0.0, 3.0, 0.75),
         row("spatial motion", nan, nan, nan, nan, **TWO, reason=SUBJECT),
-        row("dashpots", 0.05, 2.0, 0.5, 4.0, 1.5, **TWO),
+        row("dashpots", 0.05, 2.0, 0.5, 4.0, **TWO),
+        row("dashpots", 0.04, 1.5, 0.375, of=("set/two", "Two", "hard", "rock"), everything=nan),
     ]
 )
 
@@ -138,11 +120,12 @@ def test_the_table_has_the_most_expensive_first_and_says_why_an_effect_stays():
     """A cost below the noise of its timing is said to be within it."""
     found = table(FOUND)
     assert "10.0 % of 40 ns" in found.index[0][0]
-    effects = ["energy ledger", "joints that differ", "dashpots", "spatial motion"]
+    effects = ["energy ledger", "joints that differ", "dashpots", "spatial motion", "dashpots"]
     assert found.index.get_level_values("effect").tolist() == effects
     assert found.iloc[1, 1:3].tolist() == ["within ±5", "within ±0.2"]
-    assert found.iloc[2].tolist() == [5.0, 50.0, 2.0, 4.0, 1.5, ""]
+    assert found.iloc[2].tolist() == [5.0, 50.0, 2.0, 4.0, ""]
     assert found.iloc[3, -1] == SUBJECT and found.iloc[3, :-1].isna().all()
+    assert found.index[4][0] == "2. Two (set/two, hard): 4 ns a freedom-step of jointed rock"
 
 
 def test_the_diagram_has_a_point_for_every_effect_that_can_be_left_out():
@@ -160,19 +143,18 @@ def test_files_hold_every_number(tmp_path):
     found = summarise(tmp_path, FOUND)
     frame = pd.read_csv(tmp_path / "effects.csv", keep_default_na=False)
     assert frame["effect"].tolist() == FOUND.effect.tolist()
-    assert frame["everything"].tolist() == [40, 40, 20, 20]
+    assert frame["everything"].tolist() == ["40", "40", "20", "20", ""]
     assert all(file.is_file() for file in found.files)
 
 
 def test_the_command_prints_a_scene_and_keeps_its_files(command, tmp_path, monkeypatch):
-    monkeypatch.setattr(effects, "without_each", lambda case: [row("energy ledger", 0, 3, 0.75)])
-    monkeypatch.setattr(effects, "timed", lambda case, rows, full: rows)
-    scene = ["effects", "guo-li-2002/fig-09", "--variant", "no tension", "--workers", "1"]
+    monkeypatch.setattr(effects, "measure", lambda *of: [row("energy ledger", 0, 3, 0.75)])
+    scene = ["effects", "guo-li-2002/fig-09", "--variant", "no tension"]
     said = command(*scene).out
     assert "energy ledger" in said and "10.0 % of 40 ns" in said
     assert "effects.csv" in said and (tmp_path / "effects" / "effects.csv").is_file()
     facts = json.loads(command(*scene, "--json").out)
-    assert facts["rows"][0]["misfit"] == 0 and facts["rows"][0]["ns_rock"] is None
+    assert facts["rows"][0]["misfit"] == 0 and facts["rows"][0]["ns"] == 3
 
 
 @pytest.mark.parametrize("option", [("--variant", "x"), ("--set", "joints.tension=false")])
