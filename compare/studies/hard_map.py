@@ -19,7 +19,6 @@ from jointwave.cases.errors import UnstableError
 from jointwave.compare.engines import ENGINES, solve
 from jointwave.compare.figures.style import style
 from jointwave.compare.scenes import find
-from jointwave.compare.solvers.record import Solver
 
 #: A short pillar with free ends, pushed by a step, in which all modes move.
 SCENE = "hard/short-pillar"
@@ -38,48 +37,13 @@ LIGHT = "#eceff2"  # of unstable cells
 
 
 class Column(NamedTuple):
-    """The cells of one damping ratio: whether an engine is stable at each step over the critical
-    one of the undamped pillar."""
+    """The cells of an engine at one damping ratio of the highest mode; steps : over the critical
+    one of the undamped pillar, at the centres of the cells, in equal ratios."""
 
     engine: str
     ratio: float
     steps: list[float]
     stable: list[bool]
-
-
-class StabilityMap(NamedTuple):
-    """The stability of an engine in every cell.
-
-    ratio : float array [m], damping ratio of the highest mode; step : [n], over the undamped
-    critical one; both at the centres of the cells, in equal ratios. stable : bool array [n, m].
-    """
-
-    engine: str
-    ratio: np.ndarray
-    step: np.ndarray
-    stable: np.ndarray
-
-    @property
-    def wrong(self) -> np.ndarray:
-        """Cells [n, m] that differ from theory at their centres."""
-        return self.stable != (self.step[:, None] < boundary(self.ratio))
-
-    @property
-    def cells(self) -> pd.DataFrame:
-        """The cells as a table."""
-        ratio, step = np.meshgrid(self.ratio, self.step)
-        columns = {"damping ratio": ratio, "step over undamped critical step": step}
-        columns |= {"stable": self.stable, "wrong side": self.wrong}
-        found = pd.DataFrame({name: values.T.ravel() for name, values in columns.items()})
-        return found.assign(engine=self.engine)
-
-    @property
-    def far(self) -> np.ndarray:
-        """Wrong cells further than one cell from the boundary."""
-        grow = self.step[1] / self.step[0]
-        below, above = (boundary(self.ratio) * f for f in (grow**-1.5, grow**1.5))
-        near = (self.step[:, None] > below) & (self.step[:, None] < above)
-        return self.wrong & ~near
 
 
 def boundary(ratio: np.ndarray) -> np.ndarray:
@@ -89,12 +53,8 @@ def boundary(ratio: np.ndarray) -> np.ndarray:
 
 def columns(engines: tuple[str, ...] = tuple(ENGINES), cells: int = CELLS) -> list[Column]:
     """Return the columns of the maps of some engines, not yet computed."""
-    steps = np.geomspace(0.02, 2, cells).tolist()
-    return [
-        Column(engine, float(zeta), steps, [])
-        for engine in engines
-        for zeta in np.geomspace(1e-3, 10, cells)
-    ]
+    steps, ratios = np.geomspace(0.02, 2, cells).tolist(), np.geomspace(1e-3, 10, cells).tolist()
+    return [Column(engine, zeta, steps, []) for engine in engines for zeta in ratios]
 
 
 def computed(column: Column) -> Column:
@@ -103,49 +63,51 @@ def computed(column: Column) -> Column:
     critical = engine.prepare(cases.load_variant(find(SCENE), "", PUSHED)).critical
     beta = column.ratio * critical  # eta = 2 zeta / omega
     # Ratios in proportion to frequencies leave Rayleigh's alpha zero.
-    damped = {"damping.rayleigh": {"frequencies": [1.0, 2.0], "ratios": [pi * beta, 2 * pi * beta]}}
-    own = engine.prepare(cases.load_variant(find(SCENE), "", PUSHED | damped)).critical
-    stable = [_is_stable(engine, damped, x * critical, own) for x in column.steps]
-    return column._replace(stable=stable)
+    rayleigh = {"frequencies": [1.0, 2.0], "ratios": [pi * beta, 2 * pi * beta]}
+    damped = PUSHED | {"damping.rayleigh": rayleigh}
+    own = engine.prepare(cases.load_variant(find(SCENE), "", damped)).critical
+
+    def is_stable(dt: float) -> bool:
+        table, interval = f"numerics.{engine.engine}", dt * STEPS / SAMPLES
+        times = {"record.interval": interval, "time.duration": interval * SAMPLES}
+        step = {f"{table}.step_fraction": dt / own * (1 + 1e-9), f"{table}.allow_unstable": True}
+        try:
+            solve(engine.name, cases.load_variant(find(SCENE), "", damped | times | step))
+        except UnstableError:
+            return False
+        return True
+
+    return column._replace(stable=[is_stable(x * critical) for x in column.steps])
 
 
-def _is_stable(engine: Solver, damped: dict[str, Any], dt: float, critical: float) -> bool:
-    """Return whether a run by steps of dt (s) ends, at this critical step (s) of the scene."""
-    interval = dt * STEPS / SAMPLES
-    numerics = {"step_fraction": dt / critical * (1 + 1e-9), "allow_unstable": True}
-    changes = PUSHED | damped | {f"numerics.{engine.engine}.{k}": v for k, v in numerics.items()}
-    changes |= {"record.interval": interval, "time.duration": interval * SAMPLES}
-    try:
-        solve(engine.name, cases.load_variant(find(SCENE), "", changes))
-    except UnstableError:
-        return False
-    return True
+def cells_of(found: list[Column]) -> pd.DataFrame:
+    """Return the cells of computed columns.
+
+    wrong : whether a cell differs from theory at its centre; far : and lies further than a cell
+    from the boundary.
+    """
+    cells = pd.DataFrame(found, columns=Column._fields).explode(["steps", "stable"])
+    cells = cells.rename(columns={"steps": "step"}).astype({"step": float, "stable": bool})
+    limit, size = boundary(cells.ratio), found[0].steps[1] / found[0].steps[0]
+    wrong = cells.stable != (cells.step < limit)
+    beyond = np.abs(np.log(cells.step / limit)) > 1.5 * np.log(size)
+    return cells.assign(wrong=wrong, far=wrong & beyond)
 
 
-def maps_of(found: list[Column]) -> list[StabilityMap]:
-    """Return the maps that columns make, by engine."""
-    maps = []
-    for engine in dict.fromkeys(one.engine for one in found):
-        own = [one for one in found if one.engine == engine]
-        ratio, step = np.array([one.ratio for one in own]), np.array(own[0].steps)
-        maps.append(StabilityMap(engine, ratio, step, np.array([one.stable for one in own]).T))
-    return maps
+def draw_map(ax: Axes, engine: str, cells: pd.DataFrame, k: int) -> None:
+    """Draw the map of an engine under the theoretical line; crosses mark cells on its wrong side.
 
-
-def draw_map(ax: Axes, one: StabilityMap, k: int) -> None:
-    """Draw a map under the theoretical line; crosses mark cells on its wrong side. Its cells are
-    the SVG group stability-map-k, the line stability-line-k."""
-    colours = [LIGHT, style(one.engine).colour]
-    mesh = ax.pcolormesh(
-        one.ratio, one.step, one.stable, shading="nearest", cmap=ListedColormap(colours)
-    )
+    Its cells are the SVG group stability-map-k, the line stability-line-k.
+    """
+    grid = cells.pivot(index="step", columns="ratio", values="stable")
+    colours = ListedColormap([LIGHT, style(engine).colour])
+    mesh = ax.pcolormesh(grid.columns, grid.index, grid, shading="nearest", cmap=colours)
     mesh.set(gid=f"stability-map-{k}", clim=(0, 1))
-    ratio = np.geomspace(one.ratio[0], one.ratio[-1], 200)
-    (line,) = ax.plot(ratio, boundary(ratio), color="#000000", linewidth=1.4)
-    line.set_gid(f"stability-line-{k}")
-    i, j = np.nonzero(one.wrong)
-    ax.plot(one.ratio[j], one.step[i], "x", color="#d00000", markersize=5)
+    ratio = np.geomspace(grid.columns[0], grid.columns[-1], 200)
+    ax.plot(ratio, boundary(ratio), color="#000000", linewidth=1.4, gid=f"stability-line-{k}")
+    wrong = cells[cells.wrong]
+    ax.plot(wrong.ratio, wrong.step, "x", color="#d00000", markersize=5)
     ax.set(xscale="log", yscale="log", xlabel="damping ratio of the highest mode")
-    ax.set_title(f"({chr(97 + k)})  {one.engine}: {len(i)} cells on the wrong side")
+    ax.set_title(f"({chr(97 + k)})  {engine}: {len(wrong)} cells on the wrong side")
     ax.text(0.06, 0.12, "stable", transform=ax.transAxes)
     ax.text(0.94, 0.9, "unstable", transform=ax.transAxes, ha="right")
