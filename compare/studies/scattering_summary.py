@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from jointwave.compare.engines import Progress, solver
@@ -13,7 +12,7 @@ from jointwave.compare.exact.plane.waves import KINDS
 from jointwave.compare.figures.export import blank, save
 from jointwave.compare.figures.style import style
 from jointwave.compare.runs.timings import machine
-from jointwave.compare.studies.scattering import AT, COUNTS, TITLES, closed_form, run, scene_of
+from jointwave.compare.studies.scattering import AT, COUNTS, TITLES, closed_form, run
 from jointwave.compare.studies.store import Pool
 from jointwave.compare.studies.summary import Summary, write_tables
 from jointwave.compare.text import percent
@@ -33,6 +32,7 @@ LEGEND = (
     "Error: the largest difference from the closed form. Residual: motion that plane waves "
     "of the rock cannot represent. CPU: time of a run, with set-up, without compiling."
 )
+INK = "#30363b"
 
 
 def make_study(
@@ -51,41 +51,33 @@ def make_study(
     data = rows.rename_axis("row").to_xarray().assign_attrs(title=title, **machine())
     figure = save(draw(name, done), out, name, title)
     files = [*write_tables(out, name, rows, data), *figure.drawings]
-    said, varied = sentences(done), VARIED[name][0]
-    shown = done.assign(residual=100 * done.residual).rename(
-        columns={"residual": "residual, %", "freedoms": "DOFs", "cpu": "CPU, s"}
-    )
-    labels = [[_heading(*of) for of in zip(done.solver, done.incidence, strict=True)], done[varied]]
-    reasons = failed.groupby(["solver", "message"], sort=False).size()
-    return Summary(
-        name,
-        title,
-        shown.set_index(pd.MultiIndex.from_arrays(labels, names=["", varied]))[
-            [*WAVES, "error", "residual, %", "DOFs", "CPU, s"]
-        ],
-        said,
-        [f"{one}, {count} runs: {why}" for (one, why), count in reasons.items()],
-        files,
-        {"rows": rows.to_dict("records"), "sentences": said, "files": list(map(str, files))},
-        figure,
-        NOTE,
-        LEGEND,
-        timed=True,
-    )
+    said, reasons = sentences(done), failed.groupby(["solver", "message"], sort=False).size()
+    lines = [f"{one}, {count} runs: {why}" for (one, why), count in reasons.items()]
+    facts = {"rows": rows.to_dict("records"), "sentences": said, "files": list(map(str, files))}
+    text = table(name, done), said, lines, files, facts, figure
+    return Summary(name, title, *text, NOTE, LEGEND, timed=True)
 
 
-def _heading(name: str, incidence: str) -> str:
-    return f"{solver(name).words.label}: {incidence} wave"
+def table(name: str, done: pd.DataFrame) -> pd.DataFrame:
+    """Return the moduli and their error under headings of their solver and wave."""
+    varied = VARIED[name][0]
+    found = done.assign(**{"": _headings(done), "residual, %": 100 * done.residual})
+    found = found.rename(columns={"freedoms": "DOFs", "cpu": "CPU, s"}).set_index(["", varied])
+    return found[[*WAVES, "error", "residual, %", "DOFs", "CPU, s"]]
+
+
+def _headings(done: pd.DataFrame) -> pd.Series:
+    return done.solver.map(lambda x: solver(x).words.label) + ": " + done.incidence + " wave"
 
 
 def sentences(done: pd.DataFrame) -> list[str]:
     """Return the largest error of each solver and kind of wave, and the cost of all its runs."""
     found = []
-    for of, some in done.groupby(["solver", "incidence"], sort=False):
+    for heading, some in done.groupby(_headings(done), sort=False):
         worst = some.loc[some.error.idxmax()]
         joints = "one joint" if worst.joints == 1 else f"{worst.joints} joints"
         found.append(
-            f"{_heading(*of)}: error of at most {percent(worst.error)} % of the incident wave, at "
+            f"{heading}: error of at most {percent(worst.error)} % of the incident wave, at "
             f"{worst.angle:g} degrees and {joints}; {len(some)} runs take {some.cpu.sum():.2g} s "
             "of CPU time."
         )
@@ -98,37 +90,34 @@ def draw(name: str, done: pd.DataFrame) -> Figure:
     The closed form is a line, of wave w of kind k the SVG group NAME-exact-k-w; solver j is its
     points, NAME-k-j-w.
     """
+    varied, heading = VARIED[name]
     with blank(4.2) as figure:
         axes = figure.subplots(1, len(KINDS), squeeze=False, sharey=True)[0]
         for k, (ax, kind) in enumerate(zip(axes, KINDS, strict=True)):
-            _draw_exact(ax, name, kind, k)
-            of_kind = done[done.incidence == kind]
-            for j, one in enumerate(done.solver.unique()):
-                own = of_kind[of_kind.solver == one]
-                look: dict[str, Any] = {"color": style(one).colour, "markersize": 8 - 2 * j}
-                look |= {"markerfacecolor": "none"} if j else {}
-                for w, (wave, (marker, _)) in enumerate(WAVES.items()):
-                    label = None if w or k else f"{one}: points"
-                    (line,) = ax.plot(own[VARIED[name][0]], own[wave], marker, label=label, **look)
-                    line.set_gid(f"{name}-{k}-{j}-{w}")
-            ax.set(ylim=(-0.03, 1.1), xlabel=VARIED[name][1], title=f"{kind} wave")
+            x, exact = _exact(name, kind)
+            for w, (wave, (marker, dashes)) in enumerate(WAVES.items()):
+                ax.plot(x, exact[w], color=INK, lw=1.0, ls=dashes, gid=f"{name}-exact-{k}-{w}")
+                for j, one in enumerate(done.solver.unique()):
+                    own = done[(done.incidence == kind) & (done.solver == one)]
+                    look: dict[str, Any] = {"color": style(one).colour, "markersize": 8 - 2 * j}
+                    look |= {"markerfacecolor": "none"} if j else {}
+                    gid, label = f"{name}-{k}-{j}-{w}", None if w else f"{one}: points"
+                    ax.plot(own[varied], own[wave], marker, label=label, gid=gid, **look)
+            ax.set(ylim=(-0.03, 1.1), xlabel=heading, title=f"{kind} wave")
             ax.margins(x=0.03)  # so that no marker is cut
             ax.grid(color="#e4e7ea", linewidth=0.6)
+        for wave, (marker, dashes) in WAVES.items():
+            axes[0].plot([], [], color=INK, ls=dashes, marker=marker, label=f"|{wave}|")
         axes[0].set_ylabel("amplitude over the incident one")
-        figure.legend(loc="outside upper center", ncols=4, frameon=False)
+        handles = axes[0].get_legend_handles_labels()
+        figure.legend(*handles, loc="outside upper center", ncols=4, frameon=False)
     return figure
 
 
-def _draw_exact(ax: Axes, name: str, kind: str, k: int) -> None:
+def _exact(name: str, kind: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return the varied values and the moduli [4, values] in closed form."""
     if name == "oblique-joint":
         x: np.ndarray = np.arange(0, 88, 0.5)
-        exact = np.array(closed_form(scene_of(kind, 0.0), np.radians(x)))
-    else:
-        x = np.arange(1, COUNTS[-1] + 1)
-        exact = np.array([closed_form(scene_of(kind, AT, int(n))) for n in x]).T
-        ax.set_xticks(x)
-    for w, (wave, (marker, dashes)) in enumerate(WAVES.items()):
-        (line,) = ax.plot(x, exact[w], color="#30363b", linewidth=1.0, linestyle=dashes)
-        line.set_gid(f"{name}-exact-{k}-{w}")
-        if k == 0:
-            ax.plot([], [], color="#30363b", ls=dashes, marker=marker, label=f"|{wave}|")
+        return x, closed_form(kind, x)
+    x = np.arange(1, COUNTS[-1] + 1)
+    return x, np.array([closed_form(kind, AT, int(n)) for n in x]).T

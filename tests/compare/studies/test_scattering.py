@@ -48,14 +48,14 @@ def test_a_turned_joint_is_the_same_joint():
     places = [[6.0, 1.0], [7.0, 2.0], [5.0, 3.0], [6.0, 9.0], [7.0, 10.0], [5.0, 11.0]]
     scene = scene_of("P", 0.0, changes=changes | {"record.points": places})
     found = points.amplitudes(scene, solve("oblique-joint", scene).velocity.values)
-    assert found[:4] == pytest.approx(KNOWN[30.0], abs=6e-5) and found.residual < 1e-8
+    assert found[:4] == pytest.approx(KNOWN[30.0], abs=6e-5) and found[4] < 1e-8
 
 
 def test_motion_that_is_no_plane_wave_is_left_over():
     scene = scene_of("P", 30.0)
     velocity = solve("oblique-joint", scene).velocity.values.copy()
     velocity[0] *= 1.1
-    assert 0.01 < points.amplitudes(scene, velocity).residual < 0.1
+    assert 0.01 < points.amplitudes(scene, velocity)[4] < 0.1
 
 
 @pytest.mark.slow
@@ -71,8 +71,8 @@ def test_deformable_rock_has_them_at_all_angles(incidence, joints):
 @pytest.fixture
 def few(monkeypatch):
     """Leave one angle of each kind of wave, and a solver that does not apply."""
-    monkeypatch.setattr(points, "ANGLES", (30.0,))
-    monkeypatch.setattr(points, "SOLVERS", {"oblique-joint": ("oblique-joint", "lattice")})
+    few = [JointsPoint(x, k, 30.0, 1) for x in ("oblique-joint", "lattice") for k in ("P", "SV")]
+    monkeypatch.setattr(points, "points", lambda *of: few)
 
 
 def test_the_study_writes_its_table_and_its_figure(few, tmp_path):
@@ -118,7 +118,7 @@ def test_several_joints_pass_what_is_known():
 
 def test_the_figure_has_the_numbers():
     values = (0.2, 0.3, 0.9, 0.1)
-    numbers = *values, *values, 1e-3, 0.0, 8.0, 0.5
+    numbers = *values, 1e-3, 0.0, 8.0, 0.5
     row = JointsRow("oblique-joint", "SV", 20.0, 1, "done", "", *numbers)
     lines = lines_of("oblique-joint", [row])
     for w, name in enumerate(WAVES):
