@@ -26,8 +26,8 @@ def summarise(folder: Path, found: pd.DataFrame) -> Summary:
     files = [*write_tables(folder, NAME, found), *figure.drawings]
     said, about = sentences(found), "; ".join(_labels(found).unique())
     facts = {"rows": found.to_dict("records"), "sentences": said, "files": list(map(str, files))}
-    text = table(found), said, [], files, facts, figure
-    return Summary(NAME, TITLE, *text, about=about, timed=True)
+    shown = table(found)
+    return Summary(NAME, TITLE, shown, said, [], files, facts, figure, about=about, timed=True)
 
 
 def _labels(found: pd.DataFrame) -> pd.Series:
@@ -99,7 +99,7 @@ def draw(found: pd.DataFrame) -> Figure:
             y = (100 * some.misfit).clip(lower=LEAST_MISFIT)
             look: Any = {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)]}
             ax.plot(x, y, ls="none", label=effect, gid=f"effects-points-{k}", **look)
-            for label, *at in zip(some.label, x, y, strict=True):
+            for label, at in zip(some.label, zip(x, y, strict=True), strict=True):
                 number = str(labels.index(label) + 1)
                 ax.annotate(number, at, (6, 3), textcoords="offset points", fontsize=8)
         ax.set(xscale="log", yscale="log", xlim=(LEAST_SHARE / 1.12, 150))

@@ -29,7 +29,7 @@ from jointwave.compare.engines import Progress, applies, solve
 from jointwave.compare.exact.plane import parallel_joints
 from jointwave.compare.exact.plane.oblique_joint import Joint
 from jointwave.compare.exact.plane.pulse import axes_of
-from jointwave.compare.exact.plane.waves import KINDS, polarisations, slownesses_across
+from jointwave.compare.exact.plane.waves import KINDS, Kind, polarisations, slownesses_across
 from jointwave.compare.solvers.continuum import JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies import store
@@ -156,9 +156,10 @@ def measure(point: JointsPoint) -> JointsRow:
     except FAILURES as error:
         return JointsRow(*point, "failed", reason_of(error))
     *found, residual = amplitudes(scene, result.velocity.values)
-    error = float(np.abs(found - closed_form(*point[1:])).max())
+    off = float(np.abs(found - closed_form(*point[1:])).max())
     freedoms = float(result.attrs.get("degrees_of_freedom", nan))
-    return JointsRow(*point, "done", "", *found, error, residual, freedoms, cpu)
+    numbers = *found, off, residual, freedoms, cpu
+    return JointsRow(*point, "done", "", *numbers)
 
 
 def _timed(name: str, scene: RockMass) -> tuple[xr.Dataset, float]:
@@ -171,7 +172,7 @@ def amplitudes(scene: RockMass, velocity: np.ndarray) -> list[float]:
     motion that such waves do not explain, from the motion at the scene's points [m, n, (x, y)]
     (m/s), at the frequency of its pulse."""
     wave, rock, omega = scene.waves[0], elastic_rock(scene.rock), _frequency(scene)
-    kind = "P" if wave.kind == "P" else "SV"
+    kind: Kind = "P" if wave.kind == "P" else "SV"
     axes = axes_of(rock, kind, np.array(wave.direction), np.radians(scene.joint_sets[0].dip))
     p, across = axes.slowness, slownesses_across(rock, axes.slowness)
     waves = [int(np.argmax(axes.incident)), 2, 3, 0, 1]  # incident, reflected, transmitted

@@ -1,7 +1,7 @@
 """Meshes, spaces and forms of dolfinx itself, versions 0.5 to 0.11 told apart by what they offer.
 
-No run needs them, nor the compiler that forms need: VTX files, the benchmark's loop of plain dolfinx
-and the tests do. Meshes and forms live on one process each; matrices leave as real scipy CSR.
+No run needs them, nor the compiler that forms need: VTX files, the benchmark of plain dolfinx and
+the tests do. Meshes and forms live on one process each; matrices leave as real scipy CSR.
 """
 
 import inspect

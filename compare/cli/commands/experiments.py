@@ -44,8 +44,8 @@ def effects(
     """Measure the cost of every effect of a scene, and the misfit of the result without it.
 
     For a pillar, or a rock mass that rigid blocks can represent. Without a scene: every variant of
-    every shipped pillar but the hard cases. Slow, since steps are timed one scene after the other; finished
-    scenes are saved in DIR.
+    every shipped pillar but the hard cases. Slow: scenes are timed one after the other. Finished
+    ones are saved in DIR.
     """
     from jointwave.compare.cli.study_view import run_and_show
     from jointwave.compare.studies.effects import run
