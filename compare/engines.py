@@ -12,7 +12,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.size import refuse_beyond_memory, waveform_bytes
 from jointwave.compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
-from jointwave.compare.solvers.record import HEADINGS, Answer, Solver, no
+from jointwave.compare.solvers.record import Answer, Solver, no
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -71,19 +71,10 @@ def solvers() -> list[Solver]:
     return [solver(name) for name in names()]
 
 
-def by_model() -> dict[str, list[str]]:
-    """Return all names by the heading of their model, in the order of legends."""
-    found: dict[str, list[str]] = {heading: [] for heading in HEADINGS}
-    for one in solvers():
-        found[one.words.heading].append(one.name)
-    return found
-
-
 def in_order(found: Iterable[str]) -> list[str]:
-    """Return names in the order of legends, unknown ones last."""
+    """Return names in the order of the registry, unknown ones last."""
     wanted = set(found)
-    known = [name for of_model in by_model().values() for name in of_model if name in wanted]
-    return known + sorted(wanted - set(known))
+    return [name for name in names() if name in wanted] + sorted(wanted - set(names()))
 
 
 def selection() -> dict[str, dict[str | None, str]]:

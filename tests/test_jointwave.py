@@ -60,8 +60,8 @@ def test_keys_are_fitted_and_numerics_planned():
         heard.time.values,
         {Place("stress", "", (2.0,)): heard.stress.values[0] + noise},
     )
-    (estimate,) = jw.fit(scene, [curve], ["load.amplitude"]).estimates
-    assert estimate.value == pytest.approx(2e6, rel=1e-3)
+    found = jw.fit(scene, [curve], ["load.amplitude"]).values
+    assert found.value["load.amplitude"] == pytest.approx(2e6, rel=1e-3)
     assert jw.plan(scene, misfit=0.05).misfit <= 0.05
 
 

@@ -1,6 +1,5 @@
 """A figure for a paper: the waveforms of a scene, or the bands of an ensemble."""
 
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +9,8 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import EXACT, Progress, applies
 from jointwave.compare.figures import bands
-from jointwave.compare.figures.charts.waveforms import draw_solutions
 from jointwave.compare.misfit.alignment import align_curve
+from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import applicable
 from jointwave.compare.runs.comparison import solved
 from jointwave.compare.runs.jobs import names_of
@@ -29,33 +28,17 @@ def check_file(path: Path) -> None:
     refuse_foreign(path, BEGINS[path.suffix])
 
 
-def draw_scenes(
-    scenes: list[AnyScene],
-    runs: list[tuple[str, str | None]],
-    curves: list[Any],
-    rc: dict[Any, Any],
-    progress: Progress,
-) -> Figure:
-    """Solve scenes and draw them with external curves.
+def solve(
+    scene: AnyScene, runs: list[tuple[str, str | None]], curves: list[Any], progress: Progress
+) -> Comparison:
+    """Return a scene's solutions and external curves.
 
-    runs : (engine, model) each, see `compare.runs.jobs`; empty: all that apply. rc : matplotlib's
-    settings.
+    runs : (engine, model) each, see `compare.runs.jobs`; empty: all that apply.
     """
-    asked = [
-        {name: applies(name, scene) for run in runs for name in names_of(*run, scene)}
-        or applicable(scene)
-        for scene in scenes
-    ]
-    found = []
-    for i, (scene, answers) in enumerate(zip(scenes, asked, strict=True)):
-        one = solved(scene, answers, partial(_tell, progress, i, len(scenes)))
-        one.besides += [align_curve(curve, scene, one.results, False) for curve in curves]
-        found.append(one)
-    return draw_solutions(found, False, rc)
-
-
-def _tell(progress: Progress, done: int, count: int, part: float) -> None:
-    progress((done + part) / count)
+    asked = {name: applies(name, scene) for run in runs for name in names_of(*run, scene)}
+    found = solved(scene, asked or applicable(scene), progress)
+    found.besides += [align_curve(curve, scene, found.results, False) for curve in curves]
+    return found
 
 
 def draw_bands(folder: Path, engines: list[str], rc: dict[Any, Any]) -> Figure:

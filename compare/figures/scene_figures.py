@@ -76,35 +76,16 @@ def along_pillar(scene: AnyScene) -> dict[str, xr.Dataset]:
     return found
 
 
-def sections(scene: Scene) -> list[float]:
-    """Return y of the start, every k-th joint and the end, m."""
-    places = _contacts(scene)
-    if not scene.is_uniform:
-        return calibrate(scene).contact_y[places].tolist()
-    return [scene.pillar.block * i for i in places]
-
-
-def _contacts(scene: Scene) -> list[int]:
-    """Return every k-th contact between blocks, from the start to the end."""
-    count = scene.block_count
-    return [*range(0, count, -(-count // SECTIONS)), count]
-
-
-def recorded_along(scene: AnyScene) -> AnyScene:
-    """Return the scene with receivers along the pillar; samples and steps are unchanged.
-
-    If a scene records only velocities these are the centres of blocks, else sections. A rock mass
-    is returned unchanged.
-    """
-    if not isinstance(scene, Scene):
-        return scene
-    places = sections(scene)
-    # A couple about the axis strains no section; rotation is recorded with the velocity.
-    points = places if scene.load.arm is not None else []
+def recorded_along(scene: Scene) -> Scene:
+    """Return the scene with receivers at the start, every k-th joint and the end of the pillar or,
+    if it records only velocities, at the centres of blocks; samples and steps are unchanged."""
+    count, p = scene.block_count, calibrate(scene)
+    contacts = [*range(0, count, -(-count // SECTIONS)), count]
+    sections, points = p.contact_y[contacts].tolist(), []
     if scene.record.velocity and not scene.record.stress:
-        points = [y + scene.pillar.block / 2 for y in places[:-1]]
-        if not scene.is_uniform:
-            points = calibrate(scene).centre_y[_contacts(scene)[:-1]].tolist()
-        places = []
-    record = scene.record.model_copy(update={"stress": places, "velocity": points, "fields": None})
-    return scene.model_copy(update={"record": record})
+        sections, points = [], p.centre_y[contacts[:-1]].tolist()
+    elif scene.load.arm is not None:
+        # A couple about the axis strains no section; rotation is recorded with the velocity.
+        points = sections
+    update = {"stress": sections, "velocity": points, "fields": None}
+    return scene.model_copy(update={"record": scene.record.model_copy(update=update)})

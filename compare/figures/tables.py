@@ -8,7 +8,6 @@ import xarray as xr
 
 from jointwave.cases.records import Column
 from jointwave.compare.figures.panels import variant_names
-from jointwave.compare.misfit.differences import peak_ratios
 from jointwave.compare.misfit.pairs import Comparison, Row
 from jointwave.compare.misfit.places import Place
 from jointwave.compare.readings import (
@@ -40,14 +39,7 @@ def rows_of(comparisons: list[Comparison]) -> list[tuple[str, Row]]:
 
 
 def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return every distance of every pair at every receiver of every variant; beside it the ratio
-    of PPV or peak stress, which are of all components at the receiver."""
-    peaks = {
-        (name, pair): peak_ratios(one.results[pair.one], one.results[pair.other])
-        for name, one in zip(variant_names(comparisons), comparisons, strict=True)
-        for pair in dict.fromkeys(row.pair for row in one.rows)
-        if {pair.one, pair.other} <= one.results.keys()
-    }
+    """Return every distance of every pair at every receiver of every variant."""
     return pd.DataFrame(
         {
             "kind": row.pair.kind,
@@ -60,9 +52,6 @@ def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
             "faint": row.faint,
             "of all motion": row.of_all,
             "peak ratio": row.distance.peak_ratio,
-            "PPV or peak stress ratio": peaks.get((name, row.pair), {}).get(
-                (row.place.quantity, row.place.at)
-            ),
             "delay (s)": row.distance.delay,
             "period ratio": row.distance.period_ratio,
             "envelope misfit": row.distance.envelope,

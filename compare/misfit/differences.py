@@ -43,17 +43,6 @@ def peak_differences(one: xr.Dataset, other: xr.Dataset) -> dict[str, PeakDiffer
     return found
 
 
-def peak_ratios(one: xr.Dataset, other: xr.Dataset) -> dict[tuple[str, Position], float]:
-    """Return the ratio of two results' peaks by quantity, as it is recorded, and receiver."""
-    return {
-        (quantity, at): a / b
-        for name, peaks in _peaks(one, other).items()
-        for at, (a, b) in peaks.items()
-        for quantity in (q for q, of in _OF.items() if of == name)
-        if b > 0
-    }
-
-
 def _peaks(one: xr.Dataset, other: xr.Dataset) -> dict[str, dict[Position, tuple[float, float]]]:
     """Return the peaks of a result and of its reference by name and receiver."""
     there: dict[tuple[str, Position], list[Pairing]] = {}

@@ -60,7 +60,7 @@ def _sentence(engine: str, scenes: list[RankedScene]) -> str:
     unchecked = sum(bool(one.unchecked) for one in scores)
     if totals and unchecked:
         error += f", {NOT_CHECKED.word} on {unchecked} of {len(scenes)} scenes"
-    return f"({ENGINES[engine].words.sentence}): {far}{error}; {_cost(engine, scenes)}."
+    return f"({ENGINES[engine].sentence}): {far}{error}; {_cost(engine, scenes)}."
 
 
 def _cost(engine: str, scenes: list[RankedScene]) -> str:

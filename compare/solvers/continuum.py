@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Any
 from jointwave.cases.size import estimates
 from jointwave.compare.solvers.incident import incident, note_sides
 from jointwave.compare.solvers.record import (
-    BAR,
-    JOINTED,
     YES,
     Answer,
     Form,
@@ -20,7 +18,6 @@ from jointwave.compare.solvers.record import (
     Prepared,
     Rock,
     Solver,
-    Words,
     no,
 )
 
@@ -120,8 +117,9 @@ def _of(model: str, **about: Any) -> Solver:
 JOINTED_ROCK = _of(
     "jointed",
     rock=Rock.JOINTED,
-    words=Words(JOINTED, "jointed rock", "continuum, every joint resolved"),
-    line=Line("#f0a030", 3.4, 1, ledger=(5, 2)),
+    label="jointed rock",
+    sentence="continuum, every joint resolved",
+    line=Line("#f0a030", 3.4, 1),
     distances={
         Kind.BETWEEN: {
             "dem": "two engines, same joints",
@@ -132,7 +130,8 @@ JOINTED_ROCK = _of(
 EQUIVALENT_ROCK = _of(
     "equivalent",
     rock=Rock.HOMOGENISED,
-    words=Words(BAR, "homogenised rock", "homogenised continuum"),
-    line=Line("#8fd4bd", 4.8, 0, ledger=(1.2, 1.6)),
+    label="homogenised rock",
+    sentence="homogenised continuum",
+    line=Line("#8fd4bd", 4.8, 0),
     distances={Kind.BETWEEN: {"dem": "two engines, with and without joints"}},
 )

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from jointwave.cases.size import estimates
 from jointwave.compare.solvers.incident import incident, note_sides
 from jointwave.compare.solvers.record import (
-    BLOCKS,
     YES,
     Answer,
     Form,
@@ -15,7 +14,6 @@ from jointwave.compare.solvers.record import (
     Prepared,
     Rock,
     Solver,
-    Words,
     no,
 )
 
@@ -103,7 +101,8 @@ DEM = Solver(
     form=Form.RUN,
     kinds=("pillar", "rock mass"),
     dimension=3,
-    words=Words(BLOCKS, "rigid blocks", "rigid blocks"),
+    label="rigid blocks",
+    sentence="rigid blocks",
     line=Line("#56b4e9", 2.2, 2),
     applies=applies,
     run=run,

@@ -78,40 +78,17 @@ def no(reason: str) -> Answer:
     return Answer(False, reason)
 
 
-class Words(NamedTuple):
-    """The names of a solver.
-
-    heading : of its model. label : in a legend, beside its name. sentence : of an engine, in the
-    lead of the report.
-    """
-
-    heading: str
-    label: str
-    sentence: str = ""
-
-
-#: The models, in the order of legends.
-BLOCKS, JOINTED, BAR, ALONE = HEADINGS = (
-    "Rigid blocks",
-    "Intact rock and joints",
-    "Homogenised bar",
-    "Single mechanisms",
-)
-
-
 class Line(NamedTuple):
     """The curve of a solver; widths in points, dashes in line widths, empty: solid.
 
     slot : the part of each period of dashes that an exact solution's line fills. order : the
-    largest is drawn on top. ledger : dashes of an engine in the diagram of energies, whose colours
-    are the terms'.
+    largest is drawn on top.
     """
 
     colour: str
     width: float
     order: int
     slot: tuple[float, ...] = ()
-    ledger: tuple[float, ...] = ()
 
 
 def thin(colour: str, order: int, slot: tuple[float, ...]) -> Line:
@@ -148,6 +125,7 @@ class Solver:
     Attributes
     ----------
     rock, form : how it resolves the rock mass, and how its solution is known.
+    label : in a legend, beside its name. sentence : of an engine, in the lead of the report.
     kinds : of scenes that it can solve: "pillar", "rock mass".
     dimension : 1 where it has no motion across the axis beside a plane wave.
     discretised : whether an engine discretises this very model; a solution of one mechanism alone
@@ -170,7 +148,7 @@ class Solver:
 
     name: str
     rock: Rock
-    words: Words
+    label: str
     line: Line
     applies: Callable[[Any], Answer]
     run: Callable[..., xr.Dataset]
@@ -189,6 +167,7 @@ class Solver:
     shares: bool = False
     again: Callable[[Any], Callable[[], float]] | None = None
     libraries: Callable[[], dict[str, str]] = dict
+    sentence: str = ""
 
     @property
     def exact(self) -> bool:

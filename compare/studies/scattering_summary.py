@@ -67,7 +67,7 @@ def table(name: str, done: pd.DataFrame) -> pd.DataFrame:
 
 
 def _headings(done: pd.DataFrame) -> pd.Series:
-    return done.solver.map(lambda x: solver(x).words.label) + ": " + done.incidence + " wave"
+    return done.solver.map(lambda x: solver(x).label) + ": " + done.incidence + " wave"
 
 
 def sentences(done: pd.DataFrame) -> list[str]:

@@ -130,6 +130,7 @@ def figure(
     In place of a scene, a folder that --ensemble has written: median and bands of its waveforms.
     """
     from jointwave.compare.figures import bands, paper
+    from jointwave.compare.figures.charts.waveforms import draw_solutions
     from jointwave.compare.figures.export import write_drawing
     from jointwave.compare.figures.style import printed
     from jointwave.compare.runs import jobs
@@ -146,8 +147,11 @@ def figure(
     scenes = load(scene, changes, variant, strict)
     runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []
     curves = _read_curves(given, scenes, False, strict)
-    with terminal.progress(scenes[0].title) as advance:
-        drawn = paper.draw_scenes(scenes, runs, curves, rc, advance)
+    found = []
+    for one in scenes:
+        with terminal.progress(one.name or one.title) as advance:
+            found.append(paper.solve(one, runs, curves, advance))
+    drawn = draw_solutions(found, False, rc)
     terminal.say(f"wrote {write_drawing(out, drawn, scenes[0].title, rc)}")
 
 

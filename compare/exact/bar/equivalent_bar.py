@@ -15,7 +15,7 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.laplace import solved
 from jointwave.compare.exact.bar.transfer import Bar, end_of, rocks
 from jointwave.compare.exact.conditions import DAMPED, holds
-from jointwave.compare.solvers.record import BAR, Answer, Kind, Rock, Solver, Words, thin
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 
 HELD = ("prestress", "soft layers", "segments", "scatter", "quality factor", *DAMPED)
 
@@ -57,7 +57,7 @@ def bar(scene: Scene) -> Bar:
 SOLVER = Solver(
     name="equivalent-bar",
     rock=Rock.HOMOGENISED,
-    words=Words(BAR, "homogenised bar, exact"),
+    label="homogenised bar, exact",
     line=thin("#005a3c", 6, (9, 13)),
     applies=applies,
     run=solve,

@@ -23,7 +23,7 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.conditions import holds, static_stress
-from jointwave.compare.solvers.record import BAR, Answer, Form, Kind, Rock, Solver, Words, thin
+from jointwave.compare.solvers.record import Answer, Form, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
 MOST_TRIPS = 1_000_000  # through the bar and back
@@ -95,7 +95,7 @@ SOLVER = Solver(
     name="images",
     rock=Rock.HOMOGENISED,
     form=Form.CLOSED,
-    words=Words(BAR, "homogenised bar, images"),
+    label="homogenised bar, images",
     line=thin("#00a26d", 5, (13.5, 15.5)),
     applies=applies,
     run=solve,

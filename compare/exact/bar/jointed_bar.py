@@ -17,7 +17,7 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.laplace import solved
 from jointwave.compare.exact.bar.transfer import Bar, End, end_of, rocks
 from jointwave.compare.exact.conditions import DAMPED, holds
-from jointwave.compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, thin
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 
 HELD = (
     "prestress",
@@ -67,7 +67,7 @@ def _end(kind: str, p: Properties) -> End:
 SOLVER = Solver(
     name="jointed-bar",
     rock=Rock.JOINTED,
-    words=Words(JOINTED, "jointed bar, exact"),
+    label="jointed bar, exact",
     line=thin("#a83200", 8, (4.5, 8.5)),
     applies=applies,
     run=solve,

@@ -28,7 +28,7 @@ from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.series import exponentials, rigid
 from jointwave.compare.exact.conditions import DAMPED, holds, is_free, static_stress
-from jointwave.compare.solvers.record import BAR, Answer, Kind, Rock, Solver, Words, thin
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
 HELD = ("prestress", "thick layers", "fixed start", *DAMPED)
@@ -131,7 +131,7 @@ def _convolutions(
 SOLVER = Solver(
     name="kelvin-voigt",
     rock=Rock.HOMOGENISED,
-    words=Words(BAR, "Kelvin-Voigt bar, exact"),
+    label="Kelvin-Voigt bar, exact",
     line=thin("#00a26d", 5, (13.5, 15.5)),
     applies=applies,
     run=solve,

@@ -27,7 +27,7 @@ from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar import images
 from jointwave.compare.exact.conditions import is_free, static_stress
-from jointwave.compare.solvers.record import BAR, Answer, Rock, Solver, Words, no, thin
+from jointwave.compare.solvers.record import Answer, Rock, Solver, no, thin
 from jointwave.results.dataset import dataset
 
 PAPER_TERMS = 100
@@ -126,7 +126,7 @@ def rigid(load: Sine, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 SOLVER = Solver(
     name="series",
     rock=Rock.HOMOGENISED,
-    words=Words(BAR, "homogenised bar, series"),
+    label="homogenised bar, series",
     line=thin("#b0307e", 4, (16, 18)),
     applies=applies,
     run=solve,

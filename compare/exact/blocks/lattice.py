@@ -23,7 +23,7 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.blocks.chain import Chain, chain, rates, receivers, standing
 from jointwave.compare.exact.conditions import DAMPED, LAYERS, drive, holds
 from jointwave.compare.exact.linear import errors, twins
-from jointwave.compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, thin
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
 MOST_BLOCKS = 2000
@@ -89,7 +89,7 @@ def at_rest(scene: Scene, model: Chain) -> np.ndarray:
 SOLVER = Solver(
     name="lattice",
     rock=Rock.RIGID_BLOCKS,
-    words=Words(BLOCKS, "rigid blocks, exact"),
+    label="rigid blocks, exact",
     line=thin("#00349a", 9, (0, 4)),
     applies=applies,
     run=solve,

@@ -24,7 +24,7 @@ from jointwave.compare.exact.blocks.events import ChainMotion, integrate
 from jointwave.compare.exact.blocks.lattice import HELD, at_rest
 from jointwave.compare.exact.conditions import drive, holds
 from jointwave.compare.exact.linear import errors
-from jointwave.compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, no, thin
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, no, thin
 from jointwave.results.dataset import dataset, scene_hash
 
 MOST_BLOCKS = 2000
@@ -111,7 +111,7 @@ def _known(model: Chain, states: np.ndarray, other: np.ndarray) -> int:
 SOLVER = Solver(
     name="no-tension-chain",
     rock=Rock.RIGID_BLOCKS,
-    words=Words(BLOCKS, "no-tension chain, exact"),
+    label="no-tension chain, exact",
     line=thin("#00349a", 9, (0, 9)),
     applies=applies,
     run=solve,

@@ -23,13 +23,11 @@ from jointwave.cases.sampling import interpolation, sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.conditions import DAMPED, LAYERS, holds
 from jointwave.compare.solvers.record import (
-    ALONE,
     Answer,
     Form,
     Kind,
     Rock,
     Solver,
-    Words,
     no,
     thin,
 )
@@ -117,7 +115,7 @@ SOLVER = Solver(
     form=Form.CLOSED,
     dimension=3,
     discretised=False,
-    words=Words(ALONE, "sliding block, exact"),
+    label="sliding block, exact",
     line=thin("#a83200", 8, (9, 18)),
     applies=applies,
     run=solve,

@@ -36,7 +36,7 @@ from jointwave.compare.exact.blocks.lattice import HELD
 from jointwave.compare.exact.blocks.spatial import PLANES, Plane, plane, row
 from jointwave.compare.exact.conditions import drive, holds, static_stress
 from jointwave.compare.exact.linear import bound, twins
-from jointwave.compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, no, thin
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, no, thin
 from jointwave.results.dataset import dataset
 
 MOST_BLOCKS = 500
@@ -287,7 +287,7 @@ SOLVER = Solver(
     name="spatial-lattice",
     rock=Rock.RIGID_BLOCKS,
     dimension=3,
-    words=Words(BLOCKS, "blocks in space, exact"),
+    label="blocks in space, exact",
     line=thin("#00349a", 9, (0, 9)),
     applies=applies,
     run=solve,

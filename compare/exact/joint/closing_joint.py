@@ -28,7 +28,7 @@ from jointwave.compare.exact.bar.images import ENTERS
 from jointwave.compare.exact.conditions import holds, static_stress
 from jointwave.compare.exact.joint.one_joint import back_in_time, behind_and_before
 from jointwave.compare.exact.joint.trajectory import Trajectory, edges_of, peak_of
-from jointwave.compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, no, thin
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, no, thin
 
 HELD = ("closure", "prestress", "soft layers", "stiff layers")
 TOLERANCES = (1e-12, 1e-9)  # of the solution and its twin, relative to the largest stress
@@ -142,7 +142,7 @@ class Passed:
 SOLVER = Solver(
     name="closing-joint",
     rock=Rock.HOMOGENISED,
-    words=Words(JOINTED, "stiffening joint, exact"),
+    label="stiffening joint, exact",
     line=thin("#d55e00", 7, (6, 8.5)),
     applies=applies,
     run=solve,

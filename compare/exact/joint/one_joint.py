@@ -28,7 +28,7 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.images import ENTERS
 from jointwave.compare.exact.conditions import holds, static_stress
 from jointwave.compare.exact.linear import errors, twins
-from jointwave.compare.solvers.record import JOINTED, YES, Answer, Rock, Solver, Words, no, thin
+from jointwave.compare.solvers.record import YES, Answer, Rock, Solver, no, thin
 from jointwave.results.dataset import dataset
 
 Passes = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -149,7 +149,7 @@ def transmitted(
 SOLVER = Solver(
     name="one-joint",
     rock=Rock.HOMOGENISED,
-    words=Words(JOINTED, "one joint, exact"),
+    label="one joint, exact",
     line=thin("#d55e00", 7, (6, 8.5)),
     applies=applies,
     run=solve,

@@ -32,7 +32,7 @@ from jointwave.compare.exact.joint import rate_state_joint
 from jointwave.compare.exact.joint.one_joint import around
 from jointwave.compare.exact.joint.slip_phases import TOLERANCES, Passed, SlipJoint
 from jointwave.compare.exact.linear import bound
-from jointwave.compare.solvers.record import ALONE, Answer, Kind, Rock, Solver, Words, no, thin
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, no, thin
 from jointwave.results.dataset import dataset
 
 WORN = ("weakening", "dilation", "rate and state")
@@ -186,7 +186,7 @@ SOLVER = Solver(
     name="slip-joint",
     rock=Rock.HOMOGENISED,
     discretised=False,
-    words=Words(ALONE, "sliding joint, exact"),
+    label="sliding joint, exact",
     line=thin("#a83200", 8, (9, 18)),
     applies=applies,
     run=solve,

@@ -38,13 +38,11 @@ from jointwave.compare.exact.plane.rigid_motion import (
 from jointwave.compare.exact.rock_mass.conditions import beyond_linear_rock
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.compare.solvers.record import (
-    BLOCKS,
     YES,
     Answer,
     Kind,
     Rock,
     Solver,
-    Words,
     no,
     thin,
 )
@@ -162,7 +160,7 @@ SOLVER = Solver(
     rock=Rock.RIGID_BLOCKS,
     kinds=("rock mass",),
     dimension=2,
-    words=Words(BLOCKS, "rigid blocks in the plane, exact"),
+    label="rigid blocks in the plane, exact",
     line=thin("#00349a", 9, (0, 9)),
     applies=applies,
     run=solve,

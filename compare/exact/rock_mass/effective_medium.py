@@ -36,14 +36,12 @@ from jointwave.compare.exact.rock_mass.conditions import (
     reflecting_side,
 )
 from jointwave.compare.solvers.record import (
-    BAR,
     YES,
     Answer,
     Form,
     Kind,
     Rock,
     Solver,
-    Words,
     no,
     thin,
 )
@@ -196,7 +194,7 @@ SOLVER = Solver(
     form=Form.CLOSED,
     kinds=("rock mass",),
     dimension=2,
-    words=Words(BAR, "effective medium, exact"),
+    label="effective medium, exact",
     line=thin("#005a3c", 6, (9, 13)),
     applies=applies,
     run=solve,

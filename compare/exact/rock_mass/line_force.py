@@ -20,13 +20,11 @@ from jointwave.compare.exact.plane.line_force import motion
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass.conditions import beyond_linear_rock, prestress_of
 from jointwave.compare.solvers.record import (
-    JOINTED,
     YES,
     Answer,
     Kind,
     Rock,
     Solver,
-    Words,
     no,
     thin,
 )
@@ -121,7 +119,7 @@ SOLVER = Solver(
     rock=Rock.JOINTED,
     kinds=("rock mass",),
     dimension=2,
-    words=Words(JOINTED, "line force, exact"),
+    label="line force, exact",
     line=thin("#a83200", 8, (4.5, 8.5)),
     applies=applies,
     run=solve,

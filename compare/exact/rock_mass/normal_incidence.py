@@ -17,7 +17,7 @@ from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass import stack_waves
 from jointwave.compare.exact.rock_mass.conditions import along, prestress_of
 from jointwave.compare.exact.rock_mass.stack import JointStack, stack_of
-from jointwave.compare.solvers.record import JOINTED, Answer, Rock, Solver, Words, no, thin
+from jointwave.compare.solvers.record import Answer, Rock, Solver, no, thin
 
 
 def applies(scene: RockMass) -> Answer:
@@ -117,7 +117,7 @@ SOLVER = Solver(
     rock=Rock.JOINTED,
     kinds=("rock mass",),
     dimension=2,
-    words=Words(JOINTED, "stiffening joint, plane wave, exact"),
+    label="stiffening joint, plane wave, exact",
     line=thin("#d55e00", 8, (4.5, 8.5)),
     applies=applies,
     run=solve,

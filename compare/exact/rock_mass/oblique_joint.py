@@ -7,14 +7,14 @@ waves leave, and any number of plane waves that meet it after the start (`stack`
 from functools import partial
 
 from jointwave.compare.exact.rock_mass import stack_waves
-from jointwave.compare.solvers.record import JOINTED, Rock, Solver, Words, thin
+from jointwave.compare.solvers.record import Rock, Solver, thin
 
 SOLVER = Solver(
     name="oblique-joint",
     rock=Rock.JOINTED,
     kinds=("rock mass",),
     dimension=2,
-    words=Words(JOINTED, "joint at an angle, exact"),
+    label="joint at an angle, exact",
     line=thin("#d55e00", 8, (4.5, 8.5)),
     applies=partial(stack_waves.holds, one=True),
     run=partial(stack_waves.solve, name="oblique-joint"),

@@ -7,14 +7,14 @@ which waves leave, and any number of plane waves that meet them after the start 
 from functools import partial
 
 from jointwave.compare.exact.rock_mass import stack_waves
-from jointwave.compare.solvers.record import JOINTED, Rock, Solver, Words, thin
+from jointwave.compare.solvers.record import Rock, Solver, thin
 
 SOLVER = Solver(
     name="parallel-joints",
     rock=Rock.JOINTED,
     kinds=("rock mass",),
     dimension=2,
-    words=Words(JOINTED, "parallel joints, exact"),
+    label="parallel joints, exact",
     line=thin("#a83200", 8, (9, 18)),
     applies=partial(stack_waves.holds, one=False),
     run=partial(stack_waves.solve, name="parallel-joints"),

@@ -89,7 +89,7 @@ def set_heading(ax: Axes, heading: str, small: bool = False) -> None:
 
 def label_of(name: str) -> str:
     """Return the label of a solution in legends, "lattice: rigid blocks, exact"."""
-    return f"{name}: {solver(name).words.label}" if name in names() else name
+    return f"{name}: {solver(name).label}" if name in names() else name
 
 
 def short(file: str) -> str:

@@ -16,6 +16,7 @@ from jointwave.compare.misfit.pairs import Comparison
 
 MOST = 480  # samples of a curve, and of the table
 LEAST = 1e-17  # lower limit of a drawn residual: below round-off
+DASHES = "-", (0, (5, 2)), (0, (1.2, 1.6))  # of engines
 COLUMNS = {term: f"{term} (J)" for term in TERMS}
 RESIDUAL = "residual (of the largest work)"
 
@@ -82,8 +83,7 @@ def _draw_ledger(upper: Axes, lower: Axes, engine: str, rows: pd.DataFrame, unit
     """Draw an engine's ledger, but for terms that are zero throughout: colours distinguish terms,
     dashes engines."""
     time, size = 1e3 * rows["time (s)"].to_numpy(), rows[RESIDUAL].abs().to_numpy()
-    dashes = ENGINES[engine].line.ledger
-    line = style(engine)._replace(width=1.6, dashes=(0, dashes) if dashes else "-")
+    line = style(engine)._replace(width=1.6, dashes=DASHES[[*ENGINES].index(engine)])
     for term, column in COLUMNS.items():
         if column in rows and rows[column].any():
             drawn = Style(TERMS[term], 2.0 if term == "work" else 1.4, line.dashes, 1)

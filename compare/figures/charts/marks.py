@@ -27,38 +27,18 @@ def marks_of(panel: Panel) -> list[Frequency]:
     if isinstance(scene, Scene):
         p = calibrate(scene)
         along = quantity in ("stress", "velocity") and component in ("", "y")
-        if len(p.each) > 1:
-            found.append(_cut_off(min(one.bar_speed / one.spacing for one in p.each)))
-        elif along:
-            found += _of_waves(scene, p, p.bar_speed) + _of_layers(p) + _of_joints(p)
+        if along or len(p.each) > 1:
+            rates = [one.bar_speed / one.spacing for one in p.each]
+            found += [_cut_off(min(rates)), *(_of_joints(p) if len(rates) == 1 else [])]
         elif scene.motion.rotation == "none" and quantity != "rotation":
-            found += _of_waves(scene, p, p.shear_speed)
+            found.append(_cut_off(p.shear_speed / p.spacing))
     return sorted(found, key=lambda mark: mark.frequency)
 
 
 def _cut_off(rate: float) -> Frequency:
-    """Return the cut-off of a chain, omega = 2 sqrt(k/m) = 2 c/d (Brillouin 1946); rate : the least
+    """Return the cut-off of a chain, omega = 2 sqrt(k/m) = 2 c/d (Brillouin 1946), of the least
     c/d, 1/s."""
     return Frequency("chain cut-off", rate / pi, "cut-off of the chain of blocks")
-
-
-def _of_waves(scene: Scene, p: Properties, speed: float) -> list[Frequency]:
-    """Return the cut-off of the chain and the first mode of a pillar whose ends both reflect."""
-    marks = [_cut_off(speed / p.spacing)]
-    ends = {scene.ends.start, scene.ends.end}
-    if ends <= {"free", "fixed"}:
-        waves = 2 if len(ends) == 1 else 4  # pillar lengths per wavelength
-        length = p.spacing * p.block_count
-        marks.append(Frequency("first mode", speed / (waves * length), "first mode of the pillar"))
-    return marks
-
-
-def _of_layers(p: Properties) -> list[Frequency]:
-    """Return where a soft layer transmits half the energy, kappa = K / (Z omega) = 1/2
-    (Pyrak-Nolte, Myer & Cook 1990)."""
-    words = "half-energy frequency of the soft layer"
-    compliances = {c for c in p.excess_compliance[p.soft].tolist() if c > 0}
-    return [Frequency("soft layer", 1 / (pi * p.impedance * c), words) for c in compliances]
 
 
 def _of_joints(p: Properties) -> list[Frequency]:

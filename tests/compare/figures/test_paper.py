@@ -11,7 +11,7 @@ from matplotlib.text import Text
 from jointwave.compare.exact.blocks import lattice
 from jointwave.compare.figures.charts.waveforms import draw_solutions
 from jointwave.compare.figures.export import write_drawing
-from jointwave.compare.figures.paper import draw_scenes
+from jointwave.compare.figures.paper import solve
 from jointwave.compare.figures.style import printed
 from jointwave.compare.misfit.pairs import Comparison
 
@@ -75,7 +75,7 @@ def test_what_is_asked_for_is_drawn(pillar):
     """By engines and models, and every curve is that of its solution."""
     scene, done = pillar(**SHORT), []
     runs = [("dem", None), ("exact", "lattice")]
-    figure = draw_scenes([scene], runs, [], printed(190.0, 8.0), done.append)
+    figure = draw_solutions([solve(scene, runs, [], done.append)], False, printed(190.0, 8.0))
     lines = {line.get_label(): line for line in figure.axes[0].lines}
     assert {"dem: rigid blocks", "lattice: rigid blocks, exact"} < set(lines)
     assert not any("jointed" in label for label in lines) and done == [0.5, 1.0]

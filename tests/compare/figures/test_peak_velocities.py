@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.read import load_tables
 from jointwave.compare.figures.charts.peak_velocities import cells_of, peak_velocities
 
@@ -48,24 +47,6 @@ def test_the_map_is_the_peak_of_each_block(comparison):
     x, y = np.moveaxis(corners, 2, 0)
     twice = (x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum(axis=1)
     assert np.abs(twice).sum() / 2 == pytest.approx(24.0, rel=1e-12)
-
-
-def test_the_map_of_a_pillar_lies_along_its_axis(compared, pillar, ink):
-    """Each block fills the section; a pulse that runs down undamped blocks of 0.5 m, 54 of them a
-    wavelength, keeps its peak p0 / Z but for what dispersion takes; the free far end doubles it."""
-    pulse = {"shape": "half-sine", "amplitude": 1e6, "period": 0.02}
-    record = {"stress": [5.0], "velocity": [5.25], "fields": 1e-4, "energy": False}
-    scene = pillar(pillar__length=25.0, load=pulse, record=record, time__duration=0.03)
-    found = compared(scene, by=("dem",))
-    (corners, peaks), *_ = cells_of(found[0]).values()
-    assert np.ptp(corners[:, :, 1], axis=1) == pytest.approx(np.full(50, 0.5), rel=1e-12)
-    assert sorted(corners[:, 0, 0]) == pytest.approx(np.arange(50) * 0.5, abs=1e-12)
-    p = calibrate(scene)
-    middle = (corners[:, 0, 0] > 3) & (corners[:, 0, 0] < 10)
-    assert peaks[middle] == pytest.approx(1e6 / p.impedance, rel=0.02)
-    assert peaks[corners[:, 0, 0].argmax()] == pytest.approx(2e6 / p.impedance, rel=0.02)
-    (picture,) = peak_velocities("pillar", found)
-    assert picture.table.columns[0] == "y (m)" and ink(picture.figure) > 0.05
 
 
 def test_the_picture_has_its_numbers(comparison, ink):

@@ -11,7 +11,7 @@ from jointwave.cases.sampling import Clock
 from jointwave.compare.engines import solve
 from jointwave.compare.figures import scene_figures
 from jointwave.compare.figures.charts.spacetime import diagrams_of, space_time
-from jointwave.compare.figures.scene_figures import along_pillar, recorded_along, sections
+from jointwave.compare.figures.scene_figures import along_pillar, recorded_along
 from jointwave.dem.axial.build import build_model
 
 
@@ -114,6 +114,9 @@ def test_sections_are_the_waveforms_of_the_comparison(pillar, compared, monkeypa
 
 
 def test_sections_are_joints_and_both_ends(pillar):
+    def sections(scene):
+        return recorded_along(scene).record.stress
+
     assert sections(pillar()) == [float(y) for y in range(51)]
     odd = sections(pillar(pillar__length=48.5))  # 97 blocks: the last section is one block on
     assert odd[-2:] == [48.0, 48.5] and len(odd) == 50
