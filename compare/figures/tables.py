@@ -72,7 +72,6 @@ def alignment_frame(comparisons: list[Comparison]) -> pd.DataFrame:
             "start (s)": beside.time[0],
             "end (s)": beside.time[-1],
             "outside": beside.outside,
-            "missed": beside.missed,
             "moved by (s)": beside.shift.seconds if beside.shift else 0.0,
             "onto": beside.shift.onto if beside.shift else "",
             "correlation": beside.shift.correlation if beside.shift else None,

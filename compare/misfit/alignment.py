@@ -3,10 +3,9 @@
 Overlap: only the common time span is compared. Times: those of the waveform with fewer samples in
 the overlap, the curve's own if both have the same number; the other is interpolated linearly, with
 an error of at most h^2 / 8 max |s''| for its sampling interval h. No filter is applied: straight
-lines neither ring nor spread at the kinks of a load, unlike band-limited interpolation. The part
-that the coarser times do not resolve is measured instead (`missed`). Clock: shifted only on
-request, by the same amount for all curves of a file, by cross-correlation with the solution that
-then fits best. Amplitudes: never scaled.
+lines neither ring nor spread at the kinks of a load, unlike band-limited interpolation. Clock:
+shifted only on request, by the same amount for all curves of a file, by cross-correlation with the
+solution that then fits best. Amplitudes: never scaled.
 """
 
 from collections.abc import Iterator
@@ -51,7 +50,6 @@ class AlignedCurve:
     curves : at their own samples, on the shifted clock. shift : None if not requested.
     time : [n] s, common times of the comparison. own_times : whether these are the curves' own.
     outside : the part of the curves' duration that lies outside the overlap.
-    missed : largest relative L2 error of interpolating the finer waveforms linearly between `time`.
     left_out : places at which the scene has no waveform.
     """
 
@@ -60,7 +58,6 @@ class AlignedCurve:
     time: np.ndarray
     own_times: bool
     outside: float
-    missed: float
     left_out: list[Place]
 
     def series(self, place: Place) -> pd.Series:
@@ -80,23 +77,20 @@ def align_curve(curves: Curves, scene: AnyScene, results: Results, align: bool) 
     moved = _moved(curves, shift.seconds) if shift else curves
     time, own_times = common_times(moved, scene)
     outside = 1 - (time[-1] - time[0]) / (moved.time[-1] - moved.time[0])
-    missed, known = 0.0, set()
-    for _, place, values, our_time, ours in _waveforms(moved, results):
-        finer = (our_time, ours) if own_times else (moved.time, values)
-        missed = max(missed, _missed(*finer, time))
-        known.add(place)
+    known = {place for result in results.values() for place, *_ in _motions(moved, result)}
     left_out = [place for place in moved.waveforms if place not in known]
-    return AlignedCurve(moved, shift, time, own_times, max(0.0, outside), missed, left_out)
+    return AlignedCurve(moved, shift, time, own_times, max(0.0, outside), left_out)
 
 
 def distances(
     beside: AlignedCurve, results: Results, spectral: bool = False
 ) -> Iterator[tuple[str, Place, Distance]]:
     """Yield the distance of every curve from every solution that has a waveform at its place."""
-    curves, time = beside.curves, beside.time
-    for name, place, values, our_time, ours in _waveforms(curves, results):
-        pair = np.interp(time, curves.time, values), np.interp(time, our_time, ours)
-        yield name, place, distance_at(time, *pair, spectral)
+    time, own = beside.time, beside.curves.time
+    for name, result in results.items():
+        for place, values, ours in _motions(beside.curves, result):
+            pair = np.interp(time, own, values), np.interp(time, result.time.values, ours)
+            yield name, place, distance_at(time, *pair, spectral)
 
 
 def common_times(curves: Curves, scene: AnyScene) -> tuple[np.ndarray, bool]:
@@ -109,14 +103,13 @@ def common_times(curves: Curves, scene: AnyScene) -> tuple[np.ndarray, bool]:
     slack = 1e-6 * scene.interval  # rounding of the same time in two files
     own, ours = (t[(t >= start - slack) & (t <= end + slack)] for t in (curves.time, ours))
     if min(len(own), len(ours)) < LEAST_SAMPLES:
-        raise SceneError(
-            curves.file,
-            "time",
-            f"{curves.time[0]:.6g} to {curves.time[-1]:.6g} s",
+        allowed = (
             f"must share at least {LEAST_SAMPLES} samples of either with the scene, 0 to "
             f"{scene.time.duration:g} s; a header such as time [ms] gives the unit, --align shifts "
-            "its time",
+            "its time"
         )
+        span = f"{curves.time[0]:.6g} to {curves.time[-1]:.6g} s"
+        raise SceneError(curves.file, "time", span, allowed)
     return (own, True) if len(own) <= len(ours) else (ours, False)
 
 
@@ -140,21 +133,6 @@ def distance_at(
     return found._replace(misfit=relative_l2(weight * one, weight * other), peak_ratio=ratio)
 
 
-def _waveforms(
-    curves: Curves, results: Results
-) -> Iterator[tuple[str, Place, np.ndarray, np.ndarray, np.ndarray]]:
-    """Yield solution, place, the curve's values, and the solution's times and values there.
-
-    Both without the solution's static state before its load: a prestress is not part of the motion.
-    """
-    for name, result in results.items():
-        for place, values in curves.waveforms.items():
-            ours = place.waveform(result)
-            if ours is not None:
-                static = static_level(place, result)
-                yield name, place, values - static, result.time.values, ours - static
-
-
 def static_level(place: Place, result: xr.Dataset) -> float:
     """Return the static value of a solution at a receiver before its load acts, SI."""
     found = result[place.quantity]
@@ -163,11 +141,14 @@ def static_level(place: Place, result: xr.Dataset) -> float:
     return 0.0 if level is None else float(level[0])
 
 
-def _missed(t: np.ndarray, values: np.ndarray, time: np.ndarray) -> float:
-    """Return the relative L2 error of linear interpolation of a waveform between `time`."""
-    inside = (t >= time[0]) & (t <= time[-1])
-    lines = np.interp(t[inside], time, np.interp(time, t, values))
-    return relative_l2(lines, values[inside])
+def _motions(curves: Curves, result: xr.Dataset) -> Iterator[tuple[Place, np.ndarray, np.ndarray]]:
+    """Yield the places of a curve in a solution, and the waveforms of both, without the solution's
+    static state before its load: a prestress is not part of the motion."""
+    for place, values in curves.waveforms.items():
+        ours = place.waveform(result)
+        if ours is not None:
+            static = static_level(place, result)
+            yield place, values - static, ours - static
 
 
 def _shift(curves: Curves, scene: AnyScene, results: Results) -> Shift:
@@ -176,13 +157,13 @@ def _shift(curves: Curves, scene: AnyScene, results: Results) -> Shift:
     if count > MOST_SAMPLES:
         allowed = f"must last at most {MOST_SAMPLES:,} intervals of the scene to be aligned"
         raise SceneError(curves.file, "time", f"{curves.time[-1]:.6g} s", allowed)
-    found = [_shift_onto(name, curves, scene, {name: r}) for name, r in results.items()]
-    fitting = [shift for shift in found if shift is not None]
+    found = [_shift_onto(name, result, curves, scene) for name, result in results.items()]
+    fitting = [shift for shift in found if shift.onto]
     return max(fitting, key=lambda shift: shift.correlation, default=Shift())
 
 
-def _shift_onto(name: str, curves: Curves, scene: AnyScene, result: Results) -> Shift | None:
-    """Return the shift onto one solution; None if either is zero throughout.
+def _shift_onto(name: str, result: xr.Dataset, curves: Curves, scene: AnyScene) -> Shift:
+    """Return the shift onto one solution; none if either is zero throughout.
 
     All places have equal weight, each waveform divided by the solution's norm. The peak of the
     cross-correlation is refined by the correlation at the samples themselves, which interpolation
@@ -191,40 +172,33 @@ def _shift_onto(name: str, curves: Curves, scene: AnyScene, result: Results) -> 
     from scipy.optimize import minimize_scalar  # slow to import
     from scipy.signal import correlate
 
-    dt, total, last = scene.interval, np.zeros(1), 0
-    span = curves.time[-1] - curves.time[0]
-    even = curves.time[0] + dt * np.arange(int(span / dt + 1e-6) + 1)
-    for _, _, values, _, ours in _waveforms(curves, result):
-        scale = float(ours @ ours) or np.inf
-        total = total + correlate(ours, np.interp(even, curves.time, values)) / scale
-        last = len(even) - 1
-    if not total.any():
-        return None
-    seconds = (int(np.argmax(total)) - last) * dt - even[0]
-    reach = max(dt, float(np.diff(curves.time).mean()))
-    near = _moved(curves, seconds)  # a small search variable gives a fine search
+    own, dt = curves.time, scene.interval
+    even = own[0] + dt * np.arange(int((own[-1] - own[0]) / dt + 1e-6) + 1)
+    sizes = ((np.linalg.norm(ours), theirs, ours) for _, theirs, ours in _motions(curves, result))
+    waves = [(theirs / size, ours / size) for size, theirs, ours in sizes if size > 0]
+    total = sum(correlate(ours, np.interp(even, own, theirs)) for theirs, ours in waves)
+    if not np.any(total):
+        return Shift()
+    near = (int(np.argmax(total)) - len(even) + 1) * dt - even[0]
+
+    def correlation(further: float) -> float:
+        moved = _moved(curves, near + further)
+        time, _ = common_times(moved, scene)
+        a = np.concatenate([np.interp(time, moved.time, theirs) for theirs, _ in waves])
+        b = np.concatenate([np.interp(time, result.time.values, ours) for _, ours in waves])
+        scale = np.linalg.norm(a) * np.linalg.norm(b)
+        return float(a @ b / scale) if scale > 0 else 0.0
+
+    reach = max(dt, float(np.diff(own).mean()))
+    options = {"xatol": 1e-4 * dt}
     try:
         found = minimize_scalar(
-            lambda s: -_correlation(_moved(near, s), scene, result),
-            bounds=(-reach, reach),
-            method="bounded",
-            options={"xatol": 1e-4 * dt},
+            lambda s: -correlation(s), bounds=(-reach, reach), method="bounded", options=options
         )
     except SceneError:  # no overlap after this shift
-        return None
-    return Shift(seconds + float(found.x), name, -float(found.fun))
+        return Shift()
+    return Shift(near + float(found.x), name, -float(found.fun))
 
 
 def _moved(curves: Curves, seconds: float) -> Curves:
     return replace(curves, time=curves.time + seconds)
-
-
-def _correlation(curves: Curves, scene: AnyScene, result: Results) -> float:
-    """Return the normalised correlation of all places together, over the overlap."""
-    time, _ = common_times(curves, scene)
-    products = np.zeros(3)
-    for _, _, values, our_time, ours in _waveforms(curves, result):
-        a, b = np.interp(time, curves.time, values), np.interp(time, our_time, ours)
-        products += np.array([a @ b, a @ a, b @ b]) / (ours @ ours or np.inf)
-    scale = np.sqrt(products[1] * products[2])
-    return float(products[0] / scale) if scale > 0 else 0.0

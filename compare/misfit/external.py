@@ -6,13 +6,14 @@ rock mass it is QUANTITY[_COMPONENT]@[X,Y]: `velocity_x@[20,30]`, `stress_xx@[20
 `traction_n@[20,20]`, `gap@[20,20]`; in a CSV file a header that contains a comma is quoted.
 Stress is positive in compression and motion along +x, +y, +z; a minus sign marks a column with the
 opposite sign, e.g. tension positive. Without a unit, SI. A column with another header is selected
-by COLUMN=LABEL (`compare.misfit.external_columns`).
+by COLUMN=LABEL.
 """
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,9 +23,8 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.units import TIME, UNITS, split_unit
 from jointwave.cases.warnings import look_like_milliseconds
 from jointwave.compare.engines import names
-from jointwave.compare.misfit.external_columns import Asked, Heading, asked, heading
 from jointwave.compare.misfit.external_netcdf import is_netcdf, read_netcdf
-from jointwave.compare.misfit.places import QUANTITIES, Place, recorded, same
+from jointwave.compare.misfit.places import LABEL, QUANTITIES, Place, parsed, recorded, same
 
 LEAST_SAMPLES = 3  # needed for a parabola through the peak of a correlation
 EXAMPLES = "stress@20, -stress@20 [MPa] or velocity_x@20.25 [mm/s]"
@@ -47,6 +47,42 @@ class Curves:
     timed: bool = True
 
 
+class Selection(NamedTuple):
+    """One argument of `--with`: column and label are empty if not given."""
+
+    text: str
+    path: Path
+    column: str = ""
+    label: str = ""
+
+    @property
+    def is_time(self) -> bool:
+        """Whether it selects the column of times."""
+        return split_unit(self.label)[0].lower() == "time"
+
+    def fits(self, column: Column) -> bool:
+        """Return whether a column is the one selected, or none is."""
+        headers = ("", column.name, f"{column.name} [{column.unit}]")
+        return self.column in headers or split_unit(self.column) == (column.name, column.unit)
+
+
+def selection(text: str) -> Selection:
+    """Return a parsed argument, FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL."""
+    ends = [len(text), *(i for i, letter in enumerate(text) if letter == ":")]
+    end = next((i for i in ends if Path(text[:i]).is_file()), len(text))
+    path, which = Path(text[:end]), text[end + 1 :].strip()
+    if _is_label(which):
+        return Selection(text, path, "", which)
+    column, equals, label = which.rpartition("=")
+    if not equals or not (_is_label(label) or split_unit(label)[0].lower() == "time"):
+        column, label = which, ""
+    return Selection(text, path, column.strip().strip("\"'"), label.strip())
+
+
+def _is_label(text: str) -> bool:
+    return LABEL.fullmatch(split_unit(text)[0].removeprefix("-").lstrip()) is not None
+
+
 def read_curves(texts: list[str], scenes: Sequence[AnyScene]) -> list[Curves]:
     """Read the arguments of `--with`, each FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
 
@@ -58,16 +94,20 @@ def read_curves(texts: list[str], scenes: Sequence[AnyScene]) -> list[Curves]:
     Raises SceneError for a file that cannot be read, is not in this format, or has no curve at a
     receiver of one of the scenes.
     """
-    every = [asked(text, _is_label) for text in texts]
-    files = dict.fromkeys(str(one.path) for one in every)
-    short = Counter(Path(file).name for file in files) + Counter(names())
+    files: dict[Path, list[Selection]] = {}
+    for one in map(selection, texts):
+        files.setdefault(one.path, []).append(one)
+    short = Counter(path.name for path in files) + Counter(names())
     found: list[Curves] = []
-    for file in files:
-        name = Path(file).name
-        mine = [one for one in every if str(one.path) == file]
-        found += _of_file(name if short[name] == 1 else file, mine)
-    for one in found:
-        _require_recorded(one, scenes)
+    for path, wanted in files.items():
+        try:
+            found += _of_file(path.name if short[path.name] == 1 else str(path), wanted)
+        except SceneError:
+            raise
+        except ValueError as error:
+            raise SceneError(str(path), "", None, str(error)) from None
+    for curves in found:
+        _require_recorded(curves, scenes)
     return found
 
 
@@ -84,97 +124,88 @@ def slips(curves: Sequence[Curves], scene: AnyScene) -> Iterator[str]:
             )
 
 
-def is_recorded(place: Place, scene: AnyScene) -> bool:
-    """Return whether a scene has a receiver at this place."""
-    return any(same(place.at, one) for one in recorded(scene, place.key))
-
-
 def _require_recorded(curves: Curves, scenes: Sequence[AnyScene]) -> None:
-    if not scenes or any(is_recorded(p, scene) for p in curves.waveforms for scene in scenes):
+    receivers = [(p, at) for p in curves.waveforms for one in scenes for at in recorded(one, p.key)]
+    if not scenes or any(same(place.at, at) for place, at in receivers):
         return
     place, scene = next(iter(curves.waveforms)), scenes[0]
-    key = place.key
-    if not hasattr(scene.record, key):
+    if not hasattr(scene.record, place.key):
         wanted = EXAMPLES if scene.kind == "pillar" else EXAMPLES_IN_PLANE
         allowed = f"is not a receiver of a {scene.kind}; columns are named as {wanted}"
         raise SceneError(curves.file, str(place), None, allowed)
-    held = ", ".join(place._replace(at=one).receiver for one in recorded(scene, key))
+    held = ", ".join(place._replace(at=at).receiver for at in recorded(scene, place.key)) or "none"
     allowed = (
-        f"must be at a receiver of the scene: {key} at {held or 'none'}; "
-        f"record.{key} in the scene, or --set, adds a receiver"
+        f"must be at a receiver of the scene: {place.key} at {held}; record.{place.key} in the "
+        "scene, or --set, adds a receiver"
     )
     raise SceneError(curves.file, str(place), None, allowed)
 
 
-def _of_file(name: str, every: list[Asked]) -> list[Curves]:
+def _of_file(name: str, every: list[Selection]) -> list[Curves]:
+    """Return the curves of a file; raises SceneError, or ValueError in one phrase."""
     path, times = every[0].path, [one for one in every if one.is_time]
-    wanted = [one for one in every if not one.is_time] or [Asked(str(path), path)]
-    try:
-        if is_netcdf(path):
-            table = read_netcdf(path, LEAST_SAMPLES)
-        else:
-            table = read_columns(path, times[0].column if times else "time", LEAST_SAMPLES)
-        unit = (split_unit(times[0].label)[1] if times else "") or table.time.unit
-        seconds = table.time._replace(unit=unit).si(TIME)
-        found = [one for choice in wanted for one in _fitting(table, choice)]
-    except SceneError:
-        raise
-    except ValueError as error:
-        raise SceneError(str(path), "", None, str(error)) from None
+    wanted = [one for one in every if not one.is_time] or [Selection(str(path), path)]
+    if is_netcdf(path):
+        table = read_netcdf(path, LEAST_SAMPLES)
+    else:
+        table = read_columns(path, times[0].column if times else "time", LEAST_SAMPLES)
+    unit = (split_unit(times[0].label)[1] if times else "") or table.time.unit
+    seconds = table.time._replace(unit=unit).si(TIME)
     groups: dict[bytes, dict[Place, np.ndarray]] = {}  # by the cells that are empty
-    for place, values in found:
+    for place, values in (one for choice in wanted for one in _selected(table, choice)):
         group = groups.setdefault(np.isnan(values).tobytes(), {})
         if place in group:
-            raise SceneError(str(path), "", None, f"{place} must be given only once")
+            raise ValueError(f"{place} must be given only once")
         group[place] = values
     curves: list[Curves] = []
     for group in groups.values():
         place, values = next(iter(group.items()))
         there = ~np.isnan(values)
         if there.sum() < LEAST_SAMPLES:
-            allowed = f"must hold at least {LEAST_SAMPLES} samples, not {there.sum()}"
-            raise SceneError(str(path), str(place), None, allowed)
+            raise ValueError(
+                f"{place}: must hold at least {LEAST_SAMPLES} samples, not {there.sum()}"
+            )
         called = f"{name}:{place}" if curves else name
         waveforms = {place: values[there] for place, values in group.items()}
         curves.append(Curves(called, str(path), seconds[there], waveforms, bool(unit)))
     return curves
 
 
-def _fitting(table: Columns, choice: Asked) -> list[tuple[Place, np.ndarray]]:
+def _selected(table: Columns, choice: Selection) -> list[tuple[Place, np.ndarray]]:
     """Return the waveforms of a file selected by one argument, [n] in SI, nan where cells are
     empty."""
-    wanted = _label(choice.label) if choice.label else None
-    named = [c for c in table.rest if not choice.column or choice.fits(c)]
-    alone = len(table.rest) == 1 or bool(choice.column and len(named) == 1)
-    found = []
-    for column in named:
-        own = heading(column.name)
-        if wanted is not None:
-            own = _as_wanted(column, own, wanted, alone)
-            column = column._replace(unit=split_unit(choice.label)[1] or column.unit)
-        elif own.place is None:
+    columns = [column for column in table.rest if choice.fits(column)]
+    alone = len(columns) == 1 and (bool(choice.column) or len(table.rest) == 1)
+    label, unit = split_unit(choice.label)
+    wanted, found = _place(label), []
+    for column in columns if wanted or not label else []:
+        place, said = _place(column.name), column.name.lower()
+        if place is None and wanted is None:
             raise _without_place(column, choice, table)
-        if own.place is not None:
-            found.append((own.place, own.sign * column.si(UNITS[own.place.quantity])))
+        bare = alone and said not in QUANTITIES
+        if wanted and not place and (bare or said == wanted.quantity):
+            place = wanted
+        if place and (wanted is None or place.is_at(wanted)):
+            sign = -1.0 if "-" in (column.name[:1], label[:1]) else 1.0
+            values = column._replace(unit=unit or column.unit).si(UNITS[place.quantity])
+            found.append((place, sign * values))
     if not found:
-        raise _not_there(choice, table)
+        held = f"{choice.path} holds {_listed(table)}"
+        allowed = f"must be a label, such as {EXAMPLES}, a column or COLUMN=LABEL; {held}"
+        if wanted and not choice.column:
+            allowed = f"{held}; {wanted} must be one of them"
+        else:
+            allowed = f"{choice.column or label!r} {allowed}"
+        raise SceneError("--with", choice.text, None, allowed)
     return found
 
 
-def _as_wanted(column: Column, own: Heading, wanted: Heading, alone: bool) -> Heading:
-    """Return the heading of a column, which may have its own; without a place if another one is
-    requested."""
-    assert wanted.place is not None
-    if own.place is not None:
-        fits = own.place[:2] == wanted.place[:2] and same(own.place.at, wanted.place.at)
-        return own._replace(sign=min(own.sign, wanted.sign)) if fits else Heading(None)
-    bare = column.name.lower()
-    said = bare if bare in QUANTITIES else ""
-    fits = said == wanted.place.quantity or (alone and not said)
-    return wanted if fits else Heading(None)
+def _place(header: str) -> Place | None:
+    """Return the place that a header or a label names, without its sign; None if it names none."""
+    return parsed(header.removeprefix("-"))
 
 
-def _without_place(column: Column, choice: Asked, table: Columns) -> SceneError:
+def _without_place(column: Column, choice: Selection, table: Columns) -> SceneError:
     which = f"{column.name}=" if column.name else ""
     allowed = (
         f"must be named as {EXAMPLES}, in a rock mass as {EXAMPLES_IN_PLANE}, or its place be "
@@ -183,23 +214,5 @@ def _without_place(column: Column, choice: Asked, table: Columns) -> SceneError:
     return SceneError(str(choice.path), column.name or "second column", None, allowed)
 
 
-def _not_there(choice: Asked, table: Columns) -> SceneError:
-    held = f"{choice.path} holds {_listed(table)}"
-    if choice.column:
-        allowed = f"must be a label, such as {EXAMPLES}, a column or COLUMN=LABEL; {held}"
-        return SceneError("--with", choice.text, None, f"{choice.column!r} {allowed}")
-    wanted = _label(choice.label).place or "a label"
-    return SceneError("--with", choice.text, None, f"{held}; {wanted} must be one of them")
-
-
 def _listed(table: Columns) -> str:
     return ", ".join(column.name or "one column without a name" for column in table.rest)
-
-
-def _is_label(text: str) -> bool:
-    return _label(text).place is not None
-
-
-def _label(text: str) -> Heading:
-    """Return what a label says, [-]QUANTITY[_COMPONENT]@PLACE [UNIT], without its unit."""
-    return heading(split_unit(text)[0])

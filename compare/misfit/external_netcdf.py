@@ -28,8 +28,8 @@ def read_netcdf(path: Path, least: int) -> Columns:
 
     Raises ValueError, in one phrase, where it holds none.
     """
-    coordinates = [name for names in RECEIVERS.values() for name in names]
-    wanted = {"time", *QUANTITIES, *RECEIVERS, *coordinates, *COMPONENT_DIMENSIONS}
+    places = [name for names in RECEIVERS.values() for name in names]
+    wanted = {"time", *QUANTITIES, *RECEIVERS, *places, *COMPONENT_DIMENSIONS}
     try:
         # Undecoded, times keep the numbers and the unit of the file.
         found = load_netcdf(path, wanted, decode_times=False)
@@ -37,45 +37,36 @@ def read_netcdf(path: Path, least: int) -> Columns:
         raise ValueError(f"cannot be read as NetCDF: {str(error).partition('. ')[0]}") from None
     if "time" not in found.variables or found.time.dims != ("time",):
         raise ValueError("time: must be a coordinate over itself")
-    found = found.set_coords([name for name in coordinates if name in found])
-    held = [found[quantity] for quantity in QUANTITIES if quantity in found]
-    columns = [column for variable in held for column in _columns_of(variable)]
+    found = found.set_coords([name for name in places if name in found])
+    columns = [one for name in QUANTITIES if name in found for one in _columns_of(found[name])]
     if not columns:
         raise ValueError(f"must hold one or more of {', '.join(QUANTITIES)} over time")
-    if found.time.dtype.kind not in "fiu":
-        raise ValueError("time must hold numbers")
-    time = Column("time", _unit(found.time), found.time.values.astype(float))
-    all_of = Columns(time, columns)
+    all_of = Columns(_column("time", found.time), columns)
     require_series(all_of, "sample {}".format, least)
     return all_of
 
 
 def _columns_of(variable: xr.DataArray) -> Iterator[Column]:
     """Yield `velocity_x@20` or `velocity_x@[20,30]` for each component and receiver."""
-    if variable.dtype.kind not in "fiu":
-        raise ValueError(f"{variable.name} must hold numbers")
-    # A receiver selected from a result is still present, as a coordinate without dimension.
-    named = [
-        next((one for one in known if one in variable.dims or one in variable.coords), "")
-        for known in (RECEIVERS, COMPONENT_DIMENSIONS)
-    ]
-    if not {"time"} <= set(variable.dims) <= {"time", *named}:
-        allowed = (
-            f"must have the dimension time, and beside it at most one of {', '.join(RECEIVERS)} "
-            f"and one of {', '.join(COMPONENT_DIMENSIONS)}"
-        )
+    others = [name for name in variable.dims if name != "time"]
+    if len(others) == variable.ndim or not {*others} <= {*RECEIVERS, *COMPONENT_DIMENSIONS}:
+        known = ", ".join((*RECEIVERS, *COMPONENT_DIMENSIONS))
+        allowed = f"must have the dimension time, and beside it only those of {known}"
         raise ValueError(f"{variable.name} over {', '.join(map(str, variable.dims))}: {allowed}")
-    missing = [name for name in named if name and name not in variable.dims]
-    found = variable.expand_dims(missing).transpose(*filter(None, named), "time")
-    place, component = named
+    found = variable.transpose(*others, "time")
     for index in np.ndindex(found.shape[:-1]):
-        one, text = found[index], str(variable.name)
-        if component in one.coords:
-            text += f"_{one[component].item()}"
-        if place and all(name in one.coords for name in RECEIVERS[place]):
-            text = str(Place(text, "", tuple(float(one[name]) for name in RECEIVERS[place])))
-        yield Column(printable(text), _unit(variable), one.values.astype(float))
+        # A receiver selected from a result is still present, as a coordinate without dimension.
+        one, name = found[index], str(variable.name)
+        for component in (one[dim].item() for dim in COMPONENT_DIMENSIONS if dim in one.coords):
+            name += f"_{component}"
+        for names in RECEIVERS.values():
+            if all(place in one.coords for place in names):
+                name = str(Place(name, "", tuple(float(one[place]) for place in names)))
+        yield _column(name, one)
 
 
-def _unit(variable: xr.DataArray) -> str:
-    return printable(str(variable.attrs.get("units", ""))).strip()
+def _column(name: str, values: xr.DataArray) -> Column:
+    if values.dtype.kind not in "fiu":
+        raise ValueError(f"{printable(name)} must hold numbers")
+    unit = printable(str(values.attrs.get("units", ""))).strip()
+    return Column(printable(name), unit, values.values.astype(float))

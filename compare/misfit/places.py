@@ -96,6 +96,10 @@ class Place(NamedTuple):
             return "stress" if self.quantity in OF_SECTIONS else "velocity"
         return "joints" if self.quantity in OF_JOINTS else "points"
 
+    def is_at(self, other: Place) -> bool:
+        """Return whether it is the same waveform as another place."""
+        return self[:2] == other[:2] and same(self.at, other.at)
+
     def waveform(self, result: xr.Dataset) -> np.ndarray | None:
         """Return this waveform of a result [n] in SI; None if the result does not contain it."""
         if self.quantity not in result:

@@ -10,7 +10,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.records import Column, read_columns
 from jointwave.cases.units import TIME, UNITS, split_unit
 from jointwave.compare.misfit.alignment import UNEVEN
-from jointwave.compare.misfit.external_columns import asked
+from jointwave.compare.misfit.external import selection
 from jointwave.compare.misfit.external_netcdf import is_netcdf
 from jointwave.compare.misfit.places import LABEL
 from jointwave.results.labels import RECEIVERS
@@ -64,13 +64,13 @@ def _of_array(array: xr.DataArray, quantity: str) -> xr.Dataset:
 
 
 def _of_file(text: str, quantity: str) -> xr.Dataset:
-    choice = asked(text, lambda label: LABEL.fullmatch(split_unit(label)[0]) is not None)
+    choice = selection(text)
     path = choice.path
     try:
         if is_netcdf(path):
             return load_netcdf(path)
         table = read_columns(path, gaps=False)
-        columns = [one for one in table.rest if not choice.column or choice.fits(one)]
+        columns = [one for one in table.rest if choice.fits(one)]
         if choice.label and len(columns) == 1:
             name, unit = split_unit(choice.label)
             columns = [columns[0]._replace(name=name, unit=unit or columns[0].unit)]

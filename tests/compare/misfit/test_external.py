@@ -202,7 +202,6 @@ def test_samples_at_our_own_times_are_compared_without_loss(scene, tmp_path):
     found, beside = the_distance(save(tmp_path / "few.csv", time[few], stress[few]), scene)
     assert beside.own_times and len(beside.time) == len(few)
     assert found.misfit < 1e-12 and found.peak_ratio == pytest.approx(1, abs=1e-12)
-    assert beside.missed > 0.05  # but the figure's points say little of the wave
 
 
 def test_uneven_samples_count_by_the_time_they_stand_for():
