@@ -1,7 +1,6 @@
 """Field files as a viewer meets them: read back by meshio, whole or not there at all."""
 
 import json
-import sys
 from xml.etree import ElementTree
 
 import meshio
@@ -9,11 +8,8 @@ import numpy as np
 import pytest
 
 from jointwave import dem
-from jointwave.cases import SceneError
-from jointwave.compare.runs import field_files
-from jointwave.compare.runs.field_files import read_pvd, refuse_vtx, write_pvd, write_vtx
-from jointwave.continuum.space import dolfinx_export
-from jointwave.results.snapshots import snapshots, snapshots_of
+from jointwave.compare.runs.field_files import write_pvd
+from jointwave.results.snapshots import Snapshots, snapshots, snapshots_of
 
 SPALL = {
     "pillar__length": 8.0,
@@ -57,6 +53,23 @@ def two_cells(unit_cells):
         )
 
     return made
+
+
+def read_pvd(path):
+    """Return the snapshots of a .pvd."""
+    sets = list(ElementTree.parse(path).getroot().iter("DataSet"))
+    meshes = [meshio.read(path.parent / s.get("file")) for s in sets]
+    (block,), cell_data = meshes[0].cells, meshes[0].cell_data
+    return Snapshots(
+        np.array([float(s.get("timestep")) for s in sets]),
+        meshes[0].points,
+        block.type,
+        block.data,
+        cell_data["block"][0],
+        np.stack([mesh.point_data["displacement"] for mesh in meshes]),
+        np.stack([mesh.point_data["velocity"] for mesh in meshes]),
+        np.stack([m.cell_data["stress"][0] for m in meshes]) if "stress" in cell_data else None,
+    )
 
 
 def assert_equal(one, other):
@@ -152,64 +165,3 @@ def test_the_result_holds_what_the_files_show(jointwave, tmp_path):
 def test_an_exact_solution_says_that_it_has_no_snapshots(jointwave, tmp_path):
     exact = ("--engine", "exact", "--model", "images", "--variant", "")
     assert "no snapshots" in jointwave("run", *SCENE, *FIELDS, *exact, "--out", tmp_path).out
-
-
-def test_vtx_needs_snapshots(jointwave, tmp_path):
-    done = jointwave("run", *SCENE, "--vtx", "--out", tmp_path / "out", code=2)
-    assert done.err.count("\n") == 1 and "record.fields: is required by --vtx" in done.err
-    assert not (tmp_path / "out").exists()
-
-
-def test_vtx_is_written_where_dolfinx_can_and_refused_where_not(jointwave, tmp_path):
-    can = dolfinx_export.vtx_writer() is not None
-    options = ("--variant", "", "--vtx", "--out", tmp_path / "out")
-    done = jointwave("run", *SCENE, *FIELDS, *options, code=0 if can else 2)
-    if can:
-        assert {p.name for p in (tmp_path / "out").iterdir()} == {
-            *("dem.nc", "dem.pvd", "dem-fields", "dem.bp")
-        }
-        assert sum(p.stat().st_size for p in (tmp_path / "out" / "dem.bp").iterdir()) > 1e5
-    else:
-        assert done.err.count("\n") == 1 and "built without ADIOS2" in done.err
-        assert not (tmp_path / "out").exists()
-
-
-def test_vtx_is_refused_where_there_is_no_dolfinx(monkeypatch):
-    monkeypatch.setitem(sys.modules, "jointwave.continuum.space.dolfinx_export", None)
-    monkeypatch.delattr("jointwave.continuum.space.dolfinx_export", raising=False)
-    with pytest.raises(SceneError, match="--vtx: dolfinx cannot be imported"):
-        refuse_vtx()
-
-
-@pytest.mark.parametrize("kind", ["line", "triangle", "quad", "tetra", "hexahedron"])
-def test_vtx_gets_every_value_at_its_node(two_cells, kind, tmp_path, monkeypatch):
-    """What dolfinx writes are the functions' values at its own nodes, in its own order."""
-    found, seen = two_cells(kind), []
-
-    class Recorder:
-        def __init__(self, comm, path, functions):
-            assert comm.size == 1 and [f.name for f in functions] == ["displacement", "velocity"]
-            self.functions = functions
-
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *error):
-            (tmp_path / "made").mkdir()
-
-        def write(self, time):
-            space = self.functions[0].function_space
-            at = space.tabulate_dof_coordinates()
-            values = [f.x.array.reshape(-1, 3).copy() for f in self.functions]
-            seen.append((time, at, *values))
-
-    monkeypatch.setattr(dolfinx_export, "vtx_writer", lambda: Recorder)
-    monkeypatch.setattr(field_files, "write", lambda path, save: save(tmp_path / "made"))
-    write_vtx(tmp_path / "dem.bp", found)
-    assert [time for time, *_ in seen] == found.time.tolist()
-    for i, (_, at, displacement, velocity) in enumerate(seen):
-        for expected, values in ((found.displacement, displacement), (found.velocity, velocity)):
-            # Facing nodes of both cells lie at one place: compare the pairs.
-            wanted = np.hstack([found.points, expected[i]])
-            given = np.hstack([at.round(12), values])
-            np.testing.assert_array_equal(*(x[np.lexsort(x.T)] for x in (wanted, given)))

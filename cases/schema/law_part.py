@@ -16,8 +16,7 @@ class LawPart(NamedTuple):
     part. others : keys that need not be given.
     without : the parameters of `joints.law.Law` that it brings, at their values in a joint without
     it beside ones with it. made : how those follow from the keys that are no keys themselves.
-    words : what a joint with it does. drawn : the same with values, for drawings.
-    sample : keys at common values.
+    words : what a joint with it does. sample : keys at common values.
     along : whether it acts in shear only. instead_of : keys that contradict it.
     wrong : returns which key contradicts others and what is allowed, None where none does.
     """
@@ -26,7 +25,6 @@ class LawPart(NamedTuple):
     keys: tuple[str, ...]
     without: Mapping[str, float | Callable[[Any], float]]
     words: str
-    drawn: str
     sample: dict[str, float]
     made: dict[str, Callable[[Any], float]]
     others: tuple[str, ...] = ()

@@ -36,7 +36,7 @@ MODULES = {
     "gmsh": f"for triangles and tetrahedra: {GMSH}",
     "mpi4py.MPI": "for mpiexec: comes with dolfinx; or pip install mpi4py",
     "petsc4py.PETSc": "for implicit steps and static states: comes with dolfinx",
-    "dolfinx": "for --vtx: apt install python3-dolfinx",
+    "dolfinx": "to compare with plain dolfinx: apt install python3-dolfinx",
     "pyvista": "for jointwave view: pip install 'jointwave[view]'",
     "imageio_ffmpeg": "for jointwave animate: pip install imageio-ffmpeg",
 }

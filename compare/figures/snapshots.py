@@ -14,7 +14,7 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.figures.animation.bodies import OBLIQUE, BodyView, body_of, colours_of
 from jointwave.compare.figures.animation.settings import settings_for
 from jointwave.compare.figures.export import Drawn, blank, save
-from jointwave.compare.runs.field_files import read_pvd, write_pvd
+from jointwave.compare.runs.field_files import write_pvd
 from jointwave.compare.scenes import find
 from jointwave.results.snapshots import Snapshots, snapshots_of
 
@@ -33,12 +33,12 @@ class SnapshotsSection(NamedTuple):
 
 
 def make_snapshots(out: Path) -> SnapshotsSection:
-    """Simulate the scene, write its snapshots, and draw them as read back."""
+    """Simulate the scene, write its snapshots, and draw them."""
     scene = pillar_of(cases.load_variant(find(SCENE), "", CHANGES))
     found = snapshots_of(dem.simulate(scene))
     assert found is not None
     file = write_pvd(out / "fields" / "dem.pvd", found)
-    shown = read_pvd(file).since(1)
+    shown = found.since(1)
     figure = draw_snapshots("snapshots", scene, shown)
     drawn = save(figure, out / "figures", "snapshots", scene.title, _table(shown))
     return SnapshotsSection(scene.title, drawn, file, calibrate(scene).bar_speed)

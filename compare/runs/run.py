@@ -49,22 +49,18 @@ class Done(NamedTuple):
 def execute(
     jobs: list[Job],
     progress: Progress,
-    vtx: bool = False,
     processes: Processes = ALONE,
     settings: CheckpointSettings | None = None,
 ) -> list[Done]:
-    """Run the jobs one after the other and write each result; `vtx`: snapshots as VTX too.
+    """Run the jobs one after the other and write each result with its snapshots.
 
     processes : share the runs of the continuum. The first of them does the other runs, writes all
         files, and is the only one to return what was done.
     settings : checkpoint settings of the runs; None: no checkpoints.
-    Raises SceneError if a run fails, its file or a VTX file cannot be written, or its checkpoint
-    cannot be used; InterruptedRun if a signal has stopped a run.
+    Raises SceneError if a run fails, its file cannot be written, or its checkpoint cannot be used;
+    InterruptedRun if a signal has stopped a run.
     """
     settings = settings or CheckpointSettings(0.0, False, Signals())
-    if vtx:
-        _refuse_vtx(jobs)
-
     keepers: list[Any] = [_shared(job, processes, partial(_keeper, job, settings)) for job in jobs]
     done: list[Done] = []
     for i, (job, keeper) in enumerate(zip(jobs, keepers, strict=True)):
@@ -72,7 +68,7 @@ def execute(
         def part(fraction: float, i: int = i) -> None:
             progress((i + fraction) / len(jobs))
 
-        found = _shared(job, processes, partial(_run, job, keeper, part, vtx))
+        found = _shared(job, processes, partial(_run, job, keeper, part))
         done += [found] if found else []
         part(1.0)
         if processes.is_first:
@@ -96,17 +92,8 @@ def _keeper(job: Job, settings: CheckpointSettings, processes: Processes) -> Run
     return RunCheckpointer(job.scene, job.name, job.path, settings, processes)
 
 
-def _refuse_vtx(jobs: list[Job]) -> None:
-    from jointwave.compare.runs.field_files import refuse_vtx
-
-    for job in jobs:
-        if job.scene.record.fields is None:
-            raise SceneError(job.scene.where, "record.fields", None, "is required by --vtx")
-    refuse_vtx()
-
-
 def _run(
-    job: Job, keeper: RunCheckpointer, progress: Progress, vtx: bool, processes: Processes
+    job: Job, keeper: RunCheckpointer, progress: Progress, processes: Processes
 ) -> Done | None:
     """Run a job, unless its result exists, and write its files; None but on the first process."""
     result = None
@@ -116,7 +103,7 @@ def _run(
         except StoppedError as error:
             processes.by_first(partial(_write_stopped, job, error))
             raise
-    return processes.by_first(lambda: _written(job, keeper, result, vtx))
+    return processes.by_first(lambda: _written(job, keeper, result))
 
 
 def _write_stopped(job: Job, error: StoppedError) -> None:
@@ -137,7 +124,7 @@ def _stopped(job: Job) -> Path:
     return job.path.with_suffix(".stopped.nc")
 
 
-def _written(job: Job, keeper: RunCheckpointer, result: xr.Dataset | None, vtx: bool) -> Done:
+def _written(job: Job, keeper: RunCheckpointer, result: xr.Dataset | None) -> Done:
     """Write a result, None: that of an earlier command, and its snapshots; remove checkpoints."""
     if result is None:
         result = result_of(job.path, keeper.signature)
@@ -158,21 +145,18 @@ def _written(job: Job, keeper: RunCheckpointer, result: xr.Dataset | None, vtx: 
         ledger=open_ledger(result) if has_ledger else "",
         fragments=json.loads(result.attrs.get("fragments", "null")),
         out_of_balance=result.attrs.get("static_out_of_balance"),
-        fields=_write_snapshots(job, result, vtx),
+        fields=_write_snapshots(job, result),
     )
     keeper.files.remove()
     return done
 
 
-def _write_snapshots(job: Job, result: xr.Dataset, vtx: bool) -> list[Path]:
+def _write_snapshots(job: Job, result: xr.Dataset) -> list[Path]:
     """Write a result's snapshots, if any, beside it; return the files to open."""
     if job.scene.record.fields is None:
         return []
-    from jointwave.compare.runs.field_files import write_pvd, write_vtx
+    from jointwave.compare.runs.field_files import write_pvd
     from jointwave.results.snapshots import snapshots_of
 
     found = snapshots_of(result)
-    if found is None:
-        return []
-    files = [write_pvd(job.path.with_suffix(".pvd"), found)]
-    return [*files, write_vtx(job.path.with_suffix(".bp"), found)] if vtx else files
+    return [] if found is None else [write_pvd(job.path.with_suffix(".pvd"), found)]

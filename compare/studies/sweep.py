@@ -45,7 +45,6 @@ class Running(NamedTuple):
     """Run a point as `jointwave run` does. runs : (engine, model) each, see `compare.runs.jobs`."""
 
     runs: list[tuple[str, str | None]]
-    vtx: bool
 
     def solvers(self, scene: AnyScene) -> list[str]:
         """Return the names of a scene's solvers."""
@@ -53,7 +52,7 @@ class Running(NamedTuple):
 
     def __call__(self, scene: AnyScene, folder: Path) -> Rows:
         """Write the results of a scene into a folder and return a row for each receiver of each."""
-        done = execute(plan([scene], self.runs, folder), lambda fraction: None, self.vtx)
+        done = execute(plan([scene], self.runs, folder), lambda fraction: None)
         return [row for one in done for row in _rows_of_run(one)]
 
 

@@ -1,7 +1,7 @@
 """Meshes, spaces and forms of dolfinx itself, versions 0.5 to 0.11 told apart by what they offer.
 
-No run needs them, nor the compiler that forms need: VTX files, the benchmark of plain dolfinx and
-the tests do. Meshes and forms live on one process each; matrices leave as real scipy CSR.
+No run needs them, nor the compiler that forms need: the benchmark of plain dolfinx and the tests
+do. Meshes and forms live on one process each; matrices leave as real scipy CSR.
 """
 
 import inspect
@@ -96,10 +96,3 @@ def vector(form: ufl.Form) -> np.ndarray:
 def _compiled(form: ufl.Form):
     with quiet_logging():
         return fem.form(form, dtype=np.float64)
-
-
-def vtx_writer():
-    """Return the class that writes VTX files; None where dolfinx is built without ADIOS2."""
-    import dolfinx.io
-
-    return getattr(dolfinx.io, "VTXWriter", None)

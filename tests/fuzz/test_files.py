@@ -94,7 +94,7 @@ COMMANDS = [
     "doctor",
 ]
 OPTIONS = [
-    *("--set", "--variant", "--out", "--engine", "--model", "--with", "--align", "--json", "--vtx"),
+    *("--set", "--variant", "--out", "--engine", "--model", "--with", "--align", "--json"),
     *("--misfit", "--seconds", "--workers", "--version", "--no-spectral", "-h", "--", "--set="),
 ]
 SETS = [

@@ -50,6 +50,7 @@ def animate(
     """
     _require_positive("--scale", scale)
     _require_positive("--seconds", seconds)
+    from jointwave.compare.figures.animation.frame import PIXELS
     from jointwave.compare.figures.animation.video import refuse, write_video
 
     (one,) = load(scene, changes, variant, strict)
@@ -63,7 +64,7 @@ def animate(
                 yield frame.image(i)
                 advance((i + 1) / frames)
 
-        write_video(path, images(), frame.pixels, frames / seconds)
+        write_video(path, images(), PIXELS, frames / seconds)
     if not as_json:
         _say(path, frame)
         return
@@ -111,13 +112,13 @@ def view(
     if path.suffix != ".png":
         raise SceneError("--out", str(path), None, "must end in .png")
     refuse_foreign(path, (b"\x89PNG",))
-    frame = _frame(one, at, scale, in_space=True)
+    frame = _frame(one, at, scale)
     frame.show(1)
-    write_drawing(path, frame.figure)
+    write_drawing(path, frame.figure, one.title, {"savefig.dpi": "figure"})
     _say(path, frame)
 
 
-def _frame(scene: AnyScene, interval: float, scale: float | None, in_space: bool = False) -> Any:
+def _frame(scene: AnyScene, interval: float, scale: float | None) -> Any:
     """Simulate a scene by both engines and return the frame of its instants, one per interval."""
     from jointwave.compare.figures.animation.frame import Frame
     from jointwave.compare.figures.animation.settings import settings_for
@@ -125,9 +126,7 @@ def _frame(scene: AnyScene, interval: float, scale: float | None, in_space: bool
 
     with terminal.progress("both engines") as advance:
         simulated = take(scene, interval, advance)
-    return Frame(
-        simulated, settings_for(simulated.scene, simulated.found, scale), in_space=in_space
-    )
+    return Frame(simulated, settings_for(simulated.scene, simulated.found, scale))
 
 
 def _require_positive(key: str, value: float | None) -> None:

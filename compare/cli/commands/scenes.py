@@ -60,9 +60,6 @@ def run(
     swept: SweepOption = [],
     members: EnsembleOption = 0,
     out: OutOption = Path("results"),
-    vtx: Annotated[
-        bool, typer.Option("--vtx", help="Also write the snapshots of record.fields as VTX (.bp).")
-    ] = False,
     every: Annotated[
         float,
         typer.Option(
@@ -103,7 +100,7 @@ def run(
         from jointwave.compare.studies.sweep import Running, sweep_of
 
         asked_for = sweep_of(scene, changes, variant, swept, out, members)
-        sweep(asked_for, Running(wanted, vtx), workers, dry, as_json, strict)
+        sweep(asked_for, Running(wanted), workers, dry, as_json, strict)
         return
     scenes = load(scene, changes, variant, strict)
     asked = jobs.plan(scenes, wanted, out)
@@ -117,7 +114,7 @@ def run(
     settings = CheckpointSettings(every, resume, watched())
     with ExitStack() as held, terminal.progress(f"{len(asked)} runs") as advance:
         processes.by_first(lambda: held.enter_context(locked(out, *folders)))
-        done = runs.execute(asked, advance, vtx, processes, settings)
+        done = runs.execute(asked, advance, processes, settings)
     processes.by_first(lambda: run_view.show_runs(done, as_json))
 
 

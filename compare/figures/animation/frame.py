@@ -10,7 +10,6 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from jointwave.cases.effects import is_spatial
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.figures.animation.bodies import (
     FRONT,
@@ -27,25 +26,16 @@ from jointwave.compare.figures.style import RC, style
 from jointwave.compare.figures.units import UNITS, unit_for
 from jointwave.compare.misfit.pairs import Comparison
 
-SIZE = 12.8, 7.2  # inches
+SIZE, PIXELS = (12.8, 7.2), (1280, 720)  # inches
 BODIES = 2.8  # inches of all pillars at most
 LETTERS = 85  # per line of the title
 
 
 class Frame:
     """The frame of every instant: of a pillar with the wave along it and a waveform, of a rock mass
-    its bodies side by side.
+    its bodies side by side."""
 
-    in_space : whether pillars that move along their axis only are drawn in space as well.
-    """
-
-    def __init__(
-        self,
-        simulated: SceneSnapshots,
-        settings: ViewSettings,
-        dots: int = 100,
-        in_space: bool = False,
-    ) -> None:
+    def __init__(self, simulated: SceneSnapshots, settings: ViewSettings) -> None:
         self.simulated, self.settings, self.time = simulated, settings, simulated.time
         scene, found = simulated.scene, simulated.found
         self.bodies = {name: body_of(s, scene, settings) for name, s in found.items()}
@@ -55,11 +45,11 @@ class Frame:
         self.profiles: dict[str, Line2D] = {}
         self.waveforms = pd.DataFrame()
         self.traces: dict[str, Line2D] = {}
-        rc: dict[Any, Any] = RC | {"font.size": 10.0, "figure.figsize": SIZE, "figure.dpi": dots}
+        rc: dict[Any, Any] = RC | {"font.size": 10.0, "figure.figsize": SIZE, "figure.dpi": 100.0}
         with blank(SIZE[1], rc=rc) as self.figure:
             self.figure.suptitle("\n".join(self._title()), x=0.01, ha="left", parse_math=False)
             if isinstance(scene, Scene):
-                self._add_pillars(OBLIQUE if in_space or is_spatial(scene) else FRONT)
+                self._add_pillars()
             else:
                 axes = self.figure.subplots(1, len(found), sharey=True, squeeze=False)[0]
                 self._add_bodies(axes, FRONT)
@@ -86,12 +76,6 @@ class Frame:
         for name, curve in self.waveforms.items():
             shown = curve[curve.index <= self.time[i] * (1 + 1e-9)]
             self.traces[name].set_data(1e3 * shown.index, shown.values)
-
-    @property
-    def pixels(self) -> tuple[int, int]:
-        """Width and height of the frame."""
-        width, height = self.figure.bbox.size
-        return round(width), round(height)
 
     def image(self, i: int) -> np.ndarray:
         """Return the frame of instant i, uint8 array [height, width, 4]."""
@@ -123,10 +107,10 @@ class Frame:
             ax.set_title(name, color=style(name).colour, fontweight="bold")
         self.clock = axes[-1].set_title("", loc="right", fontsize=14)
 
-    def _add_pillars(self, per_away: tuple[float, float]) -> None:
+    def _add_pillars(self) -> None:
         count = len(self.bodies)
         *axes, profile, waveform = self.figure.subplots(count + 2, 1)
-        self._add_bodies(axes, per_away)
+        self._add_bodies(axes, OBLIQUE)
         low = np.min([view.low for view in self.views.values()], axis=0)
         high = np.max([view.high for view in self.views.values()], axis=0)
         height = min(SIZE[0] * (high - low)[1] / (high - low)[0], BODIES / count)

@@ -5,7 +5,6 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.artist import Artist
 
-from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.contacts import contacts, welds
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.segment import regions
@@ -137,13 +136,3 @@ def _load(scene: Scene, half: float, unit: np.ndarray) -> list[Artist]:
 def _number(value: float, si: str) -> str:
     unit = unit_for(si, abs(value))
     return f"{value / unit.size:.3g} {unit.name}"
-
-
-def rock_words(scene: Scene) -> str:
-    """Return the properties of the rock in words."""
-    rock = scene.rock
-    if rock.p_speed is None:
-        found = f"a modulus of {calibrate(scene).modulus / 1e9:.3g} GPa"
-    else:
-        found = f"waves of {rock.p_speed:g} and {rock.s_speed:g} m/s"
-    return f"rock mass of {rock.density:g} kg/m³ with {found}"

@@ -128,12 +128,3 @@ def _load(scene: RockMass, load: PlaneLoad, size: float) -> list[Artist]:
         for a, step, normal, count in zip(start, along, inwards, counts, strict=True)
         for k in range(count)
     ]
-
-
-def rock_words(scene: RockMass) -> str:
-    """Return the properties of the rock in words."""
-    rock = scene.rock
-    return (
-        f"rock of {rock.density:g} kg/m³ with a modulus of {rock.intact_modulus / 1e9:.3g} GPa and "
-        f"a Poisson's ratio of {rock.intact_poisson:g}, in plane strain"
-    )

@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 
 from jointwave.cases.loads import history_of
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.joint import PARTS, JointLaw
 from jointwave.cases.schema.pulse import Pulse
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.figures.drawing import pillar
@@ -24,6 +23,9 @@ from jointwave.compare.misfit.pairs import Comparison
 
 MOST = 4  # drawings per scene
 TITLE = "The scene"
+CAPTION = (
+    "Drawn from the scene file; blue marks: receivers, red: loads and waves, as over time beside."
+)
 PULSE, FOOT, TALLEST = 1.3, 0.8, 5.0  # inches: of a pulse, below a drawing, and of the tallest one
 ENTRIES, LINE = 6, 0.25  # of the legend in a line, and inches of one
 SAMPLES = 400
@@ -56,9 +58,7 @@ def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
     numbers = pd.concat({words: sketch.table() for words, sketch in sketches.items()})
     numbers = numbers.rename_axis(["variant", None]).reset_index("variant").reset_index(drop=True)
     figure = _figure(scenes, list(sketches.values()))
-    first = comparisons[0].scene
-    caption = f"From the scene file: {drawing.rock_words(first)}. {_joints(first)}"
-    return SceneFigure(f"{name}-scene", TITLE, caption, figure, numbers)
+    return SceneFigure(f"{name}-scene", TITLE, CAPTION, figure, numbers)
 
 
 def _figure(scenes: dict[str, AnyScene], sketches: list[Sketch]) -> Figure:
@@ -114,31 +114,3 @@ def pulse_curve(pulse: Pulse, duration: float) -> tuple[np.ndarray, np.ndarray]:
     end = min(duration, 1.25 * history.end or duration)
     time = np.linspace(0, end, SAMPLES)
     return time, scale * np.asarray(history.value(time))
-
-
-def _joints(scene: Any) -> str:
-    """Return the joints and the marks of receivers in words."""
-    if isinstance(scene, Scene):
-        return (
-            f"Joints: {_law(scene.joints) or 'elastic'}. Triangles: sections whose stress is "
-            "recorded; circles: points whose velocity is."
-        )
-    sets = [
-        f"{one.name}: dip {one.dip:g}°, {f'spacing {one.spacing:g} m' if one.spacing else 'one'}, "
-        f"{one.normal_stiffness / 1e9:.3g} and {one.shear_stiffness / 1e9:.3g} GPa/m"
-        f"{', ' * bool(_law(one))}{_law(one)}"
-        for one in scene.joint_sets
-    ]
-    joints = f"Joints: {'; '.join(sets)}." if sets else "No joints."
-    return f"{joints} Circles: points whose motion is recorded; triangles: points of joints."
-
-
-def _law(law: JointLaw) -> str:
-    """Return the nonlinear properties of joints in words; empty for elastic joints."""
-    parts = [
-        f"damping ratio {law.damping_ratio:g}" if law.damping_ratio else "",
-        "no tension" if law.tension is False else "",
-        f"friction {law.friction_angle:g}°" if law.friction_angle is not None else "",
-        *(part.drawn.format_map(vars(law)) for part in PARTS if part.of(law)),
-    ]
-    return ", ".join(part for part in parts if part)

@@ -113,12 +113,6 @@ def test_the_table_holds_every_line(drawing):
     assert {"quiet side", "free side", "fixed side"} < set(table.what)
 
 
-def test_the_caption_says_what_the_joints_are(drawing):
-    caption = drawing().caption
-    assert "modulus of 50 GPa" in caption and "plane strain" in caption
-    assert "rows: dip 0°, spacing 1 m, 10 and 4 GPa/m, friction 30°" in caption
-
-
 def test_variants_that_look_alike_share_a_drawing():
     base = load_tables(TABLES)
     longer = load_tables(TABLES | {"time": {"duration": 0.2}})

@@ -51,9 +51,9 @@ def test_displacements_are_drawn_as_they_can_be_seen(simulated):
 
 def test_the_picture_shows_the_block_that_moves_where_it_is(simulated):
     settings = settings_for(simulated.scene, simulated.found, 1000.0)
-    frame = Frame(simulated, settings, dots=50)
+    frame = Frame(simulated, settings)
     start, end = frame.image(0).astype(int), frame.image(1).astype(int)
-    assert start.shape == (360, 640, 4)
+    assert start.shape == (720, 1280, 4)
     (ax,) = (ax for ax in frame.figure.axes if ax.get_xlabel() == "x (m)")
     height = start.shape[0]
 
