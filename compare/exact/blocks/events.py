@@ -149,47 +149,31 @@ class _Walk:
         chain, n = self.chain, self.chain.block_count
         drive = np.linalg.solve(_POWERS, self.load.value(t + h * _NODES).astype(float)) * chain.gain
         drive = np.pad(drive, (0, ORDER + 1 - len(drive)))
+        open_joints = self.contacts.index[~self.contacts.closed]
         held = np.ones(n - 1)
-        held[self.contacts.index[~self.contacts.closed]] = 0.0
-        stiffness = held * chain.stiffness / chain.rate / chain.mass
-        viscosity = held * chain.viscosity / chain.mass
+        held[open_joints] = 0.0
+        stiffness, viscosity = held * chain.stiffness / chain.rate, held * chain.viscosity
         X = np.zeros((ORDER + 1, chain.size), dtype=self.x.dtype)
         X[0] = self.x
         force = np.zeros(n + 1, dtype=self.x.dtype)
         for k in range(ORDER):
-            u, v = X[k, :n], X[k, n : 2 * n]
+            u, v, faces = X[k, :n], X[k, n : 2 * n], X[k, 2 * n :] / chain.rate
+            push, wall = (0.0, drive[k]) if chain.shaken else (drive[k], 0.0)
+            start, first = reaction(chain.start, u[0] / chain.rate, v[0], faces[0], wall)
+            end, last = reaction(chain.end, u[-1] / chain.rate, v[-1], faces[1])
+            force[0], force[-1] = push - start, end
             force[1:-1] = stiffness * (u[:-1] - u[1:]) + viscosity * (v[:-1] - v[1:])
-            first, last = self._ends(force, X[k], drive[k])
-            slope = force[:-1] - force[1:]
+            if k == 0:
+                force[[0, -1]] += chain.borne
+                force[1 + open_joints] -= self.contacts.spring[~self.contacts.closed]
+            slope = (force[:-1] - force[1:]) / chain.mass - chain.mass_damping * v
             if k == 0:
                 slope += chain.gravity
-                slope[0] += chain.borne[0] / chain.mass
-                slope[-1] -= chain.borne[1] / chain.mass
-                self._without_open(slope)
-            if chain.mass_damping:
-                slope -= chain.mass_damping * v
             scale = h / (k + 1)
             X[k + 1, :n] = scale * chain.rate * v
             X[k + 1, n : 2 * n] = scale * slope
             X[k + 1, -2], X[k + 1, -1] = scale * chain.rate * first, scale * chain.rate * last
         return X
-
-    def _without_open(self, slope: np.ndarray) -> None:
-        """Subtract from the accelerations the static forces that open joints no longer carry."""
-        is_open = ~self.contacts.closed
-        lost = self.contacts.spring[is_open] / self.chain.mass
-        at = self.contacts.index[is_open]
-        np.add.at(slope, at, lost)
-        np.add.at(slope, at + 1, -lost)
-
-    def _ends(self, force: np.ndarray, x: np.ndarray, drive: float) -> tuple[float, float]:
-        """Set the forces over the mass at both ends; return the velocities of their faces."""
-        chain, n, w = self.chain, self.chain.block_count, self.chain.rate
-        push, wall = (0.0, drive) if chain.shaken else (drive, 0.0)
-        start, first = reaction(chain.start, x[0] / w, x[n], x[-2] / w, wall)
-        end, last = reaction(chain.end, x[n - 1] / w, x[2 * n - 1], x[-1] / w)
-        force[0], force[-1] = (push - start) / chain.mass, end / chain.mass
-        return first, last
 
     def _first_event(self, X: np.ndarray) -> tuple[float, tuple[int, int] | None]:
         """Return the fraction of the step at the first change of a joint, that joint and force."""

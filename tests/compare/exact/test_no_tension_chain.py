@@ -115,3 +115,17 @@ def test_one_barred_joint_of_the_chain_opens_as_the_contact_does(scene, block):
     omega = 2 * pi / 0.02
     lag = (omega * block / p.bar_speed) ** 2 / 24 * omega * 25.0 / p.bar_speed
     assert abs((u[1, -1] - u[0, -1]) / gap - 1) < lag
+
+
+def test_a_chain_of_several_rocks_that_stays_closed_is_the_linear_one(scene, misfit):
+    """Under a prestress that no wave lifts; blocks of two masses."""
+    rock = {"density": 2000.0, "p_speed": 1500.0, "s_speed": 600.0}
+    tables = {
+        "segments": [{"y": [20.0, 35.0], **rock}],
+        "prestress": {"normal": 5e6},
+        "time": {"duration": 0.05},
+    }
+    linear = lattice.solve(scene(**tables))
+    found = no_tension.solve(scene(**tables, joints={"tension": False}))
+    for variable in ("stress", "velocity", "displacement"):
+        assert misfit(found, linear, variable) < 1e-11
