@@ -12,7 +12,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.size import refuse_beyond_memory, waveform_bytes
 from jointwave.compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
-from jointwave.compare.solvers.record import Answer, Solver, no
+from jointwave.compare.solvers.record import Answer, Solver
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -89,7 +89,7 @@ def applies(name: str, scene: AnyScene) -> Answer:
     """Return whether this engine or solution applies to the scene, or the reason why not."""
     one = solver(name)
     if scene.kind not in one.kinds:
-        return no(f"is for a {one.kinds[0]}, not for a {scene.kind}")
+        return Answer(f"is for a {one.kinds[0]}, not for a {scene.kind}")
     return one.applies(scene)
 
 
@@ -118,14 +118,3 @@ def solve(
         return one.run(scene)
     except MemoryError as error:
         raise SceneError(scene.where, "", None, f"not enough memory: {name}: {error}") from None
-
-
-def stepping(name: str, scene: AnyScene) -> Callable[[], float]:
-    """Return what takes the steps of an engine's run anew at each call and returns their seconds.
-
-    Raises the errors of `solve`.
-    """
-    again = solver(name).again
-    if again is not None:
-        return again(scene)
-    return lambda: float(solve(name, scene).attrs["seconds_stepping"])

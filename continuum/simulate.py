@@ -32,7 +32,7 @@ from jointwave.continuum.state import State
 from jointwave.continuum.validity import applies
 from jointwave.continuum.waveforms import energy_terms, waveforms
 from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
-from jointwave.results.arrays import changed, copied, fill, size_of
+from jointwave.results.arrays import changed, size_of
 from jointwave.results.dataset import dataset
 
 FREEDOM_STEPS_AT_ONCE = 10_000_000  # some 0.1 s: often enough for a progress bar
@@ -123,17 +123,6 @@ class Start(NamedTuple):
         work = self.engine.work * int(run.communicator.largest(run.state.u.size)) * time.stride
         chunk = min(FREEDOM_STEPS_AT_ONCE // work, time.samples // LEAST_STRETCHES)
         run_in_chunks(time.samples, chunk, march, self.parts, progress, recorder, keeper, 1)
-
-    def march_again(self) -> Callable[[], None]:
-        """Return a function that takes all samples from this state on, whenever it is called, with
-        the snapshots of the scene."""
-        kept = copied(self.parts)
-
-        def march() -> None:
-            fill(self.parts, kept)
-            self.march(_recorder(self.run, self.engine.ahead))
-
-        return march
 
 
 def start(

@@ -72,7 +72,7 @@ def explanation(scene: AnyScene, measured: bool = False) -> Facts:
             for name, r in runs.items()
         ],
         "cannot_run": failures,
-        "solutions": {k: {"applies": a.yes, "why_not": a.reason} for k, a in answers.items()},
+        "solutions": {k: {"applies": bool(a), "why_not": a.reason} for k, a in answers.items()},
         "references": {name: r._asdict() for name, r in references.items()},
     }
 

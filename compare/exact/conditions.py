@@ -6,7 +6,7 @@ from jointwave.cases.loads import load_history, velocity_of
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.schema.joint import PARTS
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.solvers.record import YES, Answer, no
+from jointwave.compare.solvers.record import Answer
 
 #: Physics in groups, as `holds` names them.
 DAMPED = ("damped joints", "damped rock")
@@ -42,7 +42,7 @@ def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> An
         "fixed start": (scene.ends.start == "fixed", "the loaded end is fixed"),
     }
     beyond = (one for name, one in physics.items() if name not in held)
-    return next((no(why) for there, why in (*beyond, *against) if there), YES)
+    return next((Answer(why) for there, why in (*beyond, *against) if there), Answer())
 
 
 def is_free(scene: Scene) -> bool:

@@ -2,24 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
-from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from jointwave.cases.size import estimates
 from jointwave.compare.solvers.incident import incident, note_sides
-from jointwave.compare.solvers.record import (
-    YES,
-    Answer,
-    Form,
-    Kind,
-    Line,
-    Prepared,
-    Rock,
-    Solver,
-    no,
-)
+from jointwave.compare.solvers.record import Answer, Form, Kind, Line, Prepared, Rock, Solver
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,9 +25,9 @@ def applies(scene: Scene, model: str) -> Answer:
     try:
         from jointwave.continuum import applies as reason_against
     except ImportError as error:
-        return no(f"FEniCSx cannot be imported ({error}); {INSTALL}")
+        return Answer(f"FEniCSx cannot be imported ({error}); {INSTALL}")
     reason = reason_against(scene, model)
-    return no(reason) if reason else YES
+    return Answer(reason or "")
 
 
 def run(
@@ -52,22 +40,6 @@ def run(
     found = simulate(scene, model=model, **about, incident=incident(scene))
     note_sides(found.attrs, scene)
     return found
-
-
-def again(scene: Scene | RockMass, model: str) -> Callable[[], float]:
-    """Return what takes the steps of a scene anew at each call and returns their seconds."""
-    from jointwave.continuum.simulate import start
-
-    begun = start(scene, model, incident=incident(scene))
-    begun.engine.compile()
-    march = begun.march_again()
-
-    def seconds() -> float:
-        began = perf_counter()
-        march()
-        return perf_counter() - began
-
-    return seconds
 
 
 def prepare(scene: Scene, model: str) -> Prepared:
@@ -108,7 +80,6 @@ def _of(model: str, **about: Any) -> Solver:
         schemes=("explicit", "implicit"),
         cost=("scheme", "dim", "cell", "order", "processes"),
         shares=True,
-        again=partial(again, model=model),
         libraries=libraries,
         **about,
     )

@@ -6,16 +6,7 @@ from typing import TYPE_CHECKING
 
 from jointwave.cases.size import estimates
 from jointwave.compare.solvers.incident import incident, note_sides
-from jointwave.compare.solvers.record import (
-    YES,
-    Answer,
-    Form,
-    Line,
-    Prepared,
-    Rock,
-    Solver,
-    no,
-)
+from jointwave.compare.solvers.record import Answer, Form, Line, Prepared, Rock, Solver
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,13 +48,13 @@ def applies(scene: Scene | RockMass) -> Answer:
         from jointwave.cases.material.constant_q import beyond_blocks
 
         if beyond := beyond_blocks(scene):
-            return no(beyond)
+            return Answer(beyond)
     if isinstance(scene, Scene):
-        return YES
+        return Answer()
     from jointwave.cases.material.rigid_blocks import against
 
     reason = against(scene)
-    return no(f"numerics.dem.block {reason}") if reason else YES
+    return Answer(f"numerics.dem.block {reason}") if reason else Answer()
 
 
 def _in_plane(scene: RockMass):

@@ -63,19 +63,10 @@ class Kind(IntEnum):
 class Answer(NamedTuple):
     """Yes, or the reason why not; true where the solver holds."""
 
-    yes: bool
     reason: str = ""
 
     def __bool__(self) -> bool:
-        return self.yes
-
-
-YES = Answer(True)
-
-
-def no(reason: str) -> Answer:
-    """Return the answer no, for this reason."""
-    return Answer(False, reason)
+        return not self.reason
 
 
 class Line(NamedTuple):
@@ -141,8 +132,6 @@ class Solver:
     schemes : of time steps. per_block : whether a step's cost is counted in blocks, else in
         freedoms. cost : the settings of a run that decide what a step costs.
     shares : whether several processes can share a run.
-    again : of (scene), to what takes its steps anew at each call, set up once, and returns their
-        seconds; None where a run is set up in no time.
     libraries : the versions that decide the bits of a result, beside those of numpy and numba.
     """
 
@@ -165,7 +154,6 @@ class Solver:
     per_block: bool = False
     cost: tuple[str, ...] = ()
     shares: bool = False
-    again: Callable[[Any], Callable[[], float]] | None = None
     libraries: Callable[[], dict[str, str]] = dict
     sentence: str = ""
 

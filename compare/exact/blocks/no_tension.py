@@ -24,7 +24,7 @@ from jointwave.compare.exact.blocks.events import ChainMotion, integrate
 from jointwave.compare.exact.blocks.lattice import HELD, at_rest
 from jointwave.compare.exact.conditions import drive, holds
 from jointwave.compare.exact.linear import errors
-from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, no, thin
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset, scene_hash
 
 MOST_BLOCKS = 2000
@@ -43,7 +43,7 @@ def applies(scene: Scene) -> Answer:
         (scene.block_count > MOST_BLOCKS, MANY),
     )
     if answer and _pulled(scene):
-        return no("a no-tension joint is in tension at rest")
+        return Answer("a no-tension joint is in tension at rest")
     return answer
 
 

@@ -22,15 +22,7 @@ from jointwave.cases.material.face import face_points
 from jointwave.cases.sampling import interpolation, sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.conditions import DAMPED, LAYERS, holds
-from jointwave.compare.solvers.record import (
-    Answer,
-    Form,
-    Kind,
-    Rock,
-    Solver,
-    no,
-    thin,
-)
+from jointwave.compare.solvers.record import Answer, Form, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
 HELD = ("spatial motion", "gravity", "no tension", "fixed start", *DAMPED, *LAYERS)
@@ -40,9 +32,9 @@ def applies(scene: Scene) -> Answer:
     """Return whether one rigid block slides or rests on another."""
     p, gravity = calibrate(scene), scene.gravity
     if scene.pillar.block_count != 2:
-        return no("the pillar does not have two blocks")
+        return Answer("the pillar does not have two blocks")
     if gravity is None or gravity.static or gravity.direction[1] <= 0:
-        return no("no sudden gravity compresses the joint")
+        return Answer("no sudden gravity compresses the joint")
     stands = (scene.ends.start, scene.ends.end) == ("free", "fixed")
     rubs = p.friction is not None and p.cohesion is None
     answer = holds(
@@ -53,7 +45,7 @@ def applies(scene: Scene) -> Answer:
         (not rubs, "the joint does not slip by friction only"),
     )
     if answer and p.friction is not None and _topples(scene, float(p.friction[0])):
-        return no("the block topples")
+        return Answer("the block topples")
     return answer
 
 

@@ -36,7 +36,7 @@ from jointwave.compare.exact.blocks.lattice import HELD
 from jointwave.compare.exact.blocks.spatial import PLANES, Plane, plane, row
 from jointwave.compare.exact.conditions import drive, holds, static_stress
 from jointwave.compare.exact.linear import bound, twins
-from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, no, thin
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
 MOST_BLOCKS = 500
@@ -147,7 +147,7 @@ def applies(scene: Scene) -> Answer:
     """Return whether the scene's row of blocks is spatial, linear and not too long."""
     p = calibrate(scene)
     if not is_spatial(scene):
-        return no("the motion is axial: see lattice")
+        return Answer("the motion is axial: see lattice")
     many = f"more than {MOST_BLOCKS:,} blocks: the matrix exponential is dense"
     return holds(
         scene,

@@ -28,7 +28,7 @@ from jointwave.compare.exact.bar.images import ENTERS
 from jointwave.compare.exact.conditions import holds, static_stress
 from jointwave.compare.exact.joint.one_joint import back_in_time, behind_and_before
 from jointwave.compare.exact.joint.trajectory import Trajectory, edges_of, peak_of
-from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, no, thin
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 
 HELD = ("closure", "prestress", "soft layers", "stiff layers")
 TOLERANCES = (1e-12, 1e-9)  # of the solution and its twin, relative to the largest stress
@@ -83,7 +83,7 @@ def applies(scene: Scene) -> Answer:
     joint, times = the_joint(scene, p), sample_times(scene)
     most = ENTERS[scene.ends.start] * np.abs(load_history(scene).value(times)).max()
     if joint.compliance(joint.prestress + most) <= 0:
-        return no("the joint becomes stiffer than the other joints")
+        return Answer("the joint becomes stiffer than the other joints")
     return back_in_time(scene, joint.y, p.bar_speed)
 
 

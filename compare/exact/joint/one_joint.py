@@ -28,7 +28,7 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.images import ENTERS
 from jointwave.compare.exact.conditions import holds, static_stress
 from jointwave.compare.exact.linear import errors, twins
-from jointwave.compare.solvers.record import YES, Answer, Rock, Solver, no, thin
+from jointwave.compare.solvers.record import Answer, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
 Passes = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -62,8 +62,8 @@ def back_in_time(scene: Scene, joint_y: float, speed: float) -> Answer:
     nearest = min([*scene.record.stress, *scene.record.velocity])
     back = (2 * joint_y + nearest) / speed
     if scene.ends.start != "free" or back >= scene.time.duration:
-        return YES
-    return no(f"the free start reflects back to a receiver at {back:.4g} s")
+        return Answer()
+    return Answer(f"the free start reflects back to a receiver at {back:.4g} s")
 
 
 def solve(scene: Scene) -> xr.Dataset:

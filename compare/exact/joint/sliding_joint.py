@@ -32,7 +32,7 @@ from jointwave.compare.exact.joint import rate_state_joint
 from jointwave.compare.exact.joint.one_joint import around
 from jointwave.compare.exact.joint.slip_phases import TOLERANCES, Passed, SlipJoint
 from jointwave.compare.exact.linear import bound
-from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, no, thin
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
 WORN = ("weakening", "dilation", "rate and state")
@@ -44,7 +44,7 @@ def applies(scene: Scene) -> Answer:
     """Return whether a plane shear wave meets exactly one joint that can slip."""
     p, load, ends = calibrate(scene), scene.load, {scene.ends.start, scene.ends.end}
     if not load.is_across or load.direction[1] or load.arm or scene.motion.rotation != "none":
-        return no("there is no plane shear wave: needs a load across and no rotation")
+        return Answer("there is no plane shear wave: needs a load across and no rotation")
     slips, compliance = _slips(p), _excess_compliance(p)
     return holds(
         scene,

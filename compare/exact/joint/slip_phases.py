@@ -27,8 +27,8 @@ from jointwave.cases.histories import LoadHistory
 from jointwave.compare.exact.joint.trajectory import SHORTEST, edges_of, peak_of
 
 TOLERANCES = 3e-14, 1e-11  # of the integration, and of its twin
-#: Of the whole time, in each of which at most one phase ends. A prime: solve_ivp fails where a phase
-#: ends with a step.
+#: Of the whole time, in each of which at most one phase ends. A prime: solve_ivp fails where a
+#: phase ends with a step.
 SPANS = 1999
 NEAR = 1e-12  # of a strength: tolerated jump between two consecutive phases
 

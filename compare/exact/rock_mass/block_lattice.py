@@ -37,15 +37,7 @@ from jointwave.compare.exact.plane.rigid_motion import (
 )
 from jointwave.compare.exact.rock_mass.conditions import beyond_linear_rock
 from jointwave.compare.exact.rock_mass.field import field_of
-from jointwave.compare.solvers.record import (
-    YES,
-    Answer,
-    Kind,
-    Rock,
-    Solver,
-    no,
-    thin,
-)
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.plane import plane_dataset
 
 MOST_BLOCKS = 1000
@@ -73,7 +65,7 @@ def applies(scene: RockMass) -> Answer:
     reason = beyond_linear_rock(scene) or next((why for there, why in reasons if there), None)
     if reason is None and block_count(scene.domain, sets) > MOST_BLOCKS:
         reason = many
-    return no(reason) if reason else YES
+    return Answer(reason or "")
 
 
 def solve(scene: RockMass) -> xr.Dataset:

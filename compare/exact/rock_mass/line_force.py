@@ -19,15 +19,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane.line_force import motion
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass.conditions import beyond_linear_rock, prestress_of
-from jointwave.compare.solvers.record import (
-    YES,
-    Answer,
-    Kind,
-    Rock,
-    Solver,
-    no,
-    thin,
-)
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.plane import plane_dataset
 
 #: Pieces of a Ricker wavelet, each smooth enough for the points of one integral.
@@ -58,7 +50,7 @@ def applies(scene: RockMass) -> Answer:
             reason = "a receiver lies on a force"
         elif known_until(scene) <= reach / float(elastic_rock(scene.rock).p_speed):
             reason = "a side reflects before any receiver is reached"
-    return no(reason) if reason else YES
+    return Answer(reason or "")
 
 
 def solve(scene: RockMass) -> xr.Dataset:

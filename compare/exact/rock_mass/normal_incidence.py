@@ -17,22 +17,22 @@ from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass import stack_waves
 from jointwave.compare.exact.rock_mass.conditions import along, prestress_of
 from jointwave.compare.exact.rock_mass.stack import JointStack, stack_of
-from jointwave.compare.solvers.record import Answer, Rock, Solver, no, thin
+from jointwave.compare.solvers.record import Answer, Rock, Solver, thin
 
 
 def applies(scene: RockMass) -> Answer:
     """Return whether a P wave meets one joint that stiffens at normal incidence."""
     if all(one.maximum_closure is None for one in scene.joint_sets):
-        return no("no joint has closure: see oblique-joint")
+        return Answer("no joint has closure: see oblique-joint")
     linear = [one.model_copy(update={"maximum_closure": None}) for one in scene.joint_sets]
     answer = stack_waves.holds(scene.model_copy(update={"joint_sets": linear}), one=True)
     if not answer:
         return answer
     if any(one.damping_ratio for one in scene.joint_sets):
-        return no("the joint is damped")
+        return Answer("the joint is damped")
     wave, normal = scene.waves[0], stack_of(scene).normal
     if len(scene.waves) > 1 or wave.kind != "P" or not along(np.array(wave.direction), normal):
-        return no("the wave is not a P wave at normal incidence")
+        return Answer("the wave is not a P wave at normal incidence")
     return answer
 
 

@@ -22,7 +22,7 @@ from jointwave.compare.exact.plane.pulse import pulse_fields
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass.conditions import prestress_of
 from jointwave.compare.exact.rock_mass.stack import JointStack, against, begun, stack_of
-from jointwave.compare.solvers.record import YES, Answer, Kind, no
+from jointwave.compare.solvers.record import Answer, Kind
 from jointwave.results.plane import plane_dataset
 
 #: Causes of the engines' misfits against these waves.
@@ -51,17 +51,19 @@ class JointReceivers(NamedTuple):
 def holds(scene: RockMass, one: bool) -> Answer:
     """Return whether a scene has plane waves at one joint or, if not `one`, at several."""
     if reason := against(scene):
-        return no(reason)
+        return Answer(reason)
     stack = stack_of(scene)
     count = len(stack.joints) - stack.has_face
     if one and scene.regions:
-        return no("regions differ in rock: see parallel-joints")
+        return Answer("regions differ in rock: see parallel-joints")
     if one and stack.has_face:
-        return no("a side is free: see parallel-joints")
+        return Answer("a side is free: see parallel-joints")
     if (count == 1 and not scene.regions and not stack.has_face) != one:
-        return no(f"there are {count} joints: see parallel-joints" if one else "there is one joint")
+        return Answer(
+            f"there are {count} joints: see parallel-joints" if one else "there is one joint"
+        )
     reason = begun(scene, stack)
-    return no(reason) if reason else YES
+    return Answer(reason or "")
 
 
 def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Dataset:

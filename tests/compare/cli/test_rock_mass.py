@@ -9,7 +9,7 @@ from PIL import Image
 
 import jointwave as jw
 from jointwave.compare.runs.comparison import solved
-from jointwave.compare.solvers.record import no
+from jointwave.compare.solvers.record import Answer
 
 SCENE = """\
 title = "A tunnel in brickwork"
@@ -205,7 +205,7 @@ def test_intact_rock_is_one_block(says):
 
 
 def test_what_nothing_solves_says_why(says):
-    answers = {"one": no("the joints slip"), "other": no("it has two waves")}
+    answers = {"one": Answer("the joints slip"), "other": Answer("it has two waves")}
     with pytest.raises(jw.SceneError) as error:
         solved(jw.load("joint.toml"), answers)
     found = "joint.toml: nothing solves it: one: the joints slip; other: it has two waves"

@@ -7,6 +7,7 @@ from jointwave.cases import SceneError
 from jointwave.compare.engines import EXACT, solve, solver
 from jointwave.compare.exact.bar import images, jointed_bar
 from jointwave.compare.exact.blocks import lattice
+from jointwave.compare.solvers.record import Answer
 
 BARRED, DAMPED = {"joints": {"tension": False}}, {"joints": {"damping_ratio": 0.02}}
 LAYER = [{"y": 20.0, "spacing_stiffness": 4.375e8}]
@@ -215,7 +216,7 @@ AXIAL_ROCK = ("images", "series", "kelvin-voigt", "one-joint", "jointed-bar", "e
 @pytest.mark.parametrize("name, tables", YES)
 def test_yes_means_that_it_solves_with_the_schema(scene, name, tables):
     at = scene(**{"time": {"duration": 0.02}, **tables})
-    assert solver(name).applies(at) == (True, "")
+    assert solver(name).applies(at) == Answer()
     result = solver(name).run(at)
     assert result.attrs["engine"] == name
     force = "shear" if "shear" in result else "stress"
@@ -229,7 +230,7 @@ def test_yes_means_that_it_solves_with_the_schema(scene, name, tables):
 @pytest.mark.parametrize("name, tables, reason", NO)
 def test_no_gives_the_reason(scene, name, tables, reason):
     at = scene(**tables)
-    assert solver(name).applies(at) == (False, reason)
+    assert solver(name).applies(at) == Answer(reason)
     with pytest.raises(SceneError, match=reason.split(":")[0]):
         solve(name, at)
 
@@ -237,19 +238,19 @@ def test_no_gives_the_reason(scene, name, tables, reason):
 @pytest.mark.parametrize("tables, reason", BEYOND)
 @pytest.mark.parametrize("name", AXIAL_ROCK)
 def test_no_bar_takes_what_it_leaves_out(scene, name, tables, reason):
-    assert solver(name).applies(scene(**tables)) == (False, reason)
+    assert solver(name).applies(scene(**tables)) == Answer(reason)
 
 
 @pytest.mark.parametrize("tables, reason", [BEYOND[i] for i in (0, 2, -1)])
 @pytest.mark.parametrize("name", ["lattice", "no-tension-chain"])
 def test_the_chains_leave_out_slip_softening_and_local_damping(scene, name, tables, reason):
-    assert solver(name).applies(scene(**tables)) == (False, reason)
+    assert solver(name).applies(scene(**tables)) == Answer(reason)
 
 
 @pytest.mark.parametrize("tables, reason", [BEYOND[i] for i in (2, -1)])
 @pytest.mark.parametrize("name, spatial", [("spatial-lattice", ACROSS), ("slip-joint", SHEAR)])
 def test_spatial_solutions_leave_out_softening(scene, name, spatial, tables, reason):
-    assert solver(name).applies(scene(**spatial, **tables)) == (False, reason)
+    assert solver(name).applies(scene(**spatial, **tables)) == Answer(reason)
 
 
 def test_friction_does_not_matter_while_nothing_shears_the_joints(scene):
