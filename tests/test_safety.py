@@ -327,7 +327,6 @@ def test_no_control_character_reaches_the_terminal(text, capfd):
     capfd.readouterr()
     terminal.say(f"{text}[red]:smile:")
     terminal.show_table([text, "b"], [[text, text]])
-    terminal.show_numbers([text, "b"], {text: [[text, text]]})
     terminal.print_json({text: text})
     found = capfd.readouterr().out
     assert not CONTROL.search(found) and "[red]:smile:" in found

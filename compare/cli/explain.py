@@ -18,31 +18,22 @@ from jointwave.compare.solvers.properties import spans, speeds
 from jointwave.compare.solvers.record import Prepared
 from jointwave.compare.studies.step_cost import step_costs, with_every_effect
 
-#: What the facts are called on the terminal, with their units.
-LABELS = {
-    "area": "area, m2",
-    "bar_speed": "bar speed, m/s",
-    "block": "block, m",
+#: The units of facts, and what facts are called whose names do not say it.
+UNITS = {
+    "m": "from to block length",
+    "m2": "area",
+    "m/s": "bar_speed velocity p_speed s_speed",
+    "s": "critical dt",
+    "Pa": "equivalent_modulus stress",
+    "Pa/m": "joint_stiffness",
+    "Pa s/m": "impedance",
+    "J/m2": "energy",
+}
+LABELS = {key: f"{key}, {unit}" for unit, keys in UNITS.items() for key in keys.split()} | {
     "bytes_at_most": "bytes at most, during subdivision",
-    "critical": "critical step, s",
-    "dt": "step, s",
-    "effects": "effect",
-    "energy": "energy, J/m2",
-    "enters": "waves that enter",
-    "equivalent_modulus": "E_eq, Pa",
-    "from": "from, m",
-    "impedance": "impedance, Pa s/m",
-    "joint_stiffness": "K'_n, Pa/m",
-    "length": "length, m",
-    "p_speed": "P, m/s",
-    "references": "reference of",
     "rigid_blocks_lack": "part of the intact rock's stiffness that rigid blocks cannot represent",
-    "s_speed": "S, m/s",
-    "solutions": "solution",
-    "stress": "stress, Pa",
-    "to": "to, m",
+    "speeds": "speeds of bar or P waves, and of S waves, m/s",
     "transmission": "transmission from the segment before",
-    "velocity": "velocity, m/s",
 }
 UNCHECKED = Reference("", f"{NOT_CHECKED}: no other solution resolves more")
 
@@ -110,6 +101,7 @@ def _pillar(scene: Scene, measured: bool) -> Facts:
             "impedance": one.impedance,
             "joint_stiffness": one.regular_stiffness,
             "has_joints": len(p.each) == 1 or isfinite(one.regular_own_stiffness),
+            "speeds": "speeds of bar or P waves, and of S waves, m/s",
             "transmission": 2 * one.impedance / (other.impedance + one.impedance),
         }
         for (start, stop), one, other in zip(spans(p), p.each, before, strict=False)
@@ -124,7 +116,4 @@ def _pillar(scene: Scene, measured: bool) -> Facts:
 def show_explanation(found: Facts) -> None:
     """Print the facts of a scene."""
     say(f"{found['title']} {found['variant']}".rstrip(), "bold")
-    labels = LABELS | {
-        "speeds": f"speeds of {'bar and S' if 'segments' in found else 'P and S'} waves, m/s"
-    }
-    show_facts({k: v for k, v in found.items() if k not in ("title", "variant")}, labels)
+    show_facts({k: v for k, v in found.items() if k not in ("title", "variant")}, LABELS)

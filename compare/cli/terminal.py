@@ -7,9 +7,8 @@ import json
 import logging
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from itertools import zip_longest
 from math import inf
 from time import monotonic
 from typing import Any
@@ -53,17 +52,11 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
 @contextmanager
 def _bar(label: str) -> Iterator[Callable[[float], None]]:
     from rich import progress as rich
+    from rich.markup import escape
 
-    columns = (
-        rich.TextColumn("{task.description}", markup=False),
-        rich.BarColumn(),
-        rich.TaskProgressColumn(),
-        rich.TimeElapsedColumn(),
-        rich.TextColumn("left"),
-        rich.TimeRemainingColumn(),
-    )
+    columns = *rich.Progress.get_default_columns(), rich.TextColumn("left")
     with rich.Progress(*columns, console=_console(stderr=True), transient=True) as bar:
-        task = bar.add_task(printable(label), total=1.0)
+        task = bar.add_task(escape(printable(label)), total=1.0)
         yield lambda fraction: bar.update(task, completed=fraction)
 
 
@@ -93,8 +86,8 @@ def say_warnings(lines: Iterable[str]) -> None:
         print(f"jointwave: warning: {printable(line)}", file=sys.stderr)
 
 
-def show_table(columns: list[str], rows: list[list[str]], styles: Sequence[str] = ()) -> None:
-    """Print a table of text; `styles` are those of the rows.
+def show_table(columns: list[str], rows: list[list[str]]) -> None:
+    """Print a table of text.
 
     Long cells are folded to the terminal's width. Short ones are not: a terminal that is too narrow
     wraps whole lines, which can still be read and copied.
@@ -105,16 +98,9 @@ def show_table(columns: list[str], rows: list[list[str]], styles: Sequence[str] 
     table = Table(box=None, pad_edge=False)
     for column in columns:
         table.add_column(printable(column), overflow="fold", no_wrap=is_short)
-    for row, style in zip_longest(rows, styles, fillvalue=""):
-        table.add_row(*map(printable, row), style=style or None)
+    for row in rows:
+        table.add_row(*map(printable, row))
     _console(UNFOLDED if is_short else None).print(table, crop=False)
-
-
-def show_numbers(columns: list[str], groups: dict[str, list[list[str]]]) -> None:
-    """Print a table under the headings of groups."""
-    rows = [row for heading, own in groups.items() for row in ([heading], *own)]
-    styles = [style for own in groups.values() for style in ("bold", *len(own) * [""])]
-    show_table(columns, rows, styles)
 
 
 def show_facts(facts: Mapping[str, Any], labels: Mapping[str, str] | None = None) -> None:
@@ -122,7 +108,7 @@ def show_facts(facts: Mapping[str, Any], labels: Mapping[str, str] | None = None
     is None or empty. labels : what a fact is called, with its unit, where not by its own name."""
 
     def label(name: str) -> str:
-        return (labels or {}).get(name, name.replace("_", " "))
+        return (labels or {}).get(name, name).replace("_", " ")
 
     for name, value in facts.items():
         if isinstance(value, Mapping) and any(isinstance(x, Mapping) for x in value.values()):

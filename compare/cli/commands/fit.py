@@ -99,7 +99,8 @@ def fit(
     cells = values[["value", "low", "high", "start"]].map("{:.6g}".format)
     rows = [[key, *numbers] for key, numbers in zip(values.key, cells.values.tolist(), strict=True)]
     columns = ["key", "value", "from", "to", "start"]
-    terminal.show_numbers(columns, {"values, with 95 % intervals": rows})
+    terminal.say("values, with 95 % intervals", "bold")
+    terminal.show_table(columns, rows)
     for note in found.notes:
         terminal.say(f"note: {note}")
     terminal.say("The intervals assume the model: jointwave compare shows how far models differ.")

@@ -149,8 +149,7 @@ def test_a_figure_has_a_panel_a_component(says, tmp_path):
     said = says("figure joint.toml --set numerics.continuum.size=4 --out joint.svg")
     drawn = (tmp_path / "joint.svg").read_text()
     assert "wrote joint.svg" in said.out
-    assert "velocity x at [20,\u00a010]\u00a0m" in drawn
-    assert "traction s at [20,\u00a020]\u00a0m" in drawn
+    assert "velocity x at [20, 10] m" in drawn and "traction s at [20, 20] m" in drawn
 
 
 def test_explain_says_what_its_blocks_are(says):
