@@ -12,7 +12,7 @@ def show_report(found: Report, as_json: bool) -> None:
         rows = summary.reset_index().values.tolist()
         print_json({"page": str(found.file), "columns": ["what", "pair", *summary], "rows": rows})
         return
-    for engine, sentence in page["overview"]["lead"].items():
+    for engine, sentence in page["lead"].items():
         say(f"{engine} {sentence}")
     if page["about"]:
         say(f"\n{page['about'].sentence}")

@@ -27,10 +27,7 @@ def peak_velocity(result: Recording, quantity: str = "velocity") -> xr.DataArray
     """
     found = recording(result, quantity)
     if "velocity" not in found:
-        acceleration = _of(found, "acceleration")
-        mean = (acceleration + acceleration.shift(time=1, fill_value=0.0)) / 2
-        mean[{"time": 0}] = 0.0
-        return _peak(sampling(found) * mean.cumsum("time"), "axis", "time")
+        found = _of(found, "acceleration").cumulative_integrate("time").to_dataset(name="velocity")
     return _peak(found["velocity"], "axis", "time")
 
 
@@ -72,13 +69,12 @@ def arias_intensity(
     found = recording(result, quantity)
     dt = sampling(found)
     if "velocity" in found:
-        squares = (found["velocity"].diff("time") ** 2).sum("time") / dt
+        squares = (found["velocity"].diff("time") / dt) ** 2
     else:
-        a = _of(found, "acceleration")
-        before, after = a.isel(time=slice(-1)).drop_vars("time"), a.isel(time=slice(1, None))
-        after = after.drop_vars("time")
-        squares = (before**2 + before * after + after**2).sum("time") * dt / 3
-    intensity = pi / (2 * gravity) * squares
+        after = _of(found, "acceleration")
+        before = after.shift(time=1)
+        squares = (before**2 + before * after + after**2) / 3
+    intensity = pi / (2 * gravity) * dt * squares.sum("time")
     return intensity.rename("arias_intensity").assign_attrs(
         long_name="Arias intensity", units="m/s"
     )
@@ -101,34 +97,30 @@ def response_spectrum(
     periods : of the oscillator, s. damping : zeta, of the critical one, below 1. quantity : of a
     recording that does not name its own.
     """
-    found = recording(result, quantity)
-    dt = sampling(found)
-    if "acceleration" in found:
-        motion = _of(found, "acceleration")
-        ground = motion.values
-    else:
-        motion = _of(found, "velocity")
-        slopes = np.diff(motion.values) / dt
-        ground = np.pad(slopes, [(0, 0)] * (slopes.ndim - 1) + [(1, 1)])
+    periods = np.asarray(periods, dtype=float)
     if not 0 <= damping < 1:
         raise SceneError("response_spectrum", "damping", damping, "must be from 0 to below 1")
-    if not (np.asarray(periods) > 0).all():
-        raise SceneError("response_spectrum", "periods", min(periods), "must be positive")
-    omegas = 2 * pi / np.asarray(periods, dtype=float)
-    peaks = [largest_displacement(ground, dt, omega, damping) for omega in omegas]
-    of = motion.isel(time=0, drop=True)
-    period = xr.Variable("period", periods, {"long_name": "period of the oscillator", "units": "s"})
-    displacement = of.expand_dims(period=period, axis=-1).copy(data=np.stack(peaks, axis=-1))
+    if not (periods > 0).all():
+        raise SceneError("response_spectrum", "periods", periods.min(), "must be positive")
+    found = recording(result, quantity)
+    dt = sampling(found)
+    motion = _of(found, "acceleration" if "acceleration" in found else "velocity")
+    ground = motion.values
+    if "acceleration" not in found:
+        ground = np.diff(ground, prepend=ground[..., :1], append=ground[..., -1:]) / dt
+    peaks = [largest_displacement(ground, dt, 2 * pi / T, damping) for T in periods]
+    displacement = motion.isel(time=0, drop=True).expand_dims(period=periods, axis=-1)
+    displacement = displacement.copy(data=np.stack(peaks, axis=-1))
     omega = 2 * pi / displacement["period"]
-    named = {
-        "displacement": (displacement, "m"),
-        "pseudo_velocity": (displacement * omega, "m/s"),
-        "pseudo_acceleration": (displacement * omega**2, "m/s2"),
-    }
+    spectra = {"displacement": "m", "pseudo_velocity": "m/s", "pseudo_acceleration": "m/s2"}
+    of_period = {"long_name": "period of the oscillator", "units": "s"}
     return xr.Dataset(
         {
-            name: values.assign_attrs(long_name=f"spectral {name.replace('_', '-')}", units=unit)
-            for name, (values, unit) in named.items()
+            name: (displacement * omega**power).assign_attrs(
+                long_name=f"spectral {name.replace('_', '-')}", units=unit
+            )
+            for power, (name, unit) in enumerate(spectra.items())
         },
-        attrs={"damping": damping},
+        {"period": ("period", periods, of_period)},
+        {"damping": damping},
     )

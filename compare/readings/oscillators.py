@@ -6,19 +6,16 @@ x = Im w / Im l, an oscillator x'' + 2 zeta omega x' + omega^2 x = -(a + b s) is
 
     w(s) = (w(0) - p) exp(l s) + p + q s,    q = b / l,    p = (a + q) / l.
 
-In an interval x is a straight line and a decaying oscillation, whose maxima a period apart are a
-convex sequence: the largest |x| lies in the first or the last period. There x' is expanded to
-second order about points 1/16 of a period apart, and x evaluated at the root, so that nothing is
-overestimated. An extreme is at most the phase e = pi / 16 from a point; the third order leaves the
-root off by e^3 / 6, and (e^3 / 6)^2 / 2 = 8e-7 of the oscillation is missed; with 70 % damping, by
-which curvature is lost at an extreme, 4e-5.
+In an interval x is a straight line and a decaying oscillation: the largest |x| lies in its first or
+last period. There it is that of cubics with the values and slopes at 32 points a period, off by
+(2 pi / 32)^4 / 384 = 4e-6 of the oscillation. After the record its first extreme is the largest.
 """
 
 from math import ceil, pi, sqrt
 
 import numpy as np
 
-POINTS = 16  # a period
+POINTS = 32  # a period
 
 
 def largest_displacement(ground: np.ndarray, dt: float, omega: float, damping: float) -> np.ndarray:
@@ -33,42 +30,31 @@ def largest_displacement(ground: np.ndarray, dt: float, omega: float, damping: f
     q = np.diff(ground) / dt / rate
     p = (ground[..., :-1] + q) / rate
     decay = np.exp(rate * dt)
-    after = lfilter([1.0], [1.0, -decay], p * (1 - decay) + q * dt)
-    before = np.concatenate([np.zeros_like(after[..., :1]), after[..., :-1]], axis=-1)
-    during = _largest(before - p, p, q, rate, dt)
-    none = np.zeros_like(after[..., -1:])
-    free = _largest(after[..., -1:], none, none, rate, 2 * pi / rate.imag)
-    return np.maximum(during, free) / rate.imag
+    w = lfilter([1.0], [1.0, -decay], p * (1 - decay) + q * dt)
+    turning = np.concatenate([np.zeros_like(w[..., :1]), w[..., :-1]], axis=-1) - p
+    part = min(dt, 2 * pi / rate.imag)
+    count = ceil(POINTS * part * omega / (2 * pi))
+    extreme, last = np.angle(-rate.conjugate()), w[..., -1]
+    late = (extreme - np.angle(last)) % pi / rate.imag
+    largest = np.abs(last) * np.exp(rate.real * late) * np.sin(extreme)
+    for start in {0.0, dt - part}:
+        points = start + np.linspace(0, part, count + 1)
+        turned = (turning * np.exp(rate * s) for s in points)
+        both = (
+            ((here + p + q * s).imag, (rate * here + q).imag * part / count)
+            for here, s in zip(turned, points, strict=True)
+        )
+        x, slope = next(both)
+        for end, leaving in both:
+            found = np.maximum(np.abs(end), _turn(x, slope, end, leaving))
+            largest, x, slope = np.maximum(largest, found.max(axis=-1)), end, leaving
+    return largest / rate.imag
 
 
-def _largest(turning: np.ndarray, p: np.ndarray, q: np.ndarray, rate: complex, dt: float):
-    """Return the largest |Im(turning exp(rate s) + p + q s)|, 0 <= s <= dt, over the last axis."""
-    shape, n = turning.shape[:-1], turning.shape[-1]
-    turning, p, q = (x.reshape(-1, n) for x in (turning, p, q))
-    period, largest = 2 * pi / rate.imag, np.zeros(len(turning))
-    h = min(dt, 2 * pi / abs(rate) / POINTS)
-    points = np.linspace(0, dt, ceil(dt / h) + 1)
-    if dt > 2 * period:
-        first = np.linspace(0, period, ceil(period / h) + 1)
-        points = np.concatenate([first, dt - period + first])
-    for s in points:
-        here = turning * np.exp(rate * s)
-        x, bend = (here + p + q * s).imag, (rate**2 * here).imag
-        largest = np.maximum(largest, np.abs(x).max(axis=-1))
-        # What an extreme half a step away can add; only such points are followed.
-        more = 1.2 * np.abs(bend).max(axis=-1) * h**2 / 8
-        row, i = np.nonzero(np.abs(x) >= (largest - more)[:, None])
-        here = here[row, i]
-        slope, bend, jerk = (here * rate**k + q[row, i] * (k == 1) for k in (1, 2, 3))
-        slope, bend, jerk = slope.imag, bend.imag, jerk.imag
-        root = np.sqrt(np.maximum(bend**2 - 2 * slope * jerk, 0.0))
-        step = np.clip(_ratio(-2 * slope, bend + np.copysign(root, bend), h), -s, dt - s)
-        found = here * np.exp(rate * step) + p[row, i] + q[row, i] * (s + step)
-        np.maximum.at(largest, row, np.abs(found.imag))
-    return largest.reshape(shape)
-
-
-def _ratio(one: np.ndarray, other: np.ndarray, most: float) -> np.ndarray:
-    """Return one / other between -most and most, and 0 beyond."""
-    within = np.abs(one) < most * np.abs(other)
-    return np.divide(one, other, out=np.zeros_like(one), where=within)
+def _turn(x: np.ndarray, slope: np.ndarray, end: np.ndarray, leaving: np.ndarray) -> np.ndarray:
+    """Return |x| where the cubic through x and end, with slopes an interval, turns; 0 where not."""
+    cubic, square = slope + leaving - 2 * (end - x), 3 * (end - x) - 2 * slope - leaving
+    root = np.sqrt(np.maximum(square**2 - 3 * cubic * slope, 0.0))
+    turns, divisor = slope * leaving < 0, np.copysign(root, slope) - square
+    at = np.divide(slope, divisor, out=np.zeros_like(x), where=turns)
+    return np.where(turns, np.abs(x + at * (slope + at * (square + at * cubic))), 0.0)

@@ -21,6 +21,7 @@ from jointwave.results.netcdf import load_netcdf
 Recording = xr.Dataset | xr.DataArray | str | PathLike[str] | tuple[Any, ...]
 #: What a recorder measures, by its unit.
 MEASURED = ("velocity", "acceleration", "displacement", "stress")
+Where = str | tuple[float, ...]  #: the name of a receiver, or its place where it is known
 MOST_SAMPLES = 4_000_000  # of an unevenly sampled recording at its smallest interval
 
 
@@ -43,13 +44,8 @@ def recording(source: Recording, quantity: str = "velocity") -> xr.Dataset:
     if rows.ndim != 2 or rows.shape[1] != len(time) or (at and len(at[0]) != len(rows)):
         allowed = f"must be [n] or [receiver, n] for {len(time)} times, and one place a receiver"
         raise SceneError("recording", "values", f"{rows.shape}", allowed)
-    places = at[0] if at else np.full(len(rows), np.nan)
-    array = xr.DataArray(
-        rows[..., None],
-        {"velocity_y": places, "time": time, "axis": [""]},
-        ["velocity_y", "time", "axis"],
-    )
-    return _even(xr.Dataset({quantity: array}))
+    places: list[Where] = [(y,) for y in at[0]] if at else [str(i) for i in range(len(rows))]
+    return _dataset(time, {(quantity, at, ""): row for at, row in zip(places, rows, strict=True)})
 
 
 def _of_array(array: xr.DataArray, quantity: str) -> xr.Dataset:
@@ -88,35 +84,39 @@ def dataset_of(time: np.ndarray, columns: list[Column], quantity: str) -> xr.Dat
 
     quantity : of columns without a label or unit.
     """
-    places, parts = list[tuple[float, ...] | str](), dict[tuple, xr.DataArray]()
+    waves: dict[tuple[str, Where, str], np.ndarray] = {}
     for column in columns:
-        place: tuple[float, ...] | str
         sign, name = (-1.0 if column.name.startswith("-") else 1.0), column.name.removeprefix("-")
-        measured, component, place = quantity, "", name
+        at: Where = name
+        measured, component = quantity, ""
         if (match := LABEL.fullmatch(name)) and match[1].lower() in UNITS:
             measured, component = match[1].lower(), match[2] or ""
-            place = tuple(float(one) for one in match.groups()[2:] if one is not None)
+            at = tuple(float(one) for one in match.groups()[2:] if one is not None)
         elif column.unit and column.unit not in UNITS[quantity]:
             measured = next((one for one in MEASURED if column.unit in UNITS[one]), quantity)
-        if place not in places:
-            places.append(place)
-        values = sign * column.si(UNITS[measured])
-        at = {"receiver": [places.index(place)], "time": time, "axis": [component]}
-        one = xr.DataArray(values[None, :, None], at, ["receiver", "time", "axis"], measured)
-        parts[measured, component, place] = one
-    if len(parts) < len(columns):
+        waves[measured, at, component] = sign * column.si(UNITS[measured])
+    if len(waves) < len(columns):
         raise ValueError("must name each column once")
-    found = xr.merge(parts.values(), join="outer", compat="no_conflicts")
-    if any(one.isnull().any() for one in found.values()):
+    return _dataset(time, waves)
+
+
+def _dataset(time: np.ndarray, waves: dict[tuple[str, Where, str], np.ndarray]) -> xr.Dataset:
+    """Return waveforms [n], by quantity, receiver and direction, as a result."""
+    quantities, places, axes = (list(dict.fromkeys(keys)) for keys in zip(*waves, strict=True))
+    if len(waves) < len(quantities) * len(places) * len(axes):
         raise ValueError("must hold the same components at every receiver")
-    sizes = {0 if isinstance(place, str) else len(place) for place in places}
+    known = [(np.nan,) if isinstance(at, str) else at for at in places]
+    sizes = {0 if isinstance(at, str) else len(at) for at in places}
     if len(sizes) > 1:
         raise ValueError("must name the places of all its columns, or of none")
-    name = "point" if sizes == {2} else "velocity_y"
-    coordinates = np.array([(np.nan,) if isinstance(place, str) else place for place in places]).T
-    places_of = dict(zip(RECEIVERS[name], coordinates, strict=True))
-    found = found.drop_vars("receiver").rename_dims(receiver=name)
-    return _even(found.assign_coords({key: (name, at) for key, at in places_of.items()}))
+    receiver = "point" if sizes == {2} else "velocity_y"
+    found = xr.Dataset(coords={"time": time, "axis": axes})
+    for quantity in quantities:
+        rows = [[waves[quantity, at, axis] for axis in axes] for at in places]
+        found[quantity] = (receiver, "axis", "time"), np.array(rows)
+    names = zip(RECEIVERS[receiver], np.transpose(known), strict=True)
+    found = found.assign_coords({name: (receiver, at) for name, at in names})
+    return _even(found.transpose(receiver, "time", "axis"))
 
 
 def _even(result: xr.Dataset) -> xr.Dataset:

@@ -9,7 +9,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from jointwave.compare.figures.style import style
-from jointwave.compare.text import percent, table_cell
+from jointwave.compare.text import in_seconds, percent, table_cell, times
 
 
 def render(page: dict[str, Any], out: Path) -> str:
@@ -34,9 +34,9 @@ def render(page: dict[str, Any], out: Path) -> str:
         "picture": picture,
         "units": unbroken,
         "percent": percent,
-        "cell": table_cell,
-        "groups": groups,
-        "numeric": numeric,
+        "times": times,
+        "in_seconds": in_seconds,
+        "rows": rows,
     }
     return environment.get_template("report.html").render(page)
 
@@ -51,21 +51,8 @@ def unbroken(text: str) -> str:
     return text.replace(" %", "\u00a0%").replace("≤ ", "≤\u00a0")
 
 
-def numeric(table: pd.DataFrame) -> list[bool]:
-    """Return which columns of a table have a number in any cell, and stand at the right."""
-    figures = {*"0123456789+-<–±"}
-    return table.map(lambda x: not isinstance(x, str) or x[:1] in figures).any().tolist()
-
-
-def groups(table: pd.DataFrame) -> dict[str, list[tuple[list[str], tuple]]]:
-    """Return the rows of a table, labels and values, by the outermost of several levels of its
-    index; of a table with one level under no heading, and of one with only numbers no labels."""
-    levels = table.index.nlevels
-    found: dict[str, list[tuple[list[str], tuple]]] = {}
-    for label, *values in table.itertuples(name=None):
-        labels = [str(x) for x in (label if levels > 1 else [label])]
-        heading, labels = (labels[0], labels[1:]) if levels > 1 else ("", labels)
-        if table.index.names == [None]:
-            labels = []
-        found.setdefault(heading, []).append((labels, values))
-    return found
+def rows(table: pd.DataFrame) -> Markup:
+    """Return a table in HTML, its labels on the left and numbers on the right."""
+    cells = table.apply(lambda column: column.map(lambda x: table_cell(x, str(column.name))))
+    named = table.index.names != [None]
+    return Markup(cells.to_html(border=0, index=named, justify="unset"))

@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import pandas as pd
 
@@ -67,22 +67,39 @@ class Shown(NamedTuple):
 class SolvedScene(NamedTuple):
     """A scene solved by all that applies.
 
-    section : what its section of the page shows. scores : where its engines stand. worst : misfits
-    by pair. scene : its first variant, and the seconds of stepping it by engine. versions : of the
-    packages that solved it. about : what its misfit is made of, of the paper's free pillar.
+    scene : its first variant, and the seconds of stepping it by engine. tables : by name, and the
+    files of those that are written. scores : where its engines stand. worst : misfits by pair.
+    versions : of the packages that solved it. about : what its misfit is made of, of the paper's
+    free pillar.
     """
 
     request: SceneRequest
-    title: str
-    figures: list[Shown]
-    claims: list[Claim]
-    section: dict[str, Any]
-    scores: dict[str, EngineScore]
-    worst: pd.Series
     scene: AnyScene
     seconds: dict[str, float]
+    figures: list[Shown]
+    claims: list[Claim]
+    tables: dict[str, pd.DataFrame]
+    files: dict[str, Path]
+    scores: dict[str, EngineScore]
+    worst: pd.Series
     versions: dict[str, str]
-    about: Claim | None
+    about: Claim | None = None
+
+    @property
+    def costs(self) -> dict[str, float]:
+        """The seconds of each engine over those of the cheapest."""
+        least = min(self.seconds.values())
+        return {name: s / least if least > 0 else 1.0 for name, s in self.seconds.items()}
+
+    @property
+    def link(self) -> str:
+        """Its words in the contents."""
+        return f"{self.request.number or ''} {self.scene.title}".strip()
+
+    @property
+    def command(self) -> str:
+        """What reports this scene alone."""
+        return shlex.join(["jointwave", "report", self.request.called, "--out", self.request.name])
 
 
 def asked_for(scenes: Sequence[str], ensembles: Sequence[Path] = ()) -> list[SceneRequest]:
@@ -111,22 +128,33 @@ def asked_for(scenes: Sequence[str], ensembles: Sequence[Path] = ()) -> list[Sce
 def solve(request: SceneRequest, folder: Path) -> SolvedScene:
     """Solve a scene's variants by all that applies, and write its pictures and tables."""
     comparisons = [compare(scene, None, True) for scene in load(request.file)]
-    first, scores = comparisons[0], engine_scores(comparisons)
-    versions: dict[str, str] = {}
-    for result in first.results.values():
-        versions |= json.loads(result.attrs.get("versions", "{}"))
+    results, scores = comparisons[0].results, engine_scores(comparisons)
+    frames = {"misfits": distance_frame(comparisons), "readings": reading_frame(comparisons)}
+    files = {
+        name: write_csv(folder / f"{request.name}-{name}.csv", frame)
+        for name, frame in frames.items()
+        if len(frame)
+    }
+    versions = [json.loads(result.attrs.get("versions", "{}")) for result in results.values()]
     return SolvedScene(
         request,
-        first.scene.title,
+        comparisons[0].scene,
+        {engine: float(results[engine].attrs["seconds_stepping"]) for engine in scores},
         _draw(request, comparisons, folder),
         claims_of(request.number, comparisons),
-        _section(request, comparisons, scores, folder),
+        {
+            "verdicts": tables.verdict_table(scores),
+            "misfits": tables.misfit_table(comparisons),
+            "distances": tables.distance_table(comparisons),
+            "readings": frames["readings"],
+            "runs": tables.run_table(comparisons),
+            "reasons": tables.reason_table(comparisons),
+        },
+        files,
         scores,
         tables.worst_misfits(comparisons),
-        first.scene,
-        {engine: float(first.results[engine].attrs["seconds_stepping"]) for engine in scores},
-        versions,
-        mostly_dispersion(first) if request.number == FREE_PILLAR else None,
+        {name: number for one in versions for name, number in one.items()},
+        mostly_dispersion(comparisons) if request.number == FREE_PILLAR else None,
     )
 
 
@@ -137,30 +165,3 @@ def _draw(request: SceneRequest, comparisons: list[Comparison], folder: Path) ->
         Shown(save(p.figure, folder, p.name, p.title, p.table, png=False), p.caption, p.folded)
         for p in (*figures_of(request.name, comparisons, fields), *besides)
     ]
-
-
-def _section(
-    request: SceneRequest,
-    comparisons: list[Comparison],
-    scores: dict[str, EngineScore],
-    folder: Path,
-) -> dict[str, Any]:
-    """Return what the section shows beside pictures and claims; write its tables."""
-    scene, readings = comparisons[0].scene, reading_frame(comparisons)
-    misfits = write_csv(folder / f"{request.name}-misfits.csv", distance_frame(comparisons))
-    found: dict[str, Any] = {
-        "heading": f"Figure {request.number}. {scene.title}" if request.number else scene.title,
-        "source": scene.source or "",
-        "command": shlex.join(["jointwave", "report", request.called, "--out", request.name]),
-        "verdicts": tables.verdict_table(scores),
-        "misfits": tables.misfit_table(comparisons),
-        "distances": tables.distance_table(comparisons),
-        "distances_file": misfits,
-        "runs": tables.run_table(comparisons),
-        "reasons": tables.reason_table(comparisons),
-        "toml": request.file.read_text(encoding="utf-8-sig"),
-    }
-    if len(readings):
-        found["readings_file"] = write_csv(folder / f"{request.name}-readings.csv", readings)
-        found["readings"] = readings.set_index(["variant", "solution", "at"])
-    return found

@@ -19,8 +19,7 @@ from jointwave.compare.studies.work_precision import REPORTED
 from jointwave.compare.studies.work_precision import run as run_study
 from jointwave.compare.studies.work_precision import summarise as summarise_study
 
-#: Share of the progress that each part takes.
-PARTS = {"joints": 0.15, "studies": 0.2, "effects": 0.15, "hard cases": 0.5}
+HARD = 0.5  # of the progress, where the hard cases are asked for
 
 
 def sections(
@@ -30,24 +29,21 @@ def sections(
 
     hard : also put both engines to the hard cases.
     """
-    folder, done = out / "studies", 0.0
+    folder = out / "studies"
     for name in scattering.TITLES:
         found = make_joints(name, folder, None, True, pool)
         yield section("joints", found, f"jointwave study {name}")
-    progress(done := done + PARTS["joints"])
     for i, name in enumerate(REPORTED, start=1):
         study = load(name)
         found = summarise_study(folder, name, study, run_study(study, folder / name, pool))
         yield section("study", found, f"jointwave study {name}", id=f"study-{name}")
-        progress(done + PARTS["studies"] * i / len(REPORTED))
-    done += PARTS["studies"]
+        progress(HARD * i / (len(REPORTED) + 1))
     measured = effects.run(effects.reported(), out / "effects")
     found = summarise_effects(out / "effects", measured)
     yield section("effects", found, "jointwave effects", contents="Effects")
-    progress(done := done + PARTS["effects"])
+    progress(HARD)
     if hard:
-        start, share = done, PARTS["hard cases"]
-        found = make_hard_cases(folder, pool, lambda x: progress(start + share * x))
+        found = make_hard_cases(folder, pool, lambda x: progress(HARD + (1 - HARD) * x))
         yield section("hard", found, "jointwave study stability", contents="Hard cases")
     yield _snapshots(out)
     progress(1.0)

@@ -1,5 +1,5 @@
-"""The tables of a scene on the page: what a row is stands in the index, the outermost level as a
-heading over its rows; numbers in the columns, misfits in percent."""
+"""The tables of a scene on the page: what a row is stands in the index, numbers in the columns,
+misfits in percent."""
 
 from typing import Any
 
@@ -10,10 +10,13 @@ from jointwave.compare.figures.panels import variant_names
 from jointwave.compare.figures.tables import rows_of
 from jointwave.compare.misfit.differences import STRESS, VELOCITY
 from jointwave.compare.misfit.pairs import Comparison, Row, meaning
-from jointwave.compare.misfit.places import Place
 from jointwave.compare.report.verdict import EngineScore
 from jointwave.compare.text import mean_and_worst
 from jointwave.results.dataset import energy_residual, open_ledger
+
+
+def _under(rows: list[dict[str, Any]], *index: str) -> pd.DataFrame:
+    return pd.DataFrame(rows).set_index(list(index)) if rows else pd.DataFrame()
 
 
 def verdict_table(scores: dict[str, EngineScore]) -> pd.DataFrame:
@@ -36,39 +39,28 @@ def verdict_table(scores: dict[str, EngineScore]) -> pd.DataFrame:
     return _under(rows, "engine", "variant")
 
 
-def _under(rows: list[dict[str, Any]], *index: str) -> pd.DataFrame:
-    return pd.DataFrame(rows).set_index(list(index)) if rows else pd.DataFrame()
-
-
 def misfit_table(comparisons: list[Comparison]) -> pd.DataFrame:
     """Return the relative L2 misfits: a row a pair, a column a variant and receiver.
 
     Faint waveforms and displacements, which are velocities once more, are in `distance_table`.
     """
     shown = [
-        (name, row)
-        for name, row in rows_of(comparisons)
+        (variant, row)
+        for variant, row in rows_of(comparisons)
         if not (row.faint or row.place.quantity == "displacement")
     ]
-    places = list(dict.fromkeys(row.place for _, row in shown))
-    several = len(places) > 1
+    several = len({row.place for _, row in shown}) > 1
     cells: dict[tuple[str, str, str], dict[str, float]] = {}
-    for name, row in shown:
-        label = f"{name}, {_receiver(row.place, places)}" if several else name
+    for variant, row in shown:
+        label = f"{variant}, {row.place.words} (%)" if several else f"{variant} (%)"
         at = row.pair.kind, _pair(row), meaning(row.pair)
-        cells.setdefault(at, {})[f"{label} (%)"] = 100 * row.distance.misfit
+        cells.setdefault(at, {})[label] = 100 * row.distance.misfit
     names = ["kind", "pair", "cause of the difference"]
     return pd.DataFrame(list(cells.values()), pd.MultiIndex.from_tuples(cells, names=names))
 
 
 def _pair(row: Row) -> str:
     return f"{row.pair.one} ~ {row.pair.other}"
-
-
-def _receiver(place: Place, places: list[Place]) -> str:
-    """Return a receiver as it heads a column, with what is there where there is more than one."""
-    shared = sum(one.at == place.at for one in places) > 1
-    return place.words if shared and len(place.at) > 1 else place.receiver
 
 
 def distance_table(comparisons: list[Comparison]) -> pd.DataFrame:
@@ -95,47 +87,6 @@ def _percentage(ratio: float | None) -> float | None:
     return None if ratio is None else 100 * ratio
 
 
-def run_table(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return what each engine's run took, and how well its energy ledger closes."""
-    rows = [
-        {"engine": name, "variant": variant, **_run(result)}
-        for variant, one in zip(variant_names(comparisons), comparisons, strict=True)
-        for name, result in one.results.items()
-        if "steps" in result.attrs
-    ]
-    return _under(rows, "engine", "variant")
-
-
-def _run(result: xr.Dataset) -> dict[str, float | str]:
-    about, energy = result.attrs, "not recorded"
-    if "energy" in result:
-        energy = f"{energy_residual(result):.1e}{' (open)' * bool(open_ledger(result))}"
-    return {
-        "degrees of freedom": about["degrees_of_freedom"],
-        "steps": about["steps"],
-        "step (µs)": 1e6 * about["dt"],
-        "of the critical step": about["dt"] / about["critical_dt"],
-        "stepping (s)": float(about["seconds_stepping"]),
-        "energy residual": energy,
-    }
-
-
-def reason_table(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return why the solutions that are not drawn do not apply."""
-    found: dict[tuple[str, str], list[str]] = {}
-    for variant, comparison in zip(variant_names(comparisons), comparisons, strict=True):
-        for reason in comparison.reasons.items():
-            found.setdefault(reason, []).append(variant)
-    return pd.DataFrame(
-        {
-            "solution": name,
-            "variants": "all" if len(variants) == len(comparisons) else "; ".join(variants),
-            "why it does not apply": reason,
-        }
-        for (name, reason), variants in sorted(found.items())
-    )
-
-
 def worst_misfits(comparisons: list[Comparison]) -> pd.Series:
     """Return by kind and pair the largest misfit over the variants, of the waveform that is
     furthest off, as `[expect]` bounds it."""
@@ -145,3 +96,43 @@ def worst_misfits(comparisons: list[Comparison]) -> pd.Series:
     ]
     table = pd.DataFrame(rows, columns=["kind", "pair", "misfit"])
     return table.groupby(["kind", "pair"], sort=False)["misfit"].max()
+
+
+def run_table(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return what each engine's run took, and how well its energy ledger closes."""
+    rows = [
+        {
+            "engine": engine,
+            "variant": variant,
+            "degrees of freedom": result.attrs["degrees_of_freedom"],
+            "steps": result.attrs["steps"],
+            "step (µs)": 1e6 * result.attrs["dt"],
+            "of the critical step": result.attrs["dt"] / result.attrs["critical_dt"],
+            "stepping (s)": float(result.attrs["seconds_stepping"]),
+            "energy residual": _residual(result),
+        }
+        for variant, one in zip(variant_names(comparisons), comparisons, strict=True)
+        for engine, result in one.results.items()
+        if "steps" in result.attrs
+    ]
+    return _under(rows, "engine", "variant")
+
+
+def _residual(result: xr.Dataset) -> str:
+    if "energy" not in result:
+        return "not recorded"
+    return f"{energy_residual(result):.1e}{' (open)' * bool(open_ledger(result))}"
+
+
+def reason_table(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return why the solutions that are not drawn do not apply, and to which variants."""
+    columns = ["solution", "variants", "why it does not apply"]
+    rows = [
+        (solution, variant, reason)
+        for variant, one in zip(variant_names(comparisons), comparisons, strict=True)
+        for solution, reason in one.reasons.items()
+    ]
+    alike = pd.DataFrame(rows, columns=columns).groupby(columns[::2], as_index=False)["variants"]
+    every = len(comparisons)
+    table = alike.agg(lambda names: "all" if len(names) == every else "; ".join(names))
+    return table[columns]

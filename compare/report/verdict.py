@@ -27,19 +27,16 @@ class Verdict(NamedTuple):
     grade: str
 
 
-#: By the misfit from the finest physics that each is given up to.
-VERDICTS = (
-    (0.01, Verdict("✓", "agrees", "a")),
-    (0.05, Verdict("≈", "close", "b")),
-    (0.20, Verdict("△", "differs", "c")),
-    (float("inf"), Verdict("▲", "far off", "d")),
-)
 NOT_CHECKED = Verdict("?", "not checked independently", "n")
 BROKEN = Verdict("✗", "out of bounds", "x")
-#: From the best to the worst: the worst variant decides.
-ORDER = (*(one for _, one in VERDICTS[:2]), NOT_CHECKED, *(one for _, one in VERDICTS[2:]), BROKEN)
-
-NOTHING = Worst(nan)
+#: By the misfit from the finest physics that each is given up to.
+VERDICTS = {
+    0.01: Verdict("✓", "agrees", "a"),
+    0.05: Verdict("≈", "close", "b"),
+    0.20: Verdict("△", "differs", "c"),
+    float("inf"): Verdict("▲", "far off", "d"),
+}
+ORDER = "abncdx"  # of grades, from the best to the worst: the worst variant decides
 STATIC = 0.01  # of the largest static stress: a difference of static states that is said
 
 
@@ -69,7 +66,7 @@ class VariantScore(NamedTuple):
             return BROKEN
         if isnan(self.total.judged):
             return NOT_CHECKED
-        return next(verdict for most, verdict in VERDICTS if self.total.judged <= most)
+        return next(verdict for most, verdict in VERDICTS.items() if self.total.judged <= most)
 
     @property
     def static_words(self) -> str:
@@ -85,7 +82,7 @@ class VariantScore(NamedTuple):
         peaks = {
             f"{short}_{part}": getattr(self.peaks.get(name), part, None)
             for name, short in ((VELOCITY, "ppv"), (STRESS, "peak_stress"))
-            for part in ("mean", "worst", "at")
+            for part in PeakDifference._fields
         }
         return {
             "misfit": self.total.misfit,
@@ -102,50 +99,33 @@ class VariantScore(NamedTuple):
 
 
 class EngineScore(NamedTuple):
-    """One engine on all variants of a scene."""
+    """One engine on all variants of a scene.
 
+    own, total : the largest of the variants; nan where no variant has one. unchecked : the variants
+    that nothing has checked independently. broken : bounds of [expect] that are not met.
+    """
+
+    own: Worst
+    total: Worst
+    unchecked: tuple[str, ...]
+    broken: tuple[str, ...]
     variants: tuple[VariantScore, ...]
-
-    @property
-    def own(self) -> Worst:
-        """The largest numerical error; nan where no variant has an exact solution of the model."""
-        return _largest(one.own for one in self.variants)
-
-    @property
-    def total(self) -> Worst:
-        """The largest misfit from the references; nan where no variant has one."""
-        return _largest(one.total for one in self.variants)
-
-    @property
-    def references(self) -> tuple[str, ...]:
-        """The references of the variants."""
-        return tuple(dict.fromkeys(one.against for one in self.variants if one.against))
-
-    @property
-    def unchecked(self) -> tuple[str, ...]:
-        """The variants that nothing has checked independently."""
-        return tuple(one.variant for one in self.variants if isnan(one.total.judged))
-
-    @property
-    def broken(self) -> tuple[str, ...]:
-        """Bounds of [expect] that are not met."""
-        return tuple(pair for one in self.variants for pair in one.broken)
 
     @property
     def verdict(self) -> Verdict:
         """That of the worst variant."""
-        return max((one.verdict for one in self.variants), key=ORDER.index)
+        return max((one.verdict for one in self.variants), key=lambda v: ORDER.index(v.grade))
 
     @property
     def explanation(self) -> str:
         """The references, variants that nothing checks, and bounds that are not met."""
-        unchecked = self.unchecked if len(self.variants) > 1 else ()
-        found = {
-            f"compared with {' and '.join(self.references)}: {self.total.where}": self.references,
-            f"{NOT_CHECKED.word}: {', '.join(filter(None, unchecked))}": self.unchecked,
-            f"exceeds the scene's bound: {', '.join(self.broken)}": self.broken,
-        }
-        return "; ".join(words.removesuffix(": ") for words, applies in found.items() if applies)
+        against = dict.fromkeys(one.against for one in self.variants if one.against)
+        said = [f"compared with {' and '.join(against)}: {self.total.where}"] if against else []
+        if self.unchecked:
+            said.append(f"{NOT_CHECKED.word}: {', '.join(self.unchecked)}".removesuffix(": "))
+        if self.broken:
+            said.append(f"exceeds the scene's bound: {', '.join(self.broken)}")
+        return "; ".join(said)
 
 
 def engine_scores(comparisons: list[Comparison]) -> dict[str, EngineScore]:
@@ -155,21 +135,31 @@ def engine_scores(comparisons: list[Comparison]) -> dict[str, EngineScore]:
         engine: tuple(score(engine, one, name) for name, one in named if engine in one.results)
         for engine in ENGINES
     }
-    return {engine: EngineScore(variants) for engine, variants in found.items() if variants}
+    return {engine: engine_score(variants) for engine, variants in found.items() if variants}
+
+
+def engine_score(variants: tuple[VariantScore, ...]) -> EngineScore:
+    """Return what the scores of an engine's variants come to."""
+    return EngineScore(
+        max((one.own for one in variants), key=_resolved),
+        max((one.total for one in variants), key=_resolved),
+        tuple(one.variant for one in variants if isnan(one.total.judged)),
+        tuple(pair for one in variants for pair in one.broken),
+        variants,
+    )
+
+
+def _resolved(one: Worst) -> float:
+    return -1.0 if isnan(one.judged) else one.judged
 
 
 def score(engine: str, comparison: Comparison, variant: str = "") -> VariantScore:
     """Return how far an engine is from its reference, and from its own model, in one variant."""
     results, scene = comparison.results, comparison.scene
     against, reason = reference_of(engine, results, scene) or ("", "")
-    found = VariantScore(
-        variant,
-        _misfit(comparison, engine, own_exact(engine, results, scene)),
-        _misfit(comparison, engine, against),
-        against,
-        reason,
-        tuple(_broken(engine, comparison)),
-    )
+    own = _misfit(comparison, engine, own_exact(engine, results, scene))
+    total = _misfit(comparison, engine, against)
+    found = VariantScore(variant, own, total, against, reason, (*_broken(engine, comparison),))
     if not against:
         return found
     return found._replace(
@@ -182,8 +172,8 @@ def score(engine: str, comparison: Comparison, variant: str = "") -> VariantScor
 def _misfit(comparison: Comparison, one: str, other: str | None) -> Worst:
     """Return a misfit; nan where one of the two is not there, or the other stands still."""
     results = comparison.results
-    found = worst(results[one], results[other]) if other in results else NOTHING
-    return found if isfinite(found.judged) else NOTHING
+    found = worst(results[one], results[other]) if other in results else Worst(nan)
+    return found if isfinite(found.judged) else Worst(nan)
 
 
 def _broken(engine: str, comparison: Comparison) -> Iterable[str]:
@@ -192,7 +182,3 @@ def _broken(engine: str, comparison: Comparison) -> Iterable[str]:
         one, other = pair.split(" ~ ")
         if one == engine and _misfit(comparison, one, other).misfit > bound:
             yield pair
-
-
-def _largest(values: Iterable[Worst]) -> Worst:
-    return max((w for w in values if not isnan(w.judged)), key=lambda w: w.judged, default=NOTHING)

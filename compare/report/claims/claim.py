@@ -1,9 +1,13 @@
-"""A claim, and how its numbers are written."""
+"""A claim of the paper: how it is measured, and how its numbers are written."""
 
-from collections.abc import Iterable, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from functools import wraps
+from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
+
+from jointwave.compare.misfit.pairs import Comparison
 
 
 class Claim(NamedTuple):
@@ -14,26 +18,35 @@ class Claim(NamedTuple):
     claim: str = ""
 
 
-def listed(numbers: Mapping[str, Any], form: str, unit: str = "") -> str:
-    """Return the number or numbers of each engine, in the order of the legend."""
-    texts = (
-        f"{name} {', '.join(format(x, form) for x in np.atleast_1d(values))}{unit}"
-        for name, values in numbers.items()
-    )
-    return "; ".join(texts)
+Measure = Callable[[list[Comparison]], Claim]
+#: By figure, in the order of the page: what measures its claims on the scene and its variants.
+CLAIMS: dict[int, list[Measure]] = {}
 
 
-def share(x: float, digits: int = 1) -> str:
-    """Return a ratio as a percentage."""
-    return f"{100 * x:.{digits}f} %"
+def claim(text: str, *figures: int) -> Callable[[Callable[..., tuple[str, bool]]], Measure]:
+    """Return a decorator that makes a function, which returns a sentence and whether the claim
+    holds, the measure of a claim of some figures."""
+
+    def register(find: Callable[..., tuple[str, bool]]) -> Measure:
+        @wraps(find)
+        def measure(comparisons: list[Comparison]) -> Claim:
+            sentence, holds = find(comparisons)
+            return Claim(sentence.replace("%", " %"), bool(holds), text)
+
+        for figure in figures:
+            CLAIMS.setdefault(figure, []).append(measure)
+        return measure
+
+    return register
 
 
-def shares(numbers: Mapping[str, float], digits: int = 1) -> str:
-    """Return one percentage an engine."""
-    return listed({name: 100 * x for name, x in numbers.items()}, f".{digits}f", " %")
+def listed(numbers: pd.Series | pd.DataFrame, form: str, unit: str = "") -> str:
+    """Return the number or the row of numbers of each engine, in the order of the legend."""
+    rows = pd.DataFrame(numbers).iterrows()
+    return "; ".join(f"{name} {', '.join(f'{x:{form}}' for x in row)}{unit}" for name, row in rows)
 
 
-def falls(values: Iterable[float]) -> bool:
-    """Return whether each value is below the one before, and there are several."""
-    steps = np.diff(list(values))
-    return bool(len(steps) and (steps < 0).all())
+def falls(values: pd.DataFrame | np.ndarray) -> bool:
+    """Return whether each value along the last axis is below the one before, and there are some."""
+    steps = np.diff(values)
+    return bool(steps.size and (steps < 0).all())

@@ -7,131 +7,107 @@ import pandas as pd
 
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.misfit.metrics import delay
 from jointwave.compare.misfit.pairs import Comparison
-from jointwave.compare.report.claims import pulses
-from jointwave.compare.report.claims.claim import Claim, listed, share, shares
+from jointwave.compare.report.claims import waves
+from jointwave.compare.report.claims.claim import claim, listed
 
 
-def _quantity(scene: Scene) -> str:
-    return "stress" if scene.record.stress else "velocity"
-
-
-def _layered(comparisons: list[Comparison]) -> Comparison:
-    return next(c for c in comparisons if c.scene.soft_layers)
-
-
-def _beside_the_layer(
+def _at_the_layer(
     comparisons: list[Comparison], behind: bool
-) -> tuple[float, dict[str, tuple[pd.Series, pd.Series]]]:
-    """Return y of the receiver next to the layer, and each engine's waveforms there with and
-    without it, before what the layer and the loaded end send to and fro comes by once more."""
-    layered, plain = _layered(comparisons), next(c for c in comparisons if not c.scene.soft_layers)
+) -> tuple[Scene, str, pd.DataFrame, pd.DataFrame]:
+    """Return the scene with the layer, the receiver next to it in words, and the waveforms there
+    with and without it, before what the layer and the loaded end send to and fro comes by once
+    more."""
+    plain, layered = sorted(comparisons, key=lambda one: bool(one.scene.soft_layers))
     scene, layer = layered.scene, layered.scene.soft_layers[0].y
-    places = getattr(scene.record, _quantity(scene))
-    sides = [i for i, y in enumerate(places) if (y > layer) == behind]
-    index = sides[0] if behind else sides[-1]
-    stop = (places[index] + 2 * layer) / calibrate(scene).bar_speed - pulses.period(scene) / 4
-    one, other = (pulses.waveforms(c, _quantity(scene), index) for c in (layered, plain))
-    cut = {n: (pulses.span(one[n], 0, stop), pulses.span(other[n], 0, stop)) for n in one}
-    return places[index], cut
+    quantity = "stress" if scene.record.stress else "velocity"
+    places = np.array(getattr(scene.record, quantity))
+    receiver = np.flatnonzero((places > layer) == behind)[0 if behind else -1]
+    stop = (places[receiver] + 2 * layer) / calibrate(scene).bar_speed - waves.period(scene) / 4
+    one, other = (
+        waves.span(waves.waveforms(of, quantity, receiver), 0, stop) for of in (layered, plain)
+    )
+    return scene, f"Peak {quantity} at y = {places[receiver]:g} m", one, other
 
 
 def harmonic_coefficients(scene: Scene) -> tuple[float, float]:
     """Return |T| and |R| of the layer for a harmonic of the load's period (Schoenberg, 1980)."""
     p, soft = calibrate(scene), calibrate(scene).soft[0]
     excess = 1 / (1 / p.stiffness[soft] - 1 / p.regular_stiffness)
-    kappa = excess * pulses.period(scene) / (2 * pi * p.impedance)
+    kappa = excess * waves.period(scene) / (2 * pi * p.impedance)
     return 2 * kappa / sqrt(4 * kappa**2 + 1), 1 / sqrt(4 * kappa**2 + 1)
 
 
-def reflects_in_front(comparisons: list[Comparison]) -> Claim:
-    """Figs 7, 8: the layer reflects, within a quarter of the share of the load's harmonic.
-
-    A one-cycle pulse holds all frequencies, and its peak is not that of one harmonic.
-    """
-    scene = _layered(comparisons).scene
-    y, waves = _beside_the_layer(comparisons, behind=False)
-    found = {n: pulses.peak(one - other) / pulses.peak(other) for n, (one, other) in waves.items()}
-    theory = harmonic_coefficients(scene)[1]
-    return Claim(
-        f"Peak {_quantity(scene)} at y = {y:g} m that the layer adds, over the incident one: "
-        f"{shares(found)}; of a harmonic of the load's period: {share(theory)}.",
-        all(abs(x / theory - 1) < 0.25 for x in found.values()),
+@claim("reflection in front of the layer", 7, 8)
+def reflects_in_front(comparisons: list[Comparison]) -> tuple[str, bool]:
+    """The layer reflects, within a quarter of the share of the load's harmonic: a one-cycle pulse
+    holds all frequencies, and its peak is not that of one harmonic."""
+    scene, where, one, other = _at_the_layer(comparisons, behind=False)
+    found, theory = waves.peak(one - other) / waves.peak(other), harmonic_coefficients(scene)[1]
+    return (
+        f"{where} that the layer adds, over the incident one: {listed(found, '.1%')}; "
+        f"of a harmonic of the load's period: {theory:.1%}.",
+        (abs(found / theory - 1) < 0.25).all(),
     )
 
 
-def smaller_and_later(comparisons: list[Comparison]) -> Claim:
-    """Figs 7, 8: behind the layer the pulse is lower and later."""
-    scene = _layered(comparisons).scene
-    y, waves = _beside_the_layer(comparisons, behind=True)
-    ratios = {n: pulses.peak(one) / pulses.peak(other) for n, (one, other) in waves.items()}
-    delays = {
-        n: 1e3 * delay(one.values, other.values, pulses.sampling(one))
-        for n, (one, other) in waves.items()
-    }
-    return Claim(
-        f"Peak {_quantity(scene)} at y = {y:g} m over that without the layer: {shares(ratios)} "
-        f"(a harmonic: {share(harmonic_coefficients(scene)[0])}); delay: "
-        f"{listed(delays, '.2f', ' ms')}.",
-        max(ratios.values()) < 0.95 and min(delays.values()) > 0,
+@claim("smaller and later behind the layer", 7, 8)
+def smaller_and_later(comparisons: list[Comparison]) -> tuple[str, bool]:
+    """Behind the layer the pulse is lower, by 5 % at least, and later."""
+    scene, where, one, other = _at_the_layer(comparisons, behind=True)
+    ratios, late = waves.peak(one) / waves.peak(other), 1e3 * waves.delays(one, other)
+    return (
+        f"{where} over that without the layer: {listed(ratios, '.1%')} (a harmonic: "
+        f"{harmonic_coefficients(scene)[0]:.1%}); delay: {listed(late, '.2f', ' ms')}.",
+        ratios.max() < 0.95 and late.min() > 0,
     )
 
 
-def _by_tension(comparisons: list[Comparison]) -> tuple[Comparison, Comparison]:
+def _by_tension(comparisons: list[Comparison]) -> list[Comparison]:
     """Return the variants whose joints carry tension and do not."""
-    without = next(c for c in comparisons if c.scene.joints.tension is False)
-    return next(c for c in comparisons if c.scene.joints.tension is not False), without
+    return sorted(comparisons, key=lambda one: one.scene.joints.tension is False)
 
 
-def tension_is_cut(comparisons: list[Comparison]) -> Claim:
-    """Fig. 9: the tensile half-cycle is there with tension and gone without."""
-    carried, without = (
-        pulses.by_engine(c, "stress", lambda w: abs(min(0.0, w.min())) / 1e6)
-        for c in _by_tension(comparisons)
-    )
+@claim("the tensile half-cycle is cut", 9)
+def tension_is_cut(comparisons: list[Comparison]) -> tuple[str, bool]:
+    """The tensile half-cycle is there with tension and gone without."""
+    stresses = (waves.waveforms(one, "stress") for one in _by_tension(comparisons))
+    carried, without = (abs(one.min().clip(upper=0.0)) / 1e6 for one in stresses)
     load = abs(comparisons[0].scene.load.amplitude) / 1e6
-    return Claim(
+    return (
         f"Largest tensile stress in MPa with tension: {listed(carried, '.3f')}; without: "
         f"{listed(without, '.3f')}.",
-        min(carried.values()) > 0.5 * load and max(without.values()) < 1e-6 * load,
+        carried.min() > 0.5 * load and without.max() < 1e-6 * load,
     )
 
 
-def blocks_separate(comparisons: list[Comparison]) -> Claim:
-    """Fig. 10: no block pulls another back, and the joint between two receivers opens."""
-    carried, without = (
-        pulses.by_engine(c, "velocity", lambda w: float(w.min() / w.max()))
-        for c in _by_tension(comparisons)
-    )
-    results = _by_tension(comparisons)[1].results
-    opening = {
-        name: 1e3 * float(np.diff(results[name].displacement.values[-2:, -1, 0])[0])
-        for name in without
-    }
-    return Claim(
-        f"The largest velocity backwards over that forwards with tension: {shares(carried)}; "
-        f"without: {shares(without)}, and the joint between the receivers ends open by "
-        f"{listed(opening, '.3f', ' mm')}.",
-        max(carried.values()) < -0.5
-        and min(without.values()) > -0.1
-        and all(x > 0 for x in opening.values()),
+@claim("blocks separate", 10)
+def blocks_separate(comparisons: list[Comparison]) -> tuple[str, bool]:
+    """No block pulls another back, and the joint between two receivers opens."""
+    variants = _by_tension(comparisons)
+    velocities = (waves.waveforms(one, "velocity") for one in variants)
+    carried, without = (one.min() / one.max() for one in velocities)
+    near, far = (waves.waveforms(variants[1], "displacement", i).iloc[-1] for i in (-2, -1))
+    return (
+        f"The largest velocity backwards over that forwards with tension: "
+        f"{listed(carried, '.1%')}; without: {listed(without, '.1%')}, and the joint between the "
+        f"receivers ends open by {listed(1e3 * (far - near), '.3f', ' mm')}.",
+        carried.max() < -0.5 and without.min() > -0.1 and (far > near).all(),
     )
 
 
-def blocks_coast(comparisons: list[Comparison]) -> Claim:
-    """Fig. 10: between the pulse and what comes back from the end the velocity stays constant (no
-    force acts) and near zero."""
+@claim("blocks coast, the velocity tends to zero behind the pulse", 10)
+def blocks_coast(comparisons: list[Comparison]) -> tuple[str, bool]:
+    """Between the pulse and what comes back from the end the velocity stays constant, since no
+    force acts, and near zero."""
     without = _by_tension(comparisons)[1]
-    scene = without.scene
-    incident, reflected, _ = pulses.arrivals(scene, scene.record.velocity[0])
-    span = incident + pulses.period(scene), reflected - pulses.period(scene) / 4
-    after = pulses.by_engine(without, "velocity", lambda w: pulses.span(w, *span) / pulses.peak(w))
-    left = {name: pulses.peak(w) for name, w in after.items()}
-    drift = {name: float(np.ptp(w.values)) for name, w in after.items()}
-    times = next(iter(after.values())).index
-    return Claim(
-        f"From {1e3 * times[0]:.1f} to {1e3 * times[-1]:.1f} ms the velocity is at most "
-        f"{shares(left, 2)} of its peak, and changes by {shares(drift, 3)} of it.",
-        max(left.values()) < 0.02 and max(drift.values()) < 0.005,
+    scene, moving = without.scene, waves.waveforms(without, "velocity")
+    incident, reflected, _ = waves.arrivals(scene, scene.record.velocity[0])
+    start, stop = incident + waves.period(scene), reflected - waves.period(scene) / 4
+    after = waves.span(moving, start, stop) / waves.peak(moving)
+    left, drift = waves.peak(after), after.max() - after.min()
+    return (
+        f"From {1e3 * after.index[0]:.1f} to {1e3 * after.index[-1]:.1f} ms the velocity is at "
+        f"most {listed(left, '.2%')} of its peak, and changes by {listed(drift, '.3%')} of it.",
+        left.max() < 0.02 and drift.max() < 0.005,
     )

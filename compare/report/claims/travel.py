@@ -6,146 +6,154 @@ import numpy as np
 import pandas as pd
 
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.compare.misfit.metrics import delay, relative_l2
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.compare.misfit.pairs import Comparison
-from jointwave.compare.report.claims import pulses
-from jointwave.compare.report.claims.claim import Claim, listed, share, shares
+from jointwave.compare.report.claims import waves
+from jointwave.compare.report.claims.claim import claim, listed
 from jointwave.compare.solvers.dem import DEM
 
 
-def travels(comparisons: list[Comparison]) -> Claim:
-    """Fig. 4: the incident pulse travels at the bar speed, within 3 % of it."""
+@claim("travel", 4)
+def travels(comparisons: list[Comparison]) -> tuple[str, bool]:
+    """The incident pulse travels at the bar speed, within 3 % of it."""
     base, scene = comparisons[0], comparisons[0].scene
-    c, places, quarter = calibrate(scene).bar_speed, scene.record.stress, pulses.period(scene) / 4
-    apart = [i for i, y in enumerate(places) if scene.pillar.length - y > overlap(base)]
-    incident = [
-        {
-            name: w.where(w.index < pulses.arrivals(scene, places[i])[1] - quarter, 0.0)
-            for name, w in pulses.waveforms(base, "stress", i).items()
-        }
-        for i in (apart[0], apart[-1])
-    ]
-    way, speeds = places[apart[-1]] - places[apart[0]], {}
-    for name, near in incident[0].items():
-        late = delay(incident[1][name].values, near.values, pulses.sampling(near))
-        speeds[name] = way / late if late else np.inf
-    return Claim(
-        f"From y = {places[apart[0]]:g} to {places[apart[-1]]:g} m the incident pulse runs at "
+    c, places, quarter = calibrate(scene).bar_speed, scene.record.stress, waves.period(scene) / 4
+    apart = [i for i, y in enumerate(places) if scene.pillar.length - y > waves.overlap(scene)]
+    first, last = apart[0], apart[-1]
+    stresses = {i: waves.waveforms(base, "stress", i) for i in (first, last)}
+    near, far = (
+        stress.mul(stress.index < waves.arrivals(scene, places[i])[1] - quarter, axis=0)
+        for i, stress in stresses.items()
+    )
+    speeds = (places[last] - places[first]) / waves.delays(far, near)
+    return (
+        f"From y = {places[first]:g} to {places[last]:g} m the incident pulse runs at "
         f"{listed(speeds, '.0f', ' m/s')}; the bar speed is {c:.0f} m/s.",
-        all(abs(v / c - 1) < 0.03 for v in speeds.values()),
+        (abs(speeds / c - 1) < 0.03).all(),
     )
 
 
-def overlap(comparison: Comparison) -> float:
-    """Return how near to an end a pulse meets its own reflection: c T / 2, m."""
-    return calibrate(comparison.scene).bar_speed * pulses.period(comparison.scene) / 2
-
-
-def reflection(comparisons: list[Comparison]) -> Claim:
-    """Fig. 4: the free end reverses the pulse, and no end sends back more than it got."""
+@claim("reflection", 4)
+def reflection(comparisons: list[Comparison]) -> tuple[str, bool]:
+    """The free end reverses the pulse, and no end sends back more than it got."""
     scene = comparisons[0].scene
     places = np.array(scene.record.stress)
-    index = int(np.argmin(np.abs(places - 0.6 * scene.pillar.length)))
-    peaks, y = pulses.signed_peaks(comparisons[0], index), places[index]
-    ratios = {name: back / there for name, (there, back, _) in peaks.items()}
-    return Claim(
-        f"Signed peak of the reflected over the incident pulse at y = {y:g} m: "
+    receiver = int(np.argmin(np.abs(places - 0.6 * scene.pillar.length)))
+    peaks = waves.signed_peaks(comparisons[0], receiver)
+    ratios = peaks[1] / peaks[0]
+    return (
+        f"Signed peak of the reflected over the incident pulse at y = {places[receiver]:g} m: "
         f"{listed(ratios, '+.2f')}; -1 without damping.",
-        all(-1.05 < ratio < -0.1 for ratio in ratios.values()),
+        ratios.between(-1.05, -0.1, "neither").all(),
     )
 
 
-def superposition(comparisons: list[Comparison]) -> Claim:
-    """Fig. 4: near the free end the stress is the sum of the pulse and its reversed reflection.
+@claim("superposition", 4)
+def superposition(comparisons: list[Comparison]) -> tuple[str, bool]:
+    """Near the free end the stress is the sum of the pulse and its reversed reflection.
 
     The sum is built from the incident pulse at the section farthest from the end, shifted by the
     bar's travel times; 15 % is what decay and dispersion on the way may change.
     """
     base, scene = comparisons[0], comparisons[0].scene
-    places, reach = np.array(scene.record.stress), overlap(base)
-    apart = np.flatnonzero(scene.pillar.length - places > reach)
-    index, source = int(places.argmax()), int(apart[places[apart].argmax()])
-    y, seen = places[index], places[source]
-    if index == source:
-        text = f"No section lies within c T / 2 = {reach:.2f} m of the end, where pulses overlap."
-        return Claim(text, False)
-    near, far = (pulses.waveforms(base, "stress", i) for i in (source, index))
-    errors, heights = {}, {}
-    for name, w in near.items():
-        incident = pulses.passage(w, scene, seen, 0)
-        total = _sum_of_pulses(base, incident, w.index.values, seen, y)
-        measured = pulses.span(far[name], 0.0, total.index[-1])
-        errors[name] = relative_l2(measured.values, total.reindex(measured.index).values)
-        heights[name] = pulses.peak(measured) / pulses.peak(incident)
-    return Claim(
-        f"The stress at y = {y:g} m peaks at {listed(heights, '.2f')} of the incident pulse, and "
-        f"differs from that pulse (seen at y = {seen:g} m) and its reverse by {shares(errors)}.",
-        max(errors.values()) < 0.15,
-    )
-
-
-def _sum_of_pulses(
-    base: Comparison, incident: pd.Series, t: np.ndarray, at: float, y: float
-) -> pd.Series:
-    """Return the pulse seen at one section and its reverse off the free end, both moved to y."""
-    c, length = calibrate(base.scene).bar_speed, base.scene.pillar.length
+    places, reach = np.array(scene.record.stress), waves.overlap(scene)
+    length, c = scene.pillar.length, calibrate(scene).bar_speed
+    at, y = places[length - places > reach].max(), places.max()
+    incident = waves.passages(base, int(np.argmax(places == at)))[0]
+    stop = waves.arrivals(scene, y)[2] - waves.period(scene) / 4
+    measured = waves.span(waves.waveforms(base, "stress", int(places.argmax())), 0.0, stop)
     there, back = (
-        np.interp(t - way / c, incident.index, incident.values, left=0.0, right=0.0)
-        for way in (y - at, 2 * length - y - at)
+        _moved(incident, measured.index, way / c) for way in (y - at, 2 * length - y - at)
     )
-    stop = pulses.arrivals(base.scene, y)[2] - pulses.period(base.scene) / 4
-    return pulses.span(pd.Series(there - back, t), 0.0, stop)
-
-
-def _by_end(comparisons: list[Comparison], *ends: str) -> list[Comparison]:
-    return [next(c for c in comparisons if c.scene.ends.end == end) for end in ends]
-
-
-def _reflected_over_incident(comparison: Comparison) -> dict[str, float]:
-    """Return the first reflected over the incident peak at the first section, by engine."""
-    peaks = pulses.signed_peaks(comparison)
-    return {name: abs(reflected / incident) for name, (incident, reflected, _) in peaks.items()}
-
-
-def quiet_end(comparisons: list[Comparison]) -> Claim:
-    """Fig. 5: the end (9) takes nearly all of the pulse, below a tenth of the incident peak."""
-    free, quiet = map(_reflected_over_incident, _by_end(comparisons, "free", "quiet"))
-    return Claim(
-        f"Peak of the reflected over the incident pulse with a free end: {shares(free)}; with the "
-        f"quiet end (9): {shares(quiet)}.",
-        all(quiet[name] < 0.1 < free[name] for name in quiet),
+    errors = waves.by_engine(relative_l2, measured, there - back)
+    heights = waves.peak(measured) / waves.peak(incident)
+    return (
+        f"The stress at y = {y:g} m peaks at {listed(heights, '.2f')} of the incident pulse, and "
+        f"differs from that pulse (seen at y = {at:g} m) and its reverse by "
+        f"{listed(errors, '.1%')}.",
+        errors.max() < 0.15,
     )
 
 
-def left_by_the_quiet_end(comparisons: list[Comparison]) -> Claim:
-    """Fig. 5: what the rigid chain's quiet end leaves is what its end block's mass reflects.
+def _moved(pulse: pd.DataFrame, times: pd.Index, late: float) -> pd.DataFrame:
+    """Return a pulse as it is at other times, late by so much, s; nothing before and after it."""
+    at = times.to_numpy() - late
+    return pulse.apply(
+        lambda wave: pd.Series(np.interp(at, wave.index, wave.values, 0.0, 0.0), times)
+    )
+
+
+def _reflected(comparisons: list[Comparison]) -> dict[str, pd.Series]:
+    """Return the first reflected over the incident peak at the first section, by the end."""
+    peaks = {one.scene.ends.end: waves.signed_peaks(one) for one in comparisons}
+    return {end: abs(one[1] / one[0]) for end, one in peaks.items()}
+
+
+@claim("no reflected pulse with the non-reflecting end", 5)
+def quiet_end(comparisons: list[Comparison]) -> tuple[str, bool]:
+    """The end (9) takes nearly all of the pulse, below a tenth of the incident peak."""
+    found = _reflected(comparisons)
+    return (
+        f"Peak of the reflected over the incident pulse with a free end: "
+        f"{listed(found['free'], '.1%')}; with the quiet end (9): {listed(found['quiet'], '.1%')}.",
+        found["quiet"].max() < 0.1 < found["free"].min(),
+    )
+
+
+@claim("the remaining reflection is due to the end block's mass", 5)
+def left_by_the_quiet_end(comparisons: list[Comparison]) -> tuple[str, bool]:
+    """What the rigid chain's quiet end leaves is what its end block's mass reflects.
 
     Theory is applied to the very pulse that comes back from the free end; 1 % of what is left is
     for the tails outside the window.
     """
-    free, quiet = _by_end(comparisons, "free", "quiet")
-    scene, y = free.scene, free.scene.record.stress[0]
-    sent, left = (
-        pulses.passage(pulses.waveforms(c, "stress", 0)[DEM.name], scene, y, 1)
-        for c in (free, quiet)
-    )
-    predicted = pulses.peak(pulses.quiet_share(sent, scene)) / pulses.peak(sent)
-    measured = pulses.peak(left) / pulses.peak(sent)
-    return Claim(
-        f"A dashpot on a full-mass block reflects {share(pulses.quiet_harmonic(scene))} of a "
-        f"harmonic of the load's period, and {share(predicted, 2)} of the pulse's peak; dem "
-        f"reflects {share(measured, 2)}.",
-        bool(np.isclose(measured, predicted, rtol=0.01)),
+    scenes = {one.scene.ends.end: one for one in comparisons}
+    sent, left = (waves.passages(scenes[end])[1][DEM.name] for end in ("free", "quiet"))
+    scene = scenes["free"].scene
+    predicted = quiet_share(sent, scene).abs().max() / sent.abs().max()
+    measured = left.abs().max() / sent.abs().max()
+    return (
+        f"A dashpot on a full-mass block reflects {quiet_harmonic(scene):.1%} of a harmonic of the "
+        f"load's period, and {predicted:.2%} of the pulse's peak; dem reflects {measured:.2%}.",
+        np.isclose(measured, predicted, rtol=0.01),
     )
 
 
-def matched_end(comparisons: list[Comparison]) -> Claim:
-    """Fig. 5: behind a half-block spring the dashpot leaves below 1 % wherever there are joints."""
-    ends = _by_end(comparisons, "quiet", "matched")
-    quiet, matched = map(_reflected_over_incident, ends)
-    blocks = DEM.name
-    return Claim(
+def quiet_share(wave: pd.Series, scene: Scene) -> pd.Series:
+    """Return the reflection of the rigid chain's quiet end (9), given that of a free end.
+
+    With the wave exp(i omega t - i theta j) in blocks of mass m, z = exp(-i theta), k* = k (1 +
+    i omega eta) and Z = rho c A: z + 1/z = 2 - m omega^2/k*; the dashpot on the full-mass end block
+    reflects -(k* (z - 1) + i omega Z)/(k* (1/z - 1) + i omega Z), the free end z. Undamped, their
+    ratio has the magnitude tan(theta/4).
+    """
+    p, size = calibrate(scene), 2 * len(wave)
+    omega = 2 * np.pi * np.fft.rfftfreq(size, wave.index[1] - wave.index[0])[1:]
+    k = p.regular_stiffness * p.area * (1 + 1j * omega * (p.time_constant or 0.0))
+    half = 1 - p.block_mass * omega**2 / (2 * k)
+    z = half - 1j * np.sqrt(1 - half**2)  # the root that travels or decays forwards
+    z = np.where(np.abs(z) > 1 + 1e-12, 1 / z, z)
+    dashpot = 1j * omega * p.impedance * p.area
+    ratio = -(k * (z - 1) + dashpot) / (k * (1 / z - 1) + dashpot) / z
+    share = np.fft.irfft(np.r_[0, ratio] * np.fft.rfft(wave.values, size), size)
+    return pd.Series(share[: len(wave)], wave.index)
+
+
+def quiet_harmonic(scene: Scene) -> float:
+    """Return |R| = tan(k d / 4) of the quiet end for a harmonic of the load's period, undamped."""
+    p = calibrate(scene)
+    theta = 2 * np.arcsin(min(1.0, np.pi * p.spacing / (p.bar_speed * waves.period(scene))))
+    return float(np.tan(theta / 4))
+
+
+@claim("the matched end reflects least", 5)
+def matched_end(comparisons: list[Comparison]) -> tuple[str, bool]:
+    """Behind a half-block spring the dashpot leaves below 1 % wherever there are joints."""
+    found = _reflected(comparisons)
+    matched, quiet = found["matched"], found["quiet"][DEM.name]
+    return (
         f"Peak of the reflected over the incident pulse with the dashpot behind half a joint: "
-        f"{shares(matched, 2)}; {blocks} with the quiet end: {share(quiet[blocks], 2)}.",
-        all(x < 0.01 for x in matched.values()) and matched[blocks] < quiet[blocks],
+        f"{listed(matched, '.2%')}; {DEM.name} with the quiet end: {quiet:.2%}.",
+        matched.max() < 0.01 and matched[DEM.name] < quiet,
     )

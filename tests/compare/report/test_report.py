@@ -97,17 +97,19 @@ def test_the_first_screen_holds_every_engine_on_every_figure(report, browser):
 def test_the_overview_is_measured(report):
     """Each line against the misfits of the summary; nobody is beyond a bound of its scene."""
     summary = report.summary.droplevel(0)
-    for scene, cells in report.page["overview"]["rows"]:
-        dem, jointed, bar = (cells[engine] for engine in ENGINES)
-        label = f"fig. {int(scene.name[-2:])}"
-        assert percent(dem["total"]) in (
+    for scene in report.page["scenes"]:
+        dem, jointed, bar = (scene.scores[engine] for engine in ENGINES)
+        label = scene.request.label
+        assert percent(dem.total.judged) in (
             summary.loc["dem ~ jointed-bar", label],
             summary.loc["dem ~ continuum-jointed", label],
         )
-        assert percent(bar["own"]) == summary.loc["continuum-equivalent ~ equivalent-bar", label]
-        assert {dem["verdict"].word, bar["verdict"].word} <= {"agrees", "close", "differs"}
-        unchecked = scene.name in ("fig-09", "fig-10")  # without tension nothing else resolves rock
-        assert jointed["verdict"].word == (NOT_CHECKED.word if unchecked else "agrees")
+        assert (
+            percent(bar.own.judged) == summary.loc["continuum-equivalent ~ equivalent-bar", label]
+        )
+        assert {dem.verdict.word, bar.verdict.word} <= {"agrees", "close", "differs"}
+        unchecked = scene.request.number in (9, 10)  # without tension nothing else resolves rock
+        assert jointed.verdict.word == (NOT_CHECKED.word if unchecked else "agrees")
 
 
 def test_most_of_the_papers_own_distance_is_dispersion(report, text):
@@ -137,8 +139,8 @@ def test_rock_masses_stand_beside_the_studies(report, text):
     found = re.findall(r'<figure id="(one-joint-[a-z-]+)-figure"', part(text, "one-joint"))
     assert [name.removeprefix("one-joint-") for name in found][:2] == ["scene", "waveforms"]
     assert {"one-joint-spectra", "one-joint-energy"} <= set(found)
-    ((_, cells),) = report.page["rock_overview"]["rows"]
-    assert cells["continuum-jointed"]["verdict"].word == "agrees"
+    (scene,) = report.page["rock_masses"]
+    assert scene.scores["continuum-jointed"].verdict.word == "agrees"
     for name in ("oblique-joint", "parallel-joints"):
         shown = part(text, name)
         assert "<img" in shown and "Failed or missing" not in shown
