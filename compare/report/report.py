@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
-from jointwave.cases.errors import SceneError
 from jointwave.compare import engines
 from jointwave.compare.engines import Progress
 from jointwave.compare.report import peers
@@ -59,7 +58,6 @@ def build(
     scenes: Sequence[str] = (),
     peers_table: Path | None = None,
     hard: bool = True,
-    ensembles: Sequence[Path] = (),
 ) -> Report:
     """Solve scenes by all that applies, and write their figures, tables and `out`/index.html.
 
@@ -67,20 +65,17 @@ def build(
     after them the studies. `progress` is called with the finished fraction of the whole. `workers`
     processes share the work. `peers_table` is what `make bench-peers` wrote; None: where it writes,
     if it did. `hard` : also put both engines to the hard cases.
-    `ensembles` : folders of ensembles of these scenes, whose pictures stand among theirs.
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
     tell, out = progress or (lambda fraction: None), Path(out)
     pool = partial(in_processes, workers) if workers > 1 else None
-    requests = asked_for(scenes, ensembles)
+    requests = asked_for(scenes)
     if scenes:
         solved = _solve(out, requests, pool, tell)
         title = solved[0].scene.title if len(solved) == 1 else f"{len(solved)} scenes"
         command = f"jointwave report {shlex.join(dict.fromkeys(scenes))} --out DIR"
         page = _page(title, command, solved)
     else:
-        if ensembles:
-            raise SceneError("--ensemble", str(ensembles[0]), None, "needs its scene")
         others = peers.read(peers_table)
         requests += asked_for(ROCK_MASSES)
         solved = _solve(out, requests, pool, lambda x: tell(SCENES * x))

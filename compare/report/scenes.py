@@ -4,17 +4,14 @@ import json
 import re
 import shlex
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 import pandas as pd
 
 from jointwave import cases
-from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.figures.export import Drawn, save
-from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.scene_figures import along_pillar, figures_of
 from jointwave.compare.figures.tables import distance_frame, reading_frame
 from jointwave.compare.misfit.pairs import Comparison
@@ -26,7 +23,6 @@ from jointwave.compare.report.verdict import EngineScore, engine_scores
 from jointwave.compare.runs.comparison import compare
 from jointwave.compare.runs.output import write_csv
 from jointwave.compare.scenes import find, load
-from jointwave.compare.studies.ensemble import ensemble_in
 
 PAPER = Path(cases.__file__).parent / "guo-li-2002"
 FREE_PILLAR = 3  # the figure that says what the paper's own comparison is made of
@@ -36,13 +32,11 @@ TAKEN = {"", "overview", "made", "rock-masses", "peers", "effects", "stability",
 
 
 class SceneRequest(NamedTuple):
-    """A scene of the report: its file, how its user calls it, its name on the page, and pictures
-    that are there already."""
+    """A scene of the report: its file, how its user calls it, and its name on the page."""
 
     file: Path
     called: str
     name: str
-    besides: tuple[SceneFigure, ...] = ()
 
     @property
     def number(self) -> int | None:
@@ -102,11 +96,8 @@ class SolvedScene(NamedTuple):
         return shlex.join(["jointwave", "report", self.request.called, "--out", self.request.name])
 
 
-def asked_for(scenes: Sequence[str], ensembles: Sequence[Path] = ()) -> list[SceneRequest]:
-    """Return the scenes to report, each under a name of its own; without any, the paper's.
-
-    ensembles : folders of ensembles of these scenes; raises SceneError where one is of another.
-    """
+def asked_for(scenes: Sequence[str]) -> list[SceneRequest]:
+    """Return the scenes to report, each under a name of its own; without any, the paper's."""
     paper = [f"{PAPER.name}/{file.stem}" for file in sorted(PAPER.glob("fig-*.toml"))]
     called = list(dict.fromkeys(scenes)) or paper
     found: dict[str, SceneRequest] = {}
@@ -116,12 +107,6 @@ def asked_for(scenes: Sequence[str], ensembles: Sequence[Path] = ()) -> list[Sce
         names = [stem, *(f"{stem or 'scene'}-{k}" for k in range(2, len(called) + 3))]
         name = next(n for n in names if n not in found and n not in TAKEN)
         found[name] = SceneRequest(file, one, name)
-    for folder in ensembles:
-        scene, figures = ensemble_in(folder)
-        name = next((n for n, one in found.items() if one.file.resolve() == scene.resolve()), "")
-        if not name:
-            raise SceneError("--ensemble", str(folder), None, f"is of {scene}: name that, too")
-        found[name] = found[name]._replace(besides=(*found[name].besides, *figures))
     return list(found.values())
 
 
@@ -160,8 +145,7 @@ def solve(request: SceneRequest, folder: Path) -> SolvedScene:
 
 def _draw(request: SceneRequest, comparisons: list[Comparison], folder: Path) -> list[Shown]:
     fields = [along_pillar(one.scene) for one in comparisons]
-    besides = [replace(one, name=f"{request.name}-{one.name}") for one in request.besides]
     return [
         Shown(save(p.figure, folder, p.name, p.title, p.table, png=False), p.caption, p.folded)
-        for p in (*figures_of(request.name, comparisons, fields), *besides)
+        for p in figures_of(request.name, comparisons, fields)
     ]

@@ -4,8 +4,7 @@ Members 1, 2, ... have the scene's own seed, the next one, ...; in a rock mass t
 set. They are points of a sweep, whose key is `member`.
 """
 
-from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 from math import inf, nan
 from pathlib import Path
 from typing import Any
@@ -17,17 +16,14 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.figures import bands
 from jointwave.compare.figures.export import save
-from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.runs.output import write_csv, write_dataset
-from jointwave.compare.scenes import find
 from jointwave.results.netcdf import load_netcdf
 
 MEMBER = "member"  # the key
 PERCENTILES = (5, 25, 50, 75, 95)
 STATISTICS = ("mean", *(f"p{q}" for q in PERCENTILES))
 #: What identifies the numbers of a row, besides the swept keys.
-OF_ROW = ("variant", "engine", "one", "other", "quantity", "x", "y")
-CAPTION = "At every time the median of all members, and the 5th to the 95th percentile."
+OF_ROW = ("variant", "engine", "pair", "one", "other", "quantity", "x", "y")
 
 
 def seeds(scene: AnyScene, number: int) -> dict[str, int]:
@@ -51,7 +47,7 @@ def statistics(done: pd.DataFrame, keys: list[str], numbers: list[str]) -> pd.Da
     number of members that have it.
     """
     same = [key for key in (*keys, *OF_ROW) if key in done and key != MEMBER]
-    long = done.melt([key for key in same], numbers, "number")
+    long = done.melt(same, numbers, "number")
     long = long.replace({"value": [inf, -inf]}, nan).dropna(subset="value")
     groups = long.groupby([*same, "number"], sort=False)["value"]
     found = groups.describe([q / 100 for q in PERCENTILES])
@@ -59,20 +55,24 @@ def statistics(done: pd.DataFrame, keys: list[str], numbers: list[str]) -> pd.Da
     return found[[*STATISTICS, "members"]].astype({"members": int}).reset_index()
 
 
-def write(out: Path, numbers: pd.DataFrame, members: Iterable[tuple[Path, Path]]) -> list[Path]:
+def write(out: Path, numbers: pd.DataFrame, members: Mapping[Path, Sequence[Path]]) -> list[Path]:
     """Write ensemble.csv, and mean and percentiles of every waveform, with their figure.
 
-    numbers : from `statistics`. members : results of members, each after the folder for the
-    statistics of all members at the same point.
+    numbers : from `statistics`. members : the folders with their results, by the folder for their
+    statistics.
     """
-    results: dict[Path, list[Path]] = {}
-    for folder, file in members:
-        results.setdefault(folder / f"{file.stem}{bands.END}", []).append(file)
     files = [write_csv(out / "ensemble.csv", numbers)]
-    files += [write_dataset(place, waveforms(given)) for place, given in results.items()]
-    for folder, one in _figures(results):
-        drawn = save(one.figure, folder, one.name, one.title, one.table)
-        files += [drawn.file("csv"), *drawn.drawings]
+    for place, folders in members.items():
+        # A result that was interrupted ends in .stopped.nc.
+        results = sorted({f.name for folder in folders for f in folder.glob("*.nc")})
+        for name in (name for name in results if name.count(".") == 1):
+            given = [folder / name for folder in folders if (folder / name).is_file()]
+            path = place / f"{name.removesuffix('.nc')}{bands.END}"
+            files.append(write_dataset(path, waveforms(given)))
+        if found := bands.bands_of(bands.statistics_in(place)):
+            table = bands.table(found)
+            drawn = save(bands.draw(found), place, "ensemble-waveforms", bands.TITLE, table)
+            files += [drawn.file("csv"), *drawn.drawings]
     return files
 
 
@@ -96,26 +96,3 @@ def waveforms(files: list[Path]) -> xr.Dataset:
     about = {key: first.attrs[key] for key in ("engine", "model") if key in first.attrs}
     both = xr.concat(found, "statistic").assign_coords(statistic=list(STATISTICS))
     return both.transpose("statistic", ...).assign_attrs(about, members=len(results))
-
-
-def ensemble_in(out: Path) -> tuple[Path, list[SceneFigure]]:
-    """Return the scene's file and the figures, with unique names, of a folder written by
-    `--ensemble`; raises SceneError for any other folder."""
-    try:
-        scene = find(load_netcdf(out / "sweep.nc").attrs["scene"])
-    except (OSError, ValueError, KeyError):
-        allowed = "must be a folder that --ensemble has written"
-        raise SceneError("--ensemble", str(out), None, allowed) from None
-    figures = []
-    for k, (folder, one) in enumerate(_figures(sorted(out.rglob(f"*{bands.END}")))):
-        title = ", ".join([one.title, *folder.relative_to(out).parts])
-        figures.append(replace(one, name=f"{one.name}-{k}", title=title))
-    return scene, figures
-
-
-def _figures(files: Iterable[Path]) -> Iterator[tuple[Path, SceneFigure]]:
-    """Yield the folders of files of statistics, each with the figure of its bands."""
-    for folder in dict.fromkeys(file.parent for file in files):
-        if found := bands.bands_of(bands.statistics_in(folder)):
-            drawn = bands.draw(found), bands.table(found)
-            yield folder, SceneFigure("ensemble-waveforms", bands.TITLE, CAPTION, *drawn)

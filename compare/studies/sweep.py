@@ -1,4 +1,4 @@
-"""Sweeps: a scene run or compared at every value of some keys, as one table and on a grid.
+"""Sweeps: a scene run or compared at every value of some keys.
 
 Each point has a folder named by its values, with the files that the command writes without
 `--sweep`. An ensemble is a sweep of the seed of random joints, see `compare.studies.ensemble`.
@@ -50,33 +50,30 @@ class Running(NamedTuple):
         """Return the names of a scene's solvers."""
         return [job.name for job in plan([scene], self.runs, Path())]
 
-    def __call__(self, scene: AnyScene, folder: Path) -> Rows:
+    def __call__(self, scene: AnyScene, folder: Path | None) -> Rows:
         """Write the results of a scene into a folder and return a row for each receiver of each."""
-        done = execute(plan([scene], self.runs, folder), lambda fraction: None)
+        done = execute(plan([scene], self.runs, folder or Path()), lambda fraction: None)
         return [row for one in done for row in _rows_of_run(one)]
 
 
 class Comparing(NamedTuple):
-    """Compare a point as `jointwave compare` does. writes : also figure, curves and distances.
-    keeps : also the results."""
+    """Compare a point as `jointwave compare` does."""
 
     spectral: bool
     curves: list[Curves]
     align: bool
-    writes: bool
-    keeps: bool = False
 
     def solvers(self, scene: AnyScene) -> list[str]:
         """Return the names of a scene's solvers."""
         return [name for name in names() if applies(name, scene)]
 
-    def __call__(self, scene: AnyScene, folder: Path) -> Rows:
-        """Return a row for each distance."""
+    def __call__(self, scene: AnyScene, folder: Path | None) -> Rows:
+        """Return a row for each distance; write the comparison and the results into a folder."""
         found = comparison.compare(scene, None, self.spectral, self.curves, self.align)
-        if self.writes:
+        if folder is not None:
             write_comparisons([found], folder / scene.name)
-        for name, result in found.results.items() if self.keeps else ():
-            write_dataset(folder / scene.name / f"{name}.nc", result)
+            for name, result in found.results.items():
+                write_dataset(folder / scene.name / f"{name}.nc", result)
         if not found.rows:
             allowed = "has nothing to compare: no pair of solutions applies"
             raise SceneError(scene.where, "", None, allowed)
@@ -87,23 +84,22 @@ class Comparing(NamedTuple):
 Work = Running | Comparing
 
 
-class SweepCase(NamedTuple):
-    """A scene with its swept keys set; None if it is invalid, for the reason in `message`.
+class Case(NamedTuple):
+    """A variant of a scene with its swept keys set.
 
-    folder : for its files; variants have their own in it.
+    folder : for its files, in which variants have their own; None writes nothing. scene : None if
+    it is invalid, for the reason in `message`.
     """
 
     settings: dict[str, Any]
-    folder: Path
+    folder: Path | None
     scene: AnyScene | None
     message: str = ""
 
-
-class SweepOutcome(NamedTuple):
-    """The rows of a case; without rows why it has failed."""
-
-    message: str
-    rows: Rows
+    @property
+    def point(self) -> str:
+        """The keys with their values."""
+        return ", ".join(f"{key}={value}" for key, value in self.settings.items())
 
 
 class Sweep(NamedTuple):
@@ -115,7 +111,7 @@ class Sweep(NamedTuple):
 
     scene: str
     axes: dict[str, list[Any]]
-    cases: list[SweepCase]
+    cases: list[Case]
     out: Path | None
 
     @property
@@ -125,15 +121,9 @@ class Sweep(NamedTuple):
 
     def runs(self, work: Work) -> tuple[list[tuple[str, AnyScene, str]], dict[str, str]]:
         """Return the point, scene and solver of every run, and why points have no valid scene."""
-        runs: list[tuple[str, AnyScene, str]] = []
-        failing = {}
-        for case in self.cases:
-            point = point_of(case.settings)
-            if case.scene is None:
-                failing[point] = case.message
-            else:
-                runs += [(point, case.scene, name) for name in work.solvers(case.scene)]
-        return runs, failing
+        valid = [(case.point, case.scene) for case in self.cases if case.scene is not None]
+        runs = [(point, scene, name) for point, scene in valid for name in work.solvers(scene)]
+        return runs, {case.point: case.message for case in self.cases if case.scene is None}
 
 
 def sweep_of(
@@ -149,16 +139,16 @@ def sweep_of(
     fixed = dict(map(parse_override, changes))
     values = axes(given, list(fixed)) | ({MEMBER: [*range(1, members + 1)]} if members else {})
     path, found, errors = find(scene), [], []
-    for i, combination in enumerate(product(*values.values())):
+    for i, combination in enumerate(product(*values.values()), start=1):
         setting = dict(zip(values, combination, strict=True))
-        folder = (out or Path()) / _folder(setting, i)
+        folder = None if out is None else out / _folder(setting, i)
         try:
             scenes = _scenes(path, variant, {**fixed, **setting})
         except SceneError as error:
             errors.append(error)
-            found.append(SweepCase(setting, folder, None, str(error)))
+            found.append(Case(setting, folder, None, str(error)))
         else:
-            found += [SweepCase(setting, folder, one) for one in scenes]
+            found += [Case(setting, folder, one) for one in scenes]
     if errors and len(errors) == len(found):
         raise errors[0]
     return Sweep(scene, values, found, out)
@@ -173,41 +163,44 @@ def _scenes(path: Path, variant: str | None, changes: dict[str, Any]) -> list[An
 def _folder(setting: dict[str, Any], number: int) -> str:
     """Return the name of a point's folder: its values, or its number if they are no valid name."""
     name = ",".join(f"{k}={v}" for k, v in setting.items())
-    single = not any(isinstance(value, list | dict) for value in setting.values())
-    plain = name.isprintable() and not set(name) & set("/\\") and len(name.encode()) <= LONGEST
-    return name if plain and single else f"point-{number + 1:05d}"
+    plain = name.isprintable() and not set(name) & set("/\\[{") and len(name.encode()) <= LONGEST
+    return name if plain else f"point-{number:05d}"
 
 
 def run(
     asked: Sweep, work: Work, pool: Pool | None = None, progress: Progress | None = None
-) -> list[SweepOutcome]:
-    """Return the outcomes of all cases, in order; completed ones are read from its folder, if their
-    files are still there."""
-
-    def has_files(found: SweepOutcome) -> bool:
-        return all(Path(str(row["file"])).is_file() for row in found.rows if "file" in row)
-
+) -> list[Rows]:
+    """Return the rows of all cases, in order, each with its `state`, "done" or "failed", and the
+    reason in `message`; completed cases are read from its folder, if their files are still
+    there."""
     folder = asked.out and asked.out / "points"
-    outcomes: Store[SweepOutcome] = Store(SweepOutcome, folder, has_files)
-    about, lost = partial(_key, work=work), SweepOutcome(DIED, [])
-    outcome = partial(_outcome, work=work)
-    return outcomes.compute(asked.cases, about, outcome, pool, progress, lost=lambda case: lost)
+    rows: Store[Rows] = Store(Rows, folder, _has_files)
+    about, outcome = partial(_key, work=work), partial(_outcome, work=work)
+    return rows.compute(asked.cases, about, outcome, pool, progress, lambda case: _failed(DIED))
 
 
-def _key(case: SweepCase, work: Work) -> str:
+def _has_files(rows: Rows) -> bool:
+    return all(Path(row["file"]).is_file() for row in rows if "file" in row)
+
+
+def _key(case: Case, work: Work) -> str:
     scene = case.message if case.scene is None else [case.scene.name, scene_hash(case.scene)]
     return store.key(str(case.folder), scene, joblib.hash(work))
 
 
-def _outcome(case: SweepCase, work: Work) -> SweepOutcome:
+def _outcome(case: Case, work: Work) -> Rows:
     if case.scene is None:
-        return SweepOutcome(case.message, [])
+        return _failed(case.message)
     try:
-        return SweepOutcome("", work(case.scene, case.folder))
+        return [{"state": "done", "message": ""} | row for row in work(case.scene, case.folder)]
     except InterruptedRun:
         raise
     except (*FAILURES, MemoryError) as error:
-        return SweepOutcome(str(error) or "not enough memory", [])
+        return _failed(str(error) or "not enough memory")
+
+
+def _failed(message: str) -> Rows:
+    return [{"state": "failed", "message": message}]
 
 
 def _rows_of_run(done: Done) -> Rows:
@@ -221,24 +214,20 @@ def _rows_of_run(done: Done) -> Rows:
         "energy_residual": nan if done.residual is None else done.residual,
         "file": str(done.job.path),
     }
-    peaks = [peak for quantity in PEAKS if quantity in result for peak in _peaks(result, quantity)]
     nowhere = {"quantity": "", "y": nan, "peak": nan, "time_of_peak": nan}
-    return [about | peak for peak in peaks or [nowhere]]
+    return [about | peak for peak in [*_peaks(result)] or [nowhere]]
 
 
-def _peaks(result: xr.Dataset, quantity: str) -> Iterator[dict[str, Any]]:
+def _peaks(result: xr.Dataset) -> Iterator[dict[str, Any]]:
     """Yield the value of largest magnitude at each receiver, with its sign and time (SI).
 
     For several components the norm, without sign: the speed for a velocity in space.
     """
-    for at, wave in zip(places_of(result, quantity)[0], result[quantity].values, strict=True):
-        in_space = wave.ndim == 2 and wave.shape[1] > 1
-        values = np.linalg.norm(wave, axis=1) if in_space else wave.ravel()
-        k = int(np.argmax(np.abs(values)))
-        where = {"quantity": quantity, **Place(quantity, "", at).coordinates}
-        yield where | {"peak": float(values[k]), "time_of_peak": float(result.time[k])}
-
-
-def point_of(setting: Any) -> str:
-    """Return the keys of a point with their values."""
-    return ", ".join(f"{key}={value}" for key, value in setting.items())
+    for quantity in (name for name in PEAKS if name in result):
+        at = [Place(quantity, "", one) for one in places_of(result, quantity)[0]]
+        for place, wave in zip(at, result[quantity].values, strict=True):
+            parts = wave.reshape(len(wave), -1)
+            values = parts[:, 0] if parts.shape[1] == 1 else np.linalg.norm(parts, axis=1)
+            k = int(np.argmax(np.abs(values)))
+            peak = {"peak": float(values[k]), "time_of_peak": float(result.time[k])}
+            yield {"quantity": quantity, **place.coordinates, **peak}

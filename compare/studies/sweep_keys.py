@@ -12,7 +12,6 @@ from jointwave.cases.files import parse_toml
 
 MOST = 10_000  # points
 FORMS = "must be KEY=FROM:TO:COUNT, KEY=log:FROM:TO:COUNT or KEY=A,B,C"
-RANGE = re.compile(r"""(log:)?([^:,"'\[{]+):([^:,"'\[{]+):([^:,"'\[{]+)""")
 
 
 def axes(given: list[str], fixed: list[str]) -> dict[str, list[Any]]:
@@ -22,22 +21,19 @@ def axes(given: list[str], fixed: list[str]) -> dict[str, list[Any]]:
     """
     found: dict[str, list[Any]] = {}
     for text in given:
-        key, equals, spec = (part.strip() for part in text.partition("="))
-        if not (key and equals and spec):
+        key, _, spec = (part.strip() for part in text.partition("="))
+        if not (key and spec):
             raise SceneError("--sweep", text, None, f"{FORMS}, e.g. joints.damping_ratio=0.01,0.1")
         if key in found or key in fixed:
             raise SceneError("--sweep", text, None, f"{key} is given already")
-        found[key] = _values(text, spec)
+        between = re.match(r"""[^"'\[{]*:""", spec)
+        found[key] = _between(text, spec) if between else _listed(text, spec)
     if (count := prod(map(len, found.values()))) > MOST:
         raise SceneError("--sweep", "", None, f"gives {count:,} points; at most {MOST:,}")
     return found
 
 
-def _values(text: str, spec: str) -> list[Any]:
-    if between := RANGE.fullmatch(spec):
-        return _between(text, *between.groups())
-    if re.search(r"""^[^"'\[{]*:""", spec):
-        raise SceneError("--sweep", text, None, FORMS)
+def _listed(text: str, spec: str) -> list[Any]:
     values = _toml(f"[{spec}]", None) or [_toml(x.strip(), x.strip()) for x in spec.split(",")]
     if len({json.dumps(value, default=str) for value in values}) < len(values):
         raise SceneError("--sweep", text, None, "must not repeat a value")
@@ -52,15 +48,17 @@ def _toml(text: str, otherwise: Any) -> Any:
         return otherwise
 
 
-def _between(text: str, log: str | None, first: str, last: str, count: str) -> list[Any]:
+def _between(text: str, spec: str) -> list[Any]:
     """Return values from one end to the other, rounded to 12 digits: 0.3, not 0.30000000000004."""
     try:
+        first, last, count = spec.removeprefix("log:").split(":")
         begin, end, n = float(first), float(last), int(count)
     except ValueError:
         raise SceneError("--sweep", text, None, f"{FORMS}, of numbers") from None
     if not (isfinite(begin) and isfinite(end) and begin != end and 2 <= n <= MOST):
         allowed = f"must have two finite ends that differ, and a COUNT of 2 to {MOST:,}"
         raise SceneError("--sweep", text, None, allowed)
+    log = spec.startswith("log:")
     if log and not begin * end > 0:
         raise SceneError("--sweep", text, None, "with log: must have ends of one sign, not zero")
     inner = (np.geomspace if log else np.linspace)(begin, end, n)[1:-1]

@@ -146,17 +146,12 @@ def report(
         Path | None,
         typer.Option(help="Table of make bench-peers (default: out/peers/points.csv if present)."),
     ] = None,
-    ensembles: Annotated[
-        list[Path],
-        typer.Option("--ensemble", help="Folder that --ensemble of compare or run has written."),
-    ] = [],
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Write scenes with all figures, misfits and costs as one self-contained HTML page.
 
     Without a scene: the figures of Guo & Li (2002), the paper's claims, and all studies.
-    --ensemble adds the figures of an ensemble of a scene to those of the scene.
     """
     for one in scenes or []:
         load(one, [], None, strict)
@@ -167,7 +162,7 @@ def report(
         locked(out, out / "figures", out / "studies"),
         terminal.progress("report") as advance,
     ):
-        found = build(out, advance, 2, scenes or (), peers, ensembles=ensembles)
+        found = build(out, advance, 2, scenes or (), peers)
     show_report(found, as_json)
 
 

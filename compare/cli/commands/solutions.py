@@ -83,7 +83,7 @@ def compare(
 
         asked = sweep_of(scene, changes, variant, swept, out, members)
         curves = _read_curves(given, asked.scenes, align, strict)
-        work = Comparing(spectral, curves, align, out is not None, out is not None and members > 0)
+        work = Comparing(spectral, curves, align)
         sweep(asked, work, workers, dry, as_json, strict)
         return
     scenes = load(scene, changes, variant, strict)

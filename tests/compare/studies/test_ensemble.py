@@ -10,7 +10,6 @@ import xarray as xr
 
 from jointwave import cases
 from jointwave.cases.errors import SceneError
-from jointwave.compare.report.scenes import asked_for
 from jointwave.compare.scenes import find
 from jointwave.compare.studies.ensemble import PERCENTILES, STATISTICS
 from jointwave.compare.studies.sweep import sweep_of
@@ -100,11 +99,6 @@ def test_misfits_and_waveforms_of_a_comparison(command, tmp_path):
     command("figure", tmp_path, "--engine", "dem", "--out", tmp_path / "bands.svg")
     drawn = (tmp_path / "bands.svg").read_text()
     assert "dem" in drawn and "lattice" not in drawn
-    (asked,) = asked_for([SCENE], [tmp_path])
-    (one,) = asked.besides
-    assert one.name == "ensemble-waveforms-0" and list(one.table) == list(bands)
-    with pytest.raises(SceneError, match=r"is of .*random-joints.toml: name that, too"):
-        asked_for(["guo-li-2002/fig-03"], [tmp_path])
     said = command("figure", tmp_path / "member=1", "--out", "a.svg", code=2)
     assert "has no *-ensemble.nc" in said.err
 

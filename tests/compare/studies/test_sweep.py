@@ -1,7 +1,6 @@
 """Sweeps as a user meets them: a folder for each point, one table, failures that stop nobody."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -10,7 +9,7 @@ import xarray as xr
 
 from jointwave import cases
 from jointwave.compare.scenes import find
-from jointwave.compare.studies.sweep import Sweep, SweepCase, SweepOutcome
+from jointwave.compare.studies.sweep import Case, Sweep
 from jointwave.compare.studies.sweep_table import summarise
 from jointwave.dem import simulate
 
@@ -108,12 +107,12 @@ def test_the_worst_waveform_of_each_pair_is_shown():
     numbers = dict.fromkeys(("peak_ratio", "delay", "period_ratio", "envelope", "phase"), 1.0)
     rows = [
         {"one": "dem", "other": "lattice", "quantity": f"stress {k}", "x": 1.0, "y": 2.0}
-        | {"misfit": 0.01 * k, "faint": str(k == 3).lower()}
+        | {"misfit": 0.01 * k, "faint": str(k == 3).lower(), "state": "done", "message": ""}
         | numbers
         for k in (1, 2, 3)
     ]
-    asked = Sweep("scene", {"key": [3]}, [SweepCase({"key": 3}, Path(), None)], None)
-    found = summarise(asked, [SweepOutcome("", rows)])
+    asked = Sweep("scene", {"key": [3]}, [Case({"key": 3}, None, None)], None)
+    found = summarise(asked, [rows])
     assert found.table.index.tolist() == [("dem ~ lattice", "3", "stress 2 at [1, 2] m")]
     assert found.table.misfit.item() == 0.02 and "worst" in found.legend
     assert len(found.facts["rows"]) == 3
