@@ -56,7 +56,7 @@ SweepOption = Annotated[
         "--sweep",
         metavar="KEY=VALUES",
         help="Sweep a key over FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C; repeatable for all "
-        "combinations. Writes a folder for each point, and sweep.csv and sweep.nc.",
+        "combinations. Writes a folder for each point, and sweep.csv.",
         autocompletion=completion.settings,
     ),
 ]

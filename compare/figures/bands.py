@@ -1,7 +1,6 @@
 """Bands of an ensemble's waveforms: the median of all members, and from the 5th to the 95th
 percentile at every time."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,15 +8,12 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from jointwave.cases.errors import SceneError
 from jointwave.compare.engines import in_order
 from jointwave.compare.figures.charts.axes import chart, label_of, set_heading
 from jointwave.compare.figures.style import RC, style
 from jointwave.compare.figures.units import UNITS
 from jointwave.compare.misfit.places import Place, places_of
-from jointwave.results.netcdf import load_netcdf
 
-END = "-ensemble.nc"  # of the files of statistics, after the name of a result
 SEEN = ("stress", "velocity", "traction", "gap", "slip")  # of a result
 MOST, ACROSS, HEIGHT = 12, 2, 1.6  # waveforms drawn, side by side, and inches of each
 FAINT = 1e-6  # of the largest of its quantity: a waveform of round-off
@@ -26,15 +22,6 @@ TITLE = "Waveforms of an ensemble: median and 5 to 95 % of its members"
 
 #: PERCENTILES over time (s), SI, by the place of the waveform and the name of the solver.
 Bands = dict[Place, dict[str, pd.DataFrame]]
-
-
-def statistics_in(folder: Path) -> dict[str, xr.Dataset]:
-    """Return the statistics of every waveform in a folder by the name of the solver; raises
-    SceneError if there are none."""
-    files = sorted(folder.glob(f"*{END}"))
-    if not files:
-        raise SceneError(str(folder), "", None, f"has no *{END}, which --ensemble writes")
-    return {file.name.removesuffix(END): load_netcdf(file) for file in files}
 
 
 def bands_of(results: dict[str, xr.Dataset]) -> Bands:
@@ -63,10 +50,10 @@ def bands_of(results: dict[str, xr.Dataset]) -> Bands:
     return {place: found[place] for place in moving[:MOST]}
 
 
-def draw(bands: Bands, rc: dict[Any, Any] = RC) -> Figure:
-    """Return the figure of bands; rc : settings of matplotlib."""
+def draw(bands: Bands) -> Figure:
+    """Return the figure of bands."""
     across = min(ACROSS, len(bands))
-    with chart(-(-len(bands) // across), across, [HEIGHT], "time (ms)", rc) as (figure, axes):
+    with chart(-(-len(bands) // across), across, [HEIGHT], "time (ms)", RC) as (figure, axes):
         for ax, (place, waves) in zip(axes.flat, bands.items(), strict=False):
             for name, wave in waves.items():
                 look, ms = style(name), 1e3 * wave.index.to_numpy()

@@ -1,14 +1,11 @@
-"""A figure for a paper: the waveforms of a scene, or the bands of an ensemble."""
+"""A figure for a paper: the waveforms of a scene."""
 
 from pathlib import Path
 from typing import Any
 
-from matplotlib.figure import Figure
-
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import EXACT, Progress, applies
-from jointwave.compare.figures import bands
+from jointwave.compare.engines import Progress, applies
 from jointwave.compare.misfit.alignment import align_curve
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import applicable
@@ -39,14 +36,3 @@ def solve(
     found = solved(scene, asked or applicable(scene), progress)
     found.besides += [align_curve(curve, scene, found.results, False) for curve in curves]
     return found
-
-
-def draw_bands(folder: Path, engines: list[str], rc: dict[Any, Any]) -> Figure:
-    """Draw the bands of an ensemble from its folder; engines : "dem", "continuum", "exact"; empty:
-    all in the folder."""
-    starts = tuple(one for name in engines for one in (EXACT if name == "exact" else [name]))
-    every = bands.statistics_in(folder)
-    found = bands.bands_of({k: v for k, v in every.items() if not engines or k.startswith(starts)})
-    if not found:
-        raise SceneError("--engine", ", ".join(engines), None, f"has no results in {folder}")
-    return bands.draw(found, rc)

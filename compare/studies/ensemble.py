@@ -63,15 +63,16 @@ def write(out: Path, numbers: pd.DataFrame, members: Mapping[Path, Sequence[Path
     """
     files = [write_csv(out / "ensemble.csv", numbers)]
     for place, folders in members.items():
-        # A result that was interrupted ends in .stopped.nc.
-        results = sorted({f.name for folder in folders for f in folder.glob("*.nc")})
-        for name in (name for name in results if name.count(".") == 1):
-            given = [folder / name for folder in folders if (folder / name).is_file()]
-            path = place / f"{name.removesuffix('.nc')}{bands.END}"
-            files.append(write_dataset(path, waveforms(given)))
-        if found := bands.bands_of(bands.statistics_in(place)):
-            table = bands.table(found)
-            drawn = save(bands.draw(found), place, "ensemble-waveforms", bands.TITLE, table)
+        results = {file.stem for folder in folders for file in folder.glob("*.nc")}
+        found = {
+            name: waveforms([f for folder in folders if (f := folder / f"{name}.nc").is_file()])
+            for name in sorted(results)
+            if "." not in name  # as in NAME.stopped.nc, of a run that was interrupted
+        }
+        files += [write_dataset(place / f"{name}-ensemble.nc", x) for name, x in found.items()]
+        if shown := bands.bands_of(found):
+            table = bands.table(shown)
+            drawn = save(bands.draw(shown), place, "ensemble-waveforms", bands.TITLE, table)
             files += [drawn.file("csv"), *drawn.drawings]
     return files
 

@@ -49,31 +49,23 @@ TITLES = {
 }
 
 
-class JointsPoint(NamedTuple):
-    """A solver, a kind of wave, "P" or "SV", its angle from the joints' normal (degrees) and the
-    number of joints."""
-
-    solver: str
-    incidence: str
-    angle: float
-    joints: int
-
-
 class JointsRow(NamedTuple):
-    """A solver's scattering of a wave at joints; nan if it does not apply.
+    """A point of a study, and a solver's scattering of the wave at the joints there, nan until it
+    is known.
 
-    R_p to T_s : moduli of particle velocity over the incident one at the pulse's frequency. error :
-    the largest difference from the closed form. residual : part of the motion not explained by
-    plane waves. freedoms : of the blocks or the rock. cpu : CPU time of the run, including set-up
-    but not compiling, s. state : "done" or "failed", with the reason.
+    incidence : "P" or "SV". angle : of the wave from the joints' normal, degrees. joints : their
+    number. R_p to T_s : moduli of particle velocity over the incident one at the pulse's frequency.
+    error : the largest difference from the closed form. residual : part of the motion not explained
+    by plane waves. freedoms : of the blocks or the rock. cpu : CPU time of the run, including
+    set-up but not compiling, s. state : "done", or "failed" for the reason in `message`.
     """
 
     solver: str
     incidence: str
     angle: float
     joints: int
-    state: str
-    message: str
+    state: str = ""
+    message: str = ""
     R_p: float = nan
     R_s: float = nan
     T_p: float = nan
@@ -84,7 +76,7 @@ class JointsRow(NamedTuple):
     cpu: float = nan
 
 
-def points(study: str, brief: bool = False) -> list[JointsPoint]:
+def points(study: str, brief: bool = False) -> list[JointsRow]:
     """Return the points of a study, solver by solver: one joint at all angles, or many at one.
 
     brief : only every other angle or number of joints.
@@ -93,7 +85,7 @@ def points(study: str, brief: bool = False) -> list[JointsPoint]:
     places = [(x, 1) for x in ANGLES] if one else [(AT, count) for count in COUNTS]
     solvers = study, JOINTED_ROCK.name, DEM.name
     return [
-        JointsPoint(name, kind, *place)
+        JointsRow(name, kind, *place)
         for name in solvers
         for kind in KINDS
         for place in places[:: 2 if brief else 1]
@@ -114,13 +106,13 @@ def run(
         return rows.compute(points(study, brief), key, measure, pool, progress, _lost)
 
 
-def _lost(point: JointsPoint) -> JointsRow:
-    return JointsRow(*point, "failed", DIED)
+def _lost(point: JointsRow) -> JointsRow:
+    return point._replace(state="failed", message=DIED)
 
 
-def key(point: JointsPoint) -> str:
+def key(point: JointsRow) -> str:
     """Return the key of a point: everything that determines its row."""
-    return store.key(point._asdict(), load(SCENE)[0].model_dump_json())
+    return store.key(point[:4], load(SCENE)[0].model_dump_json())
 
 
 def scene_of(
@@ -144,22 +136,23 @@ def scene_of(
     return load(SCENE, keys | (changes or {}))[0]  # type: ignore[return-value]
 
 
-def measure(point: JointsPoint) -> JointsRow:
+def measure(point: JointsRow) -> JointsRow:
     """Run a point and return its row; a point that fails gives a row with the reason."""
-    scene = scene_of(*point[1:])
+    _, *place = point[:4]
+    scene, failed = scene_of(*place), point._replace(state="failed")
     try:
         if not (answer := applies(point.solver, scene)):
-            return JointsRow(*point, "failed", answer.reason)
+            return failed._replace(message=answer.reason)
         result, cpu = _timed(point.solver, scene)
         if float(result.attrs.get("seconds_compile", 0.0)) > COMPILED:
             result, cpu = _timed(point.solver, scene)
     except FAILURES as error:
-        return JointsRow(*point, "failed", reason_of(error))
+        return failed._replace(message=reason_of(error))
     *found, residual = amplitudes(scene, result.velocity.values)
-    off = float(np.abs(found - closed_form(*point[1:])).max())
+    off = float(np.abs(found - closed_form(*place)).max())
     freedoms = float(result.attrs.get("degrees_of_freedom", nan))
     numbers = *found, off, residual, freedoms, cpu
-    return JointsRow(*point, "done", "", *numbers)
+    return JointsRow(*point[:4], "done", "", *numbers)
 
 
 def _timed(name: str, scene: RockMass) -> tuple[xr.Dataset, float]:

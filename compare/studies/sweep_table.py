@@ -1,4 +1,4 @@
-"""The table of a sweep, one row for each receiver of each run or pair, on a grid as well.
+"""The table of a sweep, one row for each receiver of each run or pair.
 
 Of an ensemble also the statistics over its members.
 """
@@ -8,17 +8,16 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
-import xarray as xr
 
 from jointwave.cases.errors import SceneError
 from jointwave.compare.misfit.metrics import Distance
 from jointwave.compare.misfit.places import Place
+from jointwave.compare.runs.output import write_csv
 from jointwave.compare.studies import ensemble
 from jointwave.compare.studies.ensemble import MEMBER
-from jointwave.compare.studies.summary import Summary, cell, write_tables
+from jointwave.compare.studies.summary import Summary, cell
 from jointwave.compare.studies.sweep import Rows, Sweep
 
-UNITS = {"x": "m", "y": "m", "time_of_peak": "s", "seconds": "s", "delay": "s"}
 #: Numbers at a receiver of a run, and of a pair of solutions, by the column that names them.
 NUMBERS = {
     "engine": ("peak", "time_of_peak", "steps", "freedoms", "seconds", "energy_residual"),
@@ -39,7 +38,7 @@ def table(asked: Sweep, found: list[Rows]) -> pd.DataFrame:
 
 
 def summarise(asked: Sweep, found: list[Rows]) -> Summary:
-    """Return the summary of a sweep; write sweep.csv and sweep.nc, of an ensemble its statistics.
+    """Return the summary of a sweep; write sweep.csv, and of an ensemble its statistics.
 
     Raises SceneError if all cases have failed.
     """
@@ -50,8 +49,7 @@ def summarise(asked: Sweep, found: list[Rows]) -> Summary:
         raise SceneError(asked.scene, "", None, allowed)
     files: list[Path] = []
     if asked.out is not None:
-        data = grid(asked.axes, done).assign_attrs(scene=asked.scene)
-        files = write_tables(asked.out, "sweep", rows, data)
+        files.append(write_csv(asked.out / "sweep.csv", rows))
     facts = {"rows": json.loads(rows.to_json(orient="records"))}
     by = "pair" if "pair" in done else "engine"
     shown, numbers, legend = done, list(NUMBERS[by]), "SI units; all numbers are in sweep.csv."
@@ -104,18 +102,6 @@ def _display(rows: pd.DataFrame, by: str, keys: list[str], numbers: list[str]) -
         "of": [_place(row) for row in records],
     }
     return rows[numbers].set_index(pd.MultiIndex.from_arrays([*labels.values()], names=labels))
-
-
-def grid(axes: dict[str, list[Any]], done: pd.DataFrame) -> xr.Dataset:
-    """Return rows on the grid of swept keys, variants, solvers and receivers; nan if missing."""
-    by = "pair" if "pair" in done else "engine"
-    at = [name for name in ("x", "y") if name in done]
-    rows = done.set_index([*axes, "variant", by, "quantity", *at])
-    found = rows[list(NUMBERS[by])].astype(float).to_xarray()
-    found = found.reindex({key: list(map(cell, values)) for key, values in axes.items()})
-    for name in UNITS.keys() & found.variables.keys():
-        found[name].attrs["units"] = UNITS[name]
-    return found
 
 
 def _place(row: dict[str, Any]) -> str:

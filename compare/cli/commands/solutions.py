@@ -126,10 +126,8 @@ def figure(
 
     A panel for each variant and receiver, two side by side from a width of 170 mm. Files need no
     installed fonts. Without --engine, all solvers that apply are drawn.
-
-    In place of a scene, a folder that --ensemble has written: median and bands of its waveforms.
     """
-    from jointwave.compare.figures import bands, paper
+    from jointwave.compare.figures import paper
     from jointwave.compare.figures.charts.waveforms import draw_solutions
     from jointwave.compare.figures.export import write_drawing
     from jointwave.compare.figures.style import printed
@@ -137,13 +135,6 @@ def figure(
 
     paper.check_file(out)
     rc = printed(width, font_size)
-    if Path(scene).is_dir():
-        if model or changes or given or variant is not None:
-            allowed = "is a folder of results: --model, --set, --variant and --with are of scenes"
-            raise SceneError(scene, "", None, allowed)
-        drawn = paper.draw_bands(Path(scene), [e.value for e in engine], rc)
-        terminal.say(f"wrote {write_drawing(out, drawn, bands.TITLE, rc)}")
-        return
     scenes = load(scene, changes, variant, strict)
     runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []
     curves = _read_curves(given, scenes, False, strict)

@@ -103,7 +103,6 @@ def test_a_sweep_of_it_has_a_row_a_receiver(says, tmp_path):
     rows = pd.read_csv(tmp_path / "swept" / "sweep.csv")
     peaks = rows.pivot_table("peak", ["quantity", "x", "y"], "waves.0.amplitude")
     assert len(peaks) == 5 and (2 * peaks[5e5]).to_numpy() == pytest.approx(peaks[1e6].to_numpy())
-    assert {"x", "y"} <= set(xr.open_dataset(tmp_path / "swept" / "sweep.nc").peak.dims)
 
 
 COARSE = "compare joint.toml --set numerics.continuum.size=4"

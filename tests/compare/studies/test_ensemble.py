@@ -96,11 +96,6 @@ def test_misfits_and_waveforms_of_a_comparison(command, tmp_path):
     np.testing.assert_allclose(median, exact[0], rtol=1e-5, atol=1.0)  # six digits of 1e6 Pa
     assert "jointed-bar" in (tmp_path / "ensemble-waveforms.svg").read_text()
     assert (tmp_path / "ensemble-waveforms.png").read_bytes().startswith(b"\x89PNG")
-    command("figure", tmp_path, "--engine", "dem", "--out", tmp_path / "bands.svg")
-    drawn = (tmp_path / "bands.svg").read_text()
-    assert "dem" in drawn and "lattice" not in drawn
-    said = command("figure", tmp_path / "member=1", "--out", "a.svg", code=2)
-    assert "has no *-ensemble.nc" in said.err
 
 
 def test_a_rock_mass_shifts_the_seed_of_every_set():

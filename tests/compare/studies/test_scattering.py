@@ -6,7 +6,7 @@ import pytest
 
 from jointwave.compare.engines import solve
 from jointwave.compare.studies import scattering as points
-from jointwave.compare.studies.scattering import JointsPoint, JointsRow, measure, scene_of
+from jointwave.compare.studies.scattering import JointsRow, measure, scene_of
 from jointwave.compare.studies.scattering_summary import WAVES, draw, make_study
 
 #: |R_p|, |R_s|, |T_p|, |T_s| of P at nu = 0.25, K_n = Z_p omega, K_s = Z_s omega, found by solving
@@ -22,7 +22,7 @@ KNOWN = {
 @pytest.mark.parametrize("angle", KNOWN)
 def test_amplitudes_are_those_of_the_motion(angle):
     """The motion of a pulse over 12 periods, whose tail is 1e-9 of it by then."""
-    row = measure(JointsPoint("oblique-joint", "P", angle, 1))
+    row = measure(JointsRow("oblique-joint", "P", angle, 1))
     assert row.state == "done" and row.error < 1e-9 and row.residual < 1e-9
     assert row[6:10] == pytest.approx(KNOWN[angle], abs=6e-5)
     assert row.cpu > 0
@@ -33,7 +33,7 @@ def test_amplitudes_are_those_of_the_motion(angle):
 )
 def test_shear_waves_too(angle, off):
     """Beyond the critical angle the tail falls as a power of time, and the record ends."""
-    row = measure(JointsPoint("oblique-joint", "SV", angle, 1))
+    row = measure(JointsRow("oblique-joint", "SV", angle, 1))
     assert row.state == "done" and row.error < off and row.residual < 2 * off
 
 
@@ -64,14 +64,14 @@ def test_motion_that_is_no_plane_wave_is_left_over():
 def test_deformable_rock_has_them_at_all_angles(incidence, joints):
     """Elements of order 2, about 8 to the S wave: a thousandth."""
     for angle in points.ANGLES:
-        row = measure(JointsPoint("continuum-jointed", incidence, angle, joints))
+        row = measure(JointsRow("continuum-jointed", incidence, angle, joints))
         assert row.state == "done" and row.error < 1e-3, row
 
 
 @pytest.fixture
 def few(monkeypatch):
     """Leave one angle of each kind of wave, and a solver that does not apply."""
-    few = [JointsPoint(x, k, 30.0, 1) for x in ("oblique-joint", "lattice") for k in ("P", "SV")]
+    few = [JointsRow(x, k, 30.0, 1) for x in ("oblique-joint", "lattice") for k in ("P", "SV")]
     monkeypatch.setattr(points, "points", lambda *of: few)
 
 
@@ -109,7 +109,7 @@ def test_several_joints_pass_what_is_known():
     the motion is left at the record's end."""
     known = {2: (0.9098, 0.0443), 5: (0.9256, 0.0721)}
     for count, (T_p, T_s) in known.items():
-        row = measure(JointsPoint("parallel-joints", "P", 30.0, count))
+        row = measure(JointsRow("parallel-joints", "P", 30.0, count))
         assert row.state == "done" and row.error < 1e-6 and row.residual < 2e-6
         assert (row.T_p, row.T_s) == pytest.approx((T_p, T_s), abs=6e-5)
         curve = lines_of("parallel-joints", [row])["parallel-joints-exact-0-2"]

@@ -50,24 +50,18 @@ def test_every_point_is_the_run_of_its_scene(swept):
             np.testing.assert_array_equal(result.stress, simulate(scene).stress)
 
 
-def test_the_table_is_tidy_and_on_a_grid(swept):
-    """One row a receiver with its peak; the swept keys are the first dimensions."""
+def test_the_table_is_tidy(swept):
+    """One row a receiver with its peak."""
     out, _ = swept
     rows = pd.read_csv(out / "sweep.csv")
     done = rows[rows.state == "done"]
     assert len(done) == 2 * 2 * 2 and set(done.quantity) == {"stress", "velocity"}
-    data = xr.load_dataset(out / "sweep.nc")
-    assert data.peak.dims == (RATIO, "ends.end", "variant", "engine", "quantity", "y")
-    assert data.steps.dims == data.peak.dims
-    assert data[RATIO].values.tolist() == [-1.0, 0.02, 0.1]
-    one = {RATIO: 0.1, "ends.end": "free", "variant": "", "engine": "dem"}
     result = xr.load_dataset(out / f"{RATIO}=0.1,ends.end=free" / "dem.nc")
     wave = result.stress.sel(stress_y=20.0)
-    peak = data.peak.sel(one | {"quantity": "stress", "y": 20.0})
-    assert abs(float(peak)) == float(np.abs(wave).max())
-    at = data.time_of_peak.sel(one | {"quantity": "stress", "y": 20.0})
-    assert float(wave.sel(time=float(at), method="nearest")) == float(peak)
-    assert int(data.steps.sel(one | {"quantity": "stress", "y": 20.0})) == result.attrs["steps"]
+    row = done[(done[RATIO] == 0.1) & (done["ends.end"] == "free") & (done.y == 20.0)].iloc[0]
+    assert abs(row.peak) == pytest.approx(float(np.abs(wave).max()), rel=1e-8)
+    assert float(wave.sel(time=row.time_of_peak, method="nearest")) == pytest.approx(row.peak)
+    assert (row.engine, row.quantity, row.steps) == ("dem", "stress", result.attrs["steps"])
 
 
 def test_a_point_that_fails_is_listed_and_stops_nobody(swept):
@@ -76,7 +70,7 @@ def test_a_point_that_fails_is_listed_and_stops_nobody(swept):
     failed = rows[rows.state == "failed"]
     assert len(failed) == 2 and failed.message.str.contains("must be at least 0").all()
     assert said.count(f"failed: {RATIO}=-1") == 2
-    assert np.isnan(xr.load_dataset(out / "sweep.nc").peak.sel({RATIO: -1.0})).all()
+    assert (failed[RATIO] == -1).all() and failed.peak.isna().all()
 
 
 def test_what_is_done_is_not_run_again(swept, command):
@@ -95,10 +89,10 @@ def test_a_comparison_is_swept(command, tmp_path):
     """Misfits of every pair over the key, and the figure of each point."""
     done = command("compare", SCENE, "--sweep", "ends.start=free,quiet", *PAIRS, "--out", "out")
     assert "dem ~ lattice" in done.out and "stress at y = 4 m" in done.out
-    data = xr.load_dataset(tmp_path / "out" / "sweep.nc")
-    assert data.misfit.dims == ("ends.start", "variant", "pair", "quantity", "y")
-    found = data.misfit.sel(pair="dem ~ lattice", quantity="stress", y=4.0, variant="")
-    assert ((found > 0) & (found < 5e-3)).all() and float(np.ptp(found.values)) > 0
+    rows = pd.read_csv(tmp_path / "out" / "sweep.csv")
+    found = rows[(rows.pair == "dem ~ lattice") & (rows.quantity == "stress") & (rows.y == 4.0)]
+    assert set(found["ends.start"]) == {"free", "quiet"}
+    assert found.misfit.between(1e-9, 5e-3).all() and found.misfit.nunique() == 2
     assert (tmp_path / "out" / "ends.start=quiet" / "comparison.svg").is_file()
 
 
@@ -166,5 +160,5 @@ def test_a_value_that_makes_no_name_has_a_number(command, tmp_path):
     spec = ("--sweep", "record.stress=[10.0],[20.0]")
     command("run", SCENE, "--variant", "", *SHORT, *spec, *ALONE, "--out", tmp_path)
     assert {"point-00001", "point-00002"} < {path.name for path in tmp_path.iterdir()}
-    data = xr.load_dataset(tmp_path / "sweep.nc")
-    assert data["record.stress"].values.tolist() == ["[10.0]", "[20.0]"]
+    rows = pd.read_csv(tmp_path / "sweep.csv")
+    assert rows["record.stress"].unique().tolist() == ["[10.0]", "[20.0]"]
