@@ -138,8 +138,8 @@ def scene_of(
 
 def measure(point: JointsRow) -> JointsRow:
     """Run a point and return its row; a point that fails gives a row with the reason."""
-    _, *place = point[:4]
-    scene, failed = scene_of(*place), point._replace(state="failed")
+    place, failed = point[1:4], point._replace(state="failed")
+    scene = scene_of(*place)
     try:
         if not (answer := applies(point.solver, scene)):
             return failed._replace(message=answer.reason)
