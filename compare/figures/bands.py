@@ -35,19 +35,13 @@ def bands_of(results: dict[str, xr.Dataset]) -> Bands:
         by_percentile = {q: results[name].sel(statistic=q) for q in PERCENTILES}
         for quantity in (one for one in SEEN if one in results[name]):
             at, components = places_of(by_percentile[MIDDLE], quantity)
+            least = FAINT * float(abs(by_percentile[MIDDLE][quantity]).max())
             for place in (Place(quantity, part, one) for one in at for part in components):
                 waves = {q: place.waveform(one) for q, one in by_percentile.items()}
                 frame = pd.DataFrame(waves, np.round(results[name].time.values, 12))
-                found.setdefault(place, {})[name] = frame
-    sizes = {
-        place: max(float(one[MIDDLE].abs().max()) for one in waves.values())
-        for place, waves in found.items()
-    }
-    largest = {place.quantity: 0.0 for place in found}
-    for place, size in sizes.items():
-        largest[place.quantity] = max(largest[place.quantity], size)
-    moving = [place for place in found if sizes[place] > FAINT * largest[place.quantity]]
-    return {place: found[place] for place in moving[:MOST]}
+                if frame[MIDDLE].abs().max() > least:
+                    found.setdefault(place, {})[name] = frame
+    return {place: found[place] for place in list(found)[:MOST]}
 
 
 def draw(bands: Bands) -> Figure:

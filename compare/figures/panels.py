@@ -46,6 +46,20 @@ class Panel(NamedTuple):
     reference: str
 
     @property
+    def heading(self) -> str:
+        """The place and the variant in words."""
+        return f"{self.place.heading}, {self.variant}"
+
+    @property
+    def unit(self) -> str:
+        """The SI unit of the waveforms."""
+        return UNITS[self.place.quantity]
+
+    def column(self, name: str, per: str = "") -> str:
+        """Return the header of a curve in a table; per : what its unit is divided by."""
+        return f"{name} | {self.place.heading} | {self.variant} ({self.unit}{per})"
+
+    @property
     def at_rest(self) -> float:
         """The static state subtracted from the first curve, SI; 0 if there is none."""
         return float(self.recorded.iloc[0, 0] - self.curves.iloc[0, 0])
@@ -85,25 +99,16 @@ def _panels(comparison: Comparison, variant: str) -> Iterator[Panel]:
             for quantity, component in moving if largest else moving[:1]:
                 solved = {n: one for n, one in results.items() if quantity in one}
                 place, known = Place(quantity, component, at), finest(solved, comparison.scene)
-                yield Panel(
-                    comparison,
-                    variant,
-                    place,
-                    _waves(solved, place, i, moving=False),
-                    _waves(solved, place, i, moving=True),
-                    _given(comparison, place),
-                    known.name if known else "",
-                )
+                whole = {n: place.waveform(one) for n, one in solved.items()}
+                moved = {n: by_component(x, quantity)[component][i] for n, x in solved.items()}
+                frames = _frame(solved, whole), _frame(solved, moved)
+                given = _given(comparison, place)
+                yield Panel(comparison, variant, place, *frames, given, known.name if known else "")
 
 
-def _waves(
-    results: dict[str, xr.Dataset], place: Place, receiver: int, moving: bool
-) -> pd.DataFrame:
-    def wave(one: xr.Dataset) -> pd.Series:
-        values = by_component(one, place.quantity, moving)[place.component][receiver]
-        return pd.Series(values, np.round(one.time.values, 12))
-
-    return pd.DataFrame({name: wave(one) for name, one in results.items()})
+def _frame(results: dict[str, xr.Dataset], waves: dict[str, Any]) -> pd.DataFrame:
+    times = {name: np.round(one.time.values, 12) for name, one in results.items()}
+    return pd.DataFrame({name: pd.Series(wave, times[name]) for name, wave in waves.items()})
 
 
 def _given(comparison: Comparison, place: Place) -> dict[str, pd.Series]:
@@ -116,13 +121,9 @@ def _given(comparison: Comparison, place: Place) -> dict[str, pd.Series]:
     }
 
 
-def by_component(result: xr.Dataset, quantity: str, moving: bool = True) -> dict[str, np.ndarray]:
-    """Return the waveforms of a quantity [place, time] by component, "" for the only one.
-
-    moving : less their static state.
-    """
-    values = motion(result, quantity) if moving else result[quantity].values
-    names = places_of(result, quantity)[1]
+def by_component(result: xr.Dataset, quantity: str) -> dict[str, np.ndarray]:
+    """Return the motion of a quantity [place, time] by component, "" for the only one."""
+    values, names = motion(result, quantity), places_of(result, quantity)[1]
     values = values.reshape(*values.shape[:2], -1)
     return {name if len(names) > 1 else "": values[..., k] for k, name in enumerate(names)}
 
@@ -158,7 +159,7 @@ def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
     Variants may be sampled at different times; cells without a sample are empty.
     """
     columns = {
-        f"{name} | {panel.place.heading} | {panel.variant} ({UNITS[panel.place.quantity]})": curve
+        panel.column(str(name)): curve
         for row in panels(comparisons)
         for panel in row
         for name, curve in [*panel.recorded.items(), *panel.given.items()]

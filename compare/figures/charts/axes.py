@@ -17,9 +17,7 @@ from jointwave.compare.figures.style import RC, SIZE
 HEADING, ABSCISSA, LINE = 0.3, 0.45, 0.19  # inches above axes, below the lowest, and of a legend's
 BESIDE = 0.8  # inches beside axes
 LETTER, HANDLE = 0.6, 7.0  # over the size of letters: their width, and that of a legend's line
-SMALL = 5 / 6  # of the size of letters, in small headings
 SMALLER = 0.76  # of the height of axes, for more than two rows
-LONGEST = 28  # letters of a file's name in a legend
 
 
 @contextmanager
@@ -60,13 +58,15 @@ def _add_legend(figure: Figure) -> int:
     labels = [fill(label, int((room - HANDLE) / LETTER)) for label in entries]
     columns = int(room / (HANDLE + LETTER * max(map(len, entries))))
     columns = min(max(1, columns), len(entries))
-    figure.legend(
+    legend = figure.legend(
         list(entries.values()),
         labels,
         loc="outside upper center",
         ncols=columns,
         handlelength=4.0,
     )
+    for text in legend.get_texts():
+        text.set_parse_math(False)  # users' names may have dollar signs
     return -(-len(entries) // columns) + sum(label.count("\n") for label in labels)
 
 
@@ -81,18 +81,11 @@ def set_heading(ax: Axes, heading: str, small: bool = False) -> None:
     """Set the heading of axes, in as many lines as their width needs."""
     columns = ax.get_subplotspec().get_gridspec().ncols  # type: ignore[union-attr]
     width = rcParams["figure.figsize"][0] / columns - BESIDE
-    size = rcParams["font.size"] * (SMALL if small else 1.0)
+    size = rcParams["font.size"] * (5 / 6 if small else 1.0)
     letters = int(72 * width / (0.85 * LETTER * size))
-    parts = (fill(part, letters) for part in heading.split("\n"))
-    ax.set_title("\n".join(parts), fontsize="small" if small else "medium")
+    ax.set_title(fill(heading, letters), fontsize=size, parse_math=False)
 
 
 def label_of(name: str) -> str:
     """Return the label of a solution in legends, "lattice: rigid blocks, exact"."""
     return f"{name}: {solver(name).label}" if name in names() else name
-
-
-def short(file: str) -> str:
-    """Return a file's name for a legend, shortened, with dollar signs escaped."""
-    name = file if len(file) <= LONGEST else f"{file[:12]}…{file[-15:]}"
-    return name.replace("$", r"\$")

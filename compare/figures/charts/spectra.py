@@ -1,7 +1,5 @@
 """Amplitude spectra of the waveforms, with the characteristic frequencies of the scene."""
 
-from typing import NamedTuple
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -13,7 +11,7 @@ from jointwave.compare.figures.charts.marks import Frequency, marks_of
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.panels import Panel, in_rows
 from jointwave.compare.figures.style import GREY, style
-from jointwave.compare.figures.units import DRAWN, UNITS
+from jointwave.compare.figures.units import DRAWN
 from jointwave.compare.misfit.pairs import Comparison
 
 HEIGHT = 2.1  # inches
@@ -46,73 +44,59 @@ def spectrum(values: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
     return np.fft.rfftfreq(length, dt), dt * np.abs(np.fft.rfft(tapered(values), length, axis=0))
 
 
-class Spectra(NamedTuple):
-    """The spectra of one panel: amplitude per Hz, SI, over frequency (Hz), a column a solution;
-    marks : in order of frequency."""
-
-    panel: Panel
-    marks: list[Frequency]
-    curves: pd.DataFrame
-
-
-def spectra_of(panel: Panel) -> Spectra:
-    """Return the spectra of a panel's solutions, from one wave in its duration to beyond the
-    marks."""
-    marks, time = marks_of(panel), panel.curves.index.values
+def spectra_of(panel: Panel) -> pd.DataFrame:
+    """Return the spectra of a panel's solutions, a column each: amplitude per Hz, SI, over
+    frequency (Hz), from one wave in the duration to beyond the marks."""
+    time = panel.curves.index.values
     frequency, amplitude = spectrum(panel.curves.to_numpy(), float(time[1] - time[0]))
-    ends = [(OF_LOAD if m.name == "load" else BEYOND) * m.frequency for m in marks]
+    ends = [(OF_LOAD if m.name == "load" else BEYOND) * m.frequency for m in marks_of(panel)]
     drawn = (frequency >= 1 / (time[-1] - time[0])) & (frequency <= max(ends, default=np.inf))
-    index, names = np.round(frequency[drawn], 9), panel.curves.columns
-    return Spectra(panel, marks, pd.DataFrame(amplitude[drawn], index, names))
+    return pd.DataFrame(amplitude[drawn], np.round(frequency[drawn], 9), panel.curves.columns)
 
 
 def spectra(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     """Return the figure of all spectra; empty without motion."""
-    grid = [[spectra_of(panel) for panel in row] for row in in_rows(comparisons)]
-    found = [s for row in grid for s in row]
-    if not any(s.curves.to_numpy().any() for s in found):
+    grid = [[(panel, spectra_of(panel)) for panel in row] for row in in_rows(comparisons)]
+    found = [one for row in grid for one in row]
+    if not any(curves.to_numpy().any() for _, curves in found):
         return []
-    marks = {mark.name: mark for s in found for mark in s.marks}.values()
+    marks = {mark.name: mark for panel, _ in found for mark in marks_of(panel)}.values()
     known = ", ".join(f"{mark.words} {mark.frequency:.4g} Hz" for mark in marks)
     caption = (
         "Fourier amplitude of each waveform, its last tenth tapered by half a cosine and padded "
         "with zeros to twice its length or more." + (f" Dotted: {known}." if known else "")
     )
     columns = {
-        f"{solution} | {place.heading} | {s.panel.variant} ({UNITS[place.quantity]}/Hz)": curve
-        for s in found
-        for place in [s.panel.place]
-        for solution, curve in s.curves.items()
+        panel.column(str(solution), "/Hz"): curve
+        for panel, curves in found
+        for solution, curve in curves.items()
     }
     table = pd.DataFrame(columns).rename_axis("frequency (Hz)").reset_index()
     title = "Amplitude spectra"
     return [SceneFigure(f"{name}-spectra", title, caption, _draw(grid), table, folded=True)]
 
 
-def _draw(grid: list[list[Spectra]]) -> Figure:
-    peaks: dict[str, float] = {}
-    for quantity, peak in (
-        (s.panel.place.quantity, s.curves.max(axis=None)) for r in grid for s in r
-    ):
-        peaks[UNITS[quantity]] = max(peaks.get(UNITS[quantity], 0.0), peak)
-    columns = max(map(len, grid))
-    with chart(len(grid), columns, [HEIGHT], "frequency (Hz)") as (figure, axes):
+def _draw(grid: list[list[tuple[Panel, pd.DataFrame]]]) -> Figure:
+    peaks = pd.Series({panel.unit: 0.0 for row in grid for panel, _ in row})
+    for panel, curves in (one for row in grid for one in row):
+        peaks[panel.unit] = max(peaks[panel.unit], curves.max(axis=None))
+    with chart(len(grid), max(map(len, grid)), [HEIGHT], "frequency (Hz)") as (figure, axes):
         for row, found in zip(axes[:, 0], grid, strict=True):
-            for ax, one in zip(row, found, strict=False):
-                _draw_spectra(ax, one, peaks[UNITS[one.panel.place.quantity]] or 1.0)
+            for ax, (panel, curves) in zip(row, found, strict=False):
+                _draw_spectra(ax, panel, curves, peaks[panel.unit] or 1.0)
     return figure
 
 
-def _draw_spectra(ax: Axes, one: Spectra, peak: float) -> None:
+def _draw_spectra(ax: Axes, panel: Panel, curves: pd.DataFrame, peak: float) -> None:
     """Draw the spectra of a panel and its marks; peak : of all panels with its unit, SI."""
-    unit = DRAWN[UNITS[one.panel.place.quantity]]
-    set_heading(ax, f"{one.panel.place.heading}, {one.panel.variant}")
-    for name, curve in one.curves.items():
-        values = curve / unit.size
-        ax.loglog(values.index, values, label=label_of(str(name)), **style(str(name)).of_line())
-    ax.set(ylabel=f"{unit.name}/Hz", ylim=(10.0**-DECADES * peak / unit.size, 2 * peak / unit.size))
+    unit = DRAWN[panel.unit]
+    set_heading(ax, panel.heading)
+    for name, curve in (curves / unit.size).items():
+        ax.loglog(curve, label=label_of(str(name)), **style(str(name)).of_line())
+    top = peak / unit.size
+    ax.set(ylabel=f"{unit.name}/Hz", ylim=(10.0**-DECADES * top, 2 * top))
     ax.yaxis.set_minor_locator(NullLocator())
-    _draw_marks(ax, one.marks, one.curves.max(axis="columns"), 10.0 ** (-DECADES / 4) * peak)
+    _draw_marks(ax, marks_of(panel), curves.max(axis="columns"), 10.0 ** (-DECADES / 4) * peak)
 
 
 def _draw_marks(ax: Axes, marks: list[Frequency], largest: pd.Series, middle: float) -> None:

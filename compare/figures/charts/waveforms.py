@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from jointwave.compare.engines import ENGINES, in_order
-from jointwave.compare.figures.charts.axes import chart, label_of, set_heading, share, short
+from jointwave.compare.figures.charts.axes import chart, label_of, set_heading, share
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.panels import Panel, curve_table, in_rows, panels
 from jointwave.compare.figures.style import PALE, RC, Style, given_style, style
@@ -160,9 +160,8 @@ def by_solution(panel: Panel) -> Overlay:
     for k, beside in enumerate(panel.comparison.besides):
         if (name := beside.curves.name) in panel.given:
             drawn = given_style(k, len(beside.time))
-            traces.append(Trace(short(name), drawn, panel.given[name]))
-    heading = f"{panel.place.heading}, {panel.variant}"
-    return Overlay(heading, panel.place.quantity, panel.at_rest, panel.reference, traces)
+            traces.append(Trace(name, drawn, panel.given[name]))
+    return Overlay(panel.heading, panel.place.quantity, panel.at_rest, panel.reference, traces)
 
 
 def by_variant(comparisons: list[Comparison]) -> list[list[Overlay]]:

@@ -67,7 +67,7 @@ def test_nothing_passes_above_the_cut_off_of_the_chain(pillar, compared):
     )
 
     def passed(name):
-        curve = shown.curves[name]
+        curve = shown[name]
         above = (curve.index > 1.15 * cut_off) & (curve.index < 1.6 * cut_off)
         below = (curve.index > 0.4 * cut_off) & (curve.index < 0.85 * cut_off)
         return curve[above].mean() / curve[below].mean()
