@@ -40,7 +40,7 @@ def sections(
         progress(HARD * i / (len(REPORTED) + 1))
     measured = effects.run(effects.reported(), out / "effects")
     found = summarise_effects(out / "effects", measured)
-    yield section("effects", found, "jointwave effects", contents="Effects")
+    yield section("effects", found, "jointwave effects beyond/paper-effects", contents="Effects")
     progress(HARD)
     if hard:
         found = make_hard_cases(folder, pool, lambda x: progress(HARD + (1 - HARD) * x))

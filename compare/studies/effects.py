@@ -16,7 +16,7 @@ from jointwave.cases.effects import active_effects
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import Progress, applies, solve
 from jointwave.compare.misfit.metrics import misfit
-from jointwave.compare.scenes import find, names
+from jointwave.compare.scenes import find
 from jointwave.compare.solvers.continuum import JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies import store
@@ -71,13 +71,6 @@ class EffectRow(NamedTuple):
     share: float = nan
     own: float = nan
     everything: float = nan
-
-
-def all_shipped() -> list[Variant]:
-    """Return every variant of every shipped pillar, but for the hard cases."""
-    pillars = (name for name in names() if not name.startswith("hard/"))
-    found = (Variant(name, scene) for name in pillars for scene in cases.load(find(name)))
-    return [one for one in found if one.scene.kind == "pillar"]
 
 
 def reported() -> list[Variant]:

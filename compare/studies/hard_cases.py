@@ -53,11 +53,12 @@ ABOVE = {"load.period": 1e-3, "time.duration": 2.0, "record.interval": 1.0}
 FRACTION = 1.001  # of the critical step
 
 
-class HardCase(NamedTuple):
-    """A variant of a shipped scene on one engine by one scheme.
+class HardRow(NamedTuple):
+    """A variant of a shipped scene on one engine by one scheme, and how its run has ended.
 
-    should : how its run should end: STABLE; or, at steps above the critical one, REFUSED or, where
-    the scene allows them, STOPPED.
+    should : how it should end: STABLE; or, at steps above the critical one, REFUSED or, where the
+    scene allows them, STOPPED. energy : imbalance of the ledger, and fall : largest decrease of
+    dissipated energy, both over the work. misfit : from `reference`. Nan where nothing is bounded.
     """
 
     scene: str
@@ -65,6 +66,15 @@ class HardCase(NamedTuple):
     engine: str
     scheme: str
     should: str = STABLE
+    ended: str = ""
+    energy: float = nan
+    energy_bound: float = nan
+    fall: float = nan
+    fall_bound: float = nan
+    misfit: float = nan
+    misfit_bound: float = nan
+    reference: str = ""
+    message: str = ""
 
     @property
     def title(self) -> str:
@@ -73,6 +83,24 @@ class HardCase(NamedTuple):
         allowed = "allowed" if self.should == STOPPED else ""
         parts = self.scene.partition("/")[2], self.variant, step, allowed
         return ", ".join(filter(None, parts))
+
+    @property
+    def margin(self) -> float:
+        """The least bound over its value; infinite without, nan if a value is."""
+        pairs = (self.energy, self.energy_bound), (self.fall, self.fall_bound)
+        every = (*pairs, (self.misfit, self.misfit_bound))
+        bounded = [bound / value if value else inf for value, bound in every if isfinite(bound)]
+        return float(np.min([inf, *bounded]))
+
+    @property
+    def holds(self) -> bool:
+        """Whether it ended as it should, within all bounds: nan is within none."""
+        return self.ended in (self.should, NONE) and self.margin >= 1
+
+    @property
+    def name(self) -> str:
+        """Its title, engine and scheme."""
+        return f"{self.title}, {self.engine}, {self.scheme}"
 
     def read(self) -> AnyScene:
         """Return the scene that is run."""
@@ -86,61 +114,19 @@ class HardCase(NamedTuple):
         return cases.load_variant(find(self.scene), self.variant, changes)
 
 
-class HardRow(NamedTuple):
-    """The result of a case; nan where nothing is bounded.
-
-    ended, should : how the run ended, and how it should. energy : imbalance of the ledger, and
-    fall : largest decrease of dissipated energy, both over the work. misfit : from `reference`.
-    """
-
-    case: str
-    engine: str
-    scheme: str
-    ended: str
-    should: str
-    energy: float = nan
-    energy_bound: float = nan
-    fall: float = nan
-    fall_bound: float = nan
-    misfit: float = nan
-    misfit_bound: float = nan
-    reference: str = ""
-    message: str = ""
-
-    @property
-    def margin(self) -> float:
-        """The least bound over its value; infinite without, nan if a value is."""
-        pairs = (self.energy, self.energy_bound), (self.fall, self.fall_bound)
-        bounded = [
-            bound / value if value else inf
-            for value, bound in (*pairs, (self.misfit, self.misfit_bound))
-            if isfinite(bound)
-        ]
-        return float(np.min([inf, *bounded]))
-
-    @property
-    def holds(self) -> bool:
-        """Whether it ended as it should, within all bounds: nan is within none."""
-        return self.ended in (self.should, NONE) and self.margin >= 1
-
-    @property
-    def name(self) -> str:
-        """Its case, engine and scheme."""
-        return f"{self.case}, {self.engine}, {self.scheme}"
-
-
-def hard_cases() -> list[HardCase]:
-    """Return every case: each variant of each scene of cases/hard, and steps above the critical."""
+def hard_cases() -> list[HardRow]:
+    """Return every row before its run: each variant of each scene of cases/hard, and steps above
+    the critical one."""
     hard = [name for name in names() if name.startswith("hard/")]
     found = [
-        HardCase(name, scene.name, *one)
+        HardRow(name, scene.name, *one)
         for name in hard
         for scene in cases.load(find(name))
         for one in _schemes(scene.kind)
     ]
     explicit = [one for one in _schemes("pillar") if one[1] != "implicit"]
     above = [(one, state) for one in explicit for state in (REFUSED, STOPPED)]
-    return found + [HardCase("hard/short-pillar", "", *one, state) for one, state in above]
+    return found + [HardRow("hard/short-pillar", "", *one, state) for one, state in above]
 
 
 def _schemes(kind: str) -> list[tuple[str, str]]:
@@ -149,20 +135,19 @@ def _schemes(kind: str) -> list[tuple[str, str]]:
     return [x for x in found if kind == "pillar" or x[1] in ("leapfrog", "explicit")]
 
 
-def row_of(case: HardCase) -> HardRow:
-    """Return the row of a case; all errors of a run are states of it."""
-    row = HardRow(case.title, case.engine, case.scheme, STABLE, case.should)
+def run(row: HardRow) -> HardRow:
+    """Return a row after its run; all errors of a run are states of it."""
     try:
-        scene = case.read()
-        if reason := applies(case.engine, scene).reason:
+        scene = row.read()
+        if reason := applies(row.engine, scene).reason:
             return row._replace(ended=NONE, message=reason)
-        result = solve(case.engine, scene)
+        result = solve(row.engine, scene)
     except UnstableError as error:
         return row._replace(ended=STOPPED, message=str(error).partition(": ")[2])
     except SceneError as error:
         ended = NONE if error.key.endswith(".scheme") else REFUSED
         return row._replace(ended=ended, message=error.allowed)
-    return _measured(row, scene, result)
+    return _measured(row._replace(ended=STABLE), scene, result)
 
 
 def _measured(row: HardRow, scene: AnyScene, result: xr.Dataset) -> HardRow:
@@ -203,10 +188,9 @@ def largest_fall(result: xr.Dataset) -> float:
     return max(falls, default=0.0) / work if work else 0.0
 
 
-def key(case: HardCase) -> str:
+def key(row: HardRow) -> str:
     """Return the key of a row: everything that determines it."""
-    scene = cases.load_variant(find(case.scene), case.variant)
-    return store.key(case._asdict(), scene_hash(scene))
+    return store.key(row[:5], scene_hash(cases.load_variant(find(row.scene), row.variant)))
 
 
 def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = None) -> Summary:
@@ -214,7 +198,7 @@ def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = 
     `out`."""
     folder = out / NAME
     cells = cells_of(Store[Column](Column, folder).compute(columns(), store.key, computed, pool))
-    rows = Store[HardRow](HardRow, folder).compute(hard_cases(), key, row_of, pool, progress)
+    rows = Store[HardRow](HardRow, folder).compute(hard_cases(), key, run, pool, progress)
     maps = list(cells.groupby("engine", sort=False))
     with blank(3.6) as figure:
         axes = figure.subplots(1, len(maps), squeeze=False, sharey=True)[0]
@@ -235,7 +219,8 @@ def table(rows: list[HardRow]) -> pd.DataFrame:
     remarks, margins = [_remark(row) for row in rows], [row.margin for row in rows]
     found = frame(rows, HardRow).assign(**{"margin": margins, "": remarks})
     found = found.rename(columns={"ended": "ends", "fall": "decrease"})
-    found = found.set_index([found.case, found.engine + ", " + found.scheme])
+    titles = pd.Index([row.title for row in rows])
+    found = found.set_index([titles, found.engine + ", " + found.scheme])
     shown = ["ends", "energy", "decrease", "misfit", "margin", ""]
     return found[shown].rename_axis(["", "engine and scheme"])
 

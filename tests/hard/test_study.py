@@ -27,7 +27,7 @@ def rows():
 @pytest.mark.parametrize("case", list(rows()))
 def test_row_holds_or_says_why_not(case):
     """The run ends as it should, within the bounds on energy and misfit."""
-    row = hard_cases.row_of(case)
+    row = hard_cases.run(case)
     assert row.holds, row
     assert row.ended == case.should or (row.ended == NONE and len(row.message) > 10)
 
@@ -41,7 +41,7 @@ def test_every_case_is_run_by_some_engine_and_has_a_name_of_its_own():
 
 def test_row_that_is_out_of_bounds_does_not_hold():
     """Nor one that ends otherwise than it should, or whose value is nan."""
-    row = HardRow("a case", "dem", "leapfrog", STABLE, STABLE, misfit=1e-3, misfit_bound=2e-3)
+    row = HardRow("hard/a", "", "dem", "leapfrog", STABLE, STABLE, misfit=1e-3, misfit_bound=2e-3)
     assert row.holds and row.margin == 2
     assert not row._replace(misfit=3e-3).holds and not row._replace(misfit=nan).holds
     assert not row._replace(ended="stopped").holds and row._replace(ended=NONE).holds
@@ -89,5 +89,5 @@ def test_files_table_and_sentences_tell_of_every_row(tmp_path, monkeypatch):
     assert all(f"stability-{part}-0" in svg for part in ("map", "line"))
     assert f"{len(few)} of {len(few)} rows hold" in found.sentences[0] and not found.failed
     assert len(found.table.loc["short-pillar"]) == len(found.table) == len(few)
-    wrong = hard_cases.table([hard_cases.row_of(few[0])._replace(ended="stopped", message="why")])
+    wrong = hard_cases.table([hard_cases.run(few[0])._replace(ended="stopped", message="why")])
     assert wrong.iloc[0, -1] == "failed: why"

@@ -6,7 +6,6 @@ from typing import Annotated, Any
 
 import typer
 
-from jointwave.cases.errors import SceneError
 from jointwave.compare.cli import completion, terminal
 from jointwave.compare.cli.options import (
     CORES,
@@ -26,13 +25,7 @@ from jointwave.compare.scenes import names
 
 @app.command()
 def effects(
-    scene: Annotated[
-        str | None,
-        typer.Argument(
-            help="A scene file or a shipped scene (default: every shipped pillar but hard cases).",
-            autocompletion=names,
-        ),
-    ] = None,
+    scene: SceneArgument,
     changes: SetOption = [],
     variant: VariantOption = None,
     out: Annotated[Path, typer.Option(help="Folder for table, diagram and points.")] = Path(
@@ -43,17 +36,16 @@ def effects(
 ) -> None:
     """Measure the cost of every effect of a scene, and the misfit of the result without it.
 
-    For a pillar, or a rock mass that rigid blocks can represent. Without a scene: every variant of
-    every shipped pillar but the hard cases. Slow: scenes are timed one after the other. Finished
-    ones are saved in DIR.
+    For a pillar, or a rock mass that rigid blocks can represent. Results are saved in DIR and not
+    measured again.
     """
     from jointwave.compare.cli.study_view import run_and_show
-    from jointwave.compare.studies.effects import run
+    from jointwave.compare.studies.effects import Variant, run
     from jointwave.compare.studies.effects_summary import summarise
 
-    wanted = _cases(scene, changes, variant, strict)
+    wanted = [Variant(scene, one) for one in load(scene, changes, variant or "", strict)]
     run_and_show(
-        f"{len(wanted)} variants",
+        wanted[0].scene.title,
         out,
         1,
         lambda pool, advance: summarise(out, run(wanted, out, advance)),
@@ -164,15 +156,3 @@ def report(
     ):
         found = build(out, advance, 2, scenes or (), peers)
     show_report(found, as_json)
-
-
-def _cases(scene: str | None, changes: list[str], variant: str | None, strict: bool) -> list[Any]:
-    """Return the variants whose effects are asked for; without a scene all that are shipped."""
-    from jointwave.compare.studies.effects import Variant, all_shipped
-
-    if scene is not None:
-        return [Variant(scene, one) for one in load(scene, changes, variant or "", strict)]
-    if changes or variant is not None:
-        key = "--set" if changes else "--variant"
-        raise SceneError(key, "", None, "needs a scene: the default is every shipped pillar")
-    return all_shipped()

@@ -12,13 +12,7 @@ from jointwave.cases.effects import active_effects
 from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.compare.studies import effects
 from jointwave.compare.studies.effect_removal import left_out
-from jointwave.compare.studies.effects import (
-    EffectRow,
-    Variant,
-    all_shipped,
-    reported,
-    run,
-)
+from jointwave.compare.studies.effects import EffectRow, Variant, run
 from jointwave.compare.studies.effects_summary import draw, sentences, summarise, table
 from jointwave.compare.studies.step_cost import StepCost
 
@@ -82,13 +76,6 @@ def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, known):
     assert np.isnan([fixed.ns, fixed.share, fixed.misfit]).all()
     assert local.reason == "" and np.isfinite(local.ns)
     assert {one.engine for one in rows.values()} == {"dem"}
-
-
-def test_every_variant_of_every_shipped_scene_is_taken():
-    every = {(case.name, case.scene.name) for case in all_shipped()}
-    assert {("beyond/spall", ""), ("beyond/spall", "strong joints")} <= every
-    assert {(case.name, case.scene.name) for case in reported()} <= every
-    assert not any(name.startswith("hard/") for name, _ in every)
 
 
 def row(effect, misfit, ns, share, steps=1.0, of=("set/one", "One", "", "dem"), **more):
@@ -155,9 +142,3 @@ def test_the_command_prints_a_scene_and_keeps_its_files(command, tmp_path, monke
     assert "effects.csv" in said and (tmp_path / "effects" / "effects.csv").is_file()
     facts = json.loads(command(*scene, "--json").out)
     assert facts["rows"][0]["misfit"] == 0 and facts["rows"][0]["ns"] == 3
-
-
-@pytest.mark.parametrize("option", [("--variant", "x"), ("--set", "joints.tension=false")])
-def test_options_of_a_scene_need_one(option, command):
-    said = command("effects", *option, code=2).err
-    assert said.count("\n") == 1 and option[0] in said and "needs a scene" in said
