@@ -50,7 +50,6 @@ class AlignedCurve:
     curves : at their own samples, on the shifted clock. shift : None if not requested.
     time : [n] s, common times of the comparison. own_times : whether these are the curves' own.
     outside : the part of the curves' duration that lies outside the overlap.
-    left_out : places at which the scene has no waveform.
     """
 
     curves: Curves
@@ -58,7 +57,6 @@ class AlignedCurve:
     time: np.ndarray
     own_times: bool
     outside: float
-    left_out: list[Place]
 
     def series(self, place: Place) -> pd.Series:
         """Return the curve at a place in SI over time in s, its own samples in the overlap."""
@@ -77,9 +75,7 @@ def align_curve(curves: Curves, scene: AnyScene, results: Results, align: bool) 
     moved = _moved(curves, shift.seconds) if shift else curves
     time, own_times = common_times(moved, scene)
     outside = 1 - (time[-1] - time[0]) / (moved.time[-1] - moved.time[0])
-    known = {place for result in results.values() for place, *_ in _motions(moved, result)}
-    left_out = [place for place in moved.waveforms if place not in known]
-    return AlignedCurve(moved, shift, time, own_times, max(0.0, outside), left_out)
+    return AlignedCurve(moved, shift, time, own_times, max(0.0, outside))
 
 
 def distances(

@@ -10,7 +10,13 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from jointwave.compare.misfit.metrics import Pairing, Worst, pairings, static_state, waveforms
+from jointwave.compare.misfit.metrics import (
+    Pairing,
+    Worst,
+    pairings,
+    shared_waveforms,
+    static_state,
+)
 from jointwave.compare.misfit.weight import FAINT, UNITS
 
 VELOCITY, STRESS = "PPV", "peak stress"
@@ -33,48 +39,38 @@ class PeakDifference(NamedTuple):
 def peak_differences(one: xr.Dataset, other: xr.Dataset) -> dict[str, PeakDifference]:
     """Return the difference of two results by peak, "PPV" and "peak stress", of those that both
     have; the second is the reference."""
-    found = {}
-    for name, peaks in _peaks(one, other).items():
-        least = FAINT * max(theirs for _, theirs in peaks.values())
-        off = {at: abs(a / b - 1) for at, (a, b) in peaks.items() if b > 0 and b >= least}
+    found, shared = {}, pairings(one, other)
+    for name in (VELOCITY, STRESS):
+        there: dict[Position, list[Pairing]] = {}
+        for pair in (p for p in shared if _OF.get(p.place.quantity) == name):
+            there.setdefault(pair.place.at, []).append(pair)
+        ours = {at: _peak({p.place.component: p.one for p in some}) for at, some in there.items()}
+        peaks = {
+            at: _peak({p.place.component: p.other for p in some}) for at, some in there.items()
+        }
+        least = FAINT * max(peaks.values(), default=0.0)
+        off = {at: abs(ours[at] / b - 1) for at, b in peaks.items() if b > 0 and b >= least}
         if off:
             at = max(off, key=lambda at: off[at])
             found[name] = PeakDifference(sum(off.values()) / len(off), off[at], at)
     return found
 
 
-def _peaks(one: xr.Dataset, other: xr.Dataset) -> dict[str, dict[Position, tuple[float, float]]]:
-    """Return the peaks of a result and of its reference by name and receiver."""
-    there: dict[tuple[str, Position], list[Pairing]] = {}
-    for pair in pairings(one, other):
-        if name := _OF.get(pair.place.quantity):
-            there.setdefault((name, pair.place.at), []).append(pair)
-    found: dict[str, dict[Position, tuple[float, float]]] = {}
-    for (name, at), some in there.items():
-        ours = _size({p.place.component: p.one for p in some})
-        theirs = _size({p.place.component: p.other for p in some})
-        found.setdefault(name, {})[at] = float(ours.max()), float(theirs.max())
-    return {name: found[name] for name in (VELOCITY, STRESS) if name in found}
-
-
-def _size(components: dict[str, np.ndarray]) -> np.ndarray:
-    """Return the length [n] of a vector, or the largest principal value of a tensor in the plane;
-    a component of a tensor that nothing excites is absent."""
+def _peak(components: dict[str, np.ndarray]) -> float:
+    """Return the largest length of a vector, or principal value of a tensor in the plane; a
+    component of a tensor that nothing excites is absent."""
     if components.keys() & {"xx", "yy", "xy"}:
         xx, yy, xy = (components.get(name, np.zeros(1)) for name in ("xx", "yy", "xy"))
-        return np.abs(xx + yy) / 2 + np.hypot((xx - yy) / 2, xy)
-    return np.sqrt(sum(wave**2 for wave in components.values()))
+        return float((np.abs(xx + yy) / 2 + np.hypot((xx - yy) / 2, xy)).max())
+    return float(np.sqrt(sum(wave**2 for wave in components.values())).max())
 
 
 def static_difference(one: xr.Dataset, other: xr.Dataset) -> Worst:
     """Return the largest difference of two static states over the largest static stress of the
     reference, which comes second; without a static state 0."""
-    pairs = zip(
-        waveforms(one, other, static_state), waveforms(other, one, static_state), strict=True
-    )
     held = [
         (place, float(a[0]), float(b[0]))
-        for (place, a), (_, b) in pairs
+        for place, a, b in shared_waveforms(one, other, static_state)
         if place.quantity in UNITS[0]
     ]
     largest = max((abs(b) for *_, b in held), default=0.0)

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.compare.misfit.places import Place, places_of
-from jointwave.compare.misfit.weight import EXCITED, QUANTITIES, UNITS, Weight, weigh
+from jointwave.compare.misfit.weight import EXCITED, QUANTITIES, UNITS, weigh
 
 Reading = Callable[[xr.Dataset, str], np.ndarray]
 JUDGED = 10.0  # times its own error: the smallest misfit that a reference can resolve
@@ -55,48 +55,6 @@ def relative_l2(one: np.ndarray, other: np.ndarray) -> float:
     return 0.0 if difference == 0 else _ratio(difference, float(np.linalg.norm(np.ravel(other))))
 
 
-class Pairing(NamedTuple):
-    """One waveform [n] of a result and that of its reference, both minus their static state.
-
-    error : bound on the reference's own root-mean-square error, 0 for a closed form. norm, least :
-    what a misfit that decides is relative to, and from where on it decides, see `Weight`.
-    """
-
-    place: Place
-    one: np.ndarray
-    other: np.ndarray
-    error: float
-    norm: float = 0.0
-    least: float = 0.0
-
-    @property
-    def worst(self) -> "Worst":
-        """The misfit as it decides, with its place."""
-        if self.least == 0:
-            floor = 0.0 if self.error == 0 else _ratio(self.error, rms(self.other))
-            return Worst(relative_l2(self.one, self.other), self.place, floor)
-        off = rms(self.one - self.other)
-        whole = self.norm or inf
-        return Worst(off / whole, self.place, self.error / whole, True)
-
-    @property
-    def faint(self) -> bool:
-        """Whether it is too weak to decide a misfit."""
-        return self.worst.judged < self.least
-
-    @property
-    def misfit(self) -> float:
-        """Relative L2 distance; of a small component that decides, relative to all motion there."""
-        return relative_l2(self.one, self.other) if self.faint else self.worst.misfit
-
-    @property
-    def floor(self) -> float:
-        """Relative error of the reference itself."""
-        if self.faint and self.error:
-            return _ratio(self.error, rms(self.other))
-        return self.worst.floor
-
-
 class Worst(NamedTuple):
     """The worst waveform of two results; `place` is None without motion.
 
@@ -122,6 +80,28 @@ class Worst(NamedTuple):
         return self.place.words + ", of all motion there" * self.of_all
 
 
+class Pairing(NamedTuple):
+    """One waveform [n] of a result and that of its reference, both minus their static state.
+
+    misfit : relative L2 distance; of a small component that decides, relative to all motion there,
+    then `of_all`. floor : relative error of the reference itself, 0 for a closed form. faint :
+    whether the waveform is too weak to decide the misfit of the results.
+    """
+
+    place: Place
+    one: np.ndarray
+    other: np.ndarray
+    misfit: float
+    floor: float
+    faint: bool = False
+    of_all: bool = False
+
+    @property
+    def worst(self) -> Worst:
+        """The misfit, with its place."""
+        return Worst(self.misfit, self.place, self.floor, self.of_all)
+
+
 def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
     """Return the relative L2 misfit of the worst waveform of two results."""
     return worst(one, other).misfit
@@ -140,79 +120,57 @@ def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
     below a millionth of the largest motion, unless the result moves there enough to decide. Nothing
     is left where both stay at rest: where no stress changes by a millionth of the static one.
     """
-    found, weight = _weighed(one, other)
-    changed = [max(rms(p.one), rms(p.other)) for p in found if p.place.quantity in UNITS[0]]
+    until = other.attrs.get("known_until", np.inf)
+    n = int(np.searchsorted(other["time"].values, until, side="right"))
+    found = [(place, a[:n], b[:n]) for place, a, b in shared_waveforms(one, other)]
+    changed = [max(rms(a), rms(b)) for place, a, b in found if place.quantity in UNITS[0]]
     if changed and max(changed) < EXCITED * _static_stress(other):
         return []
-    return [
-        p
-        for p, excited in zip(found, weight.excited, strict=True)
-        if (excited or not p.faint) and (p.one.any() or p.other.any())
-    ]
+    weight = weigh([place for place, *_ in found], np.array([rms(b) for *_, b in found]))
+    kept = []
+    numbers = (each.tolist() for each in weight)
+    for (place, a, b), norm, least, excited in zip(found, *numbers, strict=True):
+        pairing = _judged(place, a, b, error_of(other, place), norm, least)
+        if (excited or not pairing.faint) and (a.any() or b.any()):
+            kept.append(pairing)
+    return kept
 
 
-def _weighed(one: xr.Dataset, other: xr.Dataset) -> tuple[list[Pairing], Weight]:
-    until = other.attrs.get("known_until")
-    times = other["time"].values
-    n = len(times) if until is None else int(np.searchsorted(times, until, side="right"))
-    found = [
-        Pairing(place, a[:n], b[:n], error_of(other, place))
-        for (place, a), (_, b) in zip(waveforms(one, other), waveforms(other, one), strict=True)
-    ]
-    weight = weigh([p.place for p in found], np.array([rms(p.other) for p in found]))
-    numbers = zip(found, weight.norm.tolist(), weight.least.tolist(), strict=True)
-    return [p._replace(norm=norm, least=least) for p, norm, least in numbers], weight
+def _judged(
+    place: Place, one: np.ndarray, other: np.ndarray, error: float, norm: float, least: float
+) -> Pairing:
+    """Return a pairing with its misfit. error : bound on the reference's root-mean-square error;
+    norm, least : what a misfit that decides is relative to, and from where on it decides."""
+    floor = _ratio(error, rms(other)) if error else 0.0
+    alone = Pairing(place, one, other, relative_l2(one, other), floor, faint=least > 0)
+    if least == 0:
+        return alone
+    whole = norm or inf
+    decides = Pairing(place, one, other, rms(one - other) / whole, error / whole, of_all=True)
+    return alone if decides.worst.judged < least else decides
 
 
-class Stack(NamedTuple):
-    """All waveforms of a result [waveform, n] and of its reference, minus their static states.
-
-    norm, least : what each misfit is relative to, and from where on it decides, [waveform].
-    """
-
-    one: np.ndarray
-    other: np.ndarray
-    norm: np.ndarray
-    least: np.ndarray
-
-    @property
-    def misfits(self) -> np.ndarray:
-        """Relative L2 distance of each waveform, 0 if it does not decide."""
-        return self.distances(self.one, self.other)
-
-    def distances(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """Return the root mean square of one - other over `norm`, 0 where it does not decide."""
-        difference = np.linalg.norm(one - other, axis=1) / np.sqrt(max(one.shape[1], 1))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found = np.where(difference > 0, difference / self.norm, 0.0)
-        return np.where(found >= self.least, found, 0.0)
-
-
-def stacked(one: xr.Dataset, reference: xr.Dataset) -> Stack:
-    """Return the waveforms of a result and of its reference as arrays."""
-    found, weight = _weighed(one, reference)
-    waves = np.array([p.one for p in found]), np.array([p.other for p in found])
-    return Stack(*waves, weight.norm, weight.least)
-
-
-def waveforms(
-    result: xr.Dataset, like: xr.Dataset, read: Reading | None = None
-) -> Iterator[tuple[Place, np.ndarray]]:
-    """Yield the motion of a result [n] at every place that it shares with another result.
+def shared_waveforms(
+    one: xr.Dataset, other: xr.Dataset, read: Reading | None = None
+) -> Iterator[tuple[Place, np.ndarray, np.ndarray]]:
+    """Yield the motion of two results [n] at every place that they share.
 
     read : of (result, quantity), to what is read instead of `motion`.
     """
-    for quantity in QUANTITIES:
-        if quantity not in result or quantity not in like:
-            continue
-        values = (read or motion)(result, quantity)
-        places, components = places_of(result, quantity)
-        others, other_components = places_of(like, quantity)
-        for i in (i for i, at in enumerate(places) if at in others):
-            for k in (k for k, one in enumerate(components) if one in other_components):
-                wave = values[i] if values.ndim == 2 else values[i, :, k]
-                named = components[k] if len(components) > 1 else ""
-                yield Place(quantity, named, places[i]), wave
+    for quantity in (name for name in QUANTITIES if name in one and name in other):
+        ours, theirs = ((read or motion)(result, quantity) for result in (one, other))
+        places, components = places_of(one, quantity)
+        others, other_components = places_of(other, quantity)
+        for i, at in enumerate(places):
+            for k, component in enumerate(components):
+                if at in others and component in other_components:
+                    named = component if len(components) > 1 else ""
+                    j, m = others.index(at), other_components.index(component)
+                    yield Place(quantity, named, at), _wave(ours, i, k), _wave(theirs, j, m)
+
+
+def _wave(values: np.ndarray, i: int, k: int) -> np.ndarray:
+    return values[i] if values.ndim == 2 else values[i, :, k]
 
 
 def motion(result: xr.Dataset, quantity: str) -> np.ndarray:

@@ -115,8 +115,7 @@ def measure(
         for p in pairings(one, other):
             spectra = spectral and not p.faint and p.place.quantity != "displacement"
             found = distance(p.one, p.other, dt, spectra)._replace(misfit=p.misfit)
-            of_all = p.worst.of_all and not p.faint
-            rows.append(Row(pair, p.place, found, p.floor, p.faint, of_all))
+            rows.append(Row(pair, p.place, found, p.floor, p.faint, p.of_all))
     return rows
 
 

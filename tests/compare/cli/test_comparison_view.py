@@ -75,7 +75,7 @@ def curve(tmp_path):
         wave = factor * np.sin(np.linspace(0, 9, 200))
         np.savetxt(file, np.column_stack([time, wave]), delimiter=",")
         (curves,) = read_curves([f"{file}:stress@20"], [comparison.scene])
-        beside = AlignedCurve(curves, None, time, True, 0.0, [])
+        beside = AlignedCurve(curves, None, time, True, 0.0)
         comparison.besides.append(beside)
         comparison.rows += measure_curves(beside, comparison.results)
 

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from jointwave.compare.misfit.differences import peak_differences, static_difference
-from jointwave.compare.misfit.metrics import pairings, stacked, worst
+from jointwave.compare.misfit.metrics import pairings, worst
 from jointwave.compare.misfit.places import Place
 from jointwave.compare.misfit.weight import weigh
 
@@ -93,14 +93,6 @@ def test_the_motion_of_a_tensor_does_not_depend_on_the_axes():
         small = moved < 0.05
         np.testing.assert_allclose(found.norm[:3][small], 1.0)
         np.testing.assert_allclose(found.norm[:3][~small], moved[~small])
-
-
-def test_a_stack_decides_as_its_two_results_do():
-    """The planner's arrays follow the same rule as verdicts."""
-    x, y = shares(0.049)
-    for one in ([[1.4 * x, 1.01 * y]], [[x + 0.2, y]]):
-        results = pair(one, [[x, y]])
-        assert stacked(*results).misfits.max() == pytest.approx(worst(*results).misfit)
 
 
 def test_peaks_are_those_of_all_components_together():
