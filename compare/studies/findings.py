@@ -39,21 +39,12 @@ def judged(rows: Sequence[PointRow]) -> pd.DataFrame:
 
 def _held(table: pd.DataFrame, error: str) -> pd.Series:
     """Return the largest error of each point and of all finer ones of its curve, with the same
-    physics; nan where a point has no error.
-
-    Finer has as many freedoms and steps or more or, where these are not counted, stands later.
+    physics; nan where a point has no error. Finer has more work or, if not counted, stands later.
     """
-    errors = table[error].where(table["state"] == "done")
     model = table["curve"] + " " + table["settings"].map(_physics)
-
-    def largest(i: int) -> float:
-        freedoms, steps = table["freedoms"][i], table["steps"][i]
-        finer = (table["freedoms"] >= freedoms) & (table["steps"] >= steps)
-        if isnan(freedoms + steps):
-            finer = table.index >= i
-        return errors[finer & (model == model[i])].max()
-
-    return table.index.to_series().map(largest).where(errors.notna()).astype(float)
+    finest_first = table.sort_values("work", kind="stable").index[::-1]
+    errors = table[error].where(table["state"] == "done")[finest_first]
+    return errors.groupby(model).cummax().sort_index()
 
 
 def _physics(settings: dict[str, Any]) -> str:

@@ -36,16 +36,14 @@ ARGUMENTS: dict[str, type[int] | type[float]] = {"n_terms": int, "rtol": float}
 LARGEST_ARGUMENT = 1e9
 
 
-def _one_of(*others: str) -> BeforeValidator:
-    """Return a check that a text is the name of a solver or one of these."""
+def _is_known(name: Any) -> Any:
+    known = (*names(), *METHODS, FINEST, NONE)
+    if isinstance(name, str) and name not in known:
+        raise ValueError(f"must be one of {', '.join(known)}")
+    return name
 
-    def check(value: Any) -> Any:
-        known = (*names(), *others)
-        if isinstance(value, str) and value not in known:
-            raise ValueError(f"must be one of {', '.join(known)}")
-        return value
 
-    return BeforeValidator(check)
+KNOWN = BeforeValidator(_is_known)
 
 
 def combinations(values: Mapping[str, Sequence[Any]]) -> Iterator[dict[str, Any]]:
@@ -71,7 +69,7 @@ class FineRun(StudyTable):
         run from this one is the floor below which errors are not known.
     """
 
-    method: Annotated[str, _one_of()]
+    method: Annotated[str, KNOWN]
     changes: Changes = {}
     coarser: Changes
 
@@ -92,11 +90,11 @@ class Curve(StudyTable):
     """
 
     label: str
-    method: Annotated[str, _one_of(*METHODS)]
+    method: Annotated[str, KNOWN]
     changes: Changes = {}
     vary: Varied = {}
     each: Varied = {}
-    own: Annotated[str | FineRun | None, _one_of(FINEST, NONE)] = None
+    own: Annotated[str | FineRun | None, KNOWN] = None
     order: float | None = None
 
     @model_validator(mode="after")
@@ -142,7 +140,7 @@ class Study(StudyTable):
     scene: str
     variant: str = ""
     changes: Changes = {}
-    finest: Annotated[str | FineRun | None, _one_of(NONE)] = None
+    finest: Annotated[str | FineRun | None, KNOWN] = None
     quantity: Literal["stress", "velocity", "displacement"] | None = None
     note: str = ""
     timed: bool = False
