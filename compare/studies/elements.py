@@ -3,13 +3,15 @@
 from math import ceil
 from typing import Any, NamedTuple
 
+import xarray as xr
+
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.effective_medium import slowest
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.scene_type import AnyScene, checked
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.engines import ENGINES, applies, solver
+from jointwave.compare.engines import ENGINES, applies, solve, solver
 from jointwave.compare.runs import timings
 from jointwave.compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
@@ -27,17 +29,17 @@ IMPLICIT: dict[str, Any] = {"scheme": "implicit", "spectral_radius": 1.0}
 
 
 class Elements(NamedTuple):
-    """An engine's blocks or elements and its scheme on a scene, with steps of any length.
+    """An engine's blocks or elements and its scheme on a scene, with a step.
 
-    name : of the engine. changes : of its table in [numerics]. run : as prepared, with its freedoms
-    and its critical step. least : the fewest steps per sample.
+    name : of the engine. changes : of its table in [numerics], without the step. run : as prepared,
+    with its freedoms and its critical step. per_sample : steps per sample, at first the fewest.
     """
 
     scene: AnyScene
     name: str
     changes: dict[str, Any]
     run: Prepared
-    least: int
+    per_sample: int = 1
 
     @property
     def label(self) -> str:
@@ -54,24 +56,32 @@ class Elements(NamedTuple):
         """Whether its steps are not bounded by a critical one."""
         return self.changes.get("scheme") == "implicit"
 
-    def numerics(self, per_sample: int) -> dict[str, Any]:
-        """Return the keys of the engine's table with so many steps per sample."""
-        dt = self.scene.interval / per_sample
+    @property
+    def numerics(self) -> dict[str, Any]:
+        """The keys of the engine's table, with the step."""
+        dt = self.scene.interval / self.per_sample
         if self.is_implicit:
             per_period = _period(self.scene) / dt * (1 - 1e-6)
             return self.changes | {"steps_per_period": float(f"{per_period:.7g}")}
         return self.changes | {"step_fraction": float(f"{dt / self.run.critical * (1 + 1e-6):.7g}")}
 
-    def with_steps(self, per_sample: int) -> AnyScene:
-        """Return the scene with so many steps per sample."""
-        return configured(self.scene, self.name, self.numerics(per_sample))
-
-    def seconds(self, per_sample: int) -> float:
-        """Return the expected seconds of stepping, by the rates of this machine."""
-        steps = per_sample * (len(sample_times(self.scene)) - 1)
+    @property
+    def seconds(self) -> float:
+        """The expected seconds of stepping, by the rates of this machine."""
+        steps = self.per_sample * (len(sample_times(self.scene)) - 1)
         known = timings.stepping(self.name, self.scene, self.run._replace(steps=steps))
         each = UNTIMED_IMPLICIT if self.is_implicit else UNTIMED
         return each * steps * self.run.freedoms if known is None else known
+
+    def with_steps(self, per_sample: int) -> "Elements":
+        """Return the same elements with so many steps per sample."""
+        return self._replace(per_sample=per_sample)
+
+    def solve(self) -> xr.Dataset:
+        """Return the result of its run, whose rate is kept for later estimates."""
+        result = solve(self.name, configured(self.scene, self.name, self.numerics))
+        timings.note(self.name, self.scene, result.attrs)
+        return result
 
 
 def label(name: str, changes: dict[str, Any]) -> str:
@@ -81,15 +91,15 @@ def label(name: str, changes: dict[str, Any]) -> str:
 
 
 def elements(scene: AnyScene, name: str, changes: dict[str, Any]) -> Elements:
-    """Return an engine's elements on a scene; raises SceneError if it cannot have them."""
+    """Return an engine's elements on a scene with their longest step; raises SceneError if it
+    cannot have them."""
     asked = configured(scene, name, changes)
     if not (answer := applies(name, asked)):
         raise SceneError(scene.where, "", None, answer.reason)
-    run = solver(name).prepare(asked)
-    if changes.get("scheme") == "implicit":
-        return Elements(scene, name, changes, run, 1)
-    fewest = ceil(scene.interval / (COARSEST * run.critical) * (1 - 1e-9))
-    return Elements(scene, name, changes, run, fewest)
+    made = Elements(scene, name, changes, solver(name).prepare(asked))
+    if made.is_implicit:
+        return made
+    return made.with_steps(ceil(scene.interval / (COARSEST * made.run.critical) * (1 - 1e-9)))
 
 
 def coarsest(scene: AnyScene) -> list[tuple[str, dict[str, Any]]]:
@@ -106,19 +116,18 @@ def coarsest(scene: AnyScene) -> list[tuple[str, dict[str, Any]]]:
     return found
 
 
-def rock(scene: AnyScene, order: int, times: int = 1) -> dict[str, Any]:
-    """Return the changes for elements of an order, so many times as many in each direction as the
-    fewest."""
+def rock(scene: AnyScene, order: int) -> dict[str, Any]:
+    """Return the changes for the fewest elements of an order."""
     if isinstance(scene, Scene):
-        return {"order": order, "elements_per_block": times}
-    return {"order": order, "size": _part(scene, ELEMENTS_IN_WAVE[order] * times)}
+        return {"order": order, "elements_per_block": 1}
+    return {"order": order, "size": _part(scene, ELEMENTS_IN_WAVE[order])}
 
 
 def halved(changes: dict[str, Any]) -> dict[str, Any]:
     """Return the changes for blocks or elements of half the size; empty where these are given."""
-    factors = {"elements_per_block": 2, "size": 0.5, "block": 0.5}
-    finer = {k: float(f"{v * factors[k]:.3g}") for k, v in changes.items() if k in factors}
-    finer = {k: int(v) if k == "elements_per_block" else v for k, v in finer.items()}
+    if "elements_per_block" in changes:
+        return changes | {"elements_per_block": 2 * changes["elements_per_block"]}
+    finer = {k: float(f"{v / 2:.3g}") for k, v in changes.items() if k in ("size", "block")}
     return changes | finer if finer else {}
 
 

@@ -15,10 +15,9 @@ import xarray as xr
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import ENGINES, Progress, solve
+from jointwave.compare.engines import ENGINES, Progress
 from jointwave.compare.misfit import ranking
 from jointwave.compare.misfit.metrics import JUDGED, misfit
-from jointwave.compare.runs import timings
 from jointwave.compare.studies.elements import (
     COARSEST,
     EXPLICIT,
@@ -55,15 +54,14 @@ class OwnModel(NamedTuple):
 
 @dataclass
 class PlannedRun:
-    """A run: its engine and elements, its steps per sample, its numerical and modelling error with
-    those of their references, and its seconds of stepping.
+    """A run: its engine, elements and step, its numerical and modelling error with those of their
+    references, and its seconds of stepping.
 
     reference : of the numerical error. worst : the largest sum of errors of this run and of all
     smaller steps of its elements. is_confirmed : whether a smaller step was run.
     """
 
     elements: Elements
-    per_sample: int
     reference: Reference
     numerical: float
     modelling: float
@@ -80,8 +78,7 @@ class PlannedRun:
     def options(self) -> list[str]:
         """The values of `--set` that make it."""
         table = ENGINES[self.elements.name].engine
-        numerics = self.elements.numerics(self.per_sample)
-        return [f"numerics.{table}.{key}={value}" for key, value in numerics.items()]
+        return [f"numerics.{table}.{k}={value}" for k, value in self.elements.numerics.items()]
 
 
 @dataclass
@@ -111,7 +108,7 @@ class Plan:
         meeting = [run for run in runs if self._is_met_by(run)]
         if meeting:
             return min(meeting, key=lambda run: run.seconds)
-        return min(runs, key=lambda run: (run.worst, -run.per_sample), default=None)
+        return min(runs, key=lambda run: (run.worst, -run.elements.per_sample), default=None)
 
     @property
     def misfit(self) -> float:
@@ -123,14 +120,9 @@ class Plan:
         """Whether the chosen run meets the misfit."""
         return self.chosen is not None and self._is_met_by(self.chosen)
 
-    @property
-    def seconds(self) -> float:
-        """Seconds of stepping of the chosen run; 0 without one."""
-        return 0.0 if self.chosen is None else self.chosen.seconds
-
     def add(self, run: PlannedRun) -> list[PlannedRun]:
         """Add a run of smaller steps than those of its elements before, which are returned."""
-        alike = [one for one in self.runs if one.elements is run.elements]
+        alike = [one for one in self.runs if one.elements.label == run.elements.label]
         for one in alike:
             one.worst, one.is_confirmed = max(one.worst, run.misfit), True
         run.worst = run.misfit
@@ -155,21 +147,19 @@ def plan(
         raise SceneError(scene.where, "", None, "no solver resolves all physics of the scene")
     finest = _reference(scene, found.name, {}, misfit)
     made = Plan(scene, misfit, seconds, finest, found.reason)
-    queue = []
+    queue: list[Elements] = []
     for name, changes in coarsest(scene):
         try:
-            one = elements(scene, name, changes)
-            queue.append((one, one.least))
+            queue.append(elements(scene, name, changes))
         except FAILURES as error:
             made.skipped[label(name, changes)] = reason_of(error)
     while queue:
-        next_one = min(queue, key=lambda pair: pair[0].seconds(pair[1]))
-        one, per_sample = next_one
-        if one.seconds(per_sample) > _affordable(made):
+        queue.sort(key=lambda one: one.seconds)
+        one = queue.pop(0)
+        if one.seconds > _affordable(made):
             break
-        queue.remove(next_one)
         try:
-            queue += _tried(made, one, per_sample)
+            queue += _tried(made, one)
         except FAILURES as error:
             made.skipped[one.label] = reason_of(error)
         if progress:
@@ -180,15 +170,15 @@ def plan(
 
 def _affordable(made: Plan) -> float:
     """Return the seconds above which a run is useless, or too long."""
-    if made.is_met and made.chosen:
-        return made.chosen.elements.seconds(made.chosen.per_sample)
+    if made.chosen and made.is_met:
+        return made.chosen.elements.seconds
     if made.limit is not None:
         return made.limit
     return LONGEST[made.scene.kind] - sum(run.seconds for run in made.runs)
 
 
-def _tried(made: Plan, one: Elements, per_sample: int) -> list[tuple[Elements, int]]:
-    """Run elements with so many steps per sample, and with twice as many if they meet the misfit.
+def _tried(made: Plan, one: Elements) -> list[Elements]:
+    """Run elements, and with half the step if they meet the misfit.
 
     Return what is to be tried next: half the step and, the first time, elements of half the size.
     """
@@ -197,24 +187,23 @@ def _tried(made: Plan, one: Elements, per_sample: int) -> list[tuple[Elements, i
     if modelling == inf or (least >= made.asked and made.limit is None):
         made.skipped[one.label] = reason
         return _finer(one) if one.model else []
-    result = solve(one.name, one.with_steps(per_sample))
-    timings.note(one.name, one.scene, result.attrs)
+    result = one.solve()
     numerical = misfit(result, reference.result) + reference.error
     seconds = float(result.attrs["seconds_stepping"])
-    run = PlannedRun(one, per_sample, reference, numerical, modelling, seconds)
+    run = PlannedRun(one, reference, numerical, modelling, seconds)
     before = made.add(run)
     missed = [other for other in before if other.misfit > made.asked]
+    half = one.with_steps(2 * one.per_sample)
     if run.misfit <= made.asked:
-        is_second = len(before) > len(missed) and before[-1] not in missed
-        return [] if is_second else _tried(made, one, 2 * per_sample)
+        return [] if before and before[-1].misfit <= made.asked else _tried(made, half)
     if missed and numerical > STALLED * missed[-1].numerical:
         return []
-    return [*([] if missed else _finer(one)), (one, 2 * per_sample)]
+    return [half] if missed else [half, *_finer(one)]
 
 
-def _finer(one: Elements) -> list[tuple[Elements, int]]:
-    """Return elements, or blocks, of half the size or less, with their coarsest step, to be tried;
-    none where their mesh is given or does not fit in memory."""
+def _finer(one: Elements) -> list[Elements]:
+    """Return elements, or blocks, of half the size or less; none where their mesh is given or does
+    not fit in memory."""
     changes = one.changes
     for _ in range(MOST_HALVINGS):
         if not (changes := halved(changes)):
@@ -222,7 +211,7 @@ def _finer(one: Elements) -> list[tuple[Elements, int]]:
         with suppress(*FAILURES):
             finer = elements(one.scene, one.name, changes)
             if finer.run.freedoms >= GROWN[one.scene.kind] * one.run.freedoms:
-                return [(finer, finer.least)]
+                return [finer]
     return []
 
 
@@ -282,23 +271,22 @@ def _converged(
     at most the difference if the error falls at least in proportion to the step. A run also
     suffices once its model is certain to be further from the finest physics than requested.
     """
-    rigid, apart, before, steps = ENGINES[name].has_rigid_blocks, inf, None, 0
+    rigid, apart, before = ENGINES[name].has_rigid_blocks, inf, None
     one = elements(scene, name, model if rigid else EXPLICIT | rock(scene, 2))
+    one = one.with_steps(ceil(one.per_sample * COARSEST / FINE))
     for _ in range(LEVELS):
-        steps = max(2 * steps, ceil(one.least * COARSEST / FINE))
-        if before is not None and one.seconds(steps) > LONGEST[scene.kind]:
+        if before is not None and one.seconds > LONGEST[scene.kind]:
             break
-        result = solve(name, one.with_steps(steps))
-        timings.note(name, scene, result.attrs)
+        result = one.solve()
         apart = inf if before is None else misfit(before, result)
         is_far = finest is not None and misfit(result, finest) - apart > asked
         if JUDGED * apart < asked or is_far:
-            made = ", ".join(f"{k} {v}" for k, v in one.numerics(steps).items())
+            made = ", ".join(f"{k} {v}" for k, v in one.numerics.items())
             return Reference(name, result, apart, made)
-        before, finer = result, [(one, 0)] if rigid else _finer(one)
-        if not finer:
+        if not (finer := [one] if rigid else _finer(one)):
             break
-        one = finer[0][0]
+        fewest = 0 if rigid else ceil(finer[0].per_sample * COARSEST / FINE)
+        before, one = result, finer[0].with_steps(max(2 * one.per_sample, fewest))
     what = f"no exact solution to plan by, and {label(name, model)} within "
     what += f"{LONGEST[scene.kind]:g} s a run"
     if apart == inf:

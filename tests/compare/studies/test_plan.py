@@ -14,6 +14,7 @@ from jointwave.compare.engines import solve
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.runs import timings
 from jointwave.compare.scenes import find
+from jointwave.compare.studies import elements as candidates
 from jointwave.compare.studies import plan as plans
 from jointwave.compare.studies import reference as references
 from jointwave.compare.studies.elements import coarsest, configured, elements, halved, plain, rock
@@ -67,8 +68,9 @@ def test_the_choice_and_smaller_steps_meet_the_misfit(target, damped, planned):
     found = planned(target, damped)
     assert found.finest.name == "jointed-bar" and not found.finest.settings
     assert found.is_met and found.misfit <= target
-    own = (one for one in found.runs if one.elements is found.chosen.elements)
-    finer = [one for one in own if one.per_sample > found.chosen.per_sample]
+    chosen = found.chosen.elements
+    own = (one for one in found.runs if one.elements.label == chosen.label)
+    finer = [one for one in own if one.elements.per_sample > chosen.per_sample]
     assert finer and all(one.numerical + one.modelling <= target for one in finer)
 
 
@@ -84,9 +86,10 @@ def test_coarse_demands_are_met_by_few_runs_and_fine_ones_by_rock(alike):
 
 def test_runs_go_from_cheap_to_dear_and_halve_their_steps(alike):
     found = plan(short(), 1e-5)
-    *walk, _ = (one.elements.seconds(one.per_sample) for one in found.runs)  # the last confirms
+    *walk, _ = (one.elements.seconds for one in found.runs)  # the last confirms
     assert walk == sorted(walk) and len(walk) > 3
-    steps = [one.per_sample for one in found.runs if one.elements is found.chosen.elements]
+    chosen = found.chosen.elements.label
+    steps = [one.elements.per_sample for one in found.runs if one.elements.label == chosen]
     assert all(b == 2 * a for a, b in pairwise(steps))
 
 
@@ -245,7 +248,7 @@ def test_a_reference_of_small_blocks_has_elements_of_half_the_size_each(monkeypa
         found.append(solve(name, scene))
         return found[-1]
 
-    monkeypatch.setattr(plans, "solve", noted)
+    monkeypatch.setattr(candidates, "solve", noted)
     scene = cases.load_variant(find("rock-mass/brickwork"), "", BRICKS | {"time.duration": 0.02})
     reference = plans._converged(scene, "continuum-jointed", {}, 20.0, None)
     first, second = (one.attrs["degrees_of_freedom"] for one in found)
@@ -254,10 +257,10 @@ def test_a_reference_of_small_blocks_has_elements_of_half_the_size_each(monkeypa
 
 def made_of(*runs):
     """Return a plan of runs, the misfit 1 %: (elements, steps, numerical error, seconds)."""
-    known = {name: elements(short(), "dem", {}) for name in dict.fromkeys(run[0] for run in runs)}
+    known = {run[0]: elements(short(), "dem", {})._replace(changes={"id": run[0]}) for run in runs}
     found = Plan(short(), 0.01, None, Reference("lattice", None, 0.0), "")
     for name, n, error, cost in runs:
-        found.add(PlannedRun(known[name], n, found.finest, error, 0.0, cost))
+        found.add(PlannedRun(known[name].with_steps(n), found.finest, error, 0.0, cost))
     return found
 
 
