@@ -26,7 +26,7 @@ from jointwave.compare.report.scenes import (
 from jointwave.compare.report.sections import section, sections
 from jointwave.compare.runs.output import write_text
 from jointwave.compare.runs.timings import measured_on
-from jointwave.compare.studies.store import DIED, Pool, alone, in_processes, in_turn
+from jointwave.compare.studies.store import DIED, Pool, alone, in_processes
 from jointwave.compare.text import percent
 
 SCENES = 0.4  # of the progress of the paper's page; studies and hard cases are the rest
@@ -68,7 +68,7 @@ def build(
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
     tell, out = progress or (lambda fraction: None), Path(out)
-    pool = partial(in_processes, workers) if workers > 1 else None
+    pool = partial(in_processes, workers)
     requests = asked_for(scenes)
     if scenes:
         solved = _solve(out, requests, pool, tell)
@@ -91,13 +91,13 @@ def build(
 
 
 def _solve(
-    out: Path, requests: list[SceneRequest], pool: Pool | None, progress: Progress
+    out: Path, requests: list[SceneRequest], pool: Pool, progress: Progress
 ) -> list[SolvedScene]:
     """Return the scenes, solved and drawn by processes, and timed anew while no other process
     should be computing, but for runs that take long."""
     found: dict[str, SolvedScene] = {}
     points = {one.name: one for one in requests}
-    for name, one in (pool or in_turn)(partial(solve, folder=out / "figures"), points):
+    for name, one in pool(partial(solve, folder=out / "figures"), points):
         if one is None:
             raise MemoryError(f"scene {name}: {DIED}")
         found[name] = one

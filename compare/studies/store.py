@@ -71,25 +71,6 @@ class Store(Generic[T]):
     folder: Path | None
     is_valid: Callable[[T], bool] = lambda result: True
 
-    def has(self, key: str) -> bool:
-        """Return whether a point is done."""
-        return self.folder is not None and (self.folder / f"{key}.json").is_file()
-
-    def read(self, key: str) -> T | None:
-        """Return a saved result; None without one, or if it is no longer valid.
-
-        Raises SceneError if its file is damaged.
-        """
-        if self.folder is None or not self.has(key):
-            return None
-        found: T = read_kept(self.folder / f"{key}.json", self.form)
-        return found if self.is_valid(found) else None
-
-    def save(self, key: str, result: T) -> None:
-        """Save a result."""
-        if self.folder is not None:
-            write_text(self.folder / f"{key}.json", json.dumps(plain(result), indent=1))
-
     def compute(
         self,
         points: Sequence[P],
@@ -103,32 +84,33 @@ class Store(Generic[T]):
 
         work : returns the result of a point. pool : does the work; None: this process, one point
         after the other. lost : returns the result of a point whose process has died, not saved;
-        None: MemoryError is raised.
+        None: MemoryError is raised. Raises SceneError if a saved file is damaged.
         """
         named = {key(point): point for point in points}
-        found = {name: done for name in named if (done := self.read(name)) is not None}
+        found = {name: done for name in named if (done := self._saved(name)) is not None}
         missing = {name: point for name, point in named.items() if name not in found}
-        for name, result in (pool or in_turn)(work, missing):
-            if result is not None:
-                self.save(name, result)
-            elif lost is None:
+        for name, result in (pool or partial(in_processes, 1))(work, missing):
+            if result is not None and self.folder is not None:
+                write_text(self.folder / f"{name}.json", json.dumps(plain(result), indent=1))
+            if result is None and lost is None:
                 raise MemoryError(f"a point has no result: {DIED}")
             found[name] = lost(named[name]) if result is None and lost else result
             if progress:
                 progress(len(found) / len(named))
         return [found[key(point)] for point in points]
 
-
-def in_turn(work: Callable[[P], T], points: Mapping[str, P]) -> Iterator[tuple[str, T]]:
-    """Compute points in this process, one after the other."""
-    for name, point in points.items():
-        yield name, work(point)
+    def _saved(self, name: str) -> T | None:
+        """Return a saved result; None without one, or if it is no longer valid."""
+        if self.folder is None or not (path := self.folder / f"{name}.json").is_file():
+            return None
+        found: T = read_kept(path, self.form)
+        return found if self.is_valid(found) else None
 
 
 def in_processes(
     count: int, work: Callable[[P], T], points: Mapping[str, P]
 ) -> Iterator[tuple[str, T | None]]:
-    """Compute points in so many processes of this machine.
+    """Compute points in so many processes of this machine; 1: this one.
 
     All processes end with one that dies. The points that are left are then computed one at a time.
     """
@@ -140,7 +122,7 @@ def in_processes(
     except BrokenProcessPool:
         for name, point in left.items():
             try:
-                yield from _parallel(2, work, {name: point})  # 1 would be this process
+                yield from _parallel(2, work, {name: point})
             except BrokenProcessPool:
                 yield name, None
 
@@ -178,7 +160,7 @@ def on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]
     workers : processes of this machine, if MPI has started none; 1: only this one.
     """
     if processes.comm is None:
-        return work(partial(in_processes, workers) if workers > 1 else None)
+        return work(partial(in_processes, workers))
     from mpi4py.futures import MPICommExecutor
 
     with MPICommExecutor(processes.comm, root=0) as executor:

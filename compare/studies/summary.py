@@ -1,8 +1,7 @@
 """The summary of a study, the same for the terminal, the page and JSON; the files of its table."""
 
 import json
-from collections.abc import Iterable, Sequence
-from math import isfinite
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -37,15 +36,6 @@ class Summary(NamedTuple):
     timed: bool = False
 
 
-def text_table(columns: Sequence[str], rows: Iterable[tuple[str, Sequence[Any]]]) -> pd.DataFrame:
-    """Return rows of cells, each under a heading, as the table of a summary; the first cell of a
-    row is its label."""
-    found = list(rows)
-    labels = [[heading for heading, _ in found], [cells[0] for _, cells in found]]
-    index = pd.MultiIndex.from_arrays(labels, names=["", columns[0]])
-    return pd.DataFrame([list(cells[1:]) for _, cells in found], index, list(columns[1:]))
-
-
 def frame(rows: Sequence[Any], form: type) -> pd.DataFrame:
     """Return rows of a NamedTuple as a table, SI."""
     return pd.DataFrame([map(cell, row) for row in rows], columns=list(form._fields))  # type: ignore[attr-defined]
@@ -64,8 +54,3 @@ def write_tables(
     if data is not None:
         files.append(write_dataset(folder / f"{name}.nc", data))
     return files
-
-
-def number(value: float, form: str, missing: str = "") -> str:
-    """Return a number as text; `missing` if it is not finite."""
-    return format(value, form) if isfinite(value) else missing

@@ -23,7 +23,7 @@ from jointwave.compare.studies.measure import PointRow, measure
 from jointwave.compare.studies.store import Pool, Store, alone
 from jointwave.compare.studies.store import key as store_key
 from jointwave.compare.studies.study import Study, StudyPoint
-from jointwave.compare.studies.summary import Summary, number, write_tables
+from jointwave.compare.studies.summary import Summary, write_tables
 
 #: The studies of the report, in its order.
 REPORTED = ("free-pillar", "convergence", "uniform-chain", "one-joint")
@@ -111,7 +111,7 @@ def shown(table: pd.DataFrame) -> pd.DataFrame:
         {head: factor * table[column] for head, (column, factor) in COLUMNS.items()}
     )
     errors = [head for head in COLUMNS if "%" in head]
-    found[errors] = found[errors].map(lambda x: number(x, ".3g"))
+    found[errors] = found[errors].map("{:.3g}".format).replace("nan", "")
     found["measured, %"] += table["cancels"].map({True: f" {CANCELS}", False: ""})
     return found.set_index(pd.MultiIndex.from_arrays([table["curve"], labels], names=["", "point"]))
 
