@@ -92,9 +92,11 @@ class Store(Generic[T]):
         for name, result in (pool or partial(in_processes, 1))(work, missing):
             if result is not None and self.folder is not None:
                 write_text(self.folder / f"{name}.json", json.dumps(plain(result), indent=1))
-            if result is None and lost is None:
-                raise MemoryError(f"a point has no result: {DIED}")
-            found[name] = lost(named[name]) if result is None and lost else result
+            elif result is None:
+                if lost is None:
+                    raise MemoryError(f"a point has no result: {DIED}")
+                result = lost(named[name])
+            found[name] = result
             if progress:
                 progress(len(found) / len(named))
         return [found[key(point)] for point in points]
