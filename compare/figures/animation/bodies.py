@@ -26,7 +26,7 @@ FACES = {
 }
 FRONT, OBLIQUE = (0.0, 0.0), (0.1, 0.4)  # to the right and up per metre away from the viewer
 EDGE, WIDTH = "#333333", 0.4  # of the faces' edges, points
-MANY = 4000  # faces whose edges would hide the colours
+MANY = 1000  # faces whose edges are thinner, in order not to hide the colours
 LOUDEST = 99.8  # percentile of an unsigned quantity shown by the last colour
 
 
@@ -126,8 +126,9 @@ class BodyView:
         self.farther = np.array([-right, 1.0, -up])  # along the line of sight
         drawn = (body.rest + body.motion) @ self.projection
         self.low, self.high = drawn.min(axis=(0, 1)), drawn.max(axis=(0, 1))
-        shown = body.faces.shape[1] > 3 and len(body.faces) < MANY  # triangles are parts of blocks
-        self.faces = PolyCollection([], edgecolors=EDGE if shown else "face", linewidths=WIDTH)
+        edges = EDGE if body.faces.shape[1] > 3 else "face"  # triangles are parts of blocks
+        width = WIDTH * min(1.0, MANY / len(body.faces))
+        self.faces = PolyCollection([], edgecolors=edges, linewidths=width)
         self.faces.set(cmap=colours.get_cmap(), norm=colours.norm, clip_on=False)
         ax.add_collection(self.faces, autolim=False)
         margin = 0.02 * (self.high - self.low).min()

@@ -56,7 +56,7 @@ class Frame:
                 for ax in axes:
                     ax.set(anchor="N", xlabel="x (m)", ylabel="y (m)" * (ax is axes[0]))
             axes, label = self.figure.axes, settings.quantity.label
-            self.figure.colorbar(self.colours, ax=axes, label=label, aspect=50)
+            self.figure.colorbar(self.colours, ax=axes, label=label, aspect=50, panchor=False)
             self.show(0)
             self.moving = self._moving()
             for artist in self.moving:
