@@ -40,9 +40,8 @@ def read(file: Path | None) -> pd.DataFrame | None:
         return None
     try:
         types = dict.fromkeys(TEXTS, str) | dict.fromkeys(NUMBERS, float)
-        table = pd.read_csv(io.StringIO(read_text(path, LARGEST_FILE)), dtype=types)
-        if missing := [name for name in types if name not in table]:
-            raise ValueError(f"it has no column {missing[0]}")
+        text = io.StringIO(read_text(path, LARGEST_FILE))
+        table = pd.read_csv(text, dtype=types, usecols=list(types))
     except ValueError as error:
         raise SceneError(
             str(path), "", None, f"is not a table of make bench-peers: {error}"

@@ -4,7 +4,7 @@ import platform
 import shlex
 from collections.abc import Sequence
 from functools import partial
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import version
 from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -23,7 +23,7 @@ from jointwave.compare.report.scenes import (
     asked_for,
     solve,
 )
-from jointwave.compare.report.sections import section, sections
+from jointwave.compare.report.sections import sections
 from jointwave.compare.runs.output import write_text
 from jointwave.compare.runs.timings import measured_on
 from jointwave.compare.studies.store import DIED, Pool, alone, in_processes
@@ -79,12 +79,7 @@ def build(
         others = peers.read(peers_table)
         requests += asked_for(ROCK_MASSES)
         solved = _solve(out, requests, pool, lambda x: tell(SCENES * x))
-        studies = list(sections(out, pool, hard, lambda x: tell(SCENES + (1 - SCENES) * x)))
-        if others is not None:
-            found = peers.summarise(others, out / "studies")
-            shown = section("peers", found, "make bench-peers", contents="Other codes")
-            place = next(i for i, one in enumerate(studies) if one["id"].startswith("study-"))
-            studies.insert(place + 1, shown)
+        studies = list(sections(out, pool, hard, others, lambda x: tell(SCENES + (1 - SCENES) * x)))
         paper, rock = solved[: -len(ROCK_MASSES)], solved[-len(ROCK_MASSES) :]
         page = _page(PAPERS, "jointwave report --out DIR", paper, rock, studies)
     return Report(write_text(out / "index.html", render(page, out)), page)
@@ -130,6 +125,7 @@ def _page(
         "Studies": [(one["id"], one["contents"]) for one in studies],
     }
     versions = {name: number for one in solved for name, number in one.versions.items()}
+    versions |= {name: version(name) for name in PACKAGES}
     worst = {f"{one.request.label} (%)": one.worst for one in solved}
     return {
         "subtitle": subtitle,
@@ -144,14 +140,5 @@ def _page(
         "studies": studies,
         "contents": {heading: found for heading, found in links.items() if found},
         "machine": measured_on(),
-        "versions": {"Python": platform.python_version()}
-        | versions
-        | {name: _version(name) for name in PACKAGES},
+        "versions": {"Python": platform.python_version()} | versions,
     }
-
-
-def _version(package: str) -> str:
-    try:
-        return version(package)
-    except PackageNotFoundError:  # run from its folder
-        return "(not installed)"

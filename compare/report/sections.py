@@ -8,6 +8,7 @@ import pandas as pd
 
 from jointwave.compare.engines import Progress
 from jointwave.compare.figures.snapshots import make_snapshots
+from jointwave.compare.report import peers
 from jointwave.compare.studies import effects, scattering
 from jointwave.compare.studies.effects_summary import summarise as summarise_effects
 from jointwave.compare.studies.hard_cases import make_study as make_hard_cases
@@ -23,11 +24,12 @@ HARD = 0.5  # of the progress, where the hard cases are asked for
 
 
 def sections(
-    out: Path, pool: Pool | None, hard: bool, progress: Progress
+    out: Path, pool: Pool | None, hard: bool, others: pd.DataFrame | None, progress: Progress
 ) -> Iterator[dict[str, Any]]:
     """Yield the sections in the order of the page; points and figures are saved in `out`.
 
-    hard : also put both engines to the hard cases.
+    hard : also put both engines to the hard cases. others : runs of other codes, which stand behind
+    the first study.
     """
     folder = out / "studies"
     for name in scattering.TITLES:
@@ -37,6 +39,9 @@ def sections(
         study = load(name)
         found = summarise_study(folder, name, study, run_study(study, folder / name, pool))
         yield section("study", found, f"jointwave study {name}", id=f"study-{name}")
+        if i == 1 and others is not None:
+            found = peers.summarise(others, folder)
+            yield section("peers", found, "make bench-peers", contents="Other codes")
         progress(HARD * i / (len(REPORTED) + 1))
     measured = effects.run(effects.reported(), out / "effects")
     found = summarise_effects(out / "effects", measured)

@@ -48,8 +48,7 @@ def test_no_other_code_is_said(file):
     [
         (None, "cannot be read"),
         ("", "No columns"),
-        ("time,stress\n0,1\n", "it has no column curve"),
-        ("misfit\nmuch\n", "could not convert string to float"),
+        ("time,stress\n0,1\n", "columns expected but not found"),
     ],
 )
 def test_a_file_that_is_no_such_table_is_refused(tmp_path, text, message):
