@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from jointwave.compare.engines import in_order
 from jointwave.compare.figures.charts.axes import chart, label_of, set_heading
-from jointwave.compare.figures.style import RC, style
+from jointwave.compare.figures.style import style
 from jointwave.compare.figures.units import UNITS
 from jointwave.compare.misfit.places import Place, places_of
 
@@ -47,7 +47,7 @@ def bands_of(results: dict[str, xr.Dataset]) -> Bands:
 def draw(bands: Bands) -> Figure:
     """Return the figure of bands."""
     across = min(ACROSS, len(bands))
-    with chart(-(-len(bands) // across), across, [HEIGHT], "time (ms)", RC) as (figure, axes):
+    with chart(-(-len(bands) // across), across, [HEIGHT], "time (ms)") as (figure, axes):
         for ax, (place, waves) in zip(axes.flat, bands.items(), strict=False):
             for name, wave in waves.items():
                 look, ms = style(name), 1e3 * wave.index.to_numpy()

@@ -18,14 +18,11 @@ DIGITS = 6  # of the numbers behind a figure
 
 
 @contextmanager
-def blank(height: float, laid_out: bool = False, rc: dict[Any, Any] = RC) -> Iterator[Figure]:
-    """Yield an empty figure, as wide as matplotlib's settings `rc` have it; height : inches.
-
-    matplotlib lays it out by constraints, unless the drawing lays it out itself.
-    """
+def blank(height: float, rc: dict[Any, Any] = RC) -> Iterator[Figure]:
+    """Yield an empty figure, as wide as matplotlib's settings `rc` have it; height : inches."""
     with matplotlib.rc_context(rc):
         width = matplotlib.rcParams["figure.figsize"][0]
-        figure = Figure((width, height), layout=None if laid_out else "constrained")
+        figure = Figure((width, height), layout="constrained")
         FigureCanvasAgg(figure)
         yield figure
 

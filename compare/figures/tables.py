@@ -9,7 +9,7 @@ import xarray as xr
 from jointwave.cases.records import Column
 from jointwave.compare.figures.panels import variant_names
 from jointwave.compare.misfit.pairs import Comparison, Row
-from jointwave.compare.misfit.places import Place
+from jointwave.compare.misfit.places import Place, places_of
 from jointwave.compare.readings import (
     arias_intensity,
     peak_velocity,
@@ -19,7 +19,6 @@ from jointwave.compare.readings import (
 )
 from jointwave.compare.readings.attenuation import sampling, waveforms
 from jointwave.compare.readings.recordings import dataset_of
-from jointwave.results.labels import RECEIVERS
 
 PERIODS, SHORTEST = 60, 8  # of oscillators: how many, and the shortest period in samples
 READINGS = (
@@ -110,19 +109,19 @@ def _velocities(comparison: Comparison) -> Iterator[tuple[str, xr.Dataset]]:
 
 
 def _readings(result: xr.Dataset) -> Iterator[dict[str, float | str]]:
-    receiver = str(next(d for d in result["velocity"].dims if d in RECEIVERS))
     time = result["time"].values
     periods = np.geomspace(SHORTEST * (time[1] - time[0]), time[-1] - time[0], PERIODS)
     acceleration = response_spectrum(result, periods)["pseudo_acceleration"].max("axis")
     peaks, intensities = peak_velocity(result).values, arias_intensity(result).max("axis").values
-    at = np.stack([result[name].values for name in RECEIVERS[receiver]], axis=1)
-    for i, values in enumerate(acceleration.values):
+    for i, (at, values) in enumerate(
+        zip(places_of(result, "velocity")[0], acceleration.values, strict=True)
+    ):
         apart = i and peaks[i] and peaks[0]
         speed, Q = (wave_speed(result, 0, i), _quality(result, i)) if apart else (np.nan, np.nan)
         top = int(values.argmax())
         found = peaks[i], intensities[i], values[top], periods[top], speed, Q
-        place = Place("velocity", "", tuple(at[i].tolist()))
-        yield {"at": place.receiver} | dict(zip(READINGS, map(float, found), strict=True))
+        where = {"at": Place("velocity", "", at).receiver}
+        yield where | dict(zip(READINGS, map(float, found), strict=True))
 
 
 def _quality(result: xr.Dataset, i: int) -> float:

@@ -15,7 +15,8 @@ COLOURS = ScalarMappable(Normalize(-1.0, 1.0), "RdBu_r")
 
 def picture(body, per_away, i):
     """Return the picture of a body at an instant."""
-    with blank(2.0, True, RC | {"figure.figsize": (10.0, 2.0)}) as figure:
+    with blank(2.0, RC | {"figure.figsize": (10.0, 2.0)}) as figure:
+        figure.set_layout_engine("none")
         ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         ax.set_axis_off()
         BodyView(ax, body, COLOURS, per_away).show(i)
