@@ -30,7 +30,10 @@ TOLERANCES = 3e-14, 1e-11  # of the integration, and of its twin
 #: Of the whole time, in each of which at most one phase ends. A prime: solve_ivp fails where a
 #: phase ends with a step.
 SPANS = 1999
-NEAR = 1e-12  # of a strength: tolerated jump between two consecutive phases
+NEAR = 1e-12  # of the weakening distance: less of it is none
+#: Of the peak: by how much s may miss the strength where it starts to slip, and exceed it where it
+#: sticks, so that a phase that begins at the strength does not end there.
+SHORT, BEYOND = 1e-11, 1e-14
 
 
 class SlipJoint(NamedTuple):
@@ -114,7 +117,7 @@ class Passed:
         self.span = (edges[-1] - edges[0]) / SPANS
         self.phases: list[Phase] = []
         for start, stop in pairwise(edges):
-            while start < stop - SHORTEST:
+            while start < stop - 2 * SHORTEST:
                 start = self._next(start, stop)
 
     def __call__(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -131,13 +134,12 @@ class Passed:
     def _at(self, times: np.ndarray) -> np.ndarray:
         """Return s, the signed slip, S and p at times [4, n]."""
         found = np.zeros((4, *np.shape(times)))
-        for phase in self.phases:
-            own = (times > phase.start) & (times <= phase.end)
+        # Each up to the next one, though it may end somewhat before.
+        ends = [*(phase.start for phase in self.phases[1:]), inf]
+        for phase, end in zip(self.phases, ends, strict=True):
+            own = (times > phase.start) & (times <= end)
             if own.any():
-                found[:, own] = self._within(phase, times[own])
-        if self.phases:
-            last = np.array([self.phases[-1].end])
-            found[:, times > last[0]] = self._within(self.phases[-1], last)
+                found[:, own] = self._within(phase, np.minimum(times[own], phase.end))
         return found
 
     def _within(self, phase: Phase, t: np.ndarray) -> np.ndarray:
@@ -174,11 +176,13 @@ class Passed:
         if self.joint.compliance == 0 or limit == 0:
             stress = incident
         way = int(np.sign(stress))
-        slides = abs(stress) >= limit * (1 - NEAR) and way * incident > limit
+        slides = abs(stress) >= limit - SHORT * self.peak and way * incident > limit
         if slides:
             phase = self._slide(start, stop, way, path, slide)
         else:
             phase = self._stick(start, stop, stress, path, slide)
+        if phase.end <= start:  # rounding: the previous phase goes on
+            return start + SHORTEST
         self.phases.append(phase)
         return phase.end
 
@@ -199,7 +203,7 @@ class Passed:
             return (self._incident(t) - float(s[0])) / relaxation
 
         def yields(t: float, s: np.ndarray) -> float:
-            return abs(float(s[0])) - limit
+            return abs(float(s[0])) - limit - BEYOND * self.peak
 
         found = self._solved(rate, start, stop, stress, self.peak, yields)
         return Phase(start, found.t[-1], 0, path, slide, found.sol)
@@ -236,7 +240,8 @@ class Passed:
         for event in ends:
             event.terminal = True  # type: ignore[attr-defined]
             event.direction = -1 if event.__name__ == "stops" else 1  # type: ignore[attr-defined]
-        return solve_ivp(
-            rate, (start, stop), np.array([now]), "DOP853", events=ends, dense_output=True,
-            max_step=self.span, rtol=self.tolerance, atol=self.tolerance * scale,
-        )  # fmt: skip
+        with np.errstate(over="ignore", invalid="ignore"):  # of trial steps that are too long
+            return solve_ivp(
+                rate, (start, stop), np.array([now]), "DOP853", events=ends, dense_output=True,
+                max_step=self.span, rtol=self.tolerance, atol=self.tolerance * scale,
+            )  # fmt: skip

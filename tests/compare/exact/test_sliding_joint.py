@@ -51,6 +51,20 @@ def test_the_limits_of_strength():
 
 
 @pytest.mark.parametrize("load", [Sine(1.0, 0.01, 2), Ricker(1.0, 0.01), Step(1.0)])
+@pytest.mark.parametrize("tau", [0.0, 1e-5, 3e-3, 0.5, 1.0])
+@pytest.mark.parametrize("relaxation", [0.0, 1e-5, 1e-3])
+def test_any_strength_is_integrated_to_the_end(load, tau, relaxation):
+    """Also where a phase begins at the strength, or the load rises to it alone: an implicit scheme
+    is off by its step."""
+    times = np.linspace(0.0, 0.03, 30_001)
+    s, _ = transmitted(SlipJoint(0.0, 2 * relaxation / Z, tau), load, times)
+    seen, share = [0.0], 1.0 if not relaxation else times[1] / (times[1] + relaxation)
+    for value in load.value(times[1:]).tolist():
+        seen.append(min(max(seen[-1] + share * (value - seen[-1]), -tau), tau))
+    assert np.abs(s[1:] - seen[1:]).max() < (0.06 if relaxation else 1e-10)
+
+
+@pytest.mark.parametrize("load", [Sine(1.0, 0.01, 2), Ricker(1.0, 0.01), Step(1.0)])
 def test_an_unlimited_joint_is_the_linear_one(load, misfit):
     """The same integral by other nodes: round-off, a step's half value at t = 0 left out."""
     times, K = np.linspace(-1e-3, 0.03, 3101), 0.7 * Z * OMEGA
