@@ -52,7 +52,10 @@ def unbroken(text: str) -> str:
 
 
 def rows(table: pd.DataFrame) -> Markup:
-    """Return a table in HTML, its labels on the left and numbers on the right."""
+    """Return a table in HTML, its labels on the left, alike ones together, and numbers on the
+    right."""
+    if table.index.nlevels > 1:
+        table = pd.concat([rows for _, rows in table.groupby(level=0, sort=False)])
     cells = table.apply(lambda column: column.map(lambda x: table_cell(x, str(column.name))))
     named = table.index.names != [None]
     return Markup(cells.to_html(border=0, index=named, justify="unset"))
