@@ -13,6 +13,7 @@ import pandas as pd
 
 from jointwave import cases
 from jointwave.cases.effects import active_effects
+from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import Progress, applies, solve
 from jointwave.compare.misfit.metrics import misfit
@@ -96,7 +97,7 @@ def measure(variant: Variant, full: dict[str, StepCost]) -> list[EffectRow]:
     """Return the rows of a variant.
 
     full : the costs with every effect by the hash of their scene, completed here. Raises the errors
-    of `solve` for rigid blocks.
+    of `solve` for rigid blocks, and SceneError for a scene without effects.
     """
     rows = _rows(variant, BLOCKS)
     everything = with_every_effect(variant.scene)
@@ -111,6 +112,8 @@ def measure(variant: Variant, full: dict[str, StepCost]) -> list[EffectRow]:
 
 def _rows(variant: Variant, engine: str) -> list[EffectRow]:
     scene, rows = variant.scene, []
+    if not active_effects(scene):
+        raise SceneError(scene.where, "", None, "has no effect to leave out")
     result, without = solve(engine, scene), {}
     for effect in active_effects(scene):
         row = EffectRow(variant.name, scene.title, scene.name, engine, effect)

@@ -142,3 +142,9 @@ def test_the_command_prints_a_scene_and_keeps_its_files(command, tmp_path, monke
     assert "effects.csv" in said and (tmp_path / "effects" / "effects.csv").is_file()
     facts = json.loads(command(*scene, "--json").out)
     assert facts["rows"][0]["misfit"] == 0 and facts["rows"][0]["ns"] == 3
+
+
+def test_a_scene_without_effects_is_refused_in_one_line(command):
+    scene = ["effects", "guo-li-2002/fig-03", "--set", "record.energy=false"]
+    assert "has no effect to leave out" in (said := command(*scene, code=2).err)
+    assert said.count("\n") == 1
