@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping
 from math import isfinite, isnan, nan
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from jointwave.compare.engines import ENGINES
@@ -56,7 +55,7 @@ class VariantScore(NamedTuple):
     reason: str
     broken: tuple[str, ...]
     meaning: str = ""
-    peaks: Mapping[str, PeakDifference] = MappingProxyType({})
+    peaks: Mapping[str, PeakDifference] = {}
     static: Worst = Worst(0.0)
 
     @property
