@@ -1,28 +1,33 @@
 """`jointwave explain`: a scene before any run."""
 
-from math import isfinite
+from collections.abc import Iterable
+from itertools import pairwise
+from math import isfinite, sqrt
 from typing import Any
+
+import numpy as np
 
 from jointwave.cases.effects import effects
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.block_summary import block_summary
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.cli.terminal import say, show_facts
 from jointwave.compare.engines import ENGINES, solver
 from jointwave.compare.misfit.ranking import NOT_CHECKED, Reference, applicable, reference_of
 from jointwave.compare.readings.entering_wave import entering_waves
 from jointwave.compare.runs import timings
-from jointwave.compare.solvers.properties import spans, speeds
 from jointwave.compare.solvers.record import Prepared
+from jointwave.compare.solvers.wave_speeds import speeds
 from jointwave.compare.studies.step_cost import step_costs, with_every_effect
 
 #: The units of facts, and what facts are called whose names do not say it.
 UNITS = {
     "m": "from to block length",
     "m2": "area",
-    "m/s": "bar_speed velocity p_speed s_speed",
+    "m/s": "bar_speed shear_speed intact_bar_speed velocity p_speed s_speed",
     "s": "critical dt",
     "Pa": "equivalent_modulus stress",
     "Pa/m": "joint_stiffness",
@@ -32,7 +37,7 @@ UNITS = {
 LABELS = {key: f"{key}, {unit}" for unit, keys in UNITS.items() for key in keys.split()} | {
     "bytes_at_most": "bytes at most, during subdivision",
     "rigid_blocks_lack": "part of the intact rock's stiffness that rigid blocks cannot represent",
-    "speeds": "speeds of bar or P waves, and of S waves, m/s",
+    "speeds": "speeds of P and S waves, m/s",
     "transmission": "transmission from the segment before",
 }
 UNCHECKED = Reference("", f"{NOT_CHECKED}: no other solution resolves more")
@@ -54,8 +59,7 @@ def explanation(scene: AnyScene, measured: bool = False) -> Facts:
     return {
         "title": scene.title,
         "variant": scene.name,
-        **(_pillar(scene, measured) if isinstance(scene, Scene) else block_summary(scene)),
-        "speeds": {name: speeds(scene, ENGINES[name].rock) for name in runs},
+        **(_pillar(scene, measured) if isinstance(scene, Scene) else _rock_mass(scene, runs)),
         "enters": [wave._asdict() for wave in entering_waves(scene)],
         "effects": {e.name: {"active": e.active, "why": e.reason} for e in effects(scene)},
         "steps": [
@@ -89,6 +93,7 @@ def _pillar(scene: Scene, measured: bool) -> Facts:
     with every effect, ns, None where it was never measured."""
     p = calibrate(scene)
     before = [p.each[0], *p.each]
+    ends = p.contact_y[np.cumsum([0, *(one.block_count for one in p.each)])].tolist()
     segments = [
         {
             "from": start,
@@ -98,19 +103,26 @@ def _pillar(scene: Scene, measured: bool) -> Facts:
             "equivalent_modulus": one.modulus,
             "poisson": one.poisson,
             "bar_speed": one.bar_speed,
+            "shear_speed": one.shear_speed,
+            "intact_bar_speed": one.intact_modulus and sqrt(one.intact_modulus / one.density),
             "impedance": one.impedance,
             "joint_stiffness": one.regular_stiffness,
             "has_joints": len(p.each) == 1 or isfinite(one.regular_own_stiffness),
-            "speeds": "speeds of bar or P waves, and of S waves, m/s",
             "transmission": 2 * one.impedance / (other.impedance + one.impedance),
         }
-        for (start, stop), one, other in zip(spans(p), p.each, before, strict=False)
+        for (start, stop), one, other in zip(pairwise(ends), p.each, before, strict=False)
     ]
     costs = [timings.block_step(scene), None]
     if measured:
         costs = [one.ns for one in step_costs([scene, with_every_effect(scene)])]
     names = "nanoseconds_per_block_step", "nanoseconds_with_everything"
     return {"segments": segments, **dict(zip(names, costs, strict=True))}
+
+
+def _rock_mass(scene: RockMass, engines: Iterable[str]) -> Facts:
+    """Return the blocks of a rock mass, and the speeds of its waves in engines."""
+    found = {name: speeds(scene, ENGINES[name].rock) for name in engines}
+    return block_summary(scene) | {"speeds": found}
 
 
 def show_explanation(found: Facts) -> None:

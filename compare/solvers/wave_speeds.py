@@ -1,0 +1,44 @@
+"""The speeds of the waves in each engine's model of a rock mass."""
+
+import numpy as np
+
+from jointwave.cases.material.effective_medium import compliant, stiffness
+from jointwave.cases.material.effective_medium import speeds as speeds_of_medium
+from jointwave.cases.material.rigid_blocks import long_wave_stiffness
+from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.partition.lattice import further_sets
+from jointwave.cases.partition.regions import within
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.compare.solvers.record import Rock
+
+RIGID = 1e3  #: times the speed of intact rock: no strain at all
+
+#: Speeds of P and S waves, m/s, by what has them; infinite where nothing deforms.
+Speeds = dict[str, tuple[float, float]]
+
+
+def speeds(scene: RockMass, resolved: Rock) -> Speeds:
+    """Return the speeds of waves in the rock of no region as an engine resolves it.
+
+    Long waves are those of wavelengths that are large against the blocks.
+    """
+    if resolved is Rock.RIGID_BLOCKS:
+        return _along_axes(long_wave_stiffness(scene, further_sets(scene)), scene)
+    rock = elastic_rock(scene.rock)
+    sets = compliant(within(scene, scene.joint_sets)[-1].joint_sets)
+    found = _along_axes(stiffness(rock, sets), scene) if sets else {}
+    if resolved is Rock.JOINTED or not sets:
+        found["intact rock"] = float(rock.p_speed), float(rock.s_speed)
+    return found
+
+
+def _along_axes(medium: np.ndarray, scene: RockMass) -> Speeds:
+    """Return the speeds of a medium's long waves along x and y, that of P first: of the two shapes
+    that which moves more along the axis."""
+    found, shapes = speeds_of_medium(medium, scene.rock.density, np.eye(2))
+    found[found > RIGID * float(elastic_rock(scene.rock).p_speed)] = np.inf
+    p = np.abs(np.diagonal(shapes, axis1=0, axis2=1)).argmax(axis=0)
+    return {
+        f"long waves along {axis}": (float(found[i, p[i]]), float(found[i, 1 - p[i]]))
+        for i, axis in enumerate("xy")
+    }
