@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from closed_forms.leapfrog import displacements
+from closed_forms.modes import modes, of_modes
 from jointwave.compare.engines import solve
-from jointwave.compare.exact.schemes.leapfrog import modes, of_modes
 from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.compare.report.peers import read, summarise
 from jointwave.compare.runs.output import write_csv

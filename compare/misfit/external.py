@@ -111,10 +111,14 @@ def read_curves(texts: list[str], scenes: Sequence[AnyScene]) -> list[Curves]:
     return found
 
 
-def slips(curves: Sequence[Curves], scene: AnyScene) -> Iterator[str]:
-    """Yield which curves of a scene have times without a unit that look like milliseconds."""
+def doubts(curves: Sequence[Curves], scene: AnyScene) -> Iterator[str]:
+    """Yield which curves lie at no receiver of a scene, and which have times without a unit that
+    look like milliseconds."""
     end = scene.time.duration
     for one in curves:
+        for place in one.waveforms:
+            if not any(same(place.at, at) for at in recorded(scene, place.key)):
+                yield f"{one.file}: {place} is at no receiver of the scene, and left out"
         loudest = max(one.waveforms.values(), key=lambda values: np.ptp(values))
         slip = look_like_milliseconds(one.time, loudest - loudest[0], end)
         if slip and not one.timed:

@@ -5,11 +5,11 @@ from math import sqrt
 import numpy as np
 import pytest
 
+from closed_forms.modes import modes, of_modes
 from hard_runs import BLOCKS, JOINT, REFEREE, ROUND_OFF, SCHEMES, HardRun, marked
 from jointwave.cases.loads import load_history, step_means
 from jointwave.cases.sampling import interpolation
 from jointwave.compare.exact.bar import jointed_bar
-from jointwave.compare.exact.schemes.leapfrog import modes, of_modes
 from jointwave.compare.misfit.metrics import relative_l2
 
 #: Rigid rock, so that blocks move by their joints alone.

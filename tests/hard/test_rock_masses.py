@@ -5,6 +5,7 @@ from math import hypot, inf, radians, tan
 import numpy as np
 import pytest
 
+from closed_forms.modes import modes, of_modes
 from hard_runs import CUBES, EPS, ERROR, FIFTHS, REFEREE, ROUND_OFF, HardRun
 from jointwave.cases.loads import history_of, step_means
 from jointwave.cases.material.block_stiffness import jump
@@ -15,7 +16,6 @@ from jointwave.cases.partition.locate import block_at
 from jointwave.cases.partition.scene import partition_of
 from jointwave.compare.engines import solve
 from jointwave.compare.exact.rock_mass.block_lattice import at_points, masses
-from jointwave.compare.exact.schemes.leapfrog import modes, of_modes
 from jointwave.compare.misfit.metrics import relative_l2
 
 BRICKS, GRAZING, SLIDING = "hard/struck-bricks", "hard/grazing-wave", "hard/sliding-bricks"

@@ -65,13 +65,13 @@ def fit(
     --out writes fit.csv: values, intervals and correlations. The last line printed is a command
     that compares the fitted scene with the same files, with figures.
     """
-    from jointwave.compare.misfit.external import read_curves, slips
+    from jointwave.compare.misfit.external import doubts, read_curves
     from jointwave.compare.runs.output import write_csv
     from jointwave.compare.studies.fit import fit as fitted
 
     (one,) = load(scene, changes, variant or "", strict)
     curves = read_curves(given, [one])
-    warn([one], strict, lambda scene: slips(curves, scene))
+    warn([one], strict, lambda scene: doubts(curves, scene))
     with terminal.progress(one.name or one.title) as advance:
         found = fitted(one, curves, free, _solver(one, engine, model), advance)
     files = [write_csv(out / "fit.csv", found.table.reset_index(), 12)] if out is not None else []

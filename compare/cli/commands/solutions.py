@@ -153,12 +153,12 @@ def _read_curves(given: list[str], scenes: list[AnyScene], align: bool, strict: 
             raise SceneError("--align", "", None, "needs --with: there is no curve to align")
         return []
     from jointwave.compare.misfit.alignment import common_times
-    from jointwave.compare.misfit.external import read_curves, slips
+    from jointwave.compare.misfit.external import doubts, read_curves
 
     curves = read_curves(given, scenes)
     if not align:
         for scene in scenes:
             for one in curves:
                 common_times(one, scene)
-    warn(scenes, strict, lambda scene: slips(curves, scene))
+    warn(scenes, strict, lambda scene: doubts(curves, scene))
     return curves

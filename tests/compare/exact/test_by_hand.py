@@ -11,6 +11,7 @@ import pytest
 
 from closed_forms import beam, column, parallel_joints, thin_layer
 from closed_forms.leapfrog import frequencies
+from closed_forms.modes import modes
 from closed_forms.spall import advance
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.schema.scene import Scene
@@ -19,7 +20,6 @@ from jointwave.compare.exact.blocks import lattice, sliding_block
 from jointwave.compare.exact.blocks.chain import chain, contact_forces, rates
 from jointwave.compare.exact.conditions import drive, joints_are_damped
 from jointwave.compare.exact.joint import one_joint
-from jointwave.compare.exact.schemes.leapfrog import modes
 
 PERIOD = 2 * pi / sqrt(5000.0)  # of the two blocks against each other, s
 RECORD = {"stress": [0.0, 0.5, 1.0, 2.0], "velocity": [0.5, 1.5]}

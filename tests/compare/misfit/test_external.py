@@ -14,7 +14,7 @@ from jointwave.compare.figures.comparison import write_comparisons
 from jointwave.compare.figures.export import DIGITS, write_csv
 from jointwave.compare.figures.panels import curve_table, panels
 from jointwave.compare.misfit.alignment import align_curve, distance_at, distances
-from jointwave.compare.misfit.external import read_curves
+from jointwave.compare.misfit.external import doubts, read_curves
 from jointwave.compare.misfit.pairs import Comparison, measure_curves
 from jointwave.compare.misfit.places import Place
 from jointwave.compare.runs.comparison import compare
@@ -282,6 +282,8 @@ def test_curves_are_in_table_figure_and_files(scene, tmp_path):
     columns = np.c_[time, 1.1 * stress, stress]
     two = save(tmp_path / "b" / "x$.csv", columns[:, :1], columns[:, 1:], "time,stress@20,stress@9")
     curves = read_curves([one, two], [scene])
+    (line,) = doubts(curves, scene)
+    assert line == f"{two}: stress@9 is at no receiver of the scene, and left out"
     found = compare(scene, curves=curves)
     rows = {(r.pair.one, r.pair.other): r.distance for r in found.rows if r.pair.one in (one, two)}
     assert len(rows) == 2 * len(found.results) and rows[one, "lattice"].misfit < 1e-12

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from closed_forms.modes import Modes, modes, of_modes
 from jointwave.compare.exact.blocks.spatial import Plane
-from jointwave.compare.exact.schemes.leapfrog import Modes, modes, of_modes
 
 
 def frequencies(stiffness: float, mass: float, block_count: int) -> np.ndarray:

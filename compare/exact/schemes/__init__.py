@@ -1,1 +1,0 @@
-"""Time integration schemes on linear systems, in closed form."""
