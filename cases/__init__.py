@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any
 from jointwave.cases.errors import SceneError, UnstableError
 
 if TYPE_CHECKING:
-    from jointwave.cases.read import load, load_variant
+    from jointwave.cases.read import load, load_tables, load_variant
     from jointwave.cases.schema.scene import Scene
 
-__all__ = ["Scene", "SceneError", "UnstableError", "load", "load_variant"]
+__all__ = ["Scene", "SceneError", "UnstableError", "load", "load_tables", "load_variant"]
 
 
 def __getattr__(name: str) -> Any:
     """Return the class of scenes, or a function that reads them."""
-    if name in ("load", "load_variant"):
+    if name in ("load", "load_tables", "load_variant"):
         from jointwave.cases import read
 
         return getattr(read, name)

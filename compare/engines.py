@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import cache
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
@@ -91,6 +91,20 @@ def applies(name: str, scene: AnyScene) -> Answer:
     if scene.kind not in one.kinds:
         return Answer(f"is for a {one.kinds[0]}, not for a {scene.kind}")
     return one.applies(scene)
+
+
+def simulate(
+    scene: AnyScene, solver: str = "dem", progress: Progress | None = None, **options: Any
+) -> xr.Dataset:
+    """Return waveforms, energies and cost of a scene by an engine or an exact solution.
+
+    solver : "dem" (rigid blocks), "continuum-jointed", "continuum-equivalent", or an exact solution
+    ("lattice"; see `solvers`). progress : called with the finished fraction. options : `comm`, of
+    mpi4py, for a continuum shared by several processes; `keeper`, for checkpoints.
+
+    Raises SceneError if the solver does not apply, UnstableError if a run becomes unstable.
+    """
+    return solve(solver, scene, progress, **options)
 
 
 def solve(

@@ -12,12 +12,12 @@ SHIPPED = Path(cases.__file__).parent
 MOST = 1000  # files of a folder that a name is looked for among
 
 
-def shipped() -> list[Path]:
+def shipped_files() -> list[Path]:
     """Return the shipped scene files, in order."""
     return sorted(SHIPPED.glob("*/*.toml"))
 
 
-def find(scene: str) -> Path:
+def find(scene: str | Path) -> Path:
     """Return the file of a scene given by path or by shipped name, `guo-li-2002/fig-03`.
 
     Raises SceneError where there is none but one that is called much the same.
@@ -28,25 +28,33 @@ def find(scene: str) -> Path:
     known = (SHIPPED / scene).with_suffix(".toml")
     if known.is_file():
         return known
-    if meant := nearest(scene, [*_beside(path), *names()]):
-        raise SceneError(scene, "", None, f"cannot be read: no such scene{meant}")
+    if meant := nearest(str(scene), [*_beside(path), *shipped()]):
+        raise SceneError(str(scene), "", None, f"cannot be read: no such scene{meant}")
     return path
 
 
-def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[AnyScene]:
-    """Return a scene and its variants as `cases.load` does; raises SceneError, too, where [expect]
-    names what is no solver."""
-    return [known(scene) for scene in cases.load(path, overrides)]
-
-
-def load_variant(
-    path: str | Path, name: str = "", overrides: dict[str, Any] | None = None
+def load(
+    scene: str | Path | dict[str, Any], variant: str = "", changes: dict[str, Any] | None = None
 ) -> AnyScene:
-    """Return one variant of a scene as `cases.load_variant` does, with [expect] checked."""
-    return known(cases.load_variant(path, name, overrides))
+    """Return a scene, immutable and validated.
+
+    scene : a file, a shipped scene ("guo-li-2002/fig-03"), or its tables as a dictionary.
+    variant : its name; empty: the scene as it stands. changes : of keys by their dotted path,
+    {"joints.damping_ratio": 0.02}.
+
+    Raises jointwave.SceneError, a line a mistake with file, key, value and what is allowed.
+    """
+    if isinstance(scene, dict):
+        return _checked(cases.load_tables(scene, variant, changes))
+    return _checked(cases.load_variant(find(scene), variant, changes))
 
 
-def known(scene: Any) -> Any:
+def load_variants(scene: str | Path, changes: dict[str, Any] | None = None) -> list[AnyScene]:
+    """Return a scene and all its variants, each as `load` does."""
+    return [_checked(one) for one in cases.load(find(scene), changes)]
+
+
+def _checked(scene: Any) -> Any:
     """Return a scene; raises SceneError where its [expect] names what is no solver."""
     solvers = registry.names()
     for pair in scene.expect:
@@ -56,9 +64,9 @@ def known(scene: Any) -> Any:
     return scene
 
 
-def names() -> list[str]:
+def shipped() -> list[str]:
     """Return the names of the shipped scenes, `guo-li-2002/fig-03`, in order."""
-    return [path.relative_to(SHIPPED).with_suffix("").as_posix() for path in shipped()]
+    return [path.relative_to(SHIPPED).with_suffix("").as_posix() for path in shipped_files()]
 
 
 def _beside(path: Path) -> list[str]:

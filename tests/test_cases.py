@@ -7,14 +7,14 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import applies, names, solve
 from jointwave.compare.exact.blocks import lattice
 from jointwave.compare.misfit.metrics import misfit
-from jointwave.compare.scenes import SHIPPED, shipped
+from jointwave.compare.scenes import SHIPPED, shipped_files
 
 
 def test_no_solution_of_axial_motion_claims_a_spatial_scene():
     """What solves a scene that leaves its axis is made for it; each other one says why not."""
     spatial = {"dem", "spatial-lattice", "slip-joint", "sliding-block"}
     spatial |= {"continuum-jointed", "continuum-equivalent"}
-    every = [s for path in shipped() for s in cases.load(path)]
+    every = [s for path in shipped_files() for s in cases.load(path)]
     scenes = [s for s in every if isinstance(s, Scene) and is_spatial(s)]
     assert scenes
     for scene in scenes:
@@ -31,6 +31,6 @@ def test_spall_with_strong_joints_is_the_linear_chain():
 
 def test_every_folder_ships_scenes():
     """The paper's nine figures are all there, and scenes beyond them."""
-    names = {f"{path.parent.name}/{path.stem}" for path in shipped()}
+    names = {f"{path.parent.name}/{path.stem}" for path in shipped_files()}
     assert {f"guo-li-2002/fig-{n:02d}" for n in range(2, 11)} <= names
     assert {name.split("/")[0] for name in names} == {"guo-li-2002", "beyond", "hard", "rock-mass"}

@@ -1,7 +1,9 @@
 """The Python interface: functions do what those behind them do, and cost nothing before."""
 
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -73,9 +75,22 @@ def test_names_that_are_not_there_are_no_attributes():
 
 
 def test_importing_it_imports_nothing_else():
+    """Nor does a list of its names, in which no package shows that is loaded later."""
     script = (
         "import sys, jointwave\n"
-        "print(sorted({'numpy', 'xarray', 'numba', 'scipy', 'pydantic'} & set(sys.modules)))"
+        "names = dir(jointwave)\n"
+        "print(sorted({'numpy', 'xarray', 'numba', 'scipy', 'pydantic'} & set(sys.modules)))\n"
+        "from jointwave.compare.runs import comparison\n"
+        "assert names == dir(jointwave) == jointwave.__all__\n"
+        "assert jointwave.compare is comparison.compare\n"
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
-    assert done.stdout == "[]\n", done.stderr
+    assert (done.stdout, done.returncode) == ("[]\n", 0), done.stderr
+
+
+def test_every_name_is_documented():
+    """In its docstring and on the page of the interface."""
+    page = (Path(__file__).parents[1] / "docs/reference/python.md").read_text(encoding="utf-8")
+    shown = re.findall(r"<!-- generated: api jointwave (.*) -->", page)
+    assert set(" ".join(shown).split()) | {"Scene"} == set(jw.__all__)
+    assert all(getattr(jw, name).__doc__ for name in jw.__all__)

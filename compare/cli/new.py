@@ -7,7 +7,7 @@ from shlex import quote
 from jointwave import cases
 from jointwave.cases.errors import SceneError
 from jointwave.compare.runs.output import create
-from jointwave.compare.scenes import find, load
+from jointwave.compare.scenes import find, load_variants
 
 TEMPLATES = Path(__file__).parent / "templates"
 TITLE = "my-scene"  # of the templates
@@ -25,7 +25,7 @@ def write_new(name: str, source: str | None = None, template: str = "pillar") ->
     if source is None:
         return [create(path, starter(path.name, template).encode())]
     given = find(source)
-    load(given)
+    load_variants(given)
     places = {path: given, **{path.parent / file: given.parent / file for file in _files(given)}}
     for place in places:
         if place.exists() or place.is_symlink():

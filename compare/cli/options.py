@@ -16,7 +16,7 @@ from jointwave.compare.cli import completion
 from jointwave.compare.cli.terminal import say_warnings
 from jointwave.compare.engines import selection
 from jointwave.compare.runs.processes import started
-from jointwave.compare.scenes import find, names
+from jointwave.compare.scenes import shipped
 
 app = typer.Typer(
     epilog="Start with: jointwave list, jointwave compare guo-li-2002/fig-03, jointwave report",
@@ -28,7 +28,7 @@ SceneArgument = Annotated[
     str,
     typer.Argument(
         help="A scene file, or a shipped scene such as guo-li-2002/fig-03.",
-        autocompletion=names,
+        autocompletion=shipped,
     ),
 ]
 #: What can simulate or solve a scene, as --engine selects it.
@@ -125,11 +125,11 @@ def load(
     """Return a file's variants, or the one that is named, with `--set` applied, warned of."""
     from jointwave.cases.read import parse_override
 
-    overrides, path = dict(parse_override(text) for text in changes), find(scene)
+    overrides = dict(parse_override(text) for text in changes)
     if variant is None:
-        found = scenes.load(path, overrides)
+        found = scenes.load_variants(scene, overrides)
     else:
-        found = [scenes.load_variant(path, variant, overrides)]
+        found = [scenes.load(scene, variant, overrides)]
     warn(found, strict)
     return found
 

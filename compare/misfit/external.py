@@ -83,7 +83,7 @@ def _is_label(text: str) -> bool:
     return LABEL.fullmatch(split_unit(text)[0].removeprefix("-").lstrip()) is not None
 
 
-def read_curves(texts: list[str], scenes: Sequence[AnyScene]) -> list[Curves]:
+def read_curves(texts: Sequence[str], scenes: Sequence[AnyScene]) -> list[Curves]:
     """Read the arguments of `--with`, each FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
 
     FILE is NetCDF, written by `jointwave run` or with `time` and, for example, `stress`; or a table

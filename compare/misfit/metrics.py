@@ -103,7 +103,9 @@ class Pairing(NamedTuple):
 
 
 def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
-    """Return the relative L2 misfit of the worst waveform of two results."""
+    """Return the relative L2 misfit of two results of a scene: that of the worst waveform, one
+    component of one quantity at one receiver less its static state, among those that carry at
+    least 5 % of their quantity's motion at the receiver."""
     return worst(one, other).misfit
 
 

@@ -116,6 +116,12 @@ def _fineness(name: str, scene: AnyScene) -> tuple[bool, int, int]:
     return first, int(of.rock), int(of.form)
 
 
+def solvers(scene: AnyScene) -> dict[str, str]:
+    """Return all engines and exact solutions of a scene's kind by name, with the reason why one
+    does not apply; "" if it does."""
+    return {name: answer.reason for name, answer in applicable(scene).items()}
+
+
 def applicable(scene: AnyScene) -> dict[str, Answer]:
     """Return whether each engine and exact solution of a scene's kind applies to it."""
     return {name: applies(name, scene) for name in names(scene.kind)}

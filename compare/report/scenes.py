@@ -22,7 +22,7 @@ from jointwave.compare.report.claims.pillar import mostly_dispersion
 from jointwave.compare.report.verdict import EngineScore, engine_scores
 from jointwave.compare.runs.comparison import compare
 from jointwave.compare.runs.output import write_csv
-from jointwave.compare.scenes import find, load
+from jointwave.compare.scenes import find, load_variants
 
 PAPER = Path(cases.__file__).parent / "guo-li-2002"
 FREE_PILLAR = 3  # the figure that says what the paper's own comparison is made of
@@ -112,7 +112,7 @@ def asked_for(scenes: Sequence[str]) -> list[SceneRequest]:
 
 def solve(request: SceneRequest, folder: Path) -> SolvedScene:
     """Solve a scene's variants by all that applies, and write its pictures and tables."""
-    comparisons = [compare(scene, None, True) for scene in load(request.file)]
+    comparisons = [compare(scene, spectral=True) for scene in load_variants(request.file)]
     results, scores = comparisons[0].results, engine_scores(comparisons)
     frames = {"misfits": distance_frame(comparisons), "readings": reading_frame(comparisons)}
     files = {

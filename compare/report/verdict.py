@@ -152,6 +152,11 @@ def _resolved(one: Worst) -> float:
     return -1.0 if isnan(one.judged) else one.judged
 
 
+def verdicts(comparison: Comparison) -> dict[str, VariantScore]:
+    """Return the verdict on each engine of a comparison by name."""
+    return {name: score(name, comparison) for name in ENGINES if name in comparison.results}
+
+
 def score(engine: str, comparison: Comparison, variant: str = "") -> VariantScore:
     """Return how far an engine is from its reference, and from its own model, in one variant."""
     results, scene = comparison.results, comparison.scene

@@ -16,15 +16,16 @@ from jointwave.compare.solvers.record import Answer
 
 def compare(
     scene: AnyScene,
-    progress: Progress | None = None,
-    spectral: bool = False,
     curves: Sequence[Curves] = (),
+    progress: Progress | None = None,
     align: bool = False,
+    spectral: bool = False,
 ) -> Comparison:
-    """Solve a scene by all solutions that apply and measure every pair.
+    """Return a scene solved by all solutions that apply, with the distance of every pair.
 
-    `progress` is called with the finished fraction; `spectral` adds envelope and phase misfits;
-    external `curves` are compared with every solution, their clocks shifted onto it by `align`.
+    curves : external ones, of `read_curves`, to compare with every solution. progress : called with
+    the finished fraction. align : whether the clocks of the curves are shifted onto the solution
+    that fits best. spectral : whether to add envelope and phase misfits.
     """
     comparison = solved(scene, applicable(scene), progress)
     comparison.rows = measure(comparison.results, spectral, scene)

@@ -29,7 +29,7 @@ from jointwave.cases.schema.pulse import shortest_period
 from jointwave.compare.engines import ENGINES, Progress, applies, solve, solver
 from jointwave.compare.figures.export import blank, save
 from jointwave.compare.misfit.metrics import misfit
-from jointwave.compare.scenes import find, names
+from jointwave.compare.scenes import find, shipped
 from jointwave.compare.studies import store
 from jointwave.compare.studies.hard_map import Column, cells_of, columns, computed, draw_map
 from jointwave.compare.studies.store import Pool, Store
@@ -117,7 +117,7 @@ class HardRow(NamedTuple):
 def hard_cases() -> list[HardRow]:
     """Return every row before its run: each variant of each scene of cases/hard, and steps above
     the critical one."""
-    hard = [name for name in names() if name.startswith("hard/")]
+    hard = [name for name in shipped() if name.startswith("hard/")]
     found = [
         HardRow(name, scene.name, *one)
         for name in hard

@@ -28,7 +28,7 @@ from jointwave.compare.runs import comparison
 from jointwave.compare.runs.jobs import plan
 from jointwave.compare.runs.output import write_dataset
 from jointwave.compare.runs.run import Done, execute
-from jointwave.compare.scenes import find, load, load_variant
+from jointwave.compare.scenes import find, load, load_variants
 from jointwave.compare.studies import ensemble, store
 from jointwave.compare.studies.ensemble import MEMBER
 from jointwave.compare.studies.store import DIED, FAILURES, Pool, Store
@@ -69,7 +69,7 @@ class Comparing(NamedTuple):
 
     def __call__(self, scene: AnyScene, folder: Path | None) -> Rows:
         """Return a row for each distance; write the comparison and the results into a folder."""
-        found = comparison.compare(scene, None, self.spectral, self.curves, self.align)
+        found = comparison.compare(scene, self.curves, None, self.align, self.spectral)
         if folder is not None:
             write_comparisons([found], folder / scene.name)
             for name, result in found.results.items():
@@ -156,8 +156,8 @@ def sweep_of(
 
 def _scenes(path: Path, variant: str | None, changes: dict[str, Any]) -> list[AnyScene]:
     if (number := changes.pop(MEMBER, 0)) > 0:
-        changes |= ensemble.seeds(load_variant(path, variant or "", changes), number)
-    return load(path, changes) if variant is None else [load_variant(path, variant, changes)]
+        changes |= ensemble.seeds(load(path, variant or "", changes), number)
+    return load_variants(path, changes) if variant is None else [load(path, variant, changes)]
 
 
 def _folder(setting: dict[str, Any], number: int) -> str:

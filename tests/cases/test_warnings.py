@@ -14,7 +14,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.spectrum import SHARE, highest_frequency, shortest_wave
 from jointwave.cases.warnings import LEAST_BLOCKS, MOST_REFLECTED, SHORTENED, warnings
-from jointwave.compare.scenes import find, shipped
+from jointwave.compare.scenes import find, shipped_files
 
 MODULUS, DENSITY = 2400.0 * 1000.0**2, 2400.0  # a bar speed of 1000 m/s
 BAR = {
@@ -32,7 +32,7 @@ def lines(scene, start):
 
 @pytest.mark.parametrize(
     "path",
-    [path for path in shipped() if path.parent.name != "hard"],
+    [path for path in shipped_files() if path.parent.name != "hard"],
     ids=lambda path: f"{path.parent.name}/{path.stem}",
 )
 def test_nothing_that_is_shipped_warns(path):

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 import jointwave as jw
 from closed_forms.slipping_joint import slipping_joint
 from jointwave.cases.errors import SceneError
-from jointwave.compare.scenes import shipped
+from jointwave.compare.scenes import shipped_files
 from jointwave.compare.solvers.incident import incident, side_error, side_warnings
 
 ENGINES = ("dem", "continuum-jointed")
@@ -281,7 +281,7 @@ def test_what_else_the_field_leaves_out_is_said():
 def test_shipped_scenes_have_exact_sides_but_one():
     said = {
         (path.stem, scene.name)
-        for path in shipped()
+        for path in shipped_files()
         if path.parent.name == "rock-mass"
         for scene in jw.load_variants(path)
         if side_warnings(scene)

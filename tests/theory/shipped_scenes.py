@@ -11,7 +11,7 @@ from jointwave.cases.effects import active_effects
 from jointwave.compare.cli.pytest_plugin import PairItem, SceneFile
 from jointwave.compare.engines import ENGINES, applies
 from jointwave.compare.misfit.metrics import misfit, relative_l2
-from jointwave.compare.scenes import shipped
+from jointwave.compare.scenes import shipped_files
 from jointwave.results.dataset import energy_residual
 
 REFEREES = {
@@ -96,7 +96,7 @@ def added_to(items, release):
     after each of them. Long ones come before short ones: near the end, processes take tests from
     one another."""
     # tests/hard holds hard scenes, by every scheme.
-    files, found = {path for path in shipped() if path.parent.name != "hard"}, []
+    files, found = {path for path in shipped_files() if path.parent.name != "hard"}, []
     items = sorted(items, key=lambda item: item.path.suffix == ".toml" and _is_short(item.path))
     for item, after in zip(items, [*items[1:], None], strict=True):
         found.append(item)

@@ -16,16 +16,25 @@ UNDERLINE = re.compile(r"^-{3,}$")
 def page(root: Path, line: str) -> str:
     """Return the public functions and classes of a module as Markdown.
 
-    line : the module's dotted name, `as` the name that users import from, then what is wanted;
-        all that is public where nothing is named.
+    line : the module's dotted name, `as` the name that users import from, then what is wanted,
+        defined there or imported.
     """
     module, *wanted = line.split()
-    tree = ast.parse((root / f"{module.replace('.', '/')}.py").read_text(encoding="utf-8"))
-    found = {n.name: n for n in tree.body if isinstance(n, Documented)}
-    if wanted[:1] == ["as"]:
-        module, wanted = wanted[1], wanted[2:]
-    names = wanted or [name for name in found if not name.startswith("_")]
-    return "\n\n".join(_entry(module, found[name]) for name in names)
+    shown, wanted = (wanted[1], wanted[2:]) if wanted[0] == "as" else (module, wanted)
+    return "\n\n".join(_entry(shown, _definition(root, module, name)) for name in wanted)
+
+
+def _definition(root: Path, module: str, name: str) -> Documented:
+    """Return the definition of a name of a module, which may import it from another one."""
+    at = root / module.removeprefix("jointwave.").replace(".", "/")
+    files = at.with_suffix(".py"), at / "__init__.pyi", at / "__init__.py"
+    source = next(file for file in files if file.is_file()).read_text(encoding="utf-8")
+    for node in ast.parse(source).body:
+        if isinstance(node, Documented) and node.name == name:
+            return node
+        if isinstance(node, ast.ImportFrom) and any(one.name == name for one in node.names):
+            return _definition(root, str(node.module), name)
+    raise KeyError(f"{module} has no {name}")
 
 
 def _entry(module: str, node: Documented) -> str:

@@ -20,7 +20,7 @@ from jointwave.compare.cli.options import (
     load,
 )
 from jointwave.compare.runs.checkpoint.lock import locked
-from jointwave.compare.scenes import names
+from jointwave.compare.scenes import shipped
 
 
 @app.command()
@@ -130,7 +130,7 @@ def report(
         typer.Argument(
             metavar="SCENE",
             help="Scene files or shipped scenes (default: the figures of Guo & Li (2002)).",
-            autocompletion=names,
+            autocompletion=shipped,
         ),
     ] = None,
     out: OutOption = Path("report"),

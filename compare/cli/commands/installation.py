@@ -7,7 +7,7 @@ import typer
 from jointwave.cases.errors import SceneError
 from jointwave.compare.cli import terminal
 from jointwave.compare.cli.options import JsonOption, app
-from jointwave.compare.scenes import names
+from jointwave.compare.scenes import shipped
 
 
 @app.command()
@@ -19,7 +19,7 @@ def new(
             "--from",
             metavar="SCENE",
             help="Copy this scene with its comments and files.",
-            autocompletion=names,
+            autocompletion=shipped,
         ),
     ] = None,
     rock_mass: Annotated[

@@ -33,7 +33,7 @@ from jointwave.compare.cli.options import (
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.runs.checkpoint.signals import watched
 from jointwave.compare.runs.processes import started
-from jointwave.compare.scenes import find, names
+from jointwave.compare.scenes import find, shipped
 from jointwave.compare.solvers.dem import DEM
 
 
@@ -42,7 +42,7 @@ def list_scenes(as_json: JsonOption = False) -> None:
     """List the shipped scenes and their variants."""
     facts: list[dict[str, Any]] = [
         {"scene": name, "title": scenes[0].title, "variants": [one.name for one in scenes[1:]]}
-        for name, scenes in ((name, cases.load(find(name))) for name in names())
+        for name, scenes in ((name, cases.load(find(name))) for name in shipped())
     ]
     if as_json:
         terminal.print_json(facts)

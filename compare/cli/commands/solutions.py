@@ -99,7 +99,7 @@ def compare(
     for one in scenes:
         with terminal.progress(one.name or one.title) as advance:
             if shows_all:
-                found.append(comparison.compare(one, advance, spectral, curves, align))
+                found.append(comparison.compare(one, curves, advance, align, spectral))
             else:
                 found.append(comparison.solved(one, deciding(one), advance))
     if out is not None:
@@ -128,7 +128,7 @@ def figure(
     installed fonts. Without --engine, all solvers that apply are drawn.
     """
     from jointwave.compare.figures import paper
-    from jointwave.compare.figures.charts.waveforms import draw_solutions
+    from jointwave.compare.figures.charts import waveforms
     from jointwave.compare.figures.export import write_drawing
     from jointwave.compare.figures.style import printed
     from jointwave.compare.runs import jobs
@@ -142,7 +142,7 @@ def figure(
     for one in scenes:
         with terminal.progress(one.name or one.title) as advance:
             found.append(paper.solve(one, runs, curves, advance))
-    drawn = draw_solutions(found, False, rc)
+    drawn = waveforms.figure(found, width, font_size)
     terminal.say(f"wrote {write_drawing(out, drawn, scenes[0].title, rc)}")
 
 

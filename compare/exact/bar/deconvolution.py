@@ -20,6 +20,7 @@ import xarray as xr
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.scene_type import AnyScene, pillar_of
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar import equivalent_bar, jointed_bar
 from jointwave.compare.exact.bar.transfer import Bar, RockFrom, end_of, transfer
@@ -31,7 +32,7 @@ HELD = (
 )
 
 
-def deconvolve(scene: Scene, surface: xr.DataArray, water_level: float = 1e-3) -> xr.DataArray:
+def deconvolve(scene: AnyScene, surface: xr.DataArray, water_level: float = 1e-3) -> xr.DataArray:
     """Return the wave incident on a column's quiet start, from the motion of its free end.
 
     It can serve as the load of a compliant base (`load.quantity`). Unit and sampling interval are
@@ -44,11 +45,11 @@ def deconvolve(scene: Scene, surface: xr.DataArray, water_level: float = 1e-3) -
         the whole motion: a truncated record makes the end of the result wrong.
     water_level : w, relative to the largest |H|: frequencies with a lower |H| are attenuated.
 
-    Raises SceneError if the column is not linear.
+    Raises SceneError if the scene is no pillar or the column is not linear.
     """
     from scipy.fft import next_fast_len
 
-    bar, impedance = _column(scene)
+    bar, impedance = _column(pillar_of(scene, "deconvolve"))
     n, time = surface.sizes["time"], surface.time.values
     dt = (time[-1] - time[0]) / (n - 1)
     lead = ceil(_crossing(bar) / dt)

@@ -2,6 +2,7 @@
 separate scale: every solution of a variant, or the variants of one engine, as in the paper.
 """
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from jointwave.compare.engines import ENGINES, in_order
 from jointwave.compare.figures.charts.axes import chart, label_of, set_heading, share
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.panels import Panel, curve_table, in_rows, panels
-from jointwave.compare.figures.style import PALE, RC, Style, given_style, style
+from jointwave.compare.figures.style import PALE, RC, Style, given_style, printed, style
 from jointwave.compare.figures.units import DRAWN, UNITS, Unit, unit_for
 from jointwave.compare.misfit.pairs import Comparison
 
@@ -88,6 +89,16 @@ def waveforms(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
         f"thin and dark. Dotted: the reference. {BELOW}"
     )
     return [SceneFigure(f"{name}-variants", title, caption, figure, table), every]
+
+
+def figure(
+    comparisons: Sequence[Comparison], width: float = 190.0, font_size: float = 8.0
+) -> Figure:
+    """Return a figure for a paper of a scene's comparisons, one for each variant.
+
+    width : mm. font_size : points.
+    """
+    return draw_solutions(list(comparisons), False, printed(width, font_size))
 
 
 def draw_solutions(

@@ -8,7 +8,7 @@ import pytest
 
 from jointwave.cases.schema.keys import keys
 from jointwave.compare.cli.program import main
-from jointwave.compare.scenes import shipped
+from jointwave.compare.scenes import shipped_files
 
 SCENE = "guo-li-2002/fig-03"
 
@@ -41,7 +41,7 @@ def test_commands_and_options(complete):
 
 
 def test_scenes_by_name(complete):
-    names = [f"{path.parent.name}/{path.stem}" for path in shipped()]
+    names = [f"{path.parent.name}/{path.stem}" for path in shipped_files()]
     assert complete("jointwave run ") == names
     assert SCENE in complete("jointwave explain guo")
     assert complete("jointwave new x --from nothing") == []

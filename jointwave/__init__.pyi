@@ -1,0 +1,31 @@
+"""The public names of jointwave, each from the module that defines it."""
+
+from jointwave.cases.errors import SceneError as SceneError
+from jointwave.cases.errors import StoppedError as StoppedError
+from jointwave.cases.errors import UnstableError as UnstableError
+from jointwave.cases.material.calibrate import properties as properties
+from jointwave.cases.material.closure import bandis_closure as bandis_closure
+from jointwave.cases.schema.scene import Scene as Scene
+from jointwave.compare.engines import simulate as simulate
+from jointwave.compare.exact.bar.deconvolution import deconvolve as deconvolve
+from jointwave.compare.figures.charts.waveforms import figure as figure
+from jointwave.compare.misfit.external import read_curves as read_curves
+from jointwave.compare.misfit.metrics import misfit as misfit
+from jointwave.compare.misfit.ranking import solvers as solvers
+from jointwave.compare.readings import arias_intensity as arias_intensity
+from jointwave.compare.readings import dispersion as dispersion
+from jointwave.compare.readings import dispersion_theory as dispersion_theory
+from jointwave.compare.readings import peak_velocity as peak_velocity
+from jointwave.compare.readings import peak_velocity_map as peak_velocity_map
+from jointwave.compare.readings import quality_factor as quality_factor
+from jointwave.compare.readings import recording as recording
+from jointwave.compare.readings import response_spectrum as response_spectrum
+from jointwave.compare.readings import transfer_function as transfer_function
+from jointwave.compare.readings import wave_speed as wave_speed
+from jointwave.compare.report.verdict import verdicts as verdicts
+from jointwave.compare.runs.comparison import compare as compare
+from jointwave.compare.scenes import load as load
+from jointwave.compare.scenes import load_variants as load_variants
+from jointwave.compare.scenes import shipped as shipped
+from jointwave.compare.studies.fit import fit as fit
+from jointwave.compare.studies.plan import plan as plan
