@@ -27,7 +27,7 @@ def _show(one: Plan) -> None:
         say(f"{asked} %: missed, no engine's model is near enough to the finest physics in time")
         return
     say(f"numerical error: from {_named(best.reference)}, the engine's own model")
-    errors = [percent(x) for x in (best.numerical, best.modelling, best.misfit, best.worst)]
+    errors = [percent(x) for x in (best.numerical, best.modelling, best.misfit, one.misfit)]
     columns = ["numerical, %", "modelling, %", "sum, %", "with smaller steps, %", "stepping, s"]
     show_table(columns, [[*errors, f"{best.seconds:.3g}"]])
     say(f"{best.elements.name} {' '.join(f'--set {option}' for option in best.options)}")
@@ -37,16 +37,15 @@ def _show(one: Plan) -> None:
 
 def _named(reference: Reference) -> str:
     """Describe the reference of errors, its accuracy, and its time limit."""
-    until = reference.result.attrs.get("known_until")
-    words = "" if until is None else f", known until {float(until):.3g} s"
-    if reference.error:
-        words = f", known to {percent(reference.error)} %{words}"
     how = f"{reference.name} at " if reference.settings else "the exact solution "
-    return f"{how}{reference.settings or reference.name}{words}"
+    words = f"{how}{reference.settings or reference.name}"
+    if reference.error:
+        words += f", known to {percent(reference.error)} %"
+    until = reference.result.attrs.get("known_until")
+    return words if until is None else f"{words}, known until {float(until):.3g} s"
 
 
 def _facts(one: Plan) -> dict[str, Any]:
-    best = one.chosen
     return {
         "variant": one.scene.name,
         "reference": _reference_facts(one.finest) | {"reason": one.reason},
@@ -54,8 +53,7 @@ def _facts(one: Plan) -> dict[str, Any]:
         "runs": [_run_facts(run) for run in one.runs],
         "skipped": one.skipped,
         "met": one.is_met,
-        "engine": best and best.elements.name,
-        **({"own": _reference_facts(best.reference), **_run_facts(best)} if best else {}),
+        **(_run_facts(one.chosen) if one.chosen else {"engine": None}),
     }
 
 
@@ -66,4 +64,5 @@ def _reference_facts(reference: Reference) -> dict[str, Any]:
 
 def _run_facts(run: PlannedRun) -> dict[str, Any]:
     numbers = {key: getattr(run, key) for key in ("numerical", "modelling", "misfit", "seconds")}
-    return {"engine": run.elements.name, "set": run.options, **numbers}
+    about = {"engine": run.elements.name, "set": run.options, **numbers}
+    return about | {"own": _reference_facts(run.reference)}

@@ -126,7 +126,6 @@ class Solver:
     prepare : of (scene), to what is known before a run; raises SceneError as the run would.
     distances : by kind, the solvers whose distance from this one is measured, and what each is
         made of.
-    arguments : names of the arguments that `run` takes beside the scene.
     engine, model : as --engine and --model select it; `engine` of the engines is also their table
         of [numerics].
     schemes : of time steps. per_block : whether a step's cost is counted in blocks, else in
@@ -147,7 +146,6 @@ class Solver:
     discretised: bool = True
     prepare: Callable[[Any], Prepared] = without_steps
     distances: Mapping[Kind, Mapping[str, str]] | None = None
-    arguments: tuple[str, ...] = ()
     engine: str = "exact"
     model: str | None = None
     schemes: tuple[str, ...] = ()

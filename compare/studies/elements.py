@@ -16,6 +16,7 @@ from jointwave.compare.runs import timings
 from jointwave.compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.solvers.record import Prepared
+from jointwave.compare.studies.store import FAILURES
 
 COARSEST = 0.9  # of the critical step, explicit
 #: Rigid blocks and, by their order, elements in the length of a rock mass's slowest waves, at the
@@ -26,6 +27,11 @@ UNTIMED, UNTIMED_IMPLICIT = 1e-9, 5e-7
 EXPLICIT: dict[str, Any] = {"scheme": "explicit"}
 #: Without numerical damping: only the accuracy of the waveforms counts here.
 IMPLICIT: dict[str, Any] = {"scheme": "implicit", "spectral_radius": 1.0}
+#: Least growth in degrees of freedom of elements of half the size: 5 / 3 along a block of one
+#: element of order 2, 25 / 9 in a quadrilateral. Blocks smaller than the elements do not grow.
+GROWN = {"pillar": 1.5, "rock mass": 2.5}
+MOST_HALVINGS = 4  # of elements at once, until there are more of them
+HALF = {"elements_per_block": 2, "size": 0.5, "block": 0.5}  # factors for half the size
 
 
 class Elements(NamedTuple):
@@ -52,30 +58,37 @@ class Elements(NamedTuple):
         return {k: v for k, v in self.changes.items() if k == "block"}
 
     @property
-    def is_implicit(self) -> bool:
-        """Whether its steps are not bounded by a critical one."""
-        return self.changes.get("scheme") == "implicit"
-
-    @property
     def numerics(self) -> dict[str, Any]:
         """The keys of the engine's table, with the step."""
         dt = self.scene.interval / self.per_sample
-        if self.is_implicit:
-            per_period = _period(self.scene) / dt * (1 - 1e-6)
-            return self.changes | {"steps_per_period": float(f"{per_period:.7g}")}
-        return self.changes | {"step_fraction": float(f"{dt / self.run.critical * (1 + 1e-6):.7g}")}
+        if self.run.scheme == "implicit":
+            key, value = "steps_per_period", _period(self.scene) / dt * (1 - 1e-6)
+        else:
+            key, value = "step_fraction", dt / self.run.critical * (1 + 1e-6)
+        return self.changes | {key: float(f"{value:.7g}")}
 
     @property
     def seconds(self) -> float:
         """The expected seconds of stepping, by the rates of this machine."""
         steps = self.per_sample * (len(sample_times(self.scene)) - 1)
         known = timings.stepping(self.name, self.scene, self.run._replace(steps=steps))
-        each = UNTIMED_IMPLICIT if self.is_implicit else UNTIMED
+        each = UNTIMED_IMPLICIT if self.run.scheme == "implicit" else UNTIMED
         return each * steps * self.run.freedoms if known is None else known
 
-    def with_steps(self, per_sample: int) -> "Elements":
-        """Return the same elements with so many steps per sample."""
-        return self._replace(per_sample=per_sample)
+    def finer(self) -> "list[Elements]":
+        """Return elements, or blocks, of half the size or less; none where their mesh is given or
+        they cannot be had, for lack of memory."""
+        changes = self.changes
+        for _ in range(MOST_HALVINGS):
+            if (changes := halved(changes)) == self.changes:
+                break
+            try:
+                found = elements(self.scene, self.name, changes)
+            except FAILURES:
+                break
+            if found.run.freedoms >= GROWN[self.scene.kind] * self.run.freedoms:
+                return [found]
+        return []
 
     def solve(self) -> xr.Dataset:
         """Return the result of its run, whose rate is kept for later estimates."""
@@ -96,24 +109,23 @@ def elements(scene: AnyScene, name: str, changes: dict[str, Any]) -> Elements:
     asked = configured(scene, name, changes)
     if not (answer := applies(name, asked)):
         raise SceneError(scene.where, "", None, answer.reason)
-    made = Elements(scene, name, changes, solver(name).prepare(asked))
-    if made.is_implicit:
-        return made
-    return made.with_steps(ceil(scene.interval / (COARSEST * made.run.critical) * (1 - 1e-9)))
+    run = solver(name).prepare(asked)
+    longest = scene.interval if run.scheme == "implicit" else COARSEST * run.critical
+    return Elements(scene, name, changes, run, ceil(scene.interval / longest * (1 - 1e-9)))
 
 
 def coarsest(scene: AnyScene) -> list[tuple[str, dict[str, Any]]]:
     """Return the engines with their schemes and coarsest elements, as changes of [numerics]."""
-    found: list[tuple[str, dict[str, Any]]] = []
     if isinstance(scene, Scene):
-        found += [(DEM.name, {"scheme": scheme}) for scheme in DEM.schemes]
+        rigid: list[dict[str, Any]] = [{"scheme": scheme} for scheme in DEM.schemes]
     else:
-        found += [(DEM.name, {}), (DEM.name, {"block": _part(scene, BLOCKS_IN_WAVE)})]
-    for scheme in (EXPLICIT, IMPLICIT):
-        for order in ELEMENTS_IN_WAVE:
-            both = (JOINTED_ROCK.name, EQUIVALENT_ROCK.name)
-            found += [(name, scheme | rock(scene, order)) for name in both]
-    return found
+        rigid = [{}, {"block": _part(scene, BLOCKS_IN_WAVE)}]
+    return [(DEM.name, changes) for changes in rigid] + [
+        (name, scheme | rock(scene, order))
+        for scheme in (EXPLICIT, IMPLICIT)
+        for order in ELEMENTS_IN_WAVE
+        for name in (JOINTED_ROCK.name, EQUIVALENT_ROCK.name)
+    ]
 
 
 def rock(scene: AnyScene, order: int) -> dict[str, Any]:
@@ -124,11 +136,8 @@ def rock(scene: AnyScene, order: int) -> dict[str, Any]:
 
 
 def halved(changes: dict[str, Any]) -> dict[str, Any]:
-    """Return the changes for blocks or elements of half the size; empty where these are given."""
-    if "elements_per_block" in changes:
-        return changes | {"elements_per_block": 2 * changes["elements_per_block"]}
-    finer = {k: float(f"{v / 2:.3g}") for k, v in changes.items() if k in ("size", "block")}
-    return changes | finer if finer else {}
+    """Return the changes for blocks or elements of half the size; the same if these are given."""
+    return changes | {k: HALF[k] * v for k, v in changes.items() if k in HALF}
 
 
 def _part(scene: AnyScene, count: int) -> float:

@@ -14,7 +14,7 @@ import pandas as pd
 
 from jointwave.compare.misfit.metrics import JUDGED
 from jointwave.compare.studies.measure import PointRow
-from jointwave.compare.studies.study import ARGUMENTS, Curve, FineRun, Study
+from jointwave.compare.studies.study import Curve, FineRun, Study
 from jointwave.compare.text import in_seconds, percent
 
 TARGETS = (0.1, 0.01, 1e-3, 1e-4)
@@ -49,8 +49,8 @@ def _held(table: pd.DataFrame, error: str) -> pd.Series:
 
 def _physics(settings: dict[str, Any]) -> str:
     """Return the varied keys other than numerics and block size: these change the problem."""
-    free = {"pillar.block", *ARGUMENTS}
-    kept = {k: v for k, v in settings.items() if k not in free and not k.startswith("numerics.")}
+    free = ("pillar.block", "numerics.")
+    kept = {k: v for k, v in settings.items() if not k.startswith(free)}
     return repr(sorted(kept.items()))
 
 

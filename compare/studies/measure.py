@@ -7,11 +7,7 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from jointwave.cases.errors import SceneError
-from jointwave.cases.scene_type import AnyScene, pillar_of
-from jointwave.compare.engines import applies, solve, solver
-from jointwave.compare.solvers.record import Answer
-from jointwave.compare.studies.methods import METHODS
+from jointwave.compare.engines import solve
 from jointwave.compare.studies.reference import errors
 from jointwave.compare.studies.store import FAILURES
 from jointwave.compare.studies.study import StudyPoint
@@ -74,25 +70,10 @@ def measure(point: StudyPoint) -> PointRow:
 
 def _run(point: StudyPoint) -> xr.Dataset:
     """Return the result of a point; raises SceneError if its method does not apply."""
-    method, scene = point.curve.method, point.scene
-    if not (answer := method_applies(method, scene)):
-        raise SceneError(scene.title, "", None, f"{method} does not apply: {answer.reason}")
-    began = perf_counter()
-    if method in METHODS:
-        result = METHODS[method].solve(pillar_of(scene, method), **point.arguments)
-    elif point.arguments:
-        result = solver(method).run(scene, **point.arguments)
-    else:
-        result = solve(method, scene)
+    scene, began = point.scene, perf_counter()
+    result = solve(point.curve.method, scene)
     result.attrs.setdefault("seconds_stepping", perf_counter() - began)  # of exact solutions
     return result
-
-
-def method_applies(method: str, scene: AnyScene) -> Answer:
-    """Return whether a method applies to a scene, or the reason why not."""
-    if method in METHODS:
-        return METHODS[method].applies(pillar_of(scene, method))
-    return applies(method, scene)
 
 
 def _counts(result: xr.Dataset) -> dict[str, float]:

@@ -5,9 +5,9 @@ the modelling one, of that model from the finest physics. Errors that happen to 
 no accuracy, and a run meets the misfit only if all runs of smaller steps do so, one at least.
 """
 
-from contextlib import suppress
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from math import ceil, inf
+from math import inf
 from time import perf_counter
 from typing import Any, NamedTuple
 
@@ -19,13 +19,11 @@ from jointwave.compare.engines import ENGINES, Progress
 from jointwave.compare.misfit import ranking
 from jointwave.compare.misfit.metrics import JUDGED, misfit
 from jointwave.compare.studies.elements import (
-    COARSEST,
     EXPLICIT,
     Elements,
     coarsest,
     configured,
     elements,
-    halved,
     label,
     plain,
     rock,
@@ -34,31 +32,14 @@ from jointwave.compare.studies.reference import Reference, exact_reference
 from jointwave.compare.studies.store import FAILURES, reason_of
 
 LONGEST = {"pillar": 20.0, "rock mass": 60.0}  # s of stepping: no run is longer, unless asked for
-FINE = 0.4  # of the critical step, at the coarsest, in a run that may become a reference
-LEVELS = 10
-#: Least growth in degrees of freedom of elements of half the size: 5 / 3 along a block of one
-#: element of order 2, 25 / 9 in a quadrilateral. Blocks smaller than the elements do not grow.
-GROWN = {"pillar": 1.5, "rock mass": 2.5}
-MOST_HALVINGS = 4  # of elements at once, until there are more of them
 STALLED = 0.8  # of the error before: smaller steps no longer help
 
 
-class OwnModel(NamedTuple):
-    """The model of an engine: the reference of its numerical errors, and its distance from the
-    finest physics at most; infinite, with the reason, where no reference was found."""
-
-    reference: Reference
-    modelling: float
-    reason: str
-
-
-@dataclass
-class PlannedRun:
+class PlannedRun(NamedTuple):
     """A run: its engine, elements and step, its numerical and modelling error with those of their
     references, and its seconds of stepping.
 
-    reference : of the numerical error. worst : the largest sum of errors of this run and of all
-    smaller steps of its elements. is_confirmed : whether a smaller step was run.
+    reference : of the numerical error.
     """
 
     elements: Elements
@@ -66,8 +47,6 @@ class PlannedRun:
     numerical: float
     modelling: float
     seconds: float
-    worst: float = 0.0
-    is_confirmed: bool = False
 
     @property
     def misfit(self) -> float:
@@ -86,7 +65,7 @@ class Plan:
     """The runs of a scene, from cheap to dear, and the choice among them.
 
     asked : the misfit. limit : s of stepping, None without. finest : the finest physics, and the
-    reason for it. own : the engines' models by name. skipped : what could not or need not be run,
+    reason for it. own : what `own_model` has found. skipped : what could not or need not be run,
     with the reason. planning : s.
     """
 
@@ -95,7 +74,7 @@ class Plan:
     limit: float | None
     finest: Reference
     reason: str
-    own: dict[str, OwnModel] = field(default_factory=dict)
+    own: dict[str, tuple[Reference, float] | SceneError] = field(default_factory=dict)
     runs: list[PlannedRun] = field(default_factory=list)
     skipped: dict[str, str] = field(default_factory=dict)
     planning: float = 0.0
@@ -105,32 +84,40 @@ class Plan:
         """The cheapest run that meets the misfit, else the most accurate, of several the finest;
         within the limit. None without any."""
         runs = [run for run in self.runs if self.limit is None or run.seconds <= self.limit]
-        meeting = [run for run in runs if self._is_met_by(run)]
-        if meeting:
+        if meeting := [run for run in runs if self._is_met_by(run)]:
             return min(meeting, key=lambda run: run.seconds)
-        return min(runs, key=lambda run: (run.worst, -run.elements.per_sample), default=None)
+        return min(runs, key=lambda run: (self.worst(run), -run.elements.per_sample), default=None)
 
     @property
     def misfit(self) -> float:
         """Worst sum of numerical and modelling error of the chosen run; inf without one."""
-        return inf if self.chosen is None else self.chosen.worst
+        return inf if self.chosen is None else self.worst(self.chosen)
 
     @property
     def is_met(self) -> bool:
         """Whether the chosen run meets the misfit."""
         return self.chosen is not None and self._is_met_by(self.chosen)
 
-    def add(self, run: PlannedRun) -> list[PlannedRun]:
-        """Add a run of smaller steps than those of its elements before, which are returned."""
-        alike = [one for one in self.runs if one.elements.label == run.elements.label]
-        for one in alike:
-            one.worst, one.is_confirmed = max(one.worst, run.misfit), True
-        run.worst = run.misfit
-        self.runs.append(run)
-        return alike
+    @property
+    def affordable(self) -> float:
+        """The expected seconds above which a further run is useless, or too long."""
+        if self.chosen and self.is_met:
+            return self.chosen.elements.seconds
+        if self.limit is not None:
+            return self.limit
+        return LONGEST[self.scene.kind] - sum(run.seconds for run in self.runs)
+
+    def worst(self, run: PlannedRun) -> float:
+        """Return the largest sum of errors of a run and of all smaller steps of its elements."""
+        return max(one.misfit for one in [run, *self._finer(run)])
 
     def _is_met_by(self, run: PlannedRun) -> bool:
-        return run.is_confirmed and run.worst <= self.asked
+        return bool(self._finer(run)) and self.worst(run) <= self.asked
+
+    def _finer(self, run: PlannedRun) -> list[PlannedRun]:
+        own, steps = run.elements.label, run.elements.per_sample
+        alike = [one for one in self.runs if one.elements.label == own]
+        return [one for one in alike if one.elements.per_sample > steps]
 
 
 def plan(
@@ -145,8 +132,7 @@ def plan(
     found = ranking.finest(_applicable(scene), scene)
     if found is None:
         raise SceneError(scene.where, "", None, "no solver resolves all physics of the scene")
-    finest = _reference(scene, found.name, {}, misfit)
-    made = Plan(scene, misfit, seconds, finest, found.reason)
+    made = Plan(scene, misfit, seconds, _reference(scene, found.name, {}, misfit), found.reason)
     queue: list[Elements] = []
     for name, changes in coarsest(scene):
         try:
@@ -156,76 +142,55 @@ def plan(
     while queue:
         queue.sort(key=lambda one: one.seconds)
         one = queue.pop(0)
-        if one.seconds > _affordable(made):
+        if one.seconds > made.affordable:
             break
         try:
             queue += _tried(made, one)
         except FAILURES as error:
             made.skipped[one.label] = reason_of(error)
+            queue += one.finer() if one.model else []  # smaller blocks are another model
         if progress:
             progress(1 - 0.9 ** len(made.runs))
     made.planning = perf_counter() - began
     return made
 
 
-def _affordable(made: Plan) -> float:
-    """Return the seconds above which a run is useless, or too long."""
-    if made.chosen and made.is_met:
-        return made.chosen.elements.seconds
-    if made.limit is not None:
-        return made.limit
-    return LONGEST[made.scene.kind] - sum(run.seconds for run in made.runs)
-
-
 def _tried(made: Plan, one: Elements) -> list[Elements]:
     """Run elements, and with half the step if they meet the misfit.
 
-    Return what is to be tried next: half the step and, the first time, elements of half the size.
+    Return what is to be tried next: elements of half the size, the first time, and half the step.
+    Raises SceneError if their model cannot meet the misfit.
     """
-    reference, modelling, reason = own_model(made, one)
-    least = modelling + reference.error
-    if modelling == inf or (least >= made.asked and made.limit is None):
-        made.skipped[one.label] = reason
-        return _finer(one) if one.model else []
+    reference, modelling = own_model(made, one)
+    if modelling + reference.error >= made.asked and made.limit is None:
+        far = f"the modelling error of {label(one.name, one.model)} is already"
+        raise SceneError(made.scene.where, "", None, f"{far} {100 * modelling:.3g} %")
     result = one.solve()
     numerical = misfit(result, reference.result) + reference.error
     seconds = float(result.attrs["seconds_stepping"])
     run = PlannedRun(one, reference, numerical, modelling, seconds)
-    before = made.add(run)
-    missed = [other for other in before if other.misfit > made.asked]
-    half = one.with_steps(2 * one.per_sample)
+    before = [other for other in made.runs if other.elements.label == one.label]
+    made.runs.append(run)
+    smaller, half = [] if before else one.finer(), one._replace(per_sample=2 * one.per_sample)
     if run.misfit <= made.asked:
-        return [] if before and before[-1].misfit <= made.asked else _tried(made, half)
-    if missed and numerical > STALLED * missed[-1].numerical:
-        return []
-    return [half] if missed else [half, *_finer(one)]
+        is_confirmed = before and before[-1].misfit <= made.asked
+        return smaller + ([] if is_confirmed else _tried(made, half))
+    is_stalled = before and numerical > STALLED * before[-1].numerical
+    return smaller + ([] if is_stalled else [half])
 
 
-def _finer(one: Elements) -> list[Elements]:
-    """Return elements, or blocks, of half the size or less; none where their mesh is given or does
-    not fit in memory."""
-    changes = one.changes
-    for _ in range(MOST_HALVINGS):
-        if not (changes := halved(changes)):
-            break
-        with suppress(*FAILURES):
-            finer = elements(one.scene, one.name, changes)
-            if finer.run.freedoms >= GROWN[one.scene.kind] * one.run.freedoms:
-                return [finer]
-    return []
-
-
-def own_model(made: Plan, one: Elements) -> OwnModel:
-    """Return the model of elements, found once."""
+def own_model(made: Plan, one: Elements) -> tuple[Reference, float]:
+    """Return the reference of the numerical errors of elements, and the distance of their model
+    from the finest physics at most, found once; raises SceneError without a reference."""
     key = label(one.name, one.model)
     if key not in made.own:
         try:
-            reference, modelling = _found_own(made, one)
-            reason = f"the modelling error of {key} is already {100 * modelling:.3g} %"
-            made.own[key] = OwnModel(reference, modelling, reason)
+            made.own[key] = _found_own(made, one)
         except SceneError as error:
-            made.own[key] = OwnModel(made.finest, inf, reason_of(error))
-    return made.own[key]
+            made.own[key] = error
+    if isinstance(found := made.own[key], SceneError):
+        raise found
+    return found
 
 
 def _found_own(made: Plan, one: Elements) -> tuple[Reference, float]:
@@ -250,51 +215,36 @@ def _reference(
     asked: float,
     finest: xr.Dataset | None = None,
 ) -> Reference:
-    """Return an exact solution, or a converged run of a model, each known to a tenth of a misfit.
+    """Return an exact solution, or a converged run of a model, known to a tenth of a misfit.
 
-    Raises SceneError if it is not.
+    Less suffices once the model is certain to be further than the misfit from the finest physics.
+    Raises SceneError if it is not known so well.
     """
-    if name in ENGINES:
-        return _converged(scene, name, model, asked, finest)
-    found = exact_reference(name, plain(scene))
-    if JUDGED * found.error > asked:
-        raise _not_known(scene, f"{name} knows itself", found.error, asked)
-    return found
+    is_run = name in ENGINES
+    for found in _runs(scene, name, model) if is_run else [exact_reference(name, plain(scene))]:
+        is_far = finest is not None and misfit(found.result, finest) - found.error > asked
+        if JUDGED * found.error <= asked or is_far:
+            return found
+    why = f"is known to {100 * found.error:.2g} %, not to {100 * asked / JUDGED:.2g} %"
+    why = f"{why}: ask for a larger --misfit" if found.error < inf else "has no finer run in reach"
+    raise SceneError(scene.where, "", None, f"{label(name, model)} {why}")
 
 
-def _converged(
-    scene: AnyScene, name: str, model: dict[str, Any], asked: float, finest: xr.Dataset | None
-) -> Reference:
-    """Return a model's run that differs little enough from the previous one.
+def _runs(scene: AnyScene, name: str, model: dict[str, Any]) -> Iterator[Reference]:
+    """Yield runs of a model, each of at most half the step, and of elements of half the size, of
+    the previous one.
 
-    Each has at most half the step, and half the elements' size, of the previous one. Its error is
-    at most the difference if the error falls at least in proportion to the step. A run also
-    suffices once its model is certain to be further from the finest physics than requested.
+    The error of a run is at most its distance from the previous one if errors fall at least in
+    proportion to the step.
     """
-    rigid, apart, before = ENGINES[name].has_rigid_blocks, inf, None
-    one = elements(scene, name, model if rigid else EXPLICIT | rock(scene, 2))
-    one = one.with_steps(ceil(one.per_sample * COARSEST / FINE))
-    for _ in range(LEVELS):
-        if before is not None and one.seconds > LONGEST[scene.kind]:
-            break
+    is_rigid, before = ENGINES[name].has_rigid_blocks, None
+    one = elements(scene, name, model if is_rigid else EXPLICIT | rock(scene, 2))
+    one = one._replace(per_sample=2 * one.per_sample)
+    while before is None or one.seconds <= LONGEST[scene.kind]:
         result = one.solve()
         apart = inf if before is None else misfit(before, result)
-        is_far = finest is not None and misfit(result, finest) - apart > asked
-        if JUDGED * apart < asked or is_far:
-            made = ", ".join(f"{k} {v}" for k, v in one.numerics.items())
-            return Reference(name, result, apart, made)
-        if not (finer := [one] if rigid else _finer(one)):
+        yield Reference(name, result, apart, ", ".join(f"{k} {v}" for k, v in one.numerics.items()))
+        if not (finer := [one] if is_rigid else one.finer()):
             break
-        fewest = 0 if rigid else ceil(finer[0].per_sample * COARSEST / FINE)
-        before, one = result, finer[0].with_steps(max(2 * one.per_sample, fewest))
-    what = f"no exact solution to plan by, and {label(name, model)} within "
-    what += f"{LONGEST[scene.kind]:g} s a run"
-    if apart == inf:
-        raise SceneError(scene.where, "", None, f"{what} has no finer elements to compare with")
-    raise _not_known(scene, f"{what} converges", apart, asked)
-
-
-def _not_known(scene: AnyScene, what: str, error: float, asked: float) -> SceneError:
-    """Return the error for a reference that is not accurate enough."""
-    share = f"to {100 * error:.2g} %, not to {100 * asked / JUDGED:.2g} %"
-    return SceneError(scene.where, "", None, f"{what} {share}: ask for a larger --misfit")
+        per_sample = 2 * max(one.per_sample, finer[0].per_sample)
+        before, one = result, finer[0]._replace(per_sample=per_sample)

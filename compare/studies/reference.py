@@ -10,7 +10,6 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import ENGINES, EXACT, applies, solve, solver
 from jointwave.compare.misfit.metrics import Pairing, pairings, relative_l2, worst
 from jointwave.compare.misfit.ranking import applicable, finest, own_exact
-from jointwave.compare.studies.methods import METHODS
 from jointwave.compare.studies.study import FINEST, NONE, FineRun, Study, StudyPoint
 from jointwave.results.dataset import scene_hash
 
@@ -50,8 +49,7 @@ def own_of(point: StudyPoint) -> str | FineRun | None:
     own, study, scene = point.curve.own, point.study, point.scene
     if own is not None:
         return finest_of(study) if own == FINEST else None if own == NONE else own
-    method = point.curve.method
-    engine = METHODS[method].ENGINE if method in METHODS else method
+    engine = point.curve.method
     exact = own_exact(engine, [name for name in EXACT if applies(name, scene)], scene)
     if exact or not isinstance(study.finest, FineRun):
         return exact

@@ -16,28 +16,23 @@ from pydantic import (
     ConfigDict,
     Field,
     ValidationError,
-    model_validator,
 )
 
 from jointwave import cases
 from jointwave.cases.errors import SceneError, nearest
 from jointwave.cases.files import read_toml
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import names, solver
+from jointwave.compare.engines import names
 from jointwave.compare.scenes import find
 from jointwave.compare.studies import IN_CODE, SHIPPED
-from jointwave.compare.studies.methods import METHODS
 
 LARGEST_FILE = 1_000_000  # bytes
 MOST_POINTS = 10_000
 FINEST, NONE = "finest", "none"  # references of errors other than solutions
-#: Settings that are arguments of a method, not keys of a scene, with their type.
-ARGUMENTS: dict[str, type[int] | type[float]] = {"n_terms": int, "rtol": float}
-LARGEST_ARGUMENT = 1e9
 
 
 def _is_known(name: Any) -> Any:
-    known = (*names(), *METHODS, FINEST, NONE)
+    known = (*names(), FINEST, NONE)
     if isinstance(name, str) and name not in known:
         raise ValueError(f"must be one of {', '.join(known)}")
     return name
@@ -77,8 +72,8 @@ class FineRun(StudyTable):
 class Curve(StudyTable):
     """One way to solve the scene, with its varied keys.
 
-    method : an engine, an exact solution, or one of `compare.studies.methods`.
-    vary : dotted keys and their values, all combinations; `n_terms` is an exact series' own.
+    method : an engine or an exact solution.
+    vary : dotted keys and their values, all combinations.
     each : dotted keys and their values: every combination is a curve of its own, whose label has
         the value in place of the key's last part in braces.
     own : the exact solution of the curve's own model, or a fine run of it, for its numerical
@@ -96,16 +91,6 @@ class Curve(StudyTable):
     each: Varied = {}
     own: Annotated[str | FineRun | None, KNOWN] = None
     order: float | None = None
-
-    @model_validator(mode="after")
-    def _arguments_are_positive(self) -> "Curve":
-        given = {key: [value] for key, value in self.changes.items()} | self.vary
-        for key in given.keys() & ARGUMENTS.keys():
-            kind = ARGUMENTS[key]
-            if not all(type(x) is kind and 0 < x < LARGEST_ARGUMENT for x in given[key]):
-                number = "whole numbers" if kind is int else "numbers"
-                raise ValueError(f"{key} must be {number} above 0, not {given[key]}")
-        return self
 
     def expanded(self) -> Iterator["Curve"]:
         """Yield the curves into which `each` expands this one."""
@@ -170,17 +155,9 @@ class StudyPoint:
     settings: dict[str, Any]
 
     @property
-    def arguments(self) -> dict[str, Any]:
-        """The settings that the method takes beside a scene, such as the terms of a series."""
-        method, given = self.curve.method, self.curve.changes | self.settings
-        taken = METHODS[method].ARGUMENTS if method in METHODS else solver(method).arguments
-        return {k: v for k, v in given.items() if k in taken}
-
-    @property
     def changes(self) -> dict[str, Any]:
         """The changes of the scene."""
-        given = self.curve.changes | self.settings
-        return {k: v for k, v in given.items() if k not in self.arguments}
+        return self.curve.changes | self.settings
 
     @property
     def physics(self) -> dict[str, Any]:
@@ -214,11 +191,10 @@ def load(name: str) -> Study:
         study = Study.model_validate(table)
     except ValidationError as error:
         first = error.errors()[0]
-        given = first["input"]
-        value = given if isinstance(given, str | int | float) or given == [] else None
-        key = ".".join(str(part) for part in first["loc"])
+        key, value = ".".join(map(str, first["loc"])), first["input"]
+        given = value if isinstance(value, str | int | float) else None
         allowed = first["msg"].removeprefix("Value error, ")
-        raise SceneError(str(path), key, value, allowed[0].lower() + allowed[1:]) from None
+        raise SceneError(str(path), key, given, allowed[0].lower() + allowed[1:]) from None
     except ValueError as error:
         raise SceneError(str(path), "", None, str(error)) from None
     except TypeError:

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from jointwave.compare.engines import Progress, names
+from jointwave.compare.engines import Progress
 from jointwave.compare.figures.export import blank, save
 from jointwave.compare.figures.style import style
 from jointwave.compare.runs.timings import machine
@@ -34,7 +34,6 @@ ERRORS = {
 }
 COSTS = {"seconds": "seconds of stepping", "work": "degrees of freedom x force evaluations"}
 MARKERS = "os^vDPX*<>hpd8H"
-OTHER = "#6b6b6b"  # colour of methods that are no solver
 LEGEND = (
     "Sum: numerical and modelling error with what their references are not known to; it counts. "
     f"Measured: from the finest physics; {CANCELS} where errors cancel, or a finer point is worse."
@@ -149,7 +148,7 @@ def _draw_panel(ax: Axes, table: pd.DataFrame, error: str, cost: str, name: str)
         method, found = some["method"].iloc[0], points[points["curve"] == curve]
         (line,) = ax.loglog(found[cost], found[error], MARKERS[k % len(MARKERS)], label=curve)
         line.set(gid=f"{name}-{k}", linestyle="-", linewidth=1.2, markersize=4.5)
-        line.set_color(style(method).colour if method in names() else OTHER)
+        line.set_color(style(method).colour)
     shown = "measured" if error == "total" else error
     crossed = done(table, shown, cost)
     crossed = crossed[crossed["cancels"] & ((error == "total") | crossed["total"].isna())]

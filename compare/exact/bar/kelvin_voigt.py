@@ -138,5 +138,4 @@ SOLVER = Solver(
     distances={
         Kind.NUMERICAL: {"continuum-equivalent": "the same, from the damped modes"},
     },
-    arguments=("n_terms",),
 )

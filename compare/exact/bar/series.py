@@ -130,5 +130,4 @@ SOLVER = Solver(
     line=thin("#b0307e", 4, (16, 18)),
     applies=applies,
     run=solve,
-    arguments=("n_terms",),
 )

@@ -75,8 +75,8 @@ def test_points_of_other_physics_are_not_finer_and_uncounted_ones_are_in_their_o
     rows = [
         row(total=0.1, work=1.0, settings=damped),
         row(total=0.2, work=2.0, settings=free),
-        row(total=0.1, curve="series", settings={"n_terms": 9}),
-        row(total=0.3, curve="series", settings={"n_terms": 18}),
+        row(total=0.1, curve="series", settings={"numerics.a": 9}),
+        row(total=0.3, curve="series", settings={"numerics.a": 18}),
     ]
     assert list(judged(rows)["held"]) == [0.1, 0.2, 0.3, 0.3]
 

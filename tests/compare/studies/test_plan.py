@@ -139,8 +139,11 @@ def test_a_scene_without_exact_solution_is_held_against_a_converged_run():
 
 
 def test_a_scene_whose_runs_do_not_converge_in_reach_is_refused(monkeypatch):
-    monkeypatch.setattr(plans, "LEVELS", 2)
-    with pytest.raises(SceneError, match=r"no exact solution to plan by, and dem .* converges to"):
+    monkeypatch.setitem(plans.LONGEST, "pillar", 0.0)
+    with pytest.raises(SceneError, match=r"dem has no finer run in reach"):
+        plan(short(**LOCAL), 1e-9)
+    monkeypatch.setitem(plans.LONGEST, "pillar", 1e-3)
+    with pytest.raises(SceneError, match=r"dem is known to .* %, not to 1e-08 %: ask for a larger"):
         plan(short(**LOCAL), 1e-9)
 
 
@@ -207,7 +210,7 @@ def test_a_rock_mass_is_planned_by_sizes_of_blocks_and_elements():
     assert found.finest.name == "oblique-joint" and found.misfit <= 0.008
     assert found.chosen.elements.name == "continuum-jointed"
     (first,) = (changes for name, changes in coarsest(scene) if name == "dem" and changes)
-    finer = plans.own_model(found, elements(scene, "dem", halved(first))).modelling
+    _, finer = plans.own_model(found, elements(scene, "dem", halved(first)))
     assert barred(found, rf"dem \(block {first['block']:g}\)") > 400 * finer > 4
     overrides = dict(parse_override(text) for text in found.chosen.options)
     overrides |= {"record.interval": scene.interval, "record.energy": False}
@@ -233,10 +236,10 @@ def test_blocks_between_spaced_joints_have_a_model_of_their_own():
     scene = cases.load_variant(find("rock-mass/brickwork"), "", changes)
     lattice = solve("block-lattice", plain(scene))
     made = Plan(scene, 0.1, None, Reference("continuum-jointed", lattice, 0.0, "a run"), "")
-    own = plans.own_model(made, elements(scene, "dem", {}))
-    assert own.reference.name == "block-lattice" and own.modelling == 0
-    cut = plans.own_model(made, elements(scene, "dem", {"block": 0.5}))
-    assert cut.reference.name == "dem" and cut.modelling > 0.01
+    own, modelling = plans.own_model(made, elements(scene, "dem", {}))
+    assert own.name == "block-lattice" and modelling == 0
+    cut, modelling = plans.own_model(made, elements(scene, "dem", {"block": 0.5}))
+    assert cut.name == "dem" and modelling > 0.01
 
 
 def test_a_reference_of_small_blocks_has_elements_of_half_the_size_each(monkeypatch):
@@ -250,7 +253,7 @@ def test_a_reference_of_small_blocks_has_elements_of_half_the_size_each(monkeypa
 
     monkeypatch.setattr(candidates, "solve", noted)
     scene = cases.load_variant(find("rock-mass/brickwork"), "", BRICKS | {"time.duration": 0.02})
-    reference = plans._converged(scene, "continuum-jointed", {}, 20.0, None)
+    reference = plans._reference(scene, "continuum-jointed", {}, 20.0)
     first, second = (one.attrs["degrees_of_freedom"] for one in found)
     assert second > 2.5 * first and 0 < reference.error < 2
 
@@ -260,7 +263,9 @@ def made_of(*runs):
     known = {run[0]: elements(short(), "dem", {})._replace(changes={"id": run[0]}) for run in runs}
     found = Plan(short(), 0.01, None, Reference("lattice", None, 0.0), "")
     for name, n, error, cost in runs:
-        found.add(PlannedRun(known[name].with_steps(n), found.finest, error, 0.0, cost))
+        found.runs.append(
+            PlannedRun(known[name]._replace(per_sample=n), found.finest, error, 0.0, cost)
+        )
     return found
 
 
@@ -302,10 +307,10 @@ def test_a_reference_that_does_not_know_itself_well_enough_judges_nothing(monkey
     bounded = exact.assign(stress_error=("stress_y", [2e-4 * rms]))
     monkeypatch.setattr(references, "solve", lambda name, asked: bounded)
     monkeypatch.setattr(references, "_solutions", {})
-    with pytest.raises(SceneError, match=r"jointed-bar knows itself to 0.02 %, not to 0.01 %"):
+    with pytest.raises(SceneError, match=r"jointed-bar is known to 0.02 %, not to 0.01 %"):
         plan(scene, 1e-3)
     monkeypatch.undo()
     reference = Reference("jointed-bar", bounded, 2e-4)
     found = Plan(scene, 1e-2, None, reference, "")
-    own = plans.own_model(found, elements(scene, "continuum-jointed", rock(scene, 1)))
-    assert own.modelling == 0 and own.reference.error == 2e-4
+    own, modelling = plans.own_model(found, elements(scene, "continuum-jointed", rock(scene, 1)))
+    assert modelling == 0 and own.error == 2e-4
