@@ -138,12 +138,15 @@ def test_a_scene_without_exact_solution_is_held_against_a_converged_run():
     assert found.misfit <= 0.01 and found.chosen.modelling == 0
 
 
-def test_a_scene_whose_runs_do_not_converge_in_reach_is_refused(monkeypatch):
-    monkeypatch.setitem(plans.LONGEST, "pillar", 0.0)
-    with pytest.raises(SceneError, match=r"dem has no finer run in reach"):
-        plan(short(**LOCAL), 1e-9)
-    monkeypatch.setitem(plans.LONGEST, "pillar", 1e-3)
-    with pytest.raises(SceneError, match=r"dem is known to .* %, not to 1e-08 %: ask for a larger"):
+@pytest.mark.parametrize(
+    ("seconds", "why"),
+    [([99], "has no finer run in reach"), ([0, 99], "is known to .* %, not to .* larger --misfit")],
+)
+def test_a_scene_whose_runs_do_not_converge_in_reach_is_refused(seconds, why, monkeypatch):
+    """The second run would take too long, or the third."""
+    expected = iter(seconds)
+    monkeypatch.setattr(timings, "stepping", lambda *_: next(expected))
+    with pytest.raises(SceneError, match=f"dem {why}"):
         plan(short(**LOCAL), 1e-9)
 
 
