@@ -4,6 +4,7 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 
+from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli.forecast_view import show_forecasts
 from jointwave.compare.cli.frames import show_frame
 from jointwave.compare.cli.options import warn
@@ -11,6 +12,7 @@ from jointwave.compare.cli.terminal import print_json, progress, say
 from jointwave.compare.engines import Progress
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.runs.processes import started
+from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.store import Pool, on_pool, plain
 from jointwave.compare.studies.summary import Summary
 from jointwave.compare.studies.sweep import Sweep, Work, run
@@ -39,15 +41,24 @@ def run_and_show(
 
 
 def sweep(
-    asked: Sweep, work: Work, workers: int, dry: bool, as_json: bool, strict: bool = False
+    asked: Sweep,
+    work: Work,
+    runs_of: Callable[[AnyScene], list[Run]],
+    workers: int,
+    dry: bool,
+    as_json: bool,
+    strict: bool = False,
 ) -> None:
     """Run every case of a sweep and show its table; dry : only print estimates.
 
-    strict : treat warnings as errors. Raises SceneError if all cases fail.
+    runs_of : returns the runs of a scene. strict : treat warnings as errors. Raises SceneError if
+    all cases fail.
     """
     warn(asked.scenes, strict)
     if dry:
-        runs, failing = asked.runs(work)
+        valid = [(case.point, case.scene) for case in asked.cases if case.scene is not None]
+        runs = [(point, scene, name) for point, scene in valid for *_, name in runs_of(scene)]
+        failing = {case.point: case.message for case in asked.cases if case.scene is None}
         show_forecasts(runs, as_json, failing)
         return
 

@@ -4,7 +4,6 @@ Members 1, 2, ... have the scene's own seed, the next one, ...; in a rock mass t
 set. They are points of a sweep, whose key is `member`.
 """
 
-from collections.abc import Mapping, Sequence
 from math import inf, nan
 from pathlib import Path
 from typing import Any
@@ -55,18 +54,22 @@ def statistics(done: pd.DataFrame, keys: list[str], numbers: list[str]) -> pd.Da
     return found[[*STATISTICS, "members"]].astype({"members": int}).reset_index()
 
 
-def write(out: Path, numbers: pd.DataFrame, members: Mapping[Path, Sequence[Path]]) -> list[Path]:
+def write(out: Path, numbers: pd.DataFrame, done: pd.DataFrame, keys: list[str]) -> list[Path]:
     """Write ensemble.csv, and mean and percentiles of every waveform, with their figure.
 
-    numbers : from `statistics`. members : the folders with their results, by the folder for their
-    statistics.
+    numbers : from `statistics`. done : rows of the members, with the folder of their results. keys
+    : of the sweep.
     """
     files = [write_csv(out / "ensemble.csv", numbers)]
-    for place, folders in members.items():
-        results = {file.stem for folder in folders for file in folder.glob("*.nc")}
+    others = [key for key in keys if key != MEMBER]
+    for point, rows in done.groupby([*others, "variant"], sort=False):
+        folders = [Path(folder) for folder in rows.folder.unique()]
+        rest = ",".join(f"{key}={value}" for key, value in zip(others, point, strict=False))
+        place = out / rest / point[-1]
+        results = sorted({file.stem for folder in folders for file in folder.glob("*.nc")})
         found = {
             name: waveforms([f for folder in folders if (f := folder / f"{name}.nc").is_file()])
-            for name in sorted(results)
+            for name in results
             if "." not in name  # as in NAME.stopped.nc, of a run that was interrupted
         }
         files += [write_dataset(place / f"{name}-ensemble.nc", x) for name, x in found.items()]

@@ -6,7 +6,7 @@ Each point has a folder named by its values, with the files that the command wri
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product
 from math import nan
@@ -15,23 +15,25 @@ from typing import Any, NamedTuple
 
 import joblib
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from jointwave.cases.errors import InterruptedRun, SceneError
 from jointwave.cases.read import parse_override
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import Progress, applies, names
+from jointwave.compare.engines import Progress
 from jointwave.compare.figures.comparison import write_comparisons
 from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.places import Place, places_of
 from jointwave.compare.runs import comparison
 from jointwave.compare.runs.jobs import plan
 from jointwave.compare.runs.output import write_dataset
-from jointwave.compare.runs.run import Done, execute
+from jointwave.compare.runs.run import execute
 from jointwave.compare.scenes import find, load, load_variants
 from jointwave.compare.studies import ensemble, store
 from jointwave.compare.studies.ensemble import MEMBER
 from jointwave.compare.studies.store import DIED, FAILURES, Pool, Store
+from jointwave.compare.studies.summary import cell
 from jointwave.compare.studies.sweep_keys import axes
 from jointwave.results.dataset import scene_hash
 from jointwave.results.netcdf import load_netcdf
@@ -39,49 +41,8 @@ from jointwave.results.netcdf import load_netcdf
 LONGEST = 100  # characters of a folder's name
 PEAKS = ("stress", "velocity", "traction")
 Rows = list[dict[str, Any]]
-
-
-class Running(NamedTuple):
-    """Run a point as `jointwave run` does. runs : (engine, model) each, see `compare.runs.jobs`."""
-
-    runs: list[tuple[str, str | None]]
-
-    def solvers(self, scene: AnyScene) -> list[str]:
-        """Return the names of a scene's solvers."""
-        return [job.name for job in plan([scene], self.runs, Path())]
-
-    def __call__(self, scene: AnyScene, folder: Path | None) -> Rows:
-        """Write the results of a scene into a folder and return a row for each receiver of each."""
-        done = execute(plan([scene], self.runs, folder or Path()), lambda fraction: None)
-        return [row for one in done for row in _rows_of_run(one)]
-
-
-class Comparing(NamedTuple):
-    """Compare a point as `jointwave compare` does."""
-
-    spectral: bool
-    curves: list[Curves]
-    align: bool
-
-    def solvers(self, scene: AnyScene) -> list[str]:
-        """Return the names of a scene's solvers."""
-        return [name for name in names() if applies(name, scene)]
-
-    def __call__(self, scene: AnyScene, folder: Path | None) -> Rows:
-        """Return a row for each distance; write the comparison and the results into a folder."""
-        found = comparison.compare(scene, self.curves, None, self.align, self.spectral)
-        if folder is not None:
-            write_comparisons([found], folder / scene.name)
-            for name, result in found.results.items():
-                write_dataset(folder / scene.name / f"{name}.nc", result)
-        if not found.rows:
-            allowed = "has nothing to compare: no pair of solutions applies"
-            raise SceneError(scene.where, "", None, allowed)
-        rows = (row.facts | {"faint": str(row.faint).lower()} for row in found.rows)
-        return [{name: nan if x is None else x for name, x in row.items()} for row in rows]
-
-
-Work = Running | Comparing
+#: Solves a scene, writes its files into a folder and returns its rows.
+Work = Callable[[AnyScene, Path | None], Rows]
 
 
 class Case(NamedTuple):
@@ -103,14 +64,10 @@ class Case(NamedTuple):
 
 
 class Sweep(NamedTuple):
-    """A sweep of a scene.
-
-    scene : its name. axes : the values by swept key. cases : all variants at every point. out : the
-    folder; None writes nothing.
-    """
+    """A sweep of a scene: its name, all variants at every point, and the folder; None writes
+    nothing."""
 
     scene: str
-    axes: dict[str, list[Any]]
     cases: list[Case]
     out: Path | None
 
@@ -118,12 +75,6 @@ class Sweep(NamedTuple):
     def scenes(self) -> list[AnyScene]:
         """The scenes of all cases that have one."""
         return [case.scene for case in self.cases if case.scene is not None]
-
-    def runs(self, work: Work) -> tuple[list[tuple[str, AnyScene, str]], dict[str, str]]:
-        """Return the point, scene and solver of every run, and why points have no valid scene."""
-        valid = [(case.point, case.scene) for case in self.cases if case.scene is not None]
-        runs = [(point, scene, name) for point, scene in valid for name in work.solvers(scene)]
-        return runs, {case.point: case.message for case in self.cases if case.scene is None}
 
 
 def sweep_of(
@@ -151,7 +102,7 @@ def sweep_of(
             found += [Case(setting, folder, one) for one in scenes]
     if errors and len(errors) == len(found):
         raise errors[0]
-    return Sweep(scene, values, found, out)
+    return Sweep(scene, found, out)
 
 
 def _scenes(path: Path, variant: str | None, changes: dict[str, Any]) -> list[AnyScene]:
@@ -169,14 +120,26 @@ def _folder(setting: dict[str, Any], number: int) -> str:
 
 def run(
     asked: Sweep, work: Work, pool: Pool | None = None, progress: Progress | None = None
-) -> list[Rows]:
-    """Return the rows of all cases, in order, each with its `state`, "done" or "failed", and the
-    reason in `message`; completed cases are read from its folder, if their files are still
-    there."""
-    folder = asked.out and asked.out / "points"
-    rows: Store[Rows] = Store(Rows, folder, _has_files)
+) -> pd.DataFrame:
+    """Return the table of a sweep, SI: the rows of all cases in order, with their keys, variant and
+    folder, `state`, "done" or "failed", and the reason in `message`.
+
+    Completed cases are read from the folder, if their files are still there.
+    """
+    points = asked.out and asked.out / "points"
+    saved: Store[Rows] = Store(Rows, points, _has_files)
     about, outcome = partial(_key, work=work), partial(_outcome, work=work)
-    return rows.compute(asked.cases, about, outcome, pool, progress, lambda case: _failed(DIED))
+    found = saved.compute(asked.cases, about, outcome, pool, progress, lambda one: _failed(DIED))
+    return pd.DataFrame(
+        {key: cell(value) for key, value in case.settings.items()} | _place_of(case) | row
+        for case, rows in zip(asked.cases, found, strict=True)
+        for row in rows
+    )
+
+
+def _place_of(case: Case) -> dict[str, str]:
+    variant = case.scene.name if case.scene else ""
+    return {"variant": variant, "folder": str(case.folder / variant) if case.folder else ""}
 
 
 def _has_files(rows: Rows) -> bool:
@@ -203,19 +166,23 @@ def _failed(message: str) -> Rows:
     return [{"state": "failed", "message": message}]
 
 
-def _rows_of_run(done: Done) -> Rows:
-    """Return a row for each receiver of a result, with the peak there."""
-    result = load_netcdf(done.job.path)
-    about = {
-        "engine": done.job.name,
-        "steps": done.steps,
-        "freedoms": float(result.attrs.get("degrees_of_freedom", nan)),
-        "seconds": done.seconds,
-        "energy_residual": nan if done.residual is None else done.residual,
-        "file": str(done.job.path),
-    }
-    nowhere = {"quantity": "", "y": nan, "peak": nan, "time_of_peak": nan}
-    return [about | peak for peak in [*_peaks(result)] or [nowhere]]
+def run_scene(scene: AnyScene, folder: Path | None, runs: list[tuple[str, str | None]]) -> Rows:
+    """Run a scene as `jointwave run` does; return a row for each receiver of each result, with the
+    peak there. runs : (engine, model) each, see `compare.runs.jobs`."""
+    rows: Rows = []
+    for done in execute(plan([scene], runs, folder or Path()), lambda fraction: None):
+        result = load_netcdf(done.job.path)
+        about = {
+            "engine": done.job.name,
+            "steps": done.steps,
+            "freedoms": float(result.attrs.get("degrees_of_freedom", nan)),
+            "seconds": done.seconds,
+            "energy_residual": nan if done.residual is None else done.residual,
+            "file": str(done.job.path),
+        }
+        nowhere = {"quantity": "", "y": nan, "peak": nan, "time_of_peak": nan}
+        rows += [about | peak for peak in [*_peaks(result)] or [nowhere]]
+    return rows
 
 
 def _peaks(result: xr.Dataset) -> Iterator[dict[str, Any]]:
@@ -231,3 +198,24 @@ def _peaks(result: xr.Dataset) -> Iterator[dict[str, Any]]:
             k = int(np.argmax(np.abs(values)))
             peak = {"peak": float(values[k]), "time_of_peak": float(result.time[k])}
             yield {"quantity": quantity, **place.coordinates, **peak}
+
+
+def compare_scene(
+    scene: AnyScene, folder: Path | None, spectral: bool, curves: list[Curves], align: bool
+) -> Rows:
+    """Compare a scene as `jointwave compare` does, and keep all results; return a row for each
+    distance."""
+    found = comparison.compare(scene, curves, None, align, spectral)
+    if folder is not None:
+        write_comparisons([found], folder / scene.name)
+        for name, result in found.results.items():
+            write_dataset(folder / scene.name / f"{name}.nc", result)
+    if not found.rows:
+        allowed = "has nothing to compare: no pair of solutions applies"
+        raise SceneError(scene.where, "", None, allowed)
+    rows: Rows = []
+    for row in found.rows:
+        facts = {name: nan if x is None else x for name, x in row.facts.items()}
+        pair = f"{facts['one']} ~ {facts['other']}"
+        rows.append(facts | {"pair": pair, "faint": str(row.faint).lower()})
+    return rows

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.files import parse_toml
+from jointwave.cases.read import parse_override
 
 MOST = 10_000  # points
 FORMS = "must be KEY=FROM:TO:COUNT, KEY=log:FROM:TO:COUNT or KEY=A,B,C"
@@ -34,18 +34,12 @@ def axes(given: list[str], fixed: list[str]) -> dict[str, list[Any]]:
 
 
 def _listed(text: str, spec: str) -> list[Any]:
-    values = _toml(f"[{spec}]", None) or [_toml(x.strip(), x.strip()) for x in spec.split(",")]
+    values = parse_override(f"value=[{spec}]")[1]
+    if isinstance(values, str):  # of bare words
+        values = [parse_override(f"value={part.strip()}")[1] for part in spec.split(",")]
     if len({json.dumps(value, default=str) for value in values}) < len(values):
         raise SceneError("--sweep", text, None, "must not repeat a value")
     return values
-
-
-def _toml(text: str, otherwise: Any) -> Any:
-    """Return a value of TOML; `otherwise` for what is none, such as a bare word."""
-    try:
-        return parse_toml(f"value = {text}")["value"]
-    except (ValueError, RecursionError):
-        return otherwise
 
 
 def _between(text: str, spec: str) -> list[Any]:

@@ -13,6 +13,7 @@ import os
 import sys
 from collections.abc import Callable
 from contextlib import chdir, redirect_stderr, redirect_stdout
+from importlib import import_module
 from pathlib import Path
 from time import process_time
 from unittest.mock import patch
@@ -181,7 +182,7 @@ def mesh(data: bytes, folder: Path) -> str:
 SOLVERS = (
     "jointwave.compare.runs.run.execute",
     "jointwave.compare.runs.comparison.compare",
-    "jointwave.compare.studies.sweep.run",
+    "jointwave.compare.cli.study_view.run",
     "jointwave.compare.studies.effects.run",
     "jointwave.compare.studies.plan.plan",
     "jointwave.compare.studies.work_precision.run",
@@ -192,7 +193,8 @@ SOLVERS = (
     "jointwave.compare.cli.explain.explanation",
     "jointwave.compare.cli.doctor.examine",
 )
-
+for name in SOLVERS:  # a module that is first imported by a command would keep what stops it
+    import_module(name.rpartition(".")[0])
 
 SOLVES = "a command would solve something"
 

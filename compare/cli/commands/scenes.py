@@ -5,12 +5,14 @@ without dolfinx and matplotlib.
 """
 
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from jointwave import cases
+from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli import terminal
 from jointwave.compare.cli.options import (
     CORES,
@@ -97,10 +99,15 @@ def run(
     wanted = jobs.wanted([e.value for e in engine], model or [])
     if swept or members:
         from jointwave.compare.cli.study_view import sweep
-        from jointwave.compare.studies.sweep import Running, sweep_of
+        from jointwave.compare.studies.sweep import run_scene, sweep_of
 
-        asked_for = sweep_of(scene, changes, variant, swept, out, members)
-        sweep(asked_for, Running(wanted), workers, dry, as_json, strict)
+        cases_of = sweep_of(scene, changes, variant, swept, out, members)
+        work = partial(run_scene, runs=wanted)
+
+        def runs_of(one: AnyScene) -> list[tuple[str, AnyScene, str]]:
+            return [("", job.scene, job.name) for job in jobs.plan([one], wanted, out)]
+
+        sweep(cases_of, work, runs_of, workers, dry, as_json, strict)
         return
     scenes = load(scene, changes, variant, strict)
     asked = jobs.plan(scenes, wanted, out)

@@ -1,5 +1,6 @@
 """Commands that put the solutions of a scene side by side: as distances, or drawn."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -79,12 +80,13 @@ def compare(
 
     if swept or members:
         from jointwave.compare.cli.study_view import sweep
-        from jointwave.compare.studies.sweep import Comparing, sweep_of
+        from jointwave.compare.studies.forecast import all_runs
+        from jointwave.compare.studies.sweep import compare_scene, sweep_of
 
         asked = sweep_of(scene, changes, variant, swept, out, members)
         curves = _read_curves(given, asked.scenes, align, strict)
-        work = Comparing(spectral, curves, align)
-        sweep(asked, work, workers, dry, as_json, strict)
+        work = partial(compare_scene, spectral=spectral, curves=curves, align=align)
+        sweep(asked, work, lambda one: all_runs([one]), workers, dry, as_json, strict)
         return
     scenes = load(scene, changes, variant, strict)
     curves = _read_curves(given, scenes, align, strict)

@@ -100,13 +100,14 @@ def test_the_worst_waveform_of_each_pair_is_shown():
     """Of three one is faint, and furthest off: it decides nothing. All are in the table."""
     numbers = dict.fromkeys(("peak_ratio", "delay", "period_ratio", "envelope", "phase"), 1.0)
     rows = [
-        {"one": "dem", "other": "lattice", "quantity": f"stress {k}", "x": 1.0, "y": 2.0}
+        {"key": 3, "variant": "", "pair": "dem ~ lattice", "quantity": f"stress {k}"}
+        | {"x": 1.0, "y": 2.0}
         | {"misfit": 0.01 * k, "faint": str(k == 3).lower(), "state": "done", "message": ""}
         | numbers
         for k in (1, 2, 3)
     ]
-    asked = Sweep("scene", {"key": [3]}, [Case({"key": 3}, None, None)], None)
-    found = summarise(asked, [rows])
+    asked = Sweep("scene", [Case({"key": 3}, None, None)], None)
+    found = summarise(asked, pd.DataFrame(rows))
     assert found.table.index.tolist() == [("dem ~ lattice", "3", "stress 2 at [1, 2] m")]
     assert found.table.misfit.item() == 0.02 and "worst" in found.legend
     assert len(found.facts["rows"]) == 3
