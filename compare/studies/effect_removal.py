@@ -1,80 +1,60 @@
 """Scenes without one of their effects."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from typing import Any
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.strength import SLIP
 from jointwave.cases.plane.effects import SIDES
-from jointwave.cases.scene_type import AnyScene, Either, checked
+from jointwave.cases.scene_type import Either, checked
 from jointwave.cases.schema.damping import Attenuating
 from jointwave.cases.schema.joint import PARTS
 from jointwave.cases.schema.scene import Scene
 
-Change = Callable[[Any], Any]  # from a scene to one of its kind
+ALONG = (*SLIP, *(key for part in PARTS if part.along for key in part.all_keys))
+#: By effect, the tables and keys that leave it out of a scene; `joints` are all its joints.
+WITHOUT: dict[str, dict[str, Any]] = {
+    "dashpots": {"damping": {"rayleigh": None}, "joints": {"damping_ratio": None}},
+    "no tension": {"joints": {"tension": None}},
+    "joints that differ": {"soft_layers": []},
+    "scatter": {"scatter": None},
+    "segments": {"segments": []},
+    **{f"{kind} ends": {"ends": kind} for kind in ("quiet", "matched", "fixed")},
+    **{f"{kind} sides": {"boundaries": kind} for kind in SIDES},
+    "energy ledger": {"record": {"energy": False}},
+    "field output": {"record": {"fields": None}},
+    "finite rotation": {"motion": {"rotation": "small"}},
+    "slip": {"joints": dict.fromkeys(ALONG)},
+    **{part.name: {"joints": dict.fromkeys(part.all_keys)} for part in PARTS},
+    "mass damping": {"damping": {"mass_proportional": None, "rayleigh": None}},
+    "constant Q": {"rock": dict.fromkeys(Attenuating.model_fields)},
+    "local damping": {"damping": {"local": None}},
+    "gravity": {"gravity": None},
+    "prestress": {"prestress": None},
+}
 
 
 def left_out(scene: Either, name: str) -> Either:
     """Return a scene without one of its effects; raises SceneError if there is no such scene."""
     if name not in WITHOUT:
         raise SceneError(scene.where, name, None, "is the subject of the scene")
-    return checked(WITHOUT[name](scene))
+    changes = dict(WITHOUT[name])
+    if law := changes.pop("joints", None):
+        changes |= dict.fromkeys(_joints(scene), law)
+    tables = {key: _changed(getattr(scene, key), change) for key, change in changes.items()}
+    return checked(scene.model_copy(update=tables))
 
 
-def _joints(**values: Any) -> Change:
-    """Return a function that changes the law of all joints, including soft layers."""
-
-    def change(scene: AnyScene) -> AnyScene:
-        if not isinstance(scene, Scene):
-            sets = [one.model_copy(update=values) for one in scene.joint_sets]
-            return scene.model_copy(update={"joint_sets": sets})
-        layers = [layer.model_copy(update=values) for layer in scene.soft_layers]
-        joints = scene.joints.model_copy(update=values)
-        return scene.model_copy(update={"joints": joints, "soft_layers": layers})
-
-    return change
+def _joints(scene: Any) -> tuple[str, ...]:
+    return ("joints", "soft_layers") if isinstance(scene, Scene) else ("joint_sets",)
 
 
-def _table(name: str, **values: Any) -> Change:
-    def change(scene: AnyScene) -> AnyScene:
-        table = getattr(scene, name).model_copy(update=values)
-        return scene.model_copy(update={name: table})
-
-    return change
-
-
-def _free(table: str, kind: str) -> Change:
-    """Return a function that frees the ends, or the sides, of a kind."""
-
-    def change(scene: AnyScene) -> AnyScene:
-        held = getattr(scene, table)
-        free = {name: "free" for name, found in held if found == kind}
-        return scene.model_copy(update={table: held.model_copy(update=free)})
-
-    return change
-
-
-#: By effect, the change that leaves it out of a scene.
-WITHOUT: dict[str, Change] = {
-    "dashpots": lambda scene: _table("damping", rayleigh=None)(_joints(damping_ratio=None)(scene)),
-    "no tension": _joints(tension=None),
-    "joints that differ": lambda scene: scene.model_copy(update={"soft_layers": []}),
-    "scatter": lambda scene: scene.model_copy(update={"scatter": None}),
-    "segments": lambda scene: scene.model_copy(update={"segments": []}),
-    **{f"{kind} ends": _free("ends", kind) for kind in ("quiet", "matched", "fixed")},
-    **{f"{kind} sides": _free("boundaries", kind) for kind in SIDES},
-    "energy ledger": _table("record", energy=False),
-    "field output": _table("record", fields=None),
-    "finite rotation": _table("motion", rotation="small"),
-    "slip": _joints(
-        **dict.fromkeys((*SLIP, *(key for part in PARTS if part.along for key in part.all_keys)))
-    ),
-    **{part.name: _joints(**dict.fromkeys(part.all_keys)) for part in PARTS},
-    "mass damping": _table("damping", mass_proportional=None, rayleigh=None),
-    "constant Q": _table("rock", **dict.fromkeys(Attenuating.model_fields)),
-    "local damping": _table("damping", local=None),
-    "gravity": lambda scene: scene.model_copy(update={"gravity": None}),
-    "prestress": lambda scene: scene.model_copy(update={"prestress": None}),
-}
+def _changed(table: Any, change: Any) -> Any:
+    """Return a table, or each of a list, with keys changed; without its ends, or sides, of a kind;
+    or what is in its place."""
+    if isinstance(change, str):
+        return table.model_copy(update={name: "free" for name, kind in table if kind == change})
+    if not isinstance(change, dict):
+        return change
+    if isinstance(table, list):
+        return [one.model_copy(update=change) for one in table]
+    return table.model_copy(update=change)

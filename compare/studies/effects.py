@@ -7,7 +7,7 @@ in turn. The misfit is relative L2 from the engine's own result of the complete 
 from contextlib import suppress
 from math import nan
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pandas as pd
 
@@ -22,7 +22,7 @@ from jointwave.compare.solvers.continuum import JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies import store
 from jointwave.compare.studies.effect_removal import left_out
-from jointwave.compare.studies.step_cost import StepCost, step_costs, with_every_effect
+from jointwave.compare.studies.step_cost import step_costs, with_every_effect
 from jointwave.compare.studies.store import FAILURES, Store, alone, reason_of
 from jointwave.results.dataset import scene_hash
 
@@ -42,11 +42,6 @@ class Variant(NamedTuple):
 
     name: str
     scene: AnyScene
-
-    @property
-    def key(self) -> str:
-        """The key of its results: a hash of everything that determines them."""
-        return store.key(self.name, self.scene.name, scene_hash(self.scene))
 
 
 class EffectRow(NamedTuple):
@@ -85,25 +80,22 @@ def run(wanted: list[Variant], folder: Path, progress: Progress | None = None) -
     Steps are timed: variants are run in this process, one after the other.
     """
     saved: Store[list[EffectRow]] = Store(list[EffectRow], folder)
-    full: dict[str, StepCost] = {}  # of the scenes with every effect, which variants share
     with alone():
-        measured = saved.compute(
-            wanted, lambda one: one.key, lambda one: measure(one, full), progress=progress
-        )
+        measured = saved.compute(wanted, key, measure, progress=progress)
     return pd.DataFrame([row for some in measured for row in some], columns=EffectRow._fields)
 
 
-def measure(variant: Variant, full: dict[str, StepCost]) -> list[EffectRow]:
-    """Return the rows of a variant.
+def key(one: Variant) -> str:
+    """Return the key of a variant: a hash of everything that determines its rows."""
+    return store.key(one.name, one.scene.name, scene_hash(one.scene))
 
-    full : the costs with every effect by the hash of their scene, completed here. Raises the errors
-    of `solve` for rigid blocks, and SceneError for a scene without effects.
-    """
+
+def measure(variant: Variant) -> list[EffectRow]:
+    """Return the rows of a variant; raises the errors of `solve` for rigid blocks, and SceneError
+    for a scene without effects."""
+    if not active_effects(variant.scene):
+        raise SceneError(variant.scene.where, "", None, "has no effect to leave out")
     rows = _rows(variant, BLOCKS)
-    everything = with_every_effect(variant.scene)
-    if (key := scene_hash(everything)) not in full:
-        (full[key],) = step_costs([everything])
-    rows = [row._replace(everything=full[key].ns) for row in rows]
     if applies(ROCK, variant.scene):
         with suppress(*FAILURES):
             rows += _rows(variant, ROCK)
@@ -111,28 +103,28 @@ def measure(variant: Variant, full: dict[str, StepCost]) -> list[EffectRow]:
 
 
 def _rows(variant: Variant, engine: str) -> list[EffectRow]:
-    scene, rows = variant.scene, []
-    if not active_effects(scene):
-        raise SceneError(scene.where, "", None, "has no effect to leave out")
-    result, without = solve(engine, scene), {}
+    scene = variant.scene
+    result, without, found = solve(engine, scene), {}, {}
     for effect in active_effects(scene):
-        row = EffectRow(variant.name, scene.title, scene.name, engine, effect)
+        about: dict[str, Any] = {}
         try:
             one = left_out(scene, effect)
-            found = solve(engine, one)
+            other = solve(engine, one)
         except FAILURES as error:
-            rows.append(row._replace(reason=reason_of(error)))
-            continue
-        without[effect] = one
-        steps = float(result.attrs["steps"] / found.attrs["steps"])
-        rows.append(row._replace(misfit=misfit(found, result), steps=steps))
-    own, *costs = step_costs([scene, *without.values()], engine)
-    cost = dict(zip(without, costs, strict=True))
-    return [_timed(row._replace(own=own.ns), own, cost.get(row.effect)) for row in rows]
-
-
-def _timed(row: EffectRow, own: StepCost, less: StepCost | None) -> EffectRow:
-    if less is None:
-        return row
-    ns = own.ns - less.ns
-    return row._replace(ns=ns, noise=own.noise + less.noise, share=ns / own.ns)
+            about["reason"] = reason_of(error)
+        else:
+            without[effect] = one
+            about["misfit"] = misfit(other, result)
+            about["steps"] = float(result.attrs["steps"] / other.attrs["steps"])
+        found[effect] = about
+    full = [with_every_effect(scene)] if engine == BLOCKS else []
+    own, *costs = step_costs([scene, *without.values(), *full], engine)
+    for effect, less in zip(without, costs, strict=False):
+        ns = own.ns - less.ns
+        found[effect] |= {"ns": ns, "noise": own.noise + less.noise, "share": ns / own.ns}
+    of = variant.name, scene.title, scene.name, engine
+    everything = costs[-1].ns if full else nan
+    return [
+        EffectRow(*of, effect, own=own.ns, everything=everything, **about)
+        for effect, about in found.items()
+    ]

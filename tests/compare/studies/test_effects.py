@@ -22,7 +22,7 @@ KNOWN = {(False, False): 1.0, (False, True): 3.0, (True, False): 4.0, (True, Tru
 
 @pytest.fixture
 def known(monkeypatch):
-    """Replace timing: 20 ns with everything, otherwise as in KNOWN; return the timed scenes."""
+    """Replace timing by KNOWN; return the timed scenes."""
     scenes = []
 
     def costs(some, name="dem"):
@@ -70,7 +70,7 @@ def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, known):
     """The wall that the load shakes; only rigid blocks have local damping."""
     load = {"shape": "sine", "amplitude": 0.1, "period": 0.01, "quantity": "velocity"}
     scene = pillar(ends__start="fixed", load=load, damping={"local": 0.1}, time__duration=0.01)
-    rows = {one.effect: one for one in effects.measure(Variant("a/b", scene), {})}
+    rows = {one.effect: one for one in effects.measure(Variant("a/b", scene))}
     fixed, local = rows["fixed ends"], rows["local damping"]
     assert "is the motion of a base" in fixed.reason
     assert np.isnan([fixed.ns, fixed.share, fixed.misfit]).all()
