@@ -20,12 +20,11 @@ from time import process_time
 from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from jointwave.cases.material.rock import Values, elastic_rock
 from jointwave.cases.read import load
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.compare.engines import Progress, applies, solve
+from jointwave.compare.engines import Progress, solve
 from jointwave.compare.exact.plane import parallel_joints
 from jointwave.compare.exact.plane.oblique_joint import Joint
 from jointwave.compare.exact.plane.pulse import axes_of
@@ -33,7 +32,7 @@ from jointwave.compare.exact.plane.waves import KINDS, Kind, polarisations, slow
 from jointwave.compare.solvers.continuum import JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies import store
-from jointwave.compare.studies.store import DIED, FAILURES, Pool, Store, alone, reason_of
+from jointwave.compare.studies.store import Pool, Store, alone
 
 SCENE = Path(__file__).parent / "joints.toml"
 ANGLES = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0)  # degrees from the joints' normal
@@ -57,15 +56,13 @@ class JointsRow(NamedTuple):
     number. R_p to T_s : moduli of particle velocity over the incident one at the pulse's frequency.
     error : the largest difference from the closed form. residual : part of the motion not explained
     by plane waves. freedoms : of the blocks or the rock. cpu : CPU time of the run, including
-    set-up but not compiling, s. state : "done", or "failed" for the reason in `message`.
+    set-up but not compiling, s.
     """
 
     solver: str
     incidence: str
     angle: float
     joints: int
-    state: str = ""
-    message: str = ""
     R_p: float = nan
     R_s: float = nan
     T_p: float = nan
@@ -101,13 +98,9 @@ def run(
 ) -> list[JointsRow]:
     """Return the rows of its points, in order; they are saved in `folder`. Their seconds are CPU
     time: as many points may run at a time as there are cores."""
-    rows: Store[JointsRow] = Store(JointsRow, folder)
     with alone():
-        return rows.compute(points(study, brief), key, measure, pool, progress, _lost)
-
-
-def _lost(point: JointsRow) -> JointsRow:
-    return point._replace(state="failed", message=DIED)
+        rows: Store[JointsRow] = Store(JointsRow, folder)
+        return rows.compute(points(study, brief), key, measure, pool, progress)
 
 
 def key(point: JointsRow) -> str:
@@ -137,27 +130,19 @@ def scene_of(
 
 
 def measure(point: JointsRow) -> JointsRow:
-    """Run a point and return its row; a point that fails gives a row with the reason."""
-    place, failed = point[1:4], point._replace(state="failed")
+    """Run a point and return its row; raises the errors of `solve`."""
+    place = point[1:4]
     scene = scene_of(*place)
-    try:
-        if not (answer := applies(point.solver, scene)):
-            return failed._replace(message=answer.reason)
-        result, cpu = _timed(point.solver, scene)
-        if float(result.attrs.get("seconds_compile", 0.0)) > COMPILED:
-            result, cpu = _timed(point.solver, scene)
-    except FAILURES as error:
-        return failed._replace(message=reason_of(error))
+    for _ in range(2):
+        began = process_time()
+        result = solve(point.solver, scene)
+        cpu = process_time() - began
+        if float(result.attrs.get("seconds_compile", 0.0)) <= COMPILED:
+            break
     *found, residual = amplitudes(scene, result.velocity.values)
     off = float(np.abs(found - closed_form(*place)).max())
     freedoms = float(result.attrs.get("degrees_of_freedom", nan))
-    numbers = *found, off, residual, freedoms, cpu
-    return JointsRow(*point[:4], "done", "", *numbers)
-
-
-def _timed(name: str, scene: RockMass) -> tuple[xr.Dataset, float]:
-    began = process_time()
-    return solve(name, scene), process_time() - began
+    return JointsRow(*point[:4], *found, off, residual, freedoms, cpu)
 
 
 def amplitudes(scene: RockMass, velocity: np.ndarray) -> list[float]:

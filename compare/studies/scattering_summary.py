@@ -47,33 +47,30 @@ def make_study(
     brief : only every other point, see `points`.
     """
     rows, title = pd.DataFrame(run(name, out / name, progress, brief, pool)), TITLES[name]
-    done, failed = rows[rows.state == "done"], rows[rows.state == "failed"]
     data = rows.rename_axis("row").to_xarray().assign_attrs(title=title, **machine())
-    figure = save(draw(name, done), out, name, title)
-    files = [*write_tables(out, name, rows, data), *figure.drawings]
-    said, reasons = sentences(done), failed.groupby(["solver", "message"], sort=False).size()
-    lines = [f"{one}, {count} runs: {why}" for (one, why), count in reasons.items()]
+    figure = save(draw(name, rows), out, name, title)
+    files, said = [*write_tables(out, name, rows, data), *figure.drawings], sentences(rows)
     facts = {"rows": rows.to_dict("records"), "sentences": said, "files": list(map(str, files))}
-    text = table(name, done), said, lines, files, facts, figure
+    text = table(name, rows), said, [], files, facts, figure
     return Summary(name, title, *text, NOTE, LEGEND, timed=True)
 
 
-def table(name: str, done: pd.DataFrame) -> pd.DataFrame:
+def table(name: str, rows: pd.DataFrame) -> pd.DataFrame:
     """Return the moduli and their error under headings of their solver and wave."""
     varied = VARIED[name][0]
-    found = done.assign(**{"": _headings(done), "residual, %": 100 * done.residual})
+    found = rows.assign(**{"": _headings(rows), "residual, %": 100 * rows.residual})
     found = found.rename(columns={"freedoms": "DOFs", "cpu": "CPU, s"}).set_index(["", varied])
     return found[[*WAVES, "error", "residual, %", "DOFs", "CPU, s"]]
 
 
-def _headings(done: pd.DataFrame) -> pd.Series:
-    return done.solver.map(lambda x: solver(x).label) + ": " + done.incidence + " wave"
+def _headings(rows: pd.DataFrame) -> pd.Series:
+    return rows.solver.map(lambda x: solver(x).label) + ": " + rows.incidence + " wave"
 
 
-def sentences(done: pd.DataFrame) -> list[str]:
+def sentences(rows: pd.DataFrame) -> list[str]:
     """Return the largest error of each solver and kind of wave, and the cost of all its runs."""
     found = []
-    for heading, some in done.groupby(_headings(done), sort=False):
+    for heading, some in rows.groupby(_headings(rows), sort=False):
         worst = some.loc[some.error.idxmax()]
         joints = "one joint" if worst.joints == 1 else f"{worst.joints} joints"
         found.append(
@@ -84,7 +81,7 @@ def sentences(done: pd.DataFrame) -> list[str]:
     return found
 
 
-def draw(name: str, done: pd.DataFrame) -> Figure:
+def draw(name: str, rows: pd.DataFrame) -> Figure:
     """Return the diagram of a study: moduli by angle or number, P and SV waves side by side.
 
     The closed form is a line, of wave w of kind k the SVG group NAME-exact-k-w; solver j is its
@@ -97,8 +94,8 @@ def draw(name: str, done: pd.DataFrame) -> Figure:
             x, exact = _exact(name, kind)
             for w, (wave, (marker, dashes)) in enumerate(WAVES.items()):
                 ax.plot(x, exact[w], color=INK, lw=1.0, ls=dashes, gid=f"{name}-exact-{k}-{w}")
-                for j, one in enumerate(done.solver.unique()):
-                    own = done[(done.incidence == kind) & (done.solver == one)]
+                for j, one in enumerate(rows.solver.unique()):
+                    own = rows[(rows.incidence == kind) & (rows.solver == one)]
                     look: dict[str, Any] = {"color": style(one).colour, "markersize": 8 - 2 * j}
                     look |= {"markerfacecolor": "none"} if j else {}
                     gid, label = f"{name}-{k}-{j}-{w}", None if w else f"{one}: points"

@@ -23,8 +23,8 @@ KNOWN = {
 def test_amplitudes_are_those_of_the_motion(angle):
     """The motion of a pulse over 12 periods, whose tail is 1e-9 of it by then."""
     row = measure(JointsRow("oblique-joint", "P", angle, 1))
-    assert row.state == "done" and row.error < 1e-9 and row.residual < 1e-9
-    assert row[6:10] == pytest.approx(KNOWN[angle], abs=6e-5)
+    assert row.error < 1e-9 and row.residual < 1e-9
+    assert row[4:8] == pytest.approx(KNOWN[angle], abs=6e-5)
     assert row.cpu > 0
 
 
@@ -34,7 +34,7 @@ def test_amplitudes_are_those_of_the_motion(angle):
 def test_shear_waves_too(angle, off):
     """Beyond the critical angle the tail falls as a power of time, and the record ends."""
     row = measure(JointsRow("oblique-joint", "SV", angle, 1))
-    assert row.state == "done" and row.error < off and row.residual < 2 * off
+    assert row.error < off and row.residual < 2 * off
 
 
 def test_a_turned_joint_is_the_same_joint():
@@ -65,13 +65,13 @@ def test_deformable_rock_has_them_at_all_angles(incidence, joints):
     """Elements of order 2, about 8 to the S wave: a thousandth."""
     for angle in points.ANGLES:
         row = measure(JointsRow("continuum-jointed", incidence, angle, joints))
-        assert row.state == "done" and row.error < 1e-3, row
+        assert row.error < 1e-3, row
 
 
 @pytest.fixture
 def few(monkeypatch):
-    """Leave one angle of each kind of wave, and a solver that does not apply."""
-    few = [JointsRow(x, k, 30.0, 1) for x in ("oblique-joint", "lattice") for k in ("P", "SV")]
+    """Leave one angle of each kind of wave."""
+    few = [JointsRow("oblique-joint", kind, 30.0, 1) for kind in ("P", "SV")]
     monkeypatch.setattr(points, "points", lambda *of: few)
 
 
@@ -84,11 +84,9 @@ def test_the_study_writes_its_table_and_its_figure(few, tmp_path):
     }
     assert found.table.iloc[0, :4].tolist() == pytest.approx(KNOWN[30.0], abs=6e-5)
     assert "at 30 degrees" in found.sentences[0]
-    why = "is for a pillar, not for a rock mass"
-    assert found.failed == [f"lattice, 2 runs: {why}"]
     saved = [file.stat().st_mtime_ns for file in sorted((tmp_path / "oblique-joint").iterdir())]
     again = make_study("oblique-joint", tmp_path)
-    assert again.table.equals(found.table) and len(saved) == 4
+    assert again.table.equals(found.table) and len(saved) == 2
     assert saved == [f.stat().st_mtime_ns for f in sorted((tmp_path / "oblique-joint").iterdir())]
 
 
@@ -110,7 +108,7 @@ def test_several_joints_pass_what_is_known():
     known = {2: (0.9098, 0.0443), 5: (0.9256, 0.0721)}
     for count, (T_p, T_s) in known.items():
         row = measure(JointsRow("parallel-joints", "P", 30.0, count))
-        assert row.state == "done" and row.error < 1e-6 and row.residual < 2e-6
+        assert row.error < 1e-6 and row.residual < 2e-6
         assert (row.T_p, row.T_s) == pytest.approx((T_p, T_s), abs=6e-5)
         curve = lines_of("parallel-joints", [row])["parallel-joints-exact-0-2"]
         assert curve.get_ydata()[count - 1] == pytest.approx(T_p, abs=6e-5)
@@ -119,7 +117,7 @@ def test_several_joints_pass_what_is_known():
 def test_the_figure_has_the_numbers():
     values = (0.2, 0.3, 0.9, 0.1)
     numbers = *values, 1e-3, 0.0, 8.0, 0.5
-    row = JointsRow("oblique-joint", "SV", 20.0, 1, "done", "", *numbers)
+    row = JointsRow("oblique-joint", "SV", 20.0, 1, *numbers)
     lines = lines_of("oblique-joint", [row])
     for w, name in enumerate(WAVES):
         drawn = lines[f"oblique-joint-1-0-{w}"]
