@@ -87,23 +87,20 @@ def fit(
     name = _solver_of(first, solver)
     keys = [started(key, first, name, curves[0]) if key.key == CLOCK else key for key in keys]
     trials = trials_of(first, name, curves, keys, progress)
-    before = trials.misfits(np.array([key.unknown(key.start) for key in keys]))
+    before = list(map(np.linalg.norm, trials.residuals(key.unknown(key.start) for key in keys)))
     best = trials.search()
     if best is None:
         raise StoppedError(
             f"fit: not converged after {trials.count} solutions: start closer "
             "(--free KEY=START), bound the keys, or free fewer"
         )
-    after = trials.misfits(best.x)
-    waveforms = pd.DataFrame(
-        [(one.name, one.place) for one in trials.measured], columns=["name", "place"]
-    ).assign(before=before, after=after)
+    after = list(map(np.linalg.norm, trials.residuals(best.x.tolist())))
+    names, places = zip(*((one.name, one.place) for one in trials.measured), strict=True)
+    about = {"name": names, "place": list(places), "before": before, "after": after}
     values, correlation = _estimates(keys, best)
     fitted = changed(scene, {k: v for k, v in values.value.items() if k != CLOCK})
     notes = _notes(values, correlation, max(after))
-    if trials.refused:
-        notes.append(f"{trials.refused} of {trials.count} trials had no solution and were skipped")
-    return Fit(fitted, name, values, correlation, waveforms, trials.count, notes)
+    return Fit(fitted, name, values, correlation, pd.DataFrame(about), trials.count, notes)
 
 
 def _solver_of(scene: AnyScene, asked: str | None) -> str:

@@ -1,6 +1,6 @@
 """Solutions of a scene for values of its free keys, beside the measured waveforms of a fit."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import inf, isnan
 from typing import Any, NamedTuple
@@ -41,8 +41,7 @@ class Measured(NamedTuple):
 class Trials:
     """Solutions of a scene for values of its free keys, beside the measured waveforms.
 
-    scene : with the sampling and duration that the fit needs. count, refused : of the solutions
-    tried, and of those that do not exist.
+    scene : with the sampling and duration that the fit needs. count : of the solutions tried.
     """
 
     scene: AnyScene
@@ -51,12 +50,6 @@ class Trials:
     measured: list[Measured]
     progress: Progress | None
     count: int = 0
-    refused: int = 0
-
-    def misfits(self, x: np.ndarray) -> list[float]:
-        """Return the relative L2 misfit of each waveform, of the measured motion, for the search
-        variables [p]."""
-        return [rms(r) / m.size for r, m in zip(self._residuals(x), self.measured, strict=True)]
 
     def search(self) -> Any:
         """Return lmfit's result; None if the search does not converge."""
@@ -70,36 +63,35 @@ class Trials:
         options["max_nfev"] = MOST * (2 * len(self.keys) + 1)
         try:
             found = minimize(
-                self._weighted, given, method="least_squares", nan_policy="propagate", **options
+                self._residuals, given, method="least_squares", nan_policy="propagate", **options
             )
         except ValueError:  # no derivative: a neighbour has no solution
             return None
         return found if found.success else None
 
-    def _weighted(self, unknowns: Parameters) -> np.ndarray:
-        """Return all residuals in one, each waveform with the same weight; infinite without a
-        solution, so that the search takes its step back."""
+    def _residuals(self, unknowns: Parameters) -> np.ndarray:
+        """Return all residuals in one; infinite without a solution, so that the search takes its
+        step back."""
         try:
-            found = self._residuals(np.array(list(unknowns.valuesdict().values())))
+            return np.concatenate(self.residuals(list(unknowns.valuesdict().values())))
         except (SceneError, UnstableError):
-            self.refused += 1
             return np.full(sum(len(m.time) for m in self.measured), inf)
-        pairs = zip(found, self.measured, strict=True)
-        return np.concatenate([r / (m.size * np.sqrt(len(r))) for r, m in pairs])
 
-    def _residuals(self, x: np.ndarray) -> list[np.ndarray]:
-        """Return solution minus measurement [n] of each waveform, SI; raises SceneError or
-        UnstableError if there is no solution."""
+    def residuals(self, x: Iterable[float]) -> list[np.ndarray]:
+        """Return solution minus measurement [n] of each waveform, whose norm is its relative L2
+        misfit, for the search variables [p]; raises SceneError or UnstableError if there is no
+        solution."""
         self.count += 1
         if self.progress:
             self.progress(1 - 0.97**self.count)  # the number of trials is unknown
-        values = {k.key: k.value(u) for k, u in zip(self.keys, x.tolist(), strict=True)}
+        values = {key.key: key.value(u) for key, u in zip(self.keys, x, strict=True)}
         shift = values.pop(CLOCK, 0.0)
         result = solve(self.solver, changed(self.scene, values))
         time, found = result.time.values, []
         for one in self.measured:
             at = np.clip(one.time + shift, time[0], time[-1])  # at rest before its first sample
-            found.append(CubicSpline(time, one.place.waveform(result))(at) - one.values)
+            off = CubicSpline(time, one.place.waveform(result))(at) - one.values
+            found.append(off / (one.size * np.sqrt(len(off))))
         return found
 
 
