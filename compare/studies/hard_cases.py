@@ -49,8 +49,10 @@ CUBES = 2.22  # root mean square of f^3 over the spectrum f^2 exp(-f^2) with its
 NONLINEAR = {"slip", "softening", "no tension", "closure"}
 SPENT = ("viscous", "friction", "fracture")
 #: A blow in which all modes of the pillar ring, at steps above the critical one.
-ABOVE = {"load.period": 1e-3, "time.duration": 2.0, "record.interval": 1.0}
+RINGING = {"load.period": 1e-3, "time.duration": 2.0, "record.interval": 1.0}
 FRACTION = 1.001  # of the critical step
+ABOVE_CRITICAL = f"{FRACTION:g} of the critical step"
+SHORT = "hard/short-pillar"
 
 
 class HardRow(NamedTuple):
@@ -79,18 +81,17 @@ class HardRow(NamedTuple):
     @property
     def title(self) -> str:
         """Its scene, variant and step, as the table has them."""
-        step = f"{FRACTION:g} of the critical step" if self.should != STABLE else ""
-        allowed = "allowed" if self.should == STOPPED else ""
-        parts = self.scene.partition("/")[2], self.variant, step, allowed
+        steps = {REFUSED: ABOVE_CRITICAL, STOPPED: f"{ABOVE_CRITICAL}, allowed"}
+        parts = self.scene.partition("/")[2], self.variant, steps.get(self.should)
         return ", ".join(filter(None, parts))
 
     @property
     def margin(self) -> float:
         """The least bound over its value; infinite without, nan if a value is."""
-        pairs = (self.energy, self.energy_bound), (self.fall, self.fall_bound)
-        every = (*pairs, (self.misfit, self.misfit_bound))
-        bounded = [bound / value if value else inf for value, bound in every if isfinite(bound)]
-        return float(np.min([inf, *bounded]))
+        values, bounds = np.array(self[6:12:2]), np.array(self[7:12:2])
+        bounded = np.isfinite(bounds)
+        with np.errstate(divide="ignore"):
+            return float(np.min(bounds[bounded] / values[bounded], initial=inf))
 
     @property
     def holds(self) -> bool:
@@ -102,43 +103,38 @@ class HardRow(NamedTuple):
         """Its title, engine and scheme."""
         return f"{self.title}, {self.engine}, {self.scheme}"
 
-    def read(self) -> AnyScene:
-        """Return the scene that is run."""
-        table = f"numerics.{ENGINES[self.engine].engine}"
-        changes: dict[str, Any] = {}
-        if self.scheme != "leapfrog":  # the only one of rigid blocks in the plane
-            changes[f"{table}.scheme"] = self.scheme
-        if self.should != STABLE:
-            changes |= ABOVE | {f"{table}.step_fraction": FRACTION}
-            changes[f"{table}.allow_unstable"] = self.should == STOPPED
-        return cases.load_variant(find(self.scene), self.variant, changes)
-
 
 def hard_cases() -> list[HardRow]:
     """Return every row before its run: each variant of each scene of cases/hard, and steps above
     the critical one."""
-    hard = [name for name in shipped() if name.startswith("hard/")]
     found = [
-        HardRow(name, scene.name, *one)
-        for name in hard
+        HardRow(name, scene.name, engine.name, scheme)
+        for name in shipped()
+        if name.startswith("hard/")
         for scene in cases.load(find(name))
-        for one in _schemes(scene.kind)
+        for engine in ENGINES.values()
+        for scheme in engine.schemes
+        if scene.kind == "pillar" or scheme in ("leapfrog", "explicit")
     ]
-    explicit = [one for one in _schemes("pillar") if one[1] != "implicit"]
-    above = [(one, state) for one in explicit for state in (REFUSED, STOPPED)]
-    return found + [HardRow("hard/short-pillar", "", *one, state) for one, state in above]
+    short = [row for row in found if row[:2] == (SHORT, "") and row.scheme != "implicit"]
+    return found + [row._replace(should=state) for row in short for state in (REFUSED, STOPPED)]
 
 
-def _schemes(kind: str) -> list[tuple[str, str]]:
-    """Return engines with their schemes; rock masses are run by explicit steps alone."""
-    found = [(one.name, scheme) for one in ENGINES.values() for scheme in one.schemes]
-    return [x for x in found if kind == "pillar" or x[1] in ("leapfrog", "explicit")]
+def scene_of(row: HardRow) -> AnyScene:
+    """Return the scene that is run."""
+    table, changes = f"numerics.{ENGINES[row.engine].engine}", {}
+    if row.scheme != "leapfrog":  # the only one of rigid blocks in the plane
+        changes[f"{table}.scheme"] = row.scheme
+    if row.should != STABLE:
+        changes |= RINGING | {f"{table}.step_fraction": FRACTION}
+        changes[f"{table}.allow_unstable"] = row.should == STOPPED
+    return cases.load_variant(find(row.scene), row.variant, changes)
 
 
 def run(row: HardRow) -> HardRow:
     """Return a row after its run; all errors of a run are states of it."""
     try:
-        scene = row.read()
+        scene = scene_of(row)
         if reason := applies(row.engine, scene).reason:
             return row._replace(ended=NONE, message=reason)
         result = solve(row.engine, scene)
@@ -147,32 +143,32 @@ def run(row: HardRow) -> HardRow:
     except SceneError as error:
         ended = NONE if error.key.endswith(".scheme") else REFUSED
         return row._replace(ended=ended, message=error.allowed)
-    return _measured(row._replace(ended=STABLE), scene, result)
+    found = _of_energy(row.scheme, scene, result) | _of_misfit(row, scene, result)
+    return row._replace(ended=STABLE, **found)
 
 
-def _measured(row: HardRow, scene: AnyScene, result: xr.Dataset) -> HardRow:
-    steps = float(result.attrs["steps"])
-    if "energy" in result:
-        row = row._replace(fall=largest_fall(result), fall_bound=STEP * steps)
-        if row.scheme != "implicit":
-            conserves = row.scheme != "fourth-order" and NONLINEAR.isdisjoint(active_effects(scene))
-            bound = LINEAR if conserves else OPENING
-            row = row._replace(energy=energy_residual(result), energy_bound=bound)
+def _of_energy(scheme: str, scene: AnyScene, result: xr.Dataset) -> dict[str, Any]:
+    if "energy" not in result:
+        return {}
+    found = {"fall": largest_fall(result), "fall_bound": STEP * float(result.attrs["steps"])}
+    if scheme != "implicit":
+        conserves = scheme != "fourth-order" and NONLINEAR.isdisjoint(active_effects(scene))
+        bound = LINEAR if conserves else OPENING
+        found |= {"energy": energy_residual(result), "energy_bound": bound}
+    return found
+
+
+def _of_misfit(row: HardRow, scene: AnyScene, result: xr.Dataset) -> dict[str, Any]:
+    """Return the misfit from the first exact solution that the scene expects and that applies."""
     for pair, bound in scene.expect.items():
         first, other = pair.split(" ~ ")
         if first == row.engine and solver(other).exact and applies(other, scene):
+            if row.scheme == "implicit":  # nan for a jump, which has no shortest period
+                omega, end = 2 * pi / (shortest_period(scene.pulses) or nan), scene.time.duration
+                bound += (omega * end / result.attrs["steps"]) ** 2 / 6 * CUBES * omega * end
             found = misfit(result, solve(other, scene))
-            more = _implicit_error(scene, steps) if row.scheme == "implicit" else 0.0
-            return row._replace(misfit=found, misfit_bound=bound + more, reference=other)
-    return row
-
-
-def _implicit_error(scene: AnyScene, steps: float) -> float:
-    """Return the misfit due to implicit steps at the end of a run; nan for a jump, which has no
-    shortest period."""
-    period = shortest_period(scene.pulses) or nan
-    omega, dt = 2 * pi / period, scene.time.duration / steps
-    return (omega * dt) ** 2 / 6 * CUBES * omega * scene.time.duration
+            return {"misfit": found, "misfit_bound": bound, "reference": other}
+    return {}
 
 
 def largest_fall(result: xr.Dataset) -> float:
