@@ -41,7 +41,8 @@ def left_out(scene: Either, name: str) -> Either:
     if law := changes.pop("joints", None):
         changes |= dict.fromkeys(_joints(scene), law)
     tables = {key: _changed(getattr(scene, key), change) for key, change in changes.items()}
-    return checked(scene.model_copy(update=tables))
+    changed: Any = scene.model_copy(update=tables)
+    return checked(changed)
 
 
 def _joints(scene: Any) -> tuple[str, ...]:

@@ -99,7 +99,7 @@ def fit(
     about = {"name": names, "place": list(places), "before": before, "after": after}
     values, correlation = _estimates(keys, best)
     fitted = changed(scene, {k: v for k, v in values.value.items() if k != CLOCK})
-    notes = _notes(values, correlation, max(after))
+    notes = _notes(values, correlation, float(max(after)))
     return Fit(fitted, name, values, correlation, pd.DataFrame(about), trials.count, notes)
 
 

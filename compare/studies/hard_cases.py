@@ -122,7 +122,8 @@ def hard_cases() -> list[HardRow]:
 
 def scene_of(row: HardRow) -> AnyScene:
     """Return the scene that is run."""
-    table, changes = f"numerics.{ENGINES[row.engine].engine}", {}
+    table = f"numerics.{ENGINES[row.engine].engine}"
+    changes: dict[str, Any] = {}
     if row.scheme != "leapfrog":  # the only one of rigid blocks in the plane
         changes[f"{table}.scheme"] = row.scheme
     if row.should != STABLE:

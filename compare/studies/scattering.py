@@ -142,7 +142,8 @@ def measure(point: JointsRow) -> JointsRow:
     *found, residual = amplitudes(scene, result.velocity.values)
     off = float(np.abs(found - closed_form(*place)).max())
     freedoms = float(result.attrs.get("degrees_of_freedom", nan))
-    return JointsRow(*point[:4], *found, off, residual, freedoms, cpu)
+    numbers = *found, off, residual, freedoms, cpu
+    return JointsRow(*point[:4], *numbers)
 
 
 def amplitudes(scene: RockMass, velocity: np.ndarray) -> list[float]:

@@ -51,8 +51,8 @@ def make_study(
     figure = save(draw(name, rows), out, name, title)
     files, said = [*write_tables(out, name, rows, data), *figure.drawings], sentences(rows)
     facts = {"rows": rows.to_dict("records"), "sentences": said, "files": list(map(str, files))}
-    text = table(name, rows), said, [], files, facts, figure
-    return Summary(name, title, *text, NOTE, LEGEND, timed=True)
+    shown = table(name, rows)
+    return Summary(name, title, shown, said, [], files, facts, figure, NOTE, LEGEND, timed=True)
 
 
 def table(name: str, rows: pd.DataFrame) -> pd.DataFrame:
