@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from functools import cache
 from itertools import pairwise
 from math import ceil
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
@@ -28,7 +29,7 @@ _points = cache(leggauss)
 
 
 def twins(
-    matrix: np.ndarray,
+    matrix: Any,
     vector: np.ndarray,
     output: np.ndarray,
     load: LoadHistory,
@@ -40,7 +41,8 @@ def twins(
 
     Parameters
     ----------
-    matrix, vector : A [m, m] (1/s) and b [m], in units that make A's entries similar in size.
+    matrix, vector : A [m, m] (1/s), dense or sparse, and b [m], in units that make A's entries
+        similar in size.
     output : float array [outputs, m].
     load : f; smooth between its breaks, at most about one cycle per interval.
     times : equally spaced, s; the system is at rest at the first.
@@ -49,11 +51,12 @@ def twins(
     from scipy.sparse.linalg import expm_multiply
 
     h = float(times[1] - times[0])
-    count = 12 + ceil(h * np.abs(matrix).sum(axis=0).max())
+    A = csr_array(matrix)
+    count = 12 + ceil(h * abs(A).sum(axis=0).max())
     size = float(len(vector))
     room = 3 * size**2 + 2 * size * count + 3 * float(count) ** 2 + 5.0 * len(times) * count
     require(8 * room, f"{count:,} points of integration in each sampling interval")
-    A, P = csr_array(matrix), expm_multiply(csr_array(matrix) * h, np.eye(len(vector)))
+    P = expm_multiply(A * h, np.eye(len(vector)))
     P = np.where(np.abs(P) > NEGLIGIBLE, P, 0.0)
     P = P if size < SMALL else csr_array(P)
     driven = []

@@ -11,16 +11,17 @@ damped one opens when their sum vanishes, with its spring still compressed, and 
 vanishes, immediately with the force of its dashpot.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts1
+from scipy.sparse import csr_array
 
 from jointwave.cases.histories import LoadHistory
 from jointwave.cases.size import require
 from jointwave.compare.exact.blocks.bernstein import of_powers, sign_changes
-from jointwave.compare.exact.blocks.chain import Chain, contact_forces, rates, reaction
+from jointwave.compare.exact.blocks.system import BlockSystem
 
 ORDER = 24
 STEP = 2.0  # over the norm of A: the last term is 2^24 / 24! = 3e-17
@@ -37,8 +38,8 @@ _BERNSTEIN = of_powers(ORDER)
 class ChainMotion:
     """A chain's states from rest on, and its events.
 
-    states : float array [n, size], in the layout of `chain.split`. events : number of openings and
-    closings. steps : number of Taylor series.
+    states : float array [n, m], of its `BlockSystem`. events : number of openings and closings.
+    steps : number of Taylor series.
     """
 
     states: np.ndarray
@@ -50,29 +51,25 @@ class ChainMotion:
 class _Contacts:
     """The tension-free joints: which are closed, and which have changed at the current time.
 
-    index, closed : of the chain's joints, int and bool arrays [barred].
-    spring : force of each at rest, N.
+    closed : bool array [barred].
     changed : number of changes of each since the last advance in time.
     zero : bool arrays [2, barred], whether the force of spring, or spring and dashpot, is now zero.
     """
 
-    index: np.ndarray
     closed: np.ndarray
-    spring: np.ndarray
     changed: np.ndarray
     zero: np.ndarray
 
 
 def integrate(
-    chain: Chain,
+    chain: BlockSystem,
     load: LoadHistory,
     times: np.ndarray,
-    rest: np.ndarray | None = None,
     period: float | None = None,
     noise: float = 0.0,
     seed: int = 0,
 ) -> ChainMotion:
-    """Return the chain's motion from the state `rest` [size] (default: zero).
+    """Return the chain's motion.
 
     Parameters
     ----------
@@ -81,8 +78,9 @@ def integrate(
     noise : random perturbation of every step, relative to its terms, to mimic round-off; the
         motion has the floating-point type of `times`.
     """
-    require(3 * 8.0 * len(times) * chain.size, f"{len(times):,} states of {chain.size:,} numbers")
-    walk = _Walk(chain, load, times, rest, period, noise, seed)
+    size = len(chain.load)
+    require(3 * 8.0 * len(times) * size, f"{len(times):,} states of {size:,} numbers")
+    walk = _Walk(chain, load, times, period, noise, seed)
     breaks = [t for t in load.breaks if times[0] < t < times[-1]]
     for start, end in pairwise([times[0], *breaks, times[-1]]):
         walk.to(start, end)
@@ -92,25 +90,29 @@ def integrate(
 class _Walk:
     """The state of an integration: time, motion and contacts."""
 
-    def __init__(self, chain, load, times, rest, period, noise, seed) -> None:
-        rest = np.zeros(chain.size) if rest is None else rest
-        standing = bool(rest.any())
-        self.chain = replace(chain, gravity=0.0, borne=(0.0, 0.0)) if standing else chain
-        self.load, self.times, self.noise = load, times, noise
+    def __init__(self, chain, load, times, period, noise, seed) -> None:
+        self.chain, self.load, self.times, self.noise = chain, load, times, noise
         self.random = np.random.default_rng(seed)
-        self.states = np.zeros((len(times), chain.size), dtype=times.dtype)
-        self.x = np.zeros(chain.size, dtype=times.dtype)
+        self.x = np.zeros(len(chain.load), dtype=times.dtype)
+        self.states = np.zeros((len(times), len(self.x)), dtype=times.dtype)
         self.known, self.events, self.steps = 1, 0, 0
-        self.longest = STEP / _norm(chain) * (1.0 if noise == 0 else 0.77)
+        norm = float(abs(chain.matrix).sum(axis=1).max())
+        self.longest = STEP / norm * (1.0 if noise == 0 else 0.77)
         self.pulse = (0.0, 0.0)
         if period is not None:
             self.pulse = (period * LOAD_STEP, SETTLED * load.end)
-        elastic = replace(chain, tension=np.ones_like(chain.tension))
-        forces, _ = contact_forces(elastic, rest)
-        index = np.flatnonzero(~chain.tension)
-        none = np.zeros((2, len(index)), dtype=bool)
-        spring = forces[1:-1][index]
-        self.contacts = _Contacts(index, spring >= 0, spring, np.zeros(len(index), int), none)
+        joints, count = chain.one_sided, len(chain.one_sided)
+        self.at_rest = chain.initial[joints]
+        none = np.zeros((2, count), dtype=bool)
+        self.contacts = _Contacts(self.at_rest >= 0, np.zeros(count, int), none)
+        self._release()
+
+    def _release(self) -> None:
+        """Take the forces of open joints from the chain's equations of motion."""
+        chain, held = self.chain, np.ones(len(self.chain.initial))
+        held[chain.one_sided[~self.contacts.closed]] = 0.0
+        self.resists = csr_array(chain.resists.multiply(held[:, None]))
+        self.steady = chain.steady - chain.moves @ ((1 - held) * chain.initial)
 
     def to(self, start: float, end: float) -> None:
         """Advance from `start` to `end` (s), between which the load is smooth."""
@@ -145,47 +147,27 @@ class _Walk:
         return first
 
     def _series(self, t: float, h: float) -> np.ndarray:
-        """Return the state's series [ORDER + 1, size] in powers of the fraction of a step."""
-        chain, n = self.chain, self.chain.block_count
-        drive = np.linalg.solve(_POWERS, self.load.value(t + h * _NODES).astype(float)) * chain.gain
-        drive = np.pad(drive, (0, ORDER + 1 - len(drive)))
-        open_joints = self.contacts.index[~self.contacts.closed]
-        held = np.ones(n - 1)
-        held[open_joints] = 0.0
-        stiffness, viscosity = held * chain.stiffness / chain.rate, held * chain.viscosity
-        X = np.zeros((ORDER + 1, chain.size), dtype=self.x.dtype)
+        """Return the state's series [ORDER + 1, m] in powers of the fraction of a step."""
+        chain = self.chain
+        drive = np.linalg.solve(_POWERS, self.load.value(t + h * _NODES).astype(float))
+        rates = np.zeros((ORDER, len(self.x)), dtype=self.x.dtype)
+        rates[: len(drive)] = np.outer(drive, chain.load)
+        rates[0] += self.steady
+        X = np.zeros((ORDER + 1, len(self.x)), dtype=self.x.dtype)
         X[0] = self.x
-        force = np.zeros(n + 1, dtype=self.x.dtype)
-        for k in range(ORDER):
-            u, v, faces = X[k, :n], X[k, n : 2 * n], X[k, 2 * n :] / chain.rate
-            push, wall = (0.0, drive[k]) if chain.shaken else (drive[k], 0.0)
-            start, first = reaction(chain.start, u[0] / chain.rate, v[0], faces[0], wall)
-            end, last = reaction(chain.end, u[-1] / chain.rate, v[-1], faces[1])
-            force[0], force[-1] = push - start, end
-            force[1:-1] = stiffness * (u[:-1] - u[1:]) + viscosity * (v[:-1] - v[1:])
-            if k == 0:
-                force[[0, -1]] += chain.borne
-                force[1 + open_joints] -= self.contacts.spring[~self.contacts.closed]
-            slope = (force[:-1] - force[1:]) / chain.mass - chain.mass_damping * v
-            if k == 0:
-                slope += chain.gravity
-            scale = h / (k + 1)
-            X[k + 1, :n] = scale * chain.rate * v
-            X[k + 1, n : 2 * n] = scale * slope
-            X[k + 1, -2], X[k + 1, -1] = scale * chain.rate * first, scale * chain.rate * last
+        for k, rate in enumerate(rates):
+            forces = self.resists @ (chain.strains @ X[k])
+            X[k + 1] = h / (k + 1) * (chain.free @ X[k] + chain.moves @ forces + rate)
         return X
 
     def _first_event(self, X: np.ndarray) -> tuple[float, tuple[int, int] | None]:
         """Return the fraction of the step at the first change of a joint, that joint and force."""
-        contacts, n = self.contacts, self.chain.block_count
-        j = contacts.index
-        gap, rate = (X[:, a + j + 1] - X[:, a + j] for a in (0, n))
-        spring = -self.chain.stiffness[j] / self.chain.rate * gap
-        spring[0] += contacts.spring
-        whole = spring - self.chain.viscosity[j] * rate
-        spring[0, contacts.zero[0]] = 0.0
-        whole[0, contacts.zero[1]] = 0.0
-        forces = np.array([spring, whole])
+        contacts, count = self.contacts, len(self.chain.initial)
+        strains, resists = self.chain.strains @ X.T, self.chain.resists[self.chain.one_sided]
+        springs = resists[:, :count] @ strains[:count]
+        forces = np.array([springs.T, (resists @ strains).T])
+        forces[:, 0] += self.at_rest
+        forces[:, 0][contacts.zero] = 0.0
         bounds = _BERNSTEIN @ forces  # [2, ORDER + 1, barred]
         stays = np.where(
             contacts.closed, (bounds >= 0).all(axis=(0, 1)), (bounds <= 0).all(axis=1).any(axis=0)
@@ -211,6 +193,7 @@ class _Walk:
             contacts.changed[i] += 1
             contacts.zero[kind, i] = True
             self.events += 1
+            self._release()
 
 
 def _change_of(
@@ -235,15 +218,3 @@ def _value(powers: list, x: float) -> float:
     for c in reversed(powers):
         value = value * x + c
     return value
-
-
-def _norm(chain: Chain) -> float:
-    """Return the largest row sum of the state matrix of the chain, all joints closed, 1/s."""
-    linear = replace(chain, tension=np.ones_like(chain.tension))
-    standing = np.zeros(chain.size)
-    still = rates(linear, standing)
-    sums = np.zeros(chain.size)
-    for start in range(0, chain.size, 512):
-        some = np.eye(chain.size)[start : start + 512]
-        sums += np.abs(rates(linear, some) - still).sum(axis=0)
-    return float(sums.max())

@@ -17,7 +17,7 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar import equivalent_bar, images, jointed_bar, series
 from jointwave.compare.exact.blocks import lattice, sliding_block
-from jointwave.compare.exact.blocks.chain import chain, contact_forces, rates
+from jointwave.compare.exact.blocks.system import chain, contact_forces, rates
 from jointwave.compare.exact.conditions import drive, joints_are_damped
 from jointwave.compare.exact.joint import one_joint
 
@@ -92,6 +92,14 @@ def test_static_gravity_and_prestress_of_blocks_that_hang():
     assert np.abs(along(found.velocity)).max() < 1e-12
 
 
+def state_of(one, displacement, velocity):
+    """Return the state of a chain's two blocks in motion (m, m/s), its faces at rest."""
+    state = np.zeros(len(one.load))
+    state[:2] = displacement / one.displacement.diagonal()
+    state[2:4] = velocity / one.velocity.diagonal(2)
+    return state
+
+
 def test_forces_and_rates_of_a_chain():
     """Closed by 2 mm: 5000 N; closing at 0.1 m/s with 2.5e3 N s/m: 250 N; a quiet end takes 5e4 v,
     a fixed one 5e6 u, a matched one Z s / (Z + c) of the same spring and its dashpot c = 5e3."""
@@ -100,15 +108,15 @@ def test_forces_and_rates_of_a_chain():
     ends.append(5e4 * (5e6 * -1e-3 + 5e3 * 0.06) / (5e4 + 5e3))
     for kind, force in zip(kinds, ends, strict=True):
         one = chain(scene(joints={"damping_ratio": ratio}, ends={"end": kind}))
-        w = one.rate
-        assert w == pytest.approx(100.0, rel=1e-14)  # 2 sqrt(k / m)
-        state = np.array([1e-3 * w, -1e-3 * w, 0.16, 0.06, 0.0, 0.0])
+        state = state_of(one, [1e-3, -1e-3], [0.16, 0.06])
         if kind == "fixed":
             force = 5e6 * -1e-3 + 5e3 * 0.06
-        forces, _ = contact_forces(one, state, 1000.0)
+        forces = contact_forces(one, state, 1000.0)
         assert forces == pytest.approx([1000.0, 5250.0, force], rel=1e-12)
-        expected = [16.0, 6.0, -4.25, (5250.0 - force) / 1000]
-        assert rates(one, state, 1000.0)[:4] == pytest.approx(expected, rel=1e-12)
+        slope = rates(one, state, 1000.0)
+        assert one.displacement @ slope == pytest.approx([0.16, 0.06], rel=1e-12)
+        expected = [-4.25, (5250.0 - force) / 1000]
+        assert one.velocity @ slope == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -125,19 +133,20 @@ def test_forces_of_a_held_start(kind, drive, start, face):
     load = {"shape": "step", "amplitude": 1000.0, **quantity}
     ratio = 0.5e-3 * sqrt(2500.0)  # eta = 1e-3 s
     one = chain(scene(joints={"damping_ratio": ratio}, ends={"start": kind}, load=load))
-    forces, faces = contact_forces(one, np.array([0.1, -0.1, 0.16, 0.06, 0.0, 0.0]), drive)
+    state = state_of(one, [1e-3, -1e-3], [0.16, 0.06])
+    forces = contact_forces(one, state, drive)
     assert forces == pytest.approx([start, 5250.0, 0.0], rel=1e-12)
-    assert faces[0] == pytest.approx(face, rel=1e-12)
+    moves = rates(one, state, drive)[4] * one.displacement[0, 0]
+    assert moves == pytest.approx(face, rel=1e-12)
 
 
 def test_no_tension_in_a_chain():
     """Open: nothing. Closed but parted faster than its dashpot lets it: nothing either."""
     ratio = 0.5e-3 * sqrt(2500.0)
     one = chain(scene(joints={"damping_ratio": ratio, "tension": False}))
-    w = one.rate
     for gap, rate, force in ((1e-6, -1.0, 0.0), (-1e-4, 0.2, 0.0), (-1e-4, 0.05, 125.0)):
-        state = np.array([0.0, gap * w, 0.0, rate, 0.0, 0.0])
-        assert contact_forces(one, state)[0][1] == pytest.approx(force, abs=1e-9)
+        state = state_of(one, [0.0, gap], [0.0, rate])
+        assert contact_forces(one, state)[1] == pytest.approx(force, abs=1e-9)
 
 
 def test_frequencies_of_three_blocks():

@@ -12,7 +12,7 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.exact.bar import images, jointed_bar, kelvin_voigt
 from jointwave.compare.exact.blocks import lattice
-from jointwave.compare.exact.blocks.chain import chain
+from jointwave.compare.exact.blocks.system import chain
 
 SHORT = {"length": 5.0, "side": 0.5, "block": 0.5}
 QUICK = {"shape": "sine", "amplitude": 1e6, "period": 0.002}
@@ -112,11 +112,11 @@ def test_stress_is_the_contact_force_with_the_load_and_the_ends_as_nodes(scene):
 
 def test_the_state_matrix_has_the_closed_form_s_frequencies_and_decay(scene):
     """omega_n = 2 sqrt(k/m) sin(n pi / 2N), decay eta omega_n^2 / 2."""
-    model = chain(scene(joints={"damping_ratio": 0.02}))
-    k, m = model.stiffness[0], model.mass
-    eta = model.viscosity[0] / k
-    omega = leapfrog.frequencies(k, m, 100)
-    roots = np.linalg.eigvals(lattice.state_space(model)[0])
+    at = scene(joints={"damping_ratio": 0.02})
+    p = calibrate(at)
+    eta = p.time_constant
+    omega = leapfrog.frequencies(p.regular_stiffness * p.area, p.block_mass, 100)
+    roots = np.linalg.eigvals(chain(at).matrix.toarray())
     found = roots[roots.imag > 1e-3 * omega[1]]
     found = found[np.argsort(np.abs(found))]
     ratio = eta * omega[1:] / 2

@@ -7,7 +7,7 @@ from closed_forms import leapfrog
 from jointwave.cases.histories import Integrated, Recorded
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.compare.exact.blocks import lattice, no_tension
-from jointwave.compare.exact.blocks.chain import chain
+from jointwave.compare.exact.blocks.system import chain
 from jointwave.compare.exact.linear import twins
 
 FIELDS = ("stress", "velocity", "displacement")
@@ -88,20 +88,22 @@ def test_a_base_s_acceleration_is_the_velocity_that_it_integrates_to(scene, misf
     pulse = Recorded(np.array([0.0, 0.005]), np.array([7.0, 7.0]))
     ramp = Recorded(np.array([0.0, 0.005, 1.0]), np.array([0.0, 0.035, 0.035]))
     at = scene(**common, load={"quantity": "acceleration"})
-    A, b = lattice.state_space(chain(at))
-    times = np.linspace(0, 0.02, 101)
-    one, other = (twins(A, b, np.eye(len(b)), f, times)[0] for f in (Integrated(pulse), ramp))
+    model, times = chain(at), np.linspace(0, 0.02, 101)
+    every = np.eye(len(model.load))
+    one, other = (
+        twins(model.matrix, model.load, every, f, times)[0] for f in (Integrated(pulse), ramp)
+    )
     assert misfit(one, other) < 1e-12
 
 
 def test_mass_proportional_damping_damps_each_mode_by_alpha_over_two_omega(scene):
     """lambda^2 + (alpha + eta omega_n^2) lambda + omega_n^2 = 0; 0 and -alpha if rigid."""
-    model = chain(scene(joints={"damping_ratio": 0.02}, damping={"mass_proportional": 50.0}))
-    k, m = model.stiffness[0], model.mass
-    omega = leapfrog.frequencies(k, m, 100)
-    roots = np.linalg.eigvals(lattice.state_space(model)[0])
+    at = scene(joints={"damping_ratio": 0.02}, damping={"mass_proportional": 50.0})
+    p = calibrate(at)
+    omega = leapfrog.frequencies(p.regular_stiffness * p.area, p.block_mass, 100)
+    roots = np.linalg.eigvals(chain(at).matrix.toarray())
     found = np.sort(roots[roots.imag > 1].imag)
-    rate = (50.0 + model.viscosity[0] / k * omega[1:] ** 2) / 2
+    rate = (50.0 + p.time_constant * omega[1:] ** 2) / 2
     assert np.abs(found / np.sort(np.sqrt(omega[1:] ** 2 - rate**2)) - 1).max() < 1e-9
     decay = np.sort(-roots.real[roots.imag > 1])
     assert np.abs(decay / np.sort(rate) - 1).max() < 1e-7
@@ -111,11 +113,11 @@ def test_mass_proportional_damping_damps_each_mode_by_alpha_over_two_omega(scene
 def test_rayleigh_damping_has_its_ratios_at_its_frequencies(scene):
     """zeta = alpha / 2 omega + eta omega / 2 with the two parts that the scene is given."""
     at = scene(damping={"rayleigh": {"frequencies": [20.0, 200.0], "ratios": [0.05, 0.02]}})
-    model = chain(at)
-    eta = model.viscosity[0] / model.stiffness[0]
+    p = calibrate(at)
     for f, zeta in ((20.0, 0.05), (200.0, 0.02)):
         w = 2 * np.pi * f
-        assert model.mass_damping / (2 * w) + eta * w / 2 == pytest.approx(zeta, rel=1e-12)
+        found = p.mass_damping / (2 * w) + p.time_constant * w / 2
+        assert found == pytest.approx(zeta, rel=1e-12)
 
 
 @pytest.mark.parametrize("end", ["free", "quiet", "matched", "fixed"])

@@ -8,10 +8,9 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.exact.bar import images, kelvin_voigt, series
 from jointwave.compare.exact.blocks import lattice, spatial_lattice
-from jointwave.compare.exact.blocks.chain import chain, receivers
 from jointwave.compare.exact.blocks.events import integrate
-from jointwave.compare.exact.blocks.spatial import PLANES, plane, row
-from jointwave.compare.exact.blocks.spatial_lattice import _rows, drive_vector, system
+from jointwave.compare.exact.blocks.plane import PLANES
+from jointwave.compare.exact.blocks.system import _read, chain, drive_vector, receivers, system
 from jointwave.compare.exact.conditions import drive
 from jointwave.compare.exact.joint import one_joint
 
@@ -69,10 +68,10 @@ def test_of_the_lattice(scene, extended, seed):
     """Against Taylor series of the chain in extended precision."""
     at = Scene.model_validate(random_table(scene, seed))
     model, times, signal = chain(at), sample_times(at), drive(at)
-    fine = integrate(model, signal, times.astype(np.longdouble), None, at.load.period).states
-    exact = receivers(at, model, fine.astype(float), signal.value(times) * model.gain)
+    fine = integrate(model, signal, times.astype(np.longdouble), at.load.period).states
+    exact = receivers(at, model, fine.astype(float), signal.value(times))
     for name, waves in zip(QUANTITIES, exact, strict=True):
-        holds(lattice.solve(at), name, waves.T)
+        holds(lattice.solve(at), name, waves)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -87,9 +86,12 @@ def test_of_the_spatial_lattice(scene, extended, seed):
         own = list(freedoms)
         if not push[own].any():
             continue
-        parts = system(plane(row(at), freedoms), push[own], 0 * push[own], None)
-        rows, _ = _rows(at, parts, len(own))
-        states = of_step(parts.matrix, 1e6 * parts.load, times)
+        parts = system(at, freedoms)
+        sections, points = _read(at, len(own))
+        rows = np.concatenate(
+            [sections @ parts.forces, points @ parts.displacement, points @ parts.velocity]
+        )
+        states = of_step(parts.matrix.toarray(), 1e6 * parts.load, times)
         read = (rows @ states.T).reshape(3, 3, len(own), len(times))
         for field, part in zip((forces, motion, rate), read, strict=True):
             field[own] = part.swapaxes(0, 1)

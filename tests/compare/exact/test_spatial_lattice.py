@@ -11,7 +11,8 @@ from jointwave.cases.loads import load_history, step_means
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.face import face_points
 from jointwave.cases.sampling import sample_times
-from jointwave.compare.exact.blocks import lattice, spatial, spatial_lattice
+from jointwave.compare.exact.blocks import lattice, spatial_lattice
+from jointwave.compare.exact.blocks.plane import plane
 from jointwave.compare.exact.conditions import drive
 
 ACROSS = {"direction": [1.0, 0.0, 0.0]}
@@ -222,14 +223,14 @@ def test_leapfrog_in_closed_form_is_leapfrog(scene, freedoms, end):
     """Round-off: a phase of 2e3 steps is known to 2e3 eps, times the condition of the modes."""
     tables = {"gravity": {"direction": [1.0, 0.0, 0.0], "static": False}, "load": ACROSS}
     at = scene(**tables, pillar={"length": 5.0}, ends={"end": end}, record=AT_START)
-    plane = spatial.plane(spatial.row(at), freedoms)
-    modes, rng = leapfrog.plane_modes(plane), np.random.default_rng(1)
-    dt, place = 0.9 * 2 / modes.omega.max(), rng.standard_normal(len(plane.mass))
+    part = plane(at, freedoms)
+    modes, rng = leapfrog.plane_modes(part), np.random.default_rng(1)
+    dt, place = 0.9 * 2 / modes.omega.max(), rng.standard_normal(len(part.mass))
     force, steps = rng.standard_normal(2000), np.array([1, 2, 17, 1000, 2000])
-    B = plane.relative[:, plane.blocks]
-    K, u, v, seen = B.T @ plane.stiffness @ B, 0 * place, 0 * place, []
+    B = part.relative[:, part.blocks]
+    K, u, v, seen = B.T @ part.stiffness @ B, 0 * place, 0 * place, []
     for n, f in enumerate(force, 1):
-        v += dt / plane.mass * (f * place - K @ u)
+        v += dt / part.mass * (f * place - K @ u)
         u = u + dt * v
         if n in steps:
             seen.append(u)
@@ -244,7 +245,7 @@ def test_leapfrog_converges_to_the_lattice_at_order_two(scene):
         time={"duration": 0.02},
         record={"stress": [], "velocity": [0.25, 2.75], "interval": 2.5e-3},
     )
-    plane = spatial.plane(spatial.row(at), (0, 5))
+    part = plane(at, (0, 5))
     place = np.zeros(20)
     place[:2] = 0.25, 0.25 * 0.25  # an end stress of 1 Pa, and its lever of half a block
     exact = spatial_lattice.solve(at)
@@ -253,6 +254,6 @@ def test_leapfrog_converges_to_the_lattice_at_order_two(scene):
     for count in (2000, 4000, 8000):
         dt, steps = 0.02 / count, np.arange(9) * count // 8
         force = step_means(load_history(at), dt, count)
-        u = leapfrog.of_modes(leapfrog.plane_modes(plane), place, force, steps, dt)
+        u = leapfrog.of_modes(leapfrog.plane_modes(part), place, force, steps, dt)
         errors.append(np.linalg.norm(u[[0, 10, 1, 11]] - expected))
     assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx([2, 2], abs=0.02)

@@ -6,8 +6,9 @@ import pytest
 from closed_forms import cantilever, leapfrog
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.face import face_points
-from jointwave.compare.exact.blocks import spatial, spatial_lattice
-from jointwave.compare.exact.blocks.spatial_lattice import at_rest, system
+from jointwave.compare.exact.blocks import spatial_lattice
+from jointwave.compare.exact.blocks.plane import PLANES, plane
+from jointwave.compare.exact.blocks.system import system
 
 SHORT = {
     "pillar": {"length": 3.0, "side": 0.7, "block": 0.5},
@@ -47,30 +48,29 @@ def test_springs_push_as_the_sum_over_the_points(scene, n, rule):
     """Round-off: some hundred terms, each known to 1e-16."""
     soft = [{"y": 1.5, "spacing_stiffness": 4e8, "shear_stiffness": 3e8}]
     at = scene(**FREE, soft_layers=soft, joints={"contact_points": n, "point_rule": rule})
-    p, row, rng = calibrate(at), spatial.row(at), np.random.default_rng(3)
+    p, rng = calibrate(at), np.random.default_rng(3)
     q = rng.standard_normal((6, 6)) * [1, 1, 1, 2, 2, 2]
     motions = [(block[:3], block[3:]) for block in q]
     stiffness = list(zip(p.stiffness, p.shear_stiffness, strict=True))
     points = face_points(0.7, n, rule)
     expected = block_forces(contact_forces(motions, stiffness, points, 0.5), 0.5)
     found = np.zeros((6, 6))
-    for freedoms in spatial.PLANES["small"]:
-        plane = spatial.plane(row, freedoms)
-        B, own = plane.relative[:, plane.blocks], list(freedoms)
-        forces = -B.T @ plane.stiffness @ B @ q[:, own].ravel()
+    for freedoms in PLANES["small"]:
+        part = plane(at, freedoms)
+        B, own = part.relative[:, part.blocks], list(freedoms)
+        forces = -B.T @ part.stiffness @ B @ q[:, own].ravel()
         found[:, own] = forces.reshape(6, -1)
     assert np.abs(found - expected).max() < 1e-13 * np.abs(expected).max()
 
 
 def test_a_motion_of_the_whole_row_strains_nothing(scene):
-    row = spatial.row(scene(**FREE))
     y, turn = 0.5 * np.arange(6) + 0.25, np.array([0.3, -0.2, 0.7])
     shift = np.array([1.0, 2.0, 3.0])
     q = np.array([np.r_[shift + np.cross(turn, [0, yi, 0]), turn] for yi in y])
-    for freedoms in spatial.PLANES["small"]:
-        plane = spatial.plane(row, freedoms)
+    for freedoms in PLANES["small"]:
+        part = plane(scene(**FREE), freedoms)
         inner = slice(len(freedoms), -len(freedoms))
-        strain = plane.relative[inner, plane.blocks] @ q[:, list(freedoms)].ravel()
+        strain = part.relative[inner, part.blocks] @ q[:, list(freedoms)].ravel()
         assert np.abs(strain).max() < 1e-14
 
 
@@ -79,18 +79,18 @@ def test_single_freedoms_are_lattices_of_their_own(scene, freedom):
     """omega_n = 2 sqrt(k/m) sin(n pi / 2N): shear K'_s A, stretching K'_n A, torsion K'_s J / I_y
     with J = (1 - 1/n^2) a^4/6 of n x n midpoints."""
     at = scene(**FREE)
-    p, plane = calibrate(at), spatial.plane(spatial.row(at), (freedom,))
+    p, part = calibrate(at), plane(at, (freedom,))
     k = (p.regular_stiffness if freedom == 1 else p.regular_shear_stiffness) * p.area
     m = p.block_mass
     if freedom == 4:
         k, m = p.regular_shear_stiffness * 0.75 * 0.7**4 / 6, m * 0.7**2 / 6
-    found, expected = leapfrog.plane_modes(plane).omega, leapfrog.frequencies(k, m, 6)
+    found, expected = leapfrog.plane_modes(part).omega, leapfrog.frequencies(k, m, 6)
     assert np.abs(np.sort(found) - expected).max() < 1e-13 * expected.max()
 
 
 def test_bending_has_two_rigid_modes(scene):
-    plane = spatial.plane(spatial.row(scene(**FREE)), (0, 5))
-    assert np.count_nonzero(leapfrog.plane_modes(plane).omega == 0) == 2
+    part = plane(scene(**FREE), (0, 5))
+    assert np.count_nonzero(leapfrog.plane_modes(part).omega == 0) == 2
 
 
 @pytest.mark.parametrize("axis, turns, sign", [(0, 2, 1), (2, 0, -1)])
@@ -126,9 +126,10 @@ def test_the_cantilever_hangs_as_the_explicit_sum(scene, axis, turns, sign, rule
 
 def test_a_couple_on_the_free_face_is_carried_to_the_wall(scene):
     """Statics: in any section the moment of a couple is the couple itself, and no force."""
-    at = scene(**SHORT, ends={"end": "fixed"}, load={"amplitude": 0.0})
-    plane = spatial.plane(spatial.row(at), (0, 5))
-    parts = system(plane, np.array([0.0, 5.0]), np.zeros(2))
-    state = at_rest(parts._replace(gravity=parts.load))
-    forces = (parts.forces @ state + parts.direct).reshape(-1, 2)
-    assert np.allclose(forces[:, 1], 5.0) and np.abs(forces[:, 0]).max() < 1e-9
+    couple = {"direction": [0.0, 0.0, 1.0], "arm": 0.3}
+    at = scene(**SHORT, ends={"end": "fixed"}, load=couple)
+    parts, moves = system(at, (0, 5)), slice(-1)  # all states but the base's
+    state = np.linalg.solve(parts.matrix.toarray()[moves, moves], -parts.load[moves])
+    forces = (parts.forces[:, moves] @ state + parts.direct).reshape(-1, 2)
+    moment = 0.3 * at.pillar.area
+    assert np.allclose(forces[:, 1], moment) and np.abs(forces[:, 0]).max() < 1e-9 * moment

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jointwave.cases.loads import load_history
-from jointwave.compare.exact.blocks.spatial_lattice import drive_vector
+from jointwave.compare.exact.blocks.system import drive_vector
 
 JOINTS = {
     "elastic": {},

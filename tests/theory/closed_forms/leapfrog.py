@@ -3,7 +3,7 @@
 import numpy as np
 
 from closed_forms.modes import Modes, modes, of_modes
-from jointwave.compare.exact.blocks.spatial import Plane
+from jointwave.compare.exact.blocks.plane import Plane
 
 
 def frequencies(stiffness: float, mass: float, block_count: int) -> np.ndarray:
@@ -38,5 +38,5 @@ def plane_modes(plane: Plane) -> Modes:
     """Return the modes of a plane of the spatial row, undamped, whose ends are free or
     fixed."""
     stiffness = plane.stiffness.diagonal()
-    relative = plane.relative[:, plane.blocks]
+    relative = plane.relative[:, plane.blocks].toarray()
     return modes(plane.mass, np.sqrt(stiffness)[:, None] * relative)

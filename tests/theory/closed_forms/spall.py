@@ -23,8 +23,7 @@ from jointwave.cases.histories import LoadHistory, Recorded, Step
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.exact.blocks.chain import chain, contact_forces
-from jointwave.compare.exact.blocks.lattice import at_rest, state_space
+from jointwave.compare.exact.blocks.system import chain, contact_forces
 from jointwave.compare.exact.conditions import drive
 from jointwave.compare.exact.linear import _gauss, _load_on_nodes, twins
 
@@ -157,7 +156,7 @@ def advance(
     from scipy.sparse.linalg import expm_multiply
 
     A = csr_array(matrix)
-    nodes, weights = _gauss(h, 12 + ceil(h * np.abs(matrix).sum(axis=0).max()))
+    nodes, weights = _gauss(h, 12 + ceil(h * abs(A).sum(axis=0).max()))
     share = _load_on_nodes(load, np.array([start]), h, nodes, weights)[0]
     G = np.stack([expm_multiply(A * (h - s), vector) for s in nodes], axis=1)
     return expm_multiply(A * h, state) + G @ share
@@ -172,12 +171,11 @@ def lattice_spall(scene: Scene) -> Spall | None:
     strength = p.tensile_strength
     if strength is None:
         raise ValueError("no joint has a tensile strength")
-    signal, (matrix, vector), rest = drive(scene), state_space(model), at_rest(scene, model)
-    states = twins(matrix, vector, np.eye(model.size), signal, times)[0]
+    signal, matrix, vector = drive(scene), model.matrix, model.load
+    states = twins(matrix, vector, np.eye(len(vector)), signal, times)[0]
 
     def excess(moved: np.ndarray) -> np.ndarray:
-        forces, _ = contact_forces(model, rest + moved)
-        return -forces[..., 1:-1] / model.area - strength
+        return -contact_forces(model, moved)[..., 1:-1] / p.area - strength
 
     broken = (excess(states) >= 0).any(axis=1)
     if not broken.any():
