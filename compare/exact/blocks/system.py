@@ -173,12 +173,6 @@ def contact_forces(
     return forces
 
 
-def rates(one: BlockSystem, state: np.ndarray, drive: float = 0.0) -> np.ndarray:
-    """Return the time derivative [m] of a chain's state [m] under a drive (Pa or m/s)."""
-    forces = contact_forces(one, state, drive) - drive * one.direct - one.initial
-    return one.free @ state + drive * one.load + one.steady + one.moves @ forces
-
-
 def receivers(
     scene: Scene, one: BlockSystem, states: np.ndarray, drive: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
