@@ -16,6 +16,7 @@ from jointwave.cases.histories import (
     periodic,
     triangle,
 )
+from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import Interpolation
 from jointwave.cases.schema.pulse import Pulse
 from jointwave.cases.schema.scene import Scene
@@ -33,8 +34,6 @@ def load_history(scene: Scene) -> LoadHistory:
     amplitude = load.amplitude / load.scale
     if not load.is_motion or scene.shakes_base:
         return history_of(load, amplitude * (2 if load.quantity == "incident-stress" else 1))
-    from jointwave.cases.material.calibrate import calibrate
-
     p = calibrate(scene).at_start
     return velocity_of(load, 2 * amplitude * (p.shear_impedance if load.is_across else p.impedance))
 

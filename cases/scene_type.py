@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
+from pydantic_core import PydanticCustomError
+
 from jointwave.cases.errors import SceneError
 
 if TYPE_CHECKING:
@@ -17,8 +19,6 @@ Either = TypeVar("Either", bound="AnyScene")
 def checked(scene: Either) -> Either:
     """Return a scene whose tables were changed in memory; raises SceneError where they do not fit
     together any more."""
-    from pydantic_core import PydanticCustomError
-
     from jointwave.cases.schema import consistency
     from jointwave.cases.schema.scene import Scene
 

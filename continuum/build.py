@@ -15,7 +15,7 @@ from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.ends import build_ends, end_stiffness, fixed_ends
-from jointwave.continuum.explicit.critical import any_motion
+from jointwave.continuum.explicit.critical import any_motion, critical_time_step
 from jointwave.continuum.joints import interfaces, joint_law, resolved_joints
 from jointwave.continuum.mesh.description import Mesh
 from jointwave.continuum.mesh.given import given_mesh
@@ -116,7 +116,11 @@ def critical_step(
         stiffness = stiffness + diags(springs)
     fixed = np.zeros(0, dtype=np.int64) if given is None else given.freedom
     assembled = body.mass, stiffness, viscosity, fixed, any_motion(body)
-    return body.communicator.critical_step(*assembled)
+    if body.communicator.size == 1:
+        return critical_time_step(*assembled)
+    from jointwave.continuum.parallel.critical import shared_critical_step  # with mpi4py
+
+    return shared_critical_step(body.communicator, *assembled)
 
 
 def operators(discrete: Discrete | PlaneDiscrete) -> tuple[csr_matrix, csr_matrix | None]:

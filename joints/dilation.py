@@ -12,6 +12,8 @@ part t_n w' goes into the rock and the springs; the rest is dissipated, and is n
 tan(psi) is at most the friction.
 """
 
+import numpy as np
+
 from jointwave.joints.formula import formula
 
 
@@ -37,7 +39,5 @@ def riding_stiffness(dilation, friction, normal, shear):
     eigenvalue against masses m_n and m_s is K_n (1/m_n + k / m_s), k = tan(phi) tan(psi). With
     r = sqrt(k) springs of K_n (1 + r) and K_n r (1 + r) have none below it, whatever the masses.
     """
-    import numpy as np
-
     r = np.sqrt(dilation * friction)
     return normal * (1 + r), np.where(r > 0, np.maximum(shear, normal * r * (1 + r)), shear)

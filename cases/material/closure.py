@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from jointwave.cases.loads import velocity_of
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
 
@@ -112,14 +114,11 @@ def _stress_of(pulse: Pulse, scene: AnyScene) -> float:
     if pulse.quantity == "stress":
         return 1.0
     if isinstance(scene, Scene):
-        from jointwave.cases.material.calibrate import calibrate
-
         p = calibrate(scene).at_start
         return sqrt((p.intact_modulus or p.modulus) * p.density)
     if pulse.quantity == "force":
         return 1 / _least_spacing(scene)
-    from jointwave.cases.material.rock import elastic_rock
-    from jointwave.cases.partition.regions import rocks_of
+    from jointwave.cases.partition.regions import rocks_of  # with shapely
 
     return max(float(elastic_rock(one).p_impedance) for one in rocks_of(scene))
 

@@ -1,4 +1,4 @@
-"""How often a process searches its memory for garbage."""
+"""Rare garbage collection in a process of short life."""
 
 import atexit
 import gc

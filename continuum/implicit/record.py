@@ -1,4 +1,4 @@
-"""What is recorded of implicit steps: receivers and energies of a state in balance."""
+"""Record of implicit steps: receivers and energies of a state in balance."""
 
 from collections.abc import Callable
 from functools import cache

@@ -1,4 +1,4 @@
-"""What implicit steps do to vectors of freedoms, compiled.
+"""Compiled sums and products of vectors of freedoms in implicit steps.
 
 numpy and scipy check their operands in every product and sum, which takes longer than the work
 itself for a short pillar.

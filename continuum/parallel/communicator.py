@@ -165,11 +165,6 @@ class Communicator(Serial):
         """Return the total number of degrees of freedom."""
         return self.degrees_of_freedom
 
-    def critical_step(self, *assembled) -> float:
-        from jointwave.continuum.parallel.critical import shared_critical_step
-
-        return shared_critical_step(self, *assembled)
-
     def on_first(self, share: np.ndarray) -> np.ndarray:
         """Return the sum of values as one vector [n] by `number`, on the first process only."""
         found = np.zeros(self.degrees_of_freedom)

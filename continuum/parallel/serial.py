@@ -65,12 +65,6 @@ class Serial:
         """Return the total number of degrees of freedom, given the number on this process."""
         return here
 
-    def critical_step(self, *assembled) -> float:
-        """Return `critical.critical_time_step` of the matrices assembled by all processes."""
-        from jointwave.continuum.explicit.critical import critical_time_step
-
-        return critical_time_step(*assembled)
-
     def same(self, value: T) -> T:
         """Return the object of the first process."""
         return value

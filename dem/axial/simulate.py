@@ -14,7 +14,6 @@ from jointwave.cases.loads import with_load_itself
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.sampling import Clock, interpolation
 from jointwave.cases.schema.scene import Scene
-from jointwave.dem import time_loop
 from jointwave.dem.axial import fourth_order, leapfrog
 from jointwave.dem.axial.build import build
 from jointwave.dem.axial.model import Model, Receivers
@@ -25,6 +24,7 @@ from jointwave.dem.axial.state import State
 from jointwave.dem.fragments import with_fragments
 from jointwave.dem.snapshots import BlockFrame, BlockRecorder
 from jointwave.dem.static import since_prestress
+from jointwave.dem.time_loop import Run, followed, refuse_beyond_bounds, versions
 from jointwave.numerics.divergence import guard, look
 from jointwave.numerics.time_loop import Checkpointer
 from jointwave.results.arrays import copied, size_of
@@ -108,7 +108,7 @@ def simulate(
             seconds_setup=built - began,
             seconds_compile=compiled - built,
             seconds_stepping=perf_counter() - compiled,
-            versions=time_loop.versions(),
+            versions=versions(),
         )
         return _with_breaks(
             found if recorder is None else recorder.add_to(found), scene, state, time
@@ -118,10 +118,10 @@ def simulate(
         speed = np.abs(state.v)
         look(monitor, speed.max(), last * time.stride)
         centres = calibrate(scene).centre_y
-        time_loop.refuse_beyond_bounds(scene, time, critical, monitor, speed, centres)
+        refuse_beyond_bounds(scene, time, critical, monitor, speed, centres)
 
-    whole = time_loop.Run(time, state.u.size, march, check, (state, samples, monitor))
-    return time_loop.followed(whole, result, progress, recorder, keeper)
+    whole = Run(time, state.u.size, march, check, (state, samples, monitor))
+    return followed(whole, result, progress, recorder, keeper)
 
 
 def _with_breaks(result: xr.Dataset, scene: Scene, state: State, time: Clock) -> xr.Dataset:

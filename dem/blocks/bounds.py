@@ -1,4 +1,4 @@
-"""How fast the rigid blocks of a rock mass can become, and how far their contacts have moved."""
+"""Bounds of the motion of rigid blocks in a rock mass: highest energy, motion of contacts."""
 
 import numpy as np
 

@@ -10,7 +10,6 @@ import xarray as xr
 
 from jointwave.cases.incident import IncidentField
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.dem import time_loop
 from jointwave.dem.blocks.bounds import highest_energy, motion_of_contacts
 from jointwave.dem.blocks.leapfrog import PlaneSamples, march, samples_for
 from jointwave.dem.blocks.model import PlaneState, state_at_rest
@@ -18,6 +17,7 @@ from jointwave.dem.blocks.record import quantities
 from jointwave.dem.blocks.snapshots import PlaneRecorder
 from jointwave.dem.blocks.start import start
 from jointwave.dem.blocks.system import PlaneSystem, prepared
+from jointwave.dem.time_loop import Run, followed, refuse_beyond_bounds, versions
 from jointwave.numerics.divergence import SPEED, Guard, audit, guard
 from jointwave.numerics.small_motion import (
     Moved,
@@ -72,7 +72,7 @@ def simulate(
             seconds_setup=built - began,
             seconds_compile=compiled - built,
             seconds_stepping=perf_counter() - compiled,
-            versions=time_loop.versions(),
+            versions=versions(),
         )
         return found if recorder is None else recorder.add_to(found)
 
@@ -82,14 +82,14 @@ def simulate(
 
     def check(first: int, last: int) -> None:
         speeds, places = _energies(system, state), system.blocks.partition.centroid
-        time_loop.refuse_beyond_bounds(scene, time, system.critical, monitor, speeds, places)
+        refuse_beyond_bounds(scene, time, system.critical, monitor, speeds, places)
         if matters(scene):
             t = last * time.stride * time.dt
             refuse_large_motion(scene, "the rigid blocks", moved_apart(system, state), t, first)
 
     parts = (state, samples, monitor)
-    run = time_loop.Run(time, system.blocks.partition.count, march_samples, check, parts)
-    return time_loop.followed(run, result, progress, recorder, keeper)
+    run = Run(time, system.blocks.partition.count, march_samples, check, parts)
+    return followed(run, result, progress, recorder, keeper)
 
 
 def moved_apart(system: PlaneSystem, state: PlaneState) -> Moved | None:

@@ -1,4 +1,4 @@
-"""How a scene is shown: the direction, the exaggeration, and the quantity of the colours."""
+"""Settings of an animation: direction, exaggeration, and the quantity of the colours."""
 
 from math import floor, log10
 from typing import NamedTuple

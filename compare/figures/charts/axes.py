@@ -1,4 +1,4 @@
-"""What charts share: rows of axes over one abscissa, their headings, and a legend above them."""
+"""Common layout of charts: rows of axes over one abscissa, their headings, a legend above."""
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
