@@ -52,7 +52,6 @@ bench: setup  ## both engines: start-up, kernels compared with bare loops and ot
 
 bench-peers: setup  ## the same pillar in LAMMPS and Akantu, a lattice in LAMMPS, installed separately in .peers, compared with ours
 	@$(RUN) python tools/peers
-	@$(RUN) python tools/peers/lattice.py
 
 .uv/bin/uv:
 	@python3 -m venv .uv

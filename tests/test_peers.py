@@ -55,7 +55,7 @@ def command(peers, tmp_path):
         folder = tmp_path / name
         folder.mkdir()
         return job.Job(
-            *("code", "leapfrog", "points", "lattice", {"stride": 1}, 4, 2, 2, 3),
+            *("code", "points", "lattice", {"stride": 1}, 4, 2, 3),
             folder=folder,
             command=[sys.executable, "-c", program],
             read=job.read_driven,
@@ -205,7 +205,7 @@ def test_failed_installation_is_a_reason(peers, tmp_path, monkeypatch):
 
 
 def test_missing_peer_is_in_the_table_and_says_why(peers, tmp_path):
-    own = peers("table")
+    own = peers("measure")
     rows = own.frame([own.missing_row("Akantu bar", "the homogenised bar", "no wheel here")])
     found = summarise(read(write_csv(tmp_path / "points.csv", rows)), tmp_path)
     assert found.failed == ["Akantu bar (the homogenised bar): no wheel here"]
@@ -239,7 +239,7 @@ def test_failed_run_is_listed_and_not_run_again(peers, command, program, message
     assert row["state"] == "failed" and message in row["message"]
     assert (job.folder / "count").read_text() == "x"
     assert measure.ratios(turns, turns) == {}
-    table = write_csv(tmp_path / "points.csv", peers("table").frame([row]))
+    table = write_csv(tmp_path / "points.csv", peers("measure").frame([row]))
     assert message in summarise(read(table), tmp_path).failed[0]
 
 

@@ -1,14 +1,12 @@
 """All benchmarks, as ratios and costs of one run on this machine.
 
-usage: python tools/bench [PART ...], of
-    startup, kernels, plane, continuum, masses
+usage: python tools/bench [PART ...], of startup, kernels, plane and continuum
 """
 
 import sys
 
 import deformable
 import kernels
-import masses
 import plane
 import startup
 
@@ -17,7 +15,6 @@ PARTS = {
     "kernels": kernels.main,
     "plane": plane.main,
     "continuum": deformable.main,
-    "masses": masses.main,
 }
 
 if __name__ == "__main__":

@@ -1,84 +1,81 @@
-"""The continuum in three dimensions against plain dolfinx and scipy.
+"""The continuum against plain dolfinx and scipy: jointed pillars in space, and rock masses.
 
-All step the same motion, which is asserted before anything is timed. They take turns, so that a
-machine whose speed drifts slows all; medians of the rounds' ratios are the figures to quote.
+All step the same motion, which is asserted before anything is timed. The rock mass is a network of
+two sets at random spacings, 60 m x 60 m: blocks of any shape, in triangles of order 2; and the same
+rock as its effective medium, in one piece.
 """
 
-from collections.abc import Callable, Iterator
-from statistics import median
-from typing import NamedTuple
+from functools import partial
 
 import numba
 import numpy as np
 import plain_dolfinx
-import plain_scipy
 import processes
-from kernels import ROUNDS, rate
-from plain_dolfinx import Pillar
-from rock import BLOCKS, CASES, SAME_STEPS, Engine, assert_same, engine_of, pillar_of
+from rock import BLOCKS, CASES, SAME_STEPS, assert_same, engine_of, network, pillar_of
+from scipy.sparse import csr_matrix
+from timing import Timed, side_by_side
 
-from jointwave.continuum.space.operator import layout, multiply, operator, zeros
+from jointwave.continuum.plane.rock import discretise
+from jointwave.continuum.space.body import rock_matrices
+from jointwave.continuum.space.operator import Operator, layout, multiply, operator
+from jointwave.numerics.cache_lines import zeros
 
-
-class Contender(NamedTuple):
-    """Something that steps: its name, how, and the freedoms times steps of one call."""
-
-    name: str
-    march: Callable[[], None]
-    units: int
+FEW = 10  # steps of one call of the others
+PRODUCT = numba.njit(lambda *arguments: multiply(*arguments))
 
 
-def contenders(case: str, engine: Engine) -> list[Contender]:
-    """Return the engine, dolfinx, scipy and the bare operators, all in the same motion."""
+def pillars(case: str) -> None:
+    """Print the engine's rates over those of all others on one case."""
+    n, p = CASES[case]
+    engine = engine_of(case)
+    print(
+        f"continuum: {BLOCKS} blocks of {n} x {n} x {n} hexahedra of order {p}, "
+        f"{3 * len(engine.discrete.body.x):,} freedoms; freedoms x steps a second, one core"
+    )
     pillar = pillar_of(case, engine)
-    others = [
-        plain_dolfinx.assembled(pillar),
-        plain_scipy.multiplied(pillar),
-    ]
-    assert_same(engine, others)
-    size, few = others[0].u.size, 10
-    return [
-        Contender("engine", lambda: engine.march(SAME_STEPS, 2 * SAME_STEPS), size * SAME_STEPS),
-        Contender("plain dolfinx, -O2", lambda: others[0].march(few), size * few),
-        Contender("scipy, zeros dropped", lambda: others[1].march(few), size * few),
-        *operators(pillar, size),
-    ]
-
-
-def operators(pillar: Pillar, size: int) -> Iterator[Contender]:
-    """Yield K u alone: of the engine, and of scipy without the zeros."""
-    block = plain_scipy.stiffness(pillar._replace(blocks=1))
+    dolfinx, scipy = plain_dolfinx.assembled(pillar), plain_dolfinx.multiplied(pillar)
+    assert_same(engine, [dolfinx, scipy])
+    size = dolfinx.u.size
+    own = partial(engine.march, SAME_STEPS, 2 * SAME_STEPS), size * SAME_STEPS
+    for name, other in {"plain dolfinx, -O2": dolfinx, "scipy, zeros dropped": scipy}.items():
+        side_by_side(f"engine over {name}", own, (partial(other.march, FEW), size * FEW))
+    block = plain_dolfinx.stiffness(pillar._replace(blocks=1))
     where = layout([BLOCKS], [block.shape[0]])
-    own, x, y = operator(where, [block]), zeros(where.length), zeros(where.length)
-    x[:] = 1.0
-    compiled = numba.njit(lambda *arguments: multiply(*arguments))
-    yield Contender("engine, K u alone", lambda: compiled(*own, x, y, 1.0), size)
-    whole = plain_scipy.without_zeros(pillar)
-    u = np.ones(size)
-    yield Contender("scipy, K u alone", lambda: whole @ u, size)
+    whole = plain_dolfinx.without_zeros(pillar)
+    both = products(operator(where, [block]), where.length, whole, size)
+    side_by_side("K u alone, over scipy", *both)
 
 
-def side_by_side(rivals: list[Contender]) -> None:
-    """Time all in turn and print rates and ratios."""
-    for rival in rivals:
-        rival.march()
-    rounds = [[rate(rival.march, rival.units) for rival in rivals] for _ in range(ROUNDS)]
-    rates = dict(zip([rival.name for rival in rivals], zip(*rounds, strict=True), strict=True))
-    for name, found in rates.items():
-        first = "engine, K u alone" if name.endswith("alone") else "engine"
-        ratios = sorted(a / b for a, b in zip(rates[first], found, strict=True))
-        spread = f"{median(ratios):7.2f} ({ratios[0]:.2f} to {ratios[-1]:.2f})"
-        over = "" if name == first else f": {first} is {spread} times that"
-        print(f"  {name:24s} {median(found):8.2e}{over}", flush=True)
+def products(own: Operator, length: int, matrix: csr_matrix, count: int) -> tuple[Timed, Timed]:
+    """Return K u of the engine and of scipy, count freedoms each."""
+    x, y = zeros(length), zeros(length)
+    x[:] = np.sin(np.arange(length))
+    u = x[: matrix.shape[0]].copy()
+
+    def product() -> np.ndarray:
+        PRODUCT(*own, x, y, 1.0)
+        return y
+
+    return (product, count), (lambda: matrix @ u, count)
+
+
+def masses() -> None:
+    """Print K u of rock masses over scipy's, of the same matrix."""
+    print("rock masses, K u alone, over scipy's CSR product of the same matrix, freedoms/s")
+    for name, model in {"blocks of any shape": "jointed", "one piece": "equivalent"}.items():
+        body = discretise(network(), model).body
+        matrix, count = rock_matrices(body)[0], body.degrees_of_freedom
+        both = products(body.stiffness, body.mass.size, matrix, count)
+        own, other = (take() for take, _ in both)
+        assert np.abs(own - other).max() < 1e-12 * np.abs(other).max()
+        side_by_side(f"{name}, {count:,}", *both)
 
 
 def main() -> None:
-    """Print all of it for both cases."""
-    for case, (n, p) in CASES.items():
-        engine = engine_of(case)
-        print(
-            f"continuum: {BLOCKS} blocks of {n} x {n} x {n} hexahedra of order {p}, "
-            f"{3 * len(engine.discrete.body.x):,} freedoms; freedoms x steps a second, one core"
-        )
-        side_by_side(contenders(case, engine))
+    """Print all of it."""
+    for case in CASES:
+        pillars(case)
         processes.compared(case)
+    masses()
+    print("rock masses, freedoms x steps a second", flush=True)
+    processes.compared("rock mass")

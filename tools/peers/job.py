@@ -26,24 +26,21 @@ class Twin(NamedTuple):
     elements: int = 0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Job:
     """A run whose input is written, in a folder of its own.
 
-    curve : the code and its method, a line in the diagram. method : how it steps.
-    solves : what it takes the pillar for. reference : the exact solution of that model.
-    settings : of this point. freedoms, steps : how many. work : degree-of-freedom-steps, for
-    codes of bodies body-steps. twin : what of ours it is held beside, None for ours.
+    curve : the code and its method, a line in the diagram. solves : what it takes the pillar for.
+    reference : the exact solution of that model. settings : of this point.
+    freedoms, steps : how many. twin : what of ours it is held beside, None for ours.
     """
 
     curve: str
-    method: str
     solves: str
     reference: str
     settings: dict
     freedoms: int
     steps: int
-    work: int
     samples: int
     folder: Path
     command: list[str]
@@ -70,11 +67,6 @@ def folder_of(root: Path, curve: str, **settings: object) -> Path:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     return folder
-
-
-def write_json(path: Path, values: dict) -> None:
-    """Write an input file."""
-    path.write_text(json.dumps(values))
 
 
 def read_driven(folder: Path) -> Reading:

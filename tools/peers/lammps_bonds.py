@@ -33,27 +33,16 @@ class Style(NamedTuple):
 
 
 POINTS = Style(
-    "LAMMPS bonds",
-    "points on springs, 3 translations each",
-    "bond",
-    "nve",
-    "",
-    "on",
-    3,
-    "blocks along the axis",
+    *("LAMMPS bonds", "points on springs, 3 translations each"),
+    *("bond", "nve", "", "on", 3, "blocks along the axis"),
 )
 SPHERES = Style(
-    "LAMMPS BPM bonds",
-    "spheres on bonds that also shear, bend and twist, 6 freedoms each",
-    "bpm/sphere",
-    "nve/bpm/sphere",
-    "vel yes",
-    "off",
-    6,
-    "blocks in space",
+    *("LAMMPS BPM bonds", "spheres on bonds that also shear, bend and twist, 6 freedoms each"),
+    *("bpm/sphere", "nve/bpm/sphere", "vel yes", "off", 6, "blocks in space"),
 )
 
-INPUT = """\
+#: What every input begins with: bodies of a data file on bonds of one kind.
+BODIES = """\
 units          si
 atom_style     {atoms}
 atom_modify    map array
@@ -61,20 +50,21 @@ newton         on {newton}
 boundary       f f f
 special_bonds  lj 0 1 1 coul 1 1 1
 comm_modify    cutoff {cutoff!r} {ghosts}
-read_data      pillar.data
+read_data      bodies.data
 pair_style     none
 {bonds}
 neigh_modify   once yes
 timestep       {dt!r}
-
+fix            move all {integrator}
+thermo         {steps}
+"""
+INPUT = """\
 group          loaded id 1
 variable       stress equal (x[{before}]-x[{after}]+{spacing!r})*{stiffness!r}
 variable       history file load.txt
 variable       push equal next(history)
-fix            move all {integrator}
 fix            push loaded addforce v_push 0 0
 fix            record all ave/time {stride} 1 {stride} v_stress file stress.txt format " %.17g"
-thermo         {steps}
 run            {pushed}
 unfix          push
 run            {rest}
@@ -92,17 +82,15 @@ def job(p: Pillar, style: Style, place: Place, root: Path) -> Job:
     """Write the input of one run and return it."""
     folder = folder_of(root, style.curve, stride=p.stride)
     (folder / "in.pillar").write_text(script(p, style))
-    (folder / "pillar.data").write_text(data(p, style))
+    (folder / "bodies.data").write_text(data(p, style))
     np.savetxt(folder / "load.txt", p.verlet_load * p.area, fmt="%.17g")
     return Job(
         curve=style.curve,
-        method="velocity Verlet",
         solves=style.solves,
         reference="lattice",
         settings={"stride": p.stride},
         freedoms=style.freedoms * p.blocks,
         steps=p.steps,
-        work=p.blocks * p.steps,
         samples=p.samples,
         folder=folder,
         command=[*place.command, "-in", "in.pillar"],
@@ -117,12 +105,17 @@ def script(p: Pillar, style: Style) -> str:
 
     The load is read as long as it acts; reading zeros would be work that nobody asks for. The
     stress is that of the recorded bond by its length: BPM's own output of it is half the force.
+    LAMMPS leaves out the half of k/2 r^2.
     """
     pushed = len(p.load) - 1
-    return INPUT.format(
+    twist, bend = p.shear * p.side**2 / 6, p.normal * p.side**2 / 12
+    bonds = f"bond_style     harmonic\nbond_coeff     1 {p.normal / 2!r} {p.spacing!r}"
+    if style is SPHERES:
+        bonds = bpm_bonds(p.normal, p.shear, twist, bend)
+    return (BODIES + INPUT).format(
         **style._asdict(),
         cutoff=2 * p.spacing,
-        bonds=bonds(p, style),
+        bonds=bonds,
         dt=p.dt,
         before=p.joint,
         after=p.joint + 1,
@@ -135,30 +128,46 @@ def script(p: Pillar, style: Style) -> str:
     )
 
 
-def bonds(p: Pillar, style: Style) -> str:
-    """Return the bonds' style and coefficients; LAMMPS leaves out the half of k/2 r^2."""
-    if style is POINTS:
-        return f"bond_style     harmonic\nbond_coeff     1 {p.normal / 2!r} {p.spacing!r}"
-    twist, bend = p.shear * p.side**2 / 6, p.normal * p.side**2 / 12
-    numbers = [p.normal, p.shear, twist, bend, *4 * [UNBREAKABLE], *4 * [0.0]]
-    text = " ".join(map(repr, numbers))
+def bpm_bonds(*stiffness: float) -> str:
+    """Return the style and coefficients of bonds that never break: normal and shear stiffness, N/m,
+    and those of twist and bending, N m."""
+    text = " ".join(map(repr, [*stiffness, *4 * [UNBREAKABLE], *4 * [0.0]]))
     return f"bond_style     bpm/rotational smooth no\nbond_coeff     1 {text}"
 
 
 def data(p: Pillar, style: Style) -> str:
     """Return the data file: bodies at the blocks' centres along x, a bond at each joint."""
     n, d = p.blocks, p.spacing
-    density = p.mass / (np.pi * d**3 / 6)
-    about = "" if style is POINTS else f"{d!r} {float(density)!r} "
-    head = f"the pillar\n\n{n} atoms\n{n - 1} bonds\n1 atom types\n1 bond types\n"
-    box = f"\n0 {n * d!r} xlo xhi\n{-d!r} {d!r} ylo yhi\n{-d!r} {d!r} zlo zhi\n"
-    masses = f"\nMasses\n\n1 {p.mass!r}\n" if style is POINTS else ""
-    atoms = "".join(f"{i + 1} 1 1 {about}{(i + 0.5) * d!r} 0 0\n" for i in range(n))
-    joints = "".join(f"{i} 1 {i} {i + 1}\n" for i in range(1, n))
-    return f"{head}{box}{masses}\nAtoms # {style.atoms}\n\n{atoms}\nBonds\n\n{joints}"
+    centres = np.zeros((n, 2))
+    centres[:, 0] = (np.arange(n) + 0.5) * d
+    pairs = np.arange(n - 1)[:, None] + np.arange(2)
+    return bodies(style, p.mass, d, (0, n * d, -d, d), centres, pairs)
+
+
+def bodies(style: Style, mass: float, size: float, box, centres, pairs) -> str:
+    """Return the data file of bodies of one mass (kg) and diameter (m) at these centres [n, 2] in
+    a box (m: left, right, bottom, top), with bonds between pairs [bonds, 2], numbered from 0."""
+    left, right, bottom, top = (float(side) for side in box)
+    density = float(mass / (np.pi * size**3 / 6))
+    about, masses = f"{size!r} {density!r} ", ""
+    if style is POINTS:
+        about, masses = "", f"\nMasses\n\n1 {mass!r}\n"
+    places = enumerate(centres.tolist(), 1)
+    atoms = "".join(f"{i} 1 1 {about}{x!r} {y!r} 0\n" for i, (x, y) in places)
+    bonds = "".join(f"{c} 1 {i + 1} {j + 1}\n" for c, (i, j) in enumerate(pairs.tolist(), 1))
+    return (
+        f"bodies\n\n{len(centres)} atoms\n{len(pairs)} bonds\n1 atom types\n1 bond types\n"
+        f"\n{left!r} {right!r} xlo xhi\n{bottom!r} {top!r} ylo yhi\n{-size!r} {size!r} zlo zhi\n"
+        f"{masses}\nAtoms # {style.atoms}\n\n{atoms}\nBonds\n\n{bonds}"
+    )
 
 
 def read(folder: Path) -> Reading:
     """Read the samples, and the loop times that LAMMPS reports."""
-    times = re.findall(r"Loop time of (\S+)", (folder / "output.txt").read_text())
-    return Reading(np.loadtxt(folder / "stress.txt")[:, 1], sum(map(float, times)))
+    seconds = stepping((folder / "output.txt").read_text())
+    return Reading(np.loadtxt(folder / "stress.txt")[:, 1], seconds)
+
+
+def stepping(output: str) -> float:
+    """Return the seconds of stepping that LAMMPS reports."""
+    return sum(map(float, re.findall(r"Loop time of (\S+)", output)))

@@ -1,20 +1,29 @@
 """Whole processes, timed in turns: misfits, stepping rates, and ratios to ours by round."""
 
 import os
+import platform
 import subprocess
 from statistics import median
 from time import perf_counter
 from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
 from job import Job, environment_of
 
 from jointwave.compare.misfit.metrics import relative_l2
+from jointwave.compare.runs.timings import processor
+from jointwave.compare.studies.summary import cell
 
 FINEST = "jointed-bar"  # intact rock with every joint resolved
 LONGEST = 600  # s
-#: What of a job is in its row.
-ABOUT = ("curve", "method", "solves", "settings", "reference", "freedoms", "steps", "work")
+#: What of a job is in its row, and all columns of the table.
+ABOUT = ("curve", "solves", "settings", "reference", "freedoms", "steps")
+COLUMNS = (
+    *(*ABOUT, "state", "message", "misfit", "total_misfit", "seconds", "whole", "rate", "beside"),
+    *("stepping_over_ours", "stepping_over_ours_least", "stepping_over_ours_most"),
+    *("whole_over_ours", "whole_over_ours_least", "whole_over_ours_most", "machine"),
+)
 
 
 class Turn(NamedTuple):
@@ -90,16 +99,14 @@ def row(job: Job, turns: list[Turn], exact: dict[str, np.ndarray]) -> dict:
     found = {**about, "state": "failed" if failure else "done", "message": failure}
     if failure:
         return found
-    stepping, whole = ([getattr(t, name) for t in turns] for name in ("stepping", "whole"))
+    seconds = median(turn.stepping for turn in turns)
     return {
         **found,
         "misfit": relative_l2(turns[-1].stress, exact[job.reference]),
         "total_misfit": relative_l2(turns[-1].stress, exact[FINEST]),
-        "seconds": median(stepping),
-        "spread": half_range(stepping),
-        "whole": median(whole),
-        "whole_spread": half_range(whole),
-        "rate": job.freedoms * job.steps / median(stepping),
+        "seconds": seconds,
+        "whole": median(turn.whole for turn in turns),
+        "rate": job.freedoms * job.steps / seconds,
     }
 
 
@@ -116,6 +123,18 @@ def ratios(peer: list[Turn], ours: list[Turn]) -> dict:
     return found
 
 
-def half_range(values: list[float]) -> float:
-    """Return half the range of some values."""
-    return (max(values) - min(values)) / 2
+def missing_row(curve: str, solves: str, reason: str) -> dict:
+    """Return the row of a peer that cannot be had."""
+    return {"curve": curve, "solves": solves, "state": "missing", "message": reason}
+
+
+def frame(rows: list[dict]) -> pd.DataFrame:
+    """Return the rows as a table; a value that a row does not have stays empty."""
+    cells = [{key: cell(value) for key, value in row.items()} for row in rows]
+    return pd.DataFrame(cells, columns=list(COLUMNS))
+
+
+def machine() -> str:
+    """Return what the seconds were taken on."""
+    load = f", load {os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else ""
+    return f"{processor()}, {os.cpu_count()} cores, one used{load}, {platform.platform()}"

@@ -1,0 +1,39 @@
+"""Rates taken in turns, so that a machine whose speed drifts slows all alike."""
+
+from collections.abc import Callable
+from statistics import median
+from time import perf_counter
+
+ROUNDS = 9
+SHORTEST = 0.03  # s
+
+Timed = tuple[Callable[[], object], int]  # takes steps; block-steps or freedom-steps of one call
+
+
+def rate(take: Callable[[], object], steps: int) -> float:
+    """Return steps a second, from calls that take long enough to be timed."""
+    calls, began, spent = 0, perf_counter(), 0.0
+    while spent < SHORTEST:
+        take()
+        calls, spent = calls + 1, perf_counter() - began
+    return calls * steps / spent
+
+
+def in_turns(*rivals: Timed) -> list[tuple[float, ...]]:
+    """Return the rates of all in every round, after a call of each that compiles."""
+    for take, _ in rivals:
+        take()
+    return [tuple(rate(*one) for one in rivals) for _ in range(ROUNDS)]
+
+
+def in_words(pairs: list[tuple[float, ...]]) -> str:
+    """Return the medians of two rates taken in turns and of their ratios, with least and most."""
+    one, other = (median(rates) for rates in zip(*pairs, strict=True))
+    ratios = [a / b for a, b in pairs]
+    least, middle, most = (f"{f(ratios):.2f}" for f in (min, median, max))
+    return f"{one:8.2e} over {other:8.2e}: {middle} ({least} to {most})"
+
+
+def side_by_side(label: str, one: Timed, other: Timed) -> None:
+    """Time two in turns and print both rates and the ratio one / other."""
+    print(f"  {label:42s} {in_words(in_turns(one, other))}", flush=True)
