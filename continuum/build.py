@@ -118,8 +118,10 @@ def critical_step(
     assembled = body.mass, stiffness, viscosity, fixed, any_motion(body)
     if body.communicator.size == 1:
         return critical_time_step(*assembled)
-    from jointwave.continuum.parallel.critical import shared_critical_step  # with mpi4py
+    from jointwave.continuum.parallel.communicator import Communicator  # with mpi4py
+    from jointwave.continuum.parallel.critical import shared_critical_step
 
+    assert isinstance(body.communicator, Communicator)
     return shared_critical_step(body.communicator, *assembled)
 
 

@@ -1,9 +1,28 @@
-"""What the tests of rigid blocks share: the chain and the row in space as plain Python."""
+"""What the tests of rigid blocks share: short rows in space, and both engines as plain Python."""
+
+from copy import deepcopy
+from typing import Any
 
 import pytest
 
 from jointwave.dem.axial import leapfrog
 from jointwave.dem.spatial import march
+
+SHORT: dict[str, Any] = {
+    "pillar__length": 8.0,
+    "rock__intact_modulus": None,  # at a wall the half spring of a joint, whose numbers are at hand
+    "load__amplitude": 1e5,
+    "load__direction": [0.48, 0.6, -0.64],
+    "load__at": [0.1, -0.05],
+    "time__duration": 0.03,
+    "record": {"stress": [0.0, 2.0, 5.0, 8.0], "velocity": [3.0, 6.0], "interval": 1e-4},
+}
+
+
+@pytest.fixture
+def row(pillar):
+    """Return a function that gives 16 blocks under an oblique eccentric blow, keys changed."""
+    return lambda **changes: pillar(**{**deepcopy(SHORT), **changes})
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,6 @@ from jointwave.compare.engines import solve
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.dem import simulate
-from jointwave.dem.blocks.build import rigid_blocks
 
 SOFT = {"name": "soft", "through": [0.0, 8.0], "density": 2200.0, "intact_modulus": 2e10}
 HARD = {"name": "hard", "through": [0.0, 14.0], "density": 2900.0, "intact_modulus": 7e10}
@@ -88,9 +87,7 @@ def test_every_region_needs_blocks(rock_mass, wave):
     seam = {"name": "seam", "dip": 90.0, "spacing": 1.0, "regions": ["rock"]} | LAW
     numerics = {"dem": {"block": None}}
     with pytest.raises(SceneError, match="and region 'soft' has no joints"):
-        rigid_blocks(
-            rock_mass(regions=[SOFT], joint_sets=[seam], numerics=numerics, waves=[wave()])
-        )
+        simulate(rock_mass(regions=[SOFT], joint_sets=[seam], numerics=numerics, waves=[wave()]))
 
 
 def test_an_outline_in_a_lattice_closes_its_ledger(rock_mass, wave):

@@ -7,7 +7,6 @@ from jointwave.cases.errors import SceneError, StoppedError
 from jointwave.cases.incident import free_field
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.dem import simulate
-from jointwave.dem.blocks.build import rigid_blocks
 
 SINE = {"shape": "sine", "amplitude": 1e6, "period": 0.002}
 PRESSURE = SINE | {"kind": "pressure", "side": "bottom"}
@@ -109,7 +108,7 @@ def test_a_row_is_the_row_in_space(law, rock_mass, pillar, plain):
     law = {"point_rule": "gauss"} | law
     blow = SINE | {"kind": "force", "quantity": "force", "at": [0.35, 0.0], "amplitude": 5e5}
     plane = {"loads": [blow | {"direction": [0.6, 0.8]}], "time": {"duration": 2e-3}}
-    critical = rigid_blocks(column(rock_mass, top="free", joint=law, **plane)).critical
+    critical = simulate(column(rock_mass, top="free", joint=law, **plane)).critical_dt
     fraction = 8e-6 / critical * 1.0001
     found = simulate(column(rock_mass, top="free", joint=law, fraction=fraction, **plane))
     row = {"load": SINE | {"direction": [0.6, 0.8, 0.0], "at": [0.1, 0.0]}}

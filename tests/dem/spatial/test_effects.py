@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from jointwave import dem
-from jointwave.dem.spatial.build import buffers_for
+from jointwave.dem.spatial.build import buffers_for, samples_for, state_at_rest
 from jointwave.dem.spatial.march import arguments, march_for
+from jointwave.dem.spatial.simulate import prepare
 
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
 ABSENT = ("points", "finite", "mass_damping", "local_damping", "gravity", "base", "start", "end")
@@ -56,16 +57,16 @@ def test_idle_joint_law_changes_round_off_alone(row, idle, prestress):
         assert np.abs(values - with_idle[name]).max() < 1e-12 * np.abs(values).max()
 
 
-def test_absent_effects_leave_no_instruction(row, at_rest, instructions):
+def test_absent_effects_leave_no_instruction(row, instructions):
     """No comparison, division or root in an elastic row; friction brings all three. Both work on
     several blocks at once."""
 
     def count(**changes):
-        blocks = at_rest(row(record__energy=False, **changes))
-        buffers = buffers_for(blocks.model, 1)
+        _, model, time, _ = prepare(row(record__energy=False, **changes))
+        state, samples = state_at_rest(model), samples_for(model, time.samples + 1)
         progress = np.zeros(2, dtype=np.int64)
-        given = arguments(blocks.model, blocks.state, buffers, blocks.samples, progress)
-        kernel, given = march_for(blocks.model.form), (given, 0, 0, 1)
+        given = arguments(model, state, buffers_for(model, 1), samples, progress)
+        kernel, given = march_for(model.form), (given, 0, 0, 1)
         return [
             instructions(kernel, given, kind)
             for kind in ("fcmp", "fdiv", SQRT, "fmul", "fmul" + SEVERAL, "fdiv" + SEVERAL)
