@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 #: The engines by name; their packages are imported when they run.
 ENGINES: dict[str, Solver] = {one.name: one for one in (DEM, JOINTED_ROCK, EQUIVALENT_ROCK)}
 
-#: The modules of the exact solutions by name, each of which ends with its record, SOLVER. The model
+#: The modules of the exact solutions by name, each of which ends with their records. The model
 #: that an engine discretises comes before coarser ones; a module is imported when it is asked for.
 EXACT = {
     "lattice": "blocks.lattice",
@@ -38,8 +38,8 @@ EXACT = {
     "slip-joint": "joint.sliding_joint",
     "sliding-block": "blocks.sliding_block",
     "normal-incidence": "rock_mass.normal_incidence",
-    "oblique-joint": "rock_mass.oblique_joint",
-    "parallel-joints": "rock_mass.parallel_joints",
+    "oblique-joint": "rock_mass.stack_waves",
+    "parallel-joints": "rock_mass.stack_waves",
     "line-force": "rock_mass.line_force",
     "effective-medium": "rock_mass.effective_medium",
     "block-lattice": "rock_mass.block_lattice",
@@ -63,7 +63,8 @@ def solver(name: str) -> Solver:
         return ENGINES[name]
     if name not in EXACT:
         raise SceneError("engine", "", None, f"{name!r} is unknown; allowed: {', '.join(names())}")
-    return import_module(f".exact.{EXACT[name]}", __package__).SOLVER
+    records = vars(import_module(f".exact.{EXACT[name]}", __package__)).values()
+    return next(one for one in records if isinstance(one, Solver) and one.name == name)
 
 
 def solvers() -> list[Solver]:

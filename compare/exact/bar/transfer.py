@@ -19,19 +19,14 @@ v = a (1 - R). These are the impedance recursions of Brekhovskikh (Waves in Laye
 with the joint of Schoenberg (JASA 68, 1980).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import groupby
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from jointwave.cases.material.calibrate import Properties
-
-if TYPE_CHECKING:
-    from jointwave.cases.material.constant_q import Mechanisms
 
 
 @dataclass(frozen=True)
@@ -59,13 +54,14 @@ def end_of(kind: str, impedance: float, compliance: float = 0.0, time_constant: 
 
 class RockFrom(NamedTuple):
     """The rock of a bar from y (m) on: density (kg/m3), modulus (Pa), Kelvin-Voigt eta (s), and the
-    mechanisms that make its modulus depend on the Laplace variable, None without."""
+    mechanisms (`constant_q.Mechanisms`) that make its modulus depend on the Laplace variable, None
+    without."""
 
     y: float
     density: float
     modulus: float
     time_constant: float
-    relaxation: Mechanisms | None = None
+    relaxation: Any = None
 
     def impedance(self, s: np.ndarray) -> np.ndarray:
         """Return sqrt(rho E(s)) at the Laplace variables s, Pa s/m."""
@@ -75,9 +71,7 @@ class RockFrom(NamedTuple):
         return np.sqrt(self.density * modulus)
 
 
-def rocks(
-    p: Properties, moduli: list[float], relaxation: Mechanisms | None
-) -> tuple[RockFrom, ...]:
+def rocks(p: Properties, moduli: list[float], relaxation: Any) -> tuple[RockFrom, ...]:
     """Return the rocks of a pillar whose segments have these moduli (Pa); in relaxing rock only
     joints have dashpots."""
     starts = np.cumsum([0.0, *(one.block_count * one.spacing for one in p.each)])
@@ -123,7 +117,7 @@ class Cell(NamedTuple):
         share = self.passed / (1 - self.far * R)
         return self.near + self.back * share * R, share
 
-    def twice(self) -> Cell:
+    def twice(self) -> "Cell":
         """Return two such parts of the same rock in series."""
         near, share = self.before(self.near)
         passed = share * self.passed

@@ -1,9 +1,7 @@
 """The physics of a rock mass that an exact solution must cover."""
 
-from __future__ import annotations
-
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,10 +9,8 @@ from jointwave.cases.partition.joints import direction_of
 from jointwave.cases.partition.outline import outline_of
 from jointwave.cases.partition.regions import strata
 from jointwave.cases.schema.joint import PARTS
-
-if TYPE_CHECKING:
-    from jointwave.cases.schema.joint_set import JointSet
-    from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.rock_mass import RockMass
 
 PARALLEL = 1e-6  #: sine of the largest angle between directions that count as parallel
 #: Sine of the angle to joints, layers or a free face, 1 degree, up to which a wave runs along them:

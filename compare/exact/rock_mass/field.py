@@ -11,21 +11,27 @@ about 0.5 s of CPU time, 1 s where P waves are evanescent; it differs from `puls
 less than the bound given there, about 1e-9 of a smooth pulse.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise, product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.incident import FreeField, WaveMotion, free_field, plane_wave
+from jointwave.cases.incident import (
+    FreeField,
+    IncidentField,
+    PlaneWave,
+    WaveMotion,
+    free_field,
+    plane_wave,
+)
 from jointwave.cases.partition.joints import direction_of
 from jointwave.cases.partition.regions import strata
 from jointwave.cases.schema.domain import Domain
+from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.plane import Boundaries
 from jointwave.cases.schema.region import REST
+from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane import layer_pulses
 from jointwave.compare.exact.rock_mass import normal_incidence
 from jointwave.compare.exact.rock_mass.conditions import (
@@ -37,12 +43,6 @@ from jointwave.compare.exact.rock_mass.conditions import (
 )
 from jointwave.compare.exact.rock_mass.effective_medium import medium_field
 from jointwave.compare.exact.rock_mass.stack import JointStack, scatters_otherwise, stack_of
-
-if TYPE_CHECKING:
-    from jointwave.cases.incident import IncidentField, PlaneWave
-    from jointwave.cases.schema.joint_set import JointSet
-    from jointwave.cases.schema.rock_mass import RockMass
-
 
 #: Periodic sides, and the direction in which they repeat the rock.
 REPEATS = {"left": np.array([1.0, 0.0]), "bottom": np.array([0.0, 1.0])}

@@ -7,18 +7,18 @@ Sides that all waves meet at normal incidence are exact whatever happens between
 dashpots absorb all that comes back.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.incident import plane_wave
+from jointwave.cases.incident import PlaneWave, plane_wave
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.joints import direction_of
 from jointwave.cases.partition.outline import outline_of
 from jointwave.cases.partition.regions import rocks_of
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.rock_mass_checks import distance
 from jointwave.compare.exact.plane.waves import face
 from jointwave.compare.exact.rock_mass import normal_incidence
@@ -31,11 +31,6 @@ from jointwave.compare.exact.rock_mass.conditions import (
     reflecting_side,
 )
 from jointwave.compare.exact.rock_mass.field import StackField, field_of, planes_of
-
-if TYPE_CHECKING:
-    from jointwave.cases.incident import PlaneWave
-    from jointwave.cases.schema.joint_set import JointSet
-    from jointwave.cases.schema.rock_mass import RockMass
 
 LEAST = 0.01  # of the wave: less is not said
 SAMPLES = 2000  # times at which tractions are looked at, at most

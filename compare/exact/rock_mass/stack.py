@@ -5,21 +5,21 @@ continuous, in a convex domain with other sides through which waves leave, from 
 pulse may have met a joint there.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointwave.cases.incident import plane_wave
+from jointwave.cases.incident import PlaneWave, plane_wave
 from jointwave.cases.material.dashpots import set_time_constants
-from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.material.rock import ElasticRock, elastic_rock
+from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.joints import direction_of
 from jointwave.cases.partition.outline import TOLERANCE, outline_of
 from jointwave.cases.partition.regions import rocks_of, strata
 from jointwave.cases.partition.scene import partition_of
 from jointwave.cases.partition.subdivision import NO_SET
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.sources import Wave
 from jointwave.compare.exact.plane import parallel_joints
 from jointwave.compare.exact.plane.oblique_joint import Joint
 from jointwave.compare.exact.plane.pulse import PulseStack
@@ -35,13 +35,6 @@ from jointwave.compare.exact.rock_mass.conditions import (
     prestress_of,
     reflecting_side,
 )
-
-if TYPE_CHECKING:
-    from jointwave.cases.incident import PlaneWave
-    from jointwave.cases.material.rock import ElasticRock
-    from jointwave.cases.partition.blocks import Partition
-    from jointwave.cases.schema.rock_mass import RockMass
-    from jointwave.cases.schema.sources import Wave
 
 BEGUN = 1e-6  #: of the duration: tolerated time for which a pulse has met a joint at t = 0
 

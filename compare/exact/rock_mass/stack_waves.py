@@ -1,12 +1,17 @@
-"""Solution of scenes of waves at a stack of joints, at their receivers.
+"""Scenes of plane P and SV waves at one joint, or parallel ones, at any angle, at their receivers
+(`plane.oblique_joint`, `plane.parallel_joints`).
 
 Displacement is the same solution of the pulse's time integral; the opening and the slip of a joint
 are the jumps of displacement across it, and a point on a joint reads the mean of both sides. Where
 P waves are evanescent the motion begins before its cause: its part at t = 0 is not in the scene,
 which begins at rest, and is added to the error bound.
+
+Valid for parallel linear joints, with dashpots or without, in undamped rock with sides through
+which waves leave, and any number of plane waves that meet them after the start (`stack`).
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +27,7 @@ from jointwave.compare.exact.plane.pulse import pulse_fields
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass.conditions import prestress_of
 from jointwave.compare.exact.rock_mass.stack import JointStack, against, begun, stack_of
-from jointwave.compare.solvers.record import Answer, Kind
+from jointwave.compare.solvers.record import Answer, Kind, Line, Rock, Solver, thin
 from jointwave.results.plane import plane_dataset
 
 #: Causes of the engines' misfits against these waves.
@@ -175,3 +180,25 @@ def on_face(stress: np.ndarray, normal: np.ndarray) -> np.ndarray:
 def _beside(stack: JointStack) -> float:
     """Return the distance of a place beside a joint from it, m."""
     return BESIDE * float(np.hypot(*np.ptp(stack.partition.corners, axis=0)))
+
+
+def _solver(name: str, label: str, line: Line, one: bool) -> Solver:
+    return Solver(
+        name=name,
+        rock=Rock.JOINTED,
+        kinds=("rock mass",),
+        dimension=2,
+        label=label,
+        line=line,
+        applies=partial(holds, one=one),
+        run=partial(solve, name=name),
+        distances=DISTANCES,
+    )
+
+
+ONE_JOINT = _solver(
+    "oblique-joint", "joint at an angle, exact", thin("#d55e00", 8, (4.5, 8.5)), one=True
+)
+PARALLEL_JOINTS = _solver(
+    "parallel-joints", "parallel joints, exact", thin("#a83200", 8, (9, 18)), one=False
+)

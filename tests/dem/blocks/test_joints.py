@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from jointwave.compare.exact.rock_mass import oblique_joint
 from jointwave.compare.exact.rock_mass.field import field_of
+from jointwave.compare.exact.rock_mass.stack_waves import ONE_JOINT
 from jointwave.dem import simulate
 
 QUANTITIES = ("velocity", "displacement", "stress", "traction", "gap", "slip")
 
 
-def misfits(scene, solution=oblique_joint.SOLVER):
+def misfits(scene, solution=ONE_JOINT):
     """Return the relative L2 misfit of each quantity, of the worst receiver, all components."""
     found, exact = simulate(scene, incident=field_of(scene)), solution.run(scene)
     errors = {}
