@@ -123,7 +123,7 @@ def _given(comparison: Comparison, place: Place) -> dict[str, pd.Series]:
 
 def by_component(result: xr.Dataset, quantity: str) -> dict[str, np.ndarray]:
     """Return the motion of a quantity [place, time] by component, "" for the only one."""
-    values, names = motion(result, quantity), places_of(result, quantity)[1]
+    values, names = motion(result[[quantity]])[quantity].values, places_of(result, quantity)[1]
     values = values.reshape(*values.shape[:2], -1)
     return {name if len(names) > 1 else "": values[..., k] for k, name in enumerate(names)}
 

@@ -131,9 +131,7 @@ def distance_at(
 
 def static_level(place: Place, result: xr.Dataset) -> float:
     """Return the static value of a solution at a receiver before its load acts, SI."""
-    found = result[place.quantity]
-    still = np.broadcast_to(static_state(result, place.quantity), found.shape)
-    level = place.waveform(result.assign({place.quantity: (found.dims, still)}))
+    level = place.waveform(static_state(result))
     return 0.0 if level is None else float(level[0])
 
 

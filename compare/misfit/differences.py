@@ -17,7 +17,8 @@ from jointwave.compare.misfit.metrics import (
     shared_waveforms,
     static_state,
 )
-from jointwave.compare.misfit.weight import FAINT, UNITS
+from jointwave.compare.misfit.places import UNITS, shown
+from jointwave.compare.misfit.weight import FAINT
 
 VELOCITY, STRESS = "PPV", "peak stress"
 _OF = {"velocity": VELOCITY, "stress": STRESS, "shear": STRESS}
@@ -70,9 +71,9 @@ def static_difference(one: xr.Dataset, other: xr.Dataset) -> Worst:
     reference, which comes second; without a static state 0."""
     held = [
         (place, float(a[0]), float(b[0]))
-        for place, a, b in shared_waveforms(one, other, static_state)
+        for place, a, b in shared_waveforms(static_state(one), static_state(other))
         if place.quantity in UNITS[0]
     ]
     largest = max((abs(b) for *_, b in held), default=0.0)
-    found = [Worst(abs(a - b) / largest, place) for place, a, b in held if largest > 0]
+    found = [Worst(abs(a - b) / largest, shown(place, one)) for place, a, b in held if largest > 0]
     return max(found, key=lambda w: w.misfit, default=Worst(0.0))

@@ -6,18 +6,15 @@ that of the worst component that carries its quantity's motion at a receiver (`w
 function takes a waveform or result first and its reference second, equally sampled.
 """
 
-from collections.abc import Callable, Iterator
-from functools import lru_cache
 from math import inf
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from jointwave.compare.misfit.places import Place, places_of
-from jointwave.compare.misfit.weight import EXCITED, QUANTITIES, UNITS, weigh
+from jointwave.compare.misfit.places import QUANTITIES, UNITS, Place, shown, waveforms
+from jointwave.compare.misfit.weight import EXCITED, weigh
 
-Reading = Callable[[xr.Dataset, str], np.ndarray]
 JUDGED = 10.0  # times its own error: the smallest misfit that a reference can resolve
 
 
@@ -124,15 +121,16 @@ def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
     """
     until = other.attrs.get("known_until", np.inf)
     n = int(np.searchsorted(other["time"].values, until, side="right"))
-    found = [(place, a[:n], b[:n]) for place, a, b in shared_waveforms(one, other)]
+    found = [(p, a[:n], b[:n]) for p, a, b in shared_waveforms(motion(one), motion(other))]
     changed = [max(rms(a), rms(b)) for place, a, b in found if place.quantity in UNITS[0]]
     if changed and max(changed) < EXCITED * _static_stress(other):
         return []
     weight = weigh([place for place, *_ in found], np.array([rms(b) for *_, b in found]))
-    kept = []
+    kept, errors = [], waveforms(other, "_error")
     numbers = (each.tolist() for each in weight)
     for (place, a, b), norm, least, excited in zip(found, *numbers, strict=True):
-        pairing = _judged(place, a, b, error_of(other, place), norm, least)
+        error = float(errors[place][0]) if place in errors else 0.0
+        pairing = _judged(shown(place, one), a, b, error, norm, least)
         if (excited or not pairing.faint) and (a.any() or b.any()):
             kept.append(pairing)
     return kept
@@ -153,45 +151,30 @@ def _judged(
 
 
 def shared_waveforms(
-    one: xr.Dataset, other: xr.Dataset, read: Reading | None = None
-) -> Iterator[tuple[Place, np.ndarray, np.ndarray]]:
-    """Yield the motion of two results [n] at every place that they share.
-
-    read : of (result, quantity), to what is read instead of `motion`.
-    """
-    for quantity in (name for name in QUANTITIES if name in one and name in other):
-        ours, theirs = ((read or motion)(result, quantity) for result in (one, other))
-        places, components = places_of(one, quantity)
-        others, other_components = places_of(other, quantity)
-        for i, at in enumerate(places):
-            for k, component in enumerate(components):
-                if at in others and component in other_components:
-                    named = component if len(components) > 1 else ""
-                    j, m = others.index(at), other_components.index(component)
-                    yield Place(quantity, named, at), _wave(ours, i, k), _wave(theirs, j, m)
+    one: xr.Dataset, other: xr.Dataset
+) -> list[tuple[Place, np.ndarray, np.ndarray]]:
+    """Return the waveforms [n] of two results at every place that they share."""
+    ours, theirs = waveforms(one), waveforms(other)
+    return [(place, wave, theirs[place]) for place, wave in ours.items() if place in theirs]
 
 
-def _wave(values: np.ndarray, i: int, k: int) -> np.ndarray:
-    return values[i] if values.ndim == 2 else values[i, :, k]
+def motion(result: xr.Dataset) -> xr.Dataset:
+    """Return the quantities of a result minus their static state."""
+    still = static_state(result)
+    return result[list(still)] - still.isel(time=0, drop=True)
 
 
-def motion(result: xr.Dataset, quantity: str) -> np.ndarray:
-    """Return a quantity minus its static state [place, time] or [place, time, component].
+def static_state(result: xr.Dataset) -> xr.Dataset:
+    """Return the quantities of a result before its load, at one time.
 
     The static state is the prestress of a section, or the whole first sample under static gravity
     or, in a rock mass, under prestress.
     """
-    values = result[quantity].values
-    return values - static_state(result, quantity)
-
-
-def static_state(result: xr.Dataset, quantity: str) -> np.ndarray:
-    """Return the static value of a quantity before the load, broadcastable over time."""
-    values = result[quantity].values
+    first = result[[name for name in QUANTITIES if name in result]].isel(time=[0])
     if _found_its_rest(result):
-        return values[:, :1]
-    prestress = float(result.attrs.get("prestress", 0.0)) if quantity == "stress" else 0.0
-    return np.full_like(values[:, :1], prestress)
+        return first
+    stress = float(result.attrs.get("prestress", 0.0))
+    return first.map(lambda of: xr.full_like(of, stress if of.name == "stress" else 0.0))
 
 
 def _found_its_rest(result: xr.Dataset) -> bool:
@@ -202,19 +185,10 @@ def _found_its_rest(result: xr.Dataset) -> bool:
 
 def _static_stress(result: xr.Dataset) -> float:
     """Return the largest component of the static stresses that were sought, Pa; 0 without."""
-    quantities = [name for name in UNITS[0] if name in result and _found_its_rest(result)]
-    held = (static_state(result, name) for name in quantities)
-    return max((float(np.abs(values).max(initial=0.0)) for values in held), default=0.0)
-
-
-def error_of(result: xr.Dataset, place: Place) -> float:
-    """Return the bound on a result's own root-mean-square error at a place, 0 for a closed form."""
-    name = f"{place.quantity}_error"
-    if name not in result:
+    if not _found_its_rest(result):
         return 0.0
-    places, components = places_of(result, place.quantity)
-    error = np.atleast_1d(result[name].values[places.index(place.at)])
-    return float(error[components.index(place.component) if place.component else 0])
+    held = waveforms(static_state(result)).items()
+    return max((abs(float(v[0])) for place, v in held if place.quantity in UNITS[0]), default=0.0)
 
 
 def rms(waveform: np.ndarray) -> float:
@@ -250,30 +224,19 @@ def mean_period(waveform: np.ndarray, dt: float) -> float:
 
 
 def envelope_phase_misfit(one: np.ndarray, other: np.ndarray, dt: float) -> tuple[float, float]:
-    """Return the single-valued envelope and phase misfits of Kristekova et al. (2006), by the
-    wavelet transform of ObsPy, whose own `em` and `pm` would each compute both transforms.
+    """Return the single-valued envelope and phase misfits of Kristekova et al. (2006), by ObsPy.
 
     Bull. Seism. Soc. Am. 96, 1836-1850; over the band that contains the reference's energy. A
     reference at rest, or with a period longer than the record, has no such band.
     """
+    from obspy.signal.tf_misfit import em, pm  # slow to import
+
     period = mean_period(other, dt)
     if not one.any() or not period < dt * len(other):
         return np.nan, np.nan
     coarse = max(1, int(period / (40 * dt)))  # 40 samples per period: far above the band's end
-    band = {"dt": dt * coarse, "fmin": 0.25 / period, "fmax": 4 / period}
-    found, wanted = (_wavelets(wave[::coarse].tobytes(), **band) for wave in (one, other))
-    size = np.abs(wanted)
-    envelope, phase = np.abs(found) - size, size * np.angle(found * wanted.conj()) / np.pi
-    off, whole = np.linalg.norm([envelope, phase], axis=(1, 2)), np.linalg.norm(size)
-    return float(off[0] / whole), float(off[1] / whole)
-
-
-@lru_cache(maxsize=32)
-def _wavelets(waveform: bytes, dt: float, fmin: float, fmax: float) -> np.ndarray:
-    """Return the wavelet transform of a waveform; that of a reference serves several pairs."""
-    from obspy.signal.tf_misfit import cwt
-
-    return np.asarray(cwt(np.frombuffer(waveform), dt=dt, w0=6, fmin=fmin, fmax=fmax, nf=24))
+    pair, band = (one[::coarse], other[::coarse]), (dt * coarse, 0.25 / period, 4 / period)
+    return float(em(*pair, *band, nf=24)), float(pm(*pair, *band, nf=24))
 
 
 def _ratio(a: float, b: float) -> float:

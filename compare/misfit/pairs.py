@@ -12,7 +12,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import solver, solvers
 from jointwave.compare.misfit.alignment import AlignedCurve, distances
 from jointwave.compare.misfit.metrics import Distance, distance, pairings
-from jointwave.compare.misfit.places import Place, places_of
+from jointwave.compare.misfit.places import Place, shown
 from jointwave.compare.misfit.ranking import kind_of
 from jointwave.compare.solvers.record import Kind
 
@@ -125,7 +125,6 @@ def measure_curves(
     """Return the distances of a file's curves from every solution that has a waveform there."""
     rows = []
     for name, place, found in distances(beside, results, spectral):
-        several = len(places_of(results[name], place.quantity)[1]) > 1
-        shown = place if several else place._replace(component="")
-        rows.append(Row(Pair(beside.curves.name, name, GIVEN), shown, found))
+        pair = Pair(beside.curves.name, name, GIVEN)
+        rows.append(Row(pair, shown(place, results[name]), found))
     return rows

@@ -5,19 +5,14 @@ place is `stress@20`, `velocity_x@20.25` or `velocity_x@[20, 30]`; in words "vel
 m".
 """
 
-from __future__ import annotations
-
 import re
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
 from jointwave.results.labels import RECEIVERS
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 #: Dimensions of components in results.
 COMPONENT_DIMENSIONS = ("axis", "across", "stress_component", "joint_axis")
@@ -41,7 +36,14 @@ COMPONENTS: dict[int, dict[str, tuple[str, ...]]] = {
         "slip": ("",),
     },
 }
-QUANTITIES = tuple(dict.fromkeys(name for of in COMPONENTS.values() for name in of))
+#: Quantities of one unit, whose amplitudes are compared with each other.
+UNITS = (
+    ("stress", "shear", "traction"),
+    ("velocity",),
+    ("displacement", "gap", "slip"),
+    ("rotation",),
+)
+QUANTITIES = tuple(quantity for unit in UNITS for quantity in unit)
 OF_SECTIONS, OF_JOINTS = ("stress", "shear"), ("traction", "gap", "slip")
 
 _NUMBER = r"[0-9.eE+-]+"
@@ -96,21 +98,17 @@ class Place(NamedTuple):
             return "stress" if self.quantity in OF_SECTIONS else "velocity"
         return "joints" if self.quantity in OF_JOINTS else "points"
 
-    def is_at(self, other: Place) -> bool:
-        """Return whether it is the same waveform as another place."""
-        return self[:2] == other[:2] and same(self.at, other.at)
+    def is_at(self, other: "Place") -> bool:
+        """Return whether it is the same waveform as another place, of its only component if none is
+        named."""
+        of_one = self.quantity == other.quantity and self.component in ("", other.component)
+        return of_one and same(self.at, other.at)
 
     def waveform(self, result: xr.Dataset) -> np.ndarray | None:
         """Return this waveform of a result [n] in SI; None if the result does not contain it."""
-        if self.quantity not in result:
-            return None
-        places, components = places_of(result, self.quantity)
-        at = [i for i, one in enumerate(places) if same(one, self.at)]
-        component = self.component or components[0] if len(components) == 1 else self.component
-        if not at or component not in components:
-            return None
-        values = result[self.quantity].values[at[0]]
-        return values if values.ndim == 1 else values[:, components.index(component)]
+        of_quantity = result[[self.quantity]] if self.quantity in result else xr.Dataset()
+        found = waveforms(of_quantity).items()
+        return next((wave for place, wave in found if self.is_at(place)), None)
 
 
 def parsed(text: str) -> Place | None:
@@ -129,6 +127,29 @@ def parsed(text: str) -> Place | None:
     along = "y" if len(at) == 1 and quantity.lower() in ("velocity", "displacement") else ""
     given = component or along
     return Place(quantity.lower(), given, at) if given in known else None
+
+
+def waveforms(result: xr.Dataset, suffix: str = "") -> dict[Place, np.ndarray]:
+    """Return every waveform [n] of a result in SI by its place, which names the component.
+
+    suffix : of the variables; "_error" for the bounds on a result's own root-mean-square error [1].
+    """
+    found = {}
+    for quantity in (name for name in QUANTITIES if name + suffix in result):
+        positions, components = places_of(result, quantity + suffix)
+        for at, values in zip(positions, result[quantity + suffix].values, strict=True):
+            columns = values.reshape(-1, len(components)).T
+            found |= {
+                Place(quantity, c, at): column
+                for c, column in zip(components, columns, strict=True)
+            }
+    return found
+
+
+def shown(place: Place, result: xr.Dataset) -> Place:
+    """Return a place as it is shown: without its component if a result has only one."""
+    alone = len(places_of(result, place.quantity)[1]) == 1
+    return place._replace(component="") if alone else place
 
 
 def places_of(result: xr.Dataset, quantity: str) -> tuple[list[tuple[float, ...]], list[str]]:

@@ -11,16 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.compare.misfit.places import Place
+from jointwave.compare.misfit.places import UNITS, Place
 
-#: Quantities of one unit, whose amplitudes are compared with each other.
-UNITS = (
-    ("stress", "shear", "traction"),
-    ("velocity",),
-    ("displacement", "gap", "slip"),
-    ("rotation",),
-)
-QUANTITIES = tuple(quantity for unit in UNITS for quantity in unit)
 CARRIES = 0.05  #: part of the motion from which a component decides a misfit
 FAINT = 0.01  #: part of the largest motion of a unit from which a receiver decides one
 EXCITED = 1e-6  #: part of the largest motion of a unit below which a scene does not excite anything

@@ -45,9 +45,9 @@ def doctor(as_json: JsonOption = False) -> None:
     Exit code 0 if both engines pass, else 1; missing or broken parts are listed. The first run
     compiles kernels, which takes up to a minute.
     """
-    from jointwave.compare.cli.doctor import examine, show_health
+    from jointwave.compare.cli.doctor import examine
 
-    with terminal.progress("looking") as advance:
-        found = examine(advance)
-    show_health(found, as_json)
+    with terminal.progress("looking"):
+        found = examine()
+    (terminal.print_json if as_json else terminal.show_facts)(found)
     raise typer.Exit(0 if found["well"] else 1)
