@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from jointwave.compare.misfit.places import QUANTITIES, UNITS, Place, shown, waveforms
+from jointwave.compare.misfit.places import UNITS, Place, shown, waveforms
 from jointwave.compare.misfit.weight import EXCITED, weigh
 
 JUDGED = 10.0  # times its own error: the smallest misfit that a reference can resolve
@@ -170,7 +170,7 @@ def static_state(result: xr.Dataset) -> xr.Dataset:
     The static state is the prestress of a section, or the whole first sample under static gravity
     or, in a rock mass, under prestress.
     """
-    first = result[[name for name in QUANTITIES if name in result]].isel(time=[0])
+    first = result[[name for name, of in result.items() if "time" in of.dims]].isel(time=[0])
     if _found_its_rest(result):
         return first
     stress = float(result.attrs.get("prestress", 0.0))

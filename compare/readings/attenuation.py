@@ -28,7 +28,7 @@ def waveforms(
         where, receivers = str(result.attrs.get("title", "result")), set(RECEIVERS)
         known = [str(n) for n, x in result.items() if "time" in x.dims and receivers & set(x.dims)]
         raise SceneError(where, "quantity", quantity, f"must be one of {', '.join(known)}")
-    found = result[quantity].copy(data=motion(result)[quantity].values)
+    found = result[quantity].copy(data=motion(result[[quantity]])[quantity].values)
     receiver, places = next((d, RECEIVERS[str(d)]) for d in found.dims if d in RECEIVERS)
     for components in set(found.dims) - {receiver, "time"}:
         loudest = abs(found).max([receiver, "time"]).values.argmax()

@@ -98,17 +98,29 @@ class VariantScore(NamedTuple):
 
 
 class EngineScore(NamedTuple):
-    """One engine on all variants of a scene.
+    """One engine on all variants of a scene."""
 
-    own, total : the largest of the variants; nan where no variant has one. unchecked : the variants
-    that nothing has checked independently. broken : bounds of [expect] that are not met.
-    """
-
-    own: Worst
-    total: Worst
-    unchecked: tuple[str, ...]
-    broken: tuple[str, ...]
     variants: tuple[VariantScore, ...]
+
+    @property
+    def own(self) -> Worst:
+        """The largest error from its own model; nan if none is known."""
+        return max((one.own for one in self.variants), key=_resolved)
+
+    @property
+    def total(self) -> Worst:
+        """The largest misfit; nan if nothing has checked any variant."""
+        return max((one.total for one in self.variants), key=_resolved)
+
+    @property
+    def unchecked(self) -> list[str]:
+        """The variants that nothing has checked independently."""
+        return [one.variant for one in self.variants if isnan(one.total.judged)]
+
+    @property
+    def broken(self) -> list[str]:
+        """The bounds of [expect] that are not met."""
+        return [pair for one in self.variants for pair in one.broken]
 
     @property
     def verdict(self) -> Verdict:
@@ -134,18 +146,7 @@ def engine_scores(comparisons: list[Comparison]) -> dict[str, EngineScore]:
         engine: tuple(score(engine, one, name) for name, one in named if engine in one.results)
         for engine in ENGINES
     }
-    return {engine: engine_score(variants) for engine, variants in found.items() if variants}
-
-
-def engine_score(variants: tuple[VariantScore, ...]) -> EngineScore:
-    """Return what the scores of an engine's variants come to."""
-    return EngineScore(
-        max((one.own for one in variants), key=_resolved),
-        max((one.total for one in variants), key=_resolved),
-        tuple(one.variant for one in variants if isnan(one.total.judged)),
-        tuple(pair for one in variants for pair in one.broken),
-        variants,
-    )
+    return {engine: EngineScore(variants) for engine, variants in found.items() if variants}
 
 
 def _resolved(one: Worst) -> float:

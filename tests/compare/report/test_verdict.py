@@ -12,8 +12,8 @@ from jointwave.compare.report.overview import lead
 from jointwave.compare.report.scenes import SolvedScene
 from jointwave.compare.report.verdict import (
     NOT_CHECKED,
+    EngineScore,
     VariantScore,
-    engine_score,
     engine_scores,
 )
 from jointwave.compare.text import in_seconds
@@ -92,13 +92,13 @@ def test_of_a_reference_that_stands_still_nothing_is_known(compared):
 def test_a_bound_of_the_scene_that_is_not_met_outdoes_every_misfit(compared):
     expect = {"dem ~ jointed-bar": 1e-4, "dem ~ lattice": 1.0, "dem ~ images": 1e-9}
     found = engine_scores([compared(expect, dem=0.002, jointed_bar=0.0, lattice=0.0)])
-    assert found["dem"].broken == ("dem ~ jointed-bar",)
+    assert found["dem"].broken == ["dem ~ jointed-bar"]
     assert found["dem"].verdict.sign == "✗" and found["dem"].verdict.word == "out of bounds"
 
 
 def scored(total, against):
     one = VariantScore("", Worst(nan), Worst(total), against, "", ())
-    return engine_score((one,))
+    return EngineScore((one,))
 
 
 def ranked(seconds, **total):
