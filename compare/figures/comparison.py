@@ -4,7 +4,7 @@ from pathlib import Path
 
 from jointwave.compare.figures.charts.waveforms import draw_solutions
 from jointwave.compare.figures.export import save
-from jointwave.compare.figures.panels import curve_table
+from jointwave.compare.figures.receivers import curve_table
 from jointwave.compare.figures.tables import alignment_frame, distance_frame, reading_frame
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.runs.output import write_csv

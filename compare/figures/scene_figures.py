@@ -14,7 +14,7 @@ from jointwave.compare.figures.charts.spectra import spectra
 from jointwave.compare.figures.charts.waveforms import waveforms
 from jointwave.compare.figures.drawing.scene import scene_figure
 from jointwave.compare.figures.figure import SceneFigure
-from jointwave.compare.figures.panels import variant_names
+from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import own_exact
 

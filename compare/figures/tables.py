@@ -7,7 +7,7 @@ import pandas as pd
 import xarray as xr
 
 from jointwave.cases.records import Column
-from jointwave.compare.figures.panels import variant_names
+from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison, Row
 from jointwave.compare.misfit.places import Place, places_of
 from jointwave.compare.readings import (

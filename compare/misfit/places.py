@@ -134,7 +134,7 @@ def waveforms(result: xr.Dataset, suffix: str = "") -> dict[Place, np.ndarray]:
 
     suffix : of the variables; "_error" for the bounds on a result's own root-mean-square error [1].
     """
-    found = {}
+    found: dict[Place, np.ndarray] = {}
     for quantity in (name for name in QUANTITIES if name + suffix in result):
         positions, components = places_of(result, quantity + suffix)
         for at, values in zip(positions, result[quantity + suffix].values, strict=True):

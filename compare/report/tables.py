@@ -6,8 +6,8 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
-from jointwave.compare.figures.panels import variant_names
 from jointwave.compare.figures.tables import rows_of
+from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.differences import STRESS, VELOCITY
 from jointwave.compare.misfit.pairs import Comparison, Row, meaning
 from jointwave.compare.report.verdict import EngineScore

@@ -5,7 +5,7 @@ from math import isfinite, isnan, nan
 from typing import Any, NamedTuple
 
 from jointwave.compare.engines import ENGINES
-from jointwave.compare.figures.panels import variant_names
+from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.differences import (
     STRESS,
     VELOCITY,

@@ -21,7 +21,7 @@ from jointwave.compare.figures.animation.bodies import (
 from jointwave.compare.figures.animation.settings import STRESS, ViewSettings
 from jointwave.compare.figures.animation.snapshots import SceneSnapshots
 from jointwave.compare.figures.export import blank
-from jointwave.compare.figures.panels import panels
+from jointwave.compare.figures.receivers import panels
 from jointwave.compare.figures.style import RC, style
 from jointwave.compare.figures.units import UNITS, unit_for
 from jointwave.compare.misfit.pairs import Comparison

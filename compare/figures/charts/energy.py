@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 from jointwave.compare.engines import ENGINES, in_order
 from jointwave.compare.figures.charts.axes import chart, set_heading, share
 from jointwave.compare.figures.figure import SceneFigure
-from jointwave.compare.figures.panels import variant_names
 from jointwave.compare.figures.style import TERMS, Style, style
 from jointwave.compare.figures.units import Unit, unit_for
+from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison
 
 MOST = 480  # samples of a curve, and of the table

@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.figures.panels import Panel
+from jointwave.compare.figures.receivers import Panel
 
 
 class Frequency(NamedTuple):

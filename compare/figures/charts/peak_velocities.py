@@ -11,8 +11,8 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.engines import in_order
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.figure import SceneFigure
-from jointwave.compare.figures.panels import variant_names
 from jointwave.compare.figures.style import UNSIGNED
+from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.readings import peak_velocity_map
 from jointwave.results.snapshots import snapshots_of

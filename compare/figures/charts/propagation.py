@@ -14,8 +14,8 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import in_order
 from jointwave.compare.figures.charts.axes import chart, label_of, set_heading
 from jointwave.compare.figures.figure import SceneFigure
-from jointwave.compare.figures.panels import variant_names
 from jointwave.compare.figures.style import style
+from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.readings import (
     dispersion,

@@ -14,7 +14,7 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import ENGINES, in_order
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.figure import SceneFigure
-from jointwave.compare.figures.panels import FORCES, MOTION, ROTATION, by_component, peaks
+from jointwave.compare.figures.receivers import FORCES, MOTION, ROTATION, by_component, peaks
 from jointwave.compare.figures.style import DIFFERENCE, FIELD
 from jointwave.compare.figures.units import UNITS, Unit, unit_for
 from jointwave.compare.misfit.pairs import pairs

@@ -9,7 +9,7 @@ from matplotlib.ticker import NullLocator
 from jointwave.compare.figures.charts.axes import chart, label_of, set_heading
 from jointwave.compare.figures.charts.marks import Frequency, marks_of
 from jointwave.compare.figures.figure import SceneFigure
-from jointwave.compare.figures.panels import Panel, in_rows
+from jointwave.compare.figures.receivers import Panel, in_rows
 from jointwave.compare.figures.style import GREY, style
 from jointwave.compare.figures.units import DRAWN
 from jointwave.compare.misfit.pairs import Comparison

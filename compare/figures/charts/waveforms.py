@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from jointwave.compare.engines import ENGINES, in_order
 from jointwave.compare.figures.charts.axes import chart, label_of, set_heading, share
 from jointwave.compare.figures.figure import SceneFigure
-from jointwave.compare.figures.panels import Panel, curve_table, in_rows, panels
+from jointwave.compare.figures.receivers import Panel, curve_table, in_rows, panels
 from jointwave.compare.figures.style import PALE, RC, Style, given_style, printed, style
 from jointwave.compare.figures.units import DRAWN, UNITS, Unit, unit_for
 from jointwave.compare.misfit.pairs import Comparison

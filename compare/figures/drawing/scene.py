@@ -16,9 +16,9 @@ from jointwave.compare.figures.drawing import pillar
 from jointwave.compare.figures.drawing.sketch import LOAD, Sketch
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.figure import SceneFigure
-from jointwave.compare.figures.panels import variant_names
 from jointwave.compare.figures.style import WIDTH
 from jointwave.compare.figures.units import unit_for
+from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison
 
 MOST = 4  # drawings per scene

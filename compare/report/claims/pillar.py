@@ -8,7 +8,7 @@ import pandas as pd
 from jointwave.cases.loads import load_history
 from jointwave.compare.exact.bar import equivalent_bar, jointed_bar
 from jointwave.compare.exact.blocks import lattice
-from jointwave.compare.figures.panels import variant_names
+from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.metrics import mean_period, misfit, relative_l2
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.report.claims import waves

@@ -3,7 +3,7 @@
 import pytest
 
 from jointwave.cases.read import load_tables
-from jointwave.compare.figures.panels import curve_table, panels
+from jointwave.compare.figures.receivers import curve_table, panels
 from jointwave.compare.figures.scene_figures import figures_of
 from jointwave.compare.figures.tables import distance_frame
 from jointwave.compare.misfit.pairs import measure

@@ -9,7 +9,7 @@ from closed_forms.parallel_joints import transmission
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.compare.figures.charts.marks import band_edge, marks_of
 from jointwave.compare.figures.charts.spectra import TAPERED, spectra, spectra_of, spectrum, tapered
-from jointwave.compare.figures.panels import panels
+from jointwave.compare.figures.receivers import panels
 
 LAYER = {"y": 20.0, "spacing_stiffness": 4.375e8}
 

@@ -18,7 +18,7 @@ from jointwave.compare.figures.charts.waveforms import (
     draw_solutions,
     variant_styles,
 )
-from jointwave.compare.figures.panels import panels
+from jointwave.compare.figures.receivers import panels
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import finest
 

@@ -4,7 +4,8 @@ import pytest
 
 from jointwave import cases
 from jointwave.cases.errors import SceneError
-from jointwave.compare.figures.panels import curve_table, variant_names
+from jointwave.compare.figures.receivers import curve_table
+from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.report.report import build
 from jointwave.compare.report.scenes import PAPER, ROCK_MASSES, asked_for

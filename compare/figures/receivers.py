@@ -1,18 +1,15 @@
-"""Panels of a comparison: every waveform that moves at its receivers, of all solutions; and the
-names of its variants.
-"""
+"""Waveforms of a comparison at its receivers, of all solutions: a panel for each that moves."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
-from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import in_order
 from jointwave.compare.figures.units import UNITS
+from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.metrics import motion
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.places import Place, places_of, recorded
@@ -91,34 +88,30 @@ def in_rows(comparisons: list[Comparison], across: int = 2) -> list[list[Panel]]
 
 def _panels(comparison: Comparison, variant: str) -> Iterator[Panel]:
     results = {name: comparison.results[name] for name in in_order(comparison.results)}
+    motions = {name: motion(one) for name, one in results.items()}
     for key, groups in SHOWN.items():
         for i, at in enumerate(recorded(comparison.scene, key)):
             found = peaks([*results.values()], groups, i)
             largest = max(found.values(), default=0.0)
             moving = [one for one, peak in found.items() if peak >= FAINT * largest]
             for quantity, component in moving if largest else moving[:1]:
-                solved = {n: one for n, one in results.items() if quantity in one}
-                place, known = Place(quantity, component, at), finest(solved, comparison.scene)
-                whole = {n: place.waveform(one) for n, one in solved.items()}
-                moved = {n: by_component(x, quantity)[component][i] for n, x in solved.items()}
-                frames = _frame(solved, whole), _frame(solved, moved)
-                given = _given(comparison, place)
+                place = Place(quantity, component, at)
+                frames = _frame(results, place), _frame(motions, place)
+                given = {
+                    beside.curves.name: beside.series(own)
+                    for beside in comparison.besides
+                    for own in beside.curves.waveforms
+                    if place.is_at(own)
+                }
+                known = finest(frames[0], comparison.scene)
                 yield Panel(comparison, variant, place, *frames, given, known.name if known else "")
 
 
-def _frame(results: dict[str, xr.Dataset], waves: dict[str, Any]) -> pd.DataFrame:
+def _frame(results: dict[str, xr.Dataset], place: Place) -> pd.DataFrame:
+    """Return the waveforms that results have at a place, a column each over time (s)."""
+    waves = {name: place.waveform(one) for name, one in results.items()}
     times = {name: np.round(one.time.values, 12) for name, one in results.items()}
-    return pd.DataFrame({name: pd.Series(wave, times[name]) for name, wave in waves.items()})
-
-
-def _given(comparison: Comparison, place: Place) -> dict[str, pd.Series]:
-    along = not place.component and place.quantity in ("velocity", "displacement")
-    place = place._replace(component="y") if along else place
-    return {
-        beside.curves.name: beside.series(place)
-        for beside in comparison.besides
-        if place in beside.curves.waveforms
-    }
+    return pd.DataFrame({n: pd.Series(w, times[n]) for n, w in waves.items() if w is not None})
 
 
 def by_component(result: xr.Dataset, quantity: str) -> dict[str, np.ndarray]:
@@ -165,30 +158,3 @@ def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
         for name, curve in [*panel.recorded.items(), *panel.given.items()]
     }
     return pd.DataFrame(columns).rename_axis("time (s)").reset_index()
-
-
-def variant_names(comparisons: list[Comparison]) -> list[str]:
-    """Return the variants' names; the base scene is named by the keys that its variants change."""
-    base, *variants = (comparison.scene for comparison in comparisons)
-    names = [base.name or _base_name(base, variants), *(variant.name for variant in variants)]
-    return [name.replace("zeta ", "ζ = ") for name in names]
-
-
-def _base_name(base: AnyScene, variants: list[AnyScene]) -> str:
-    if not isinstance(base, Scene):
-        return "base scene"
-    words, others = _words(base), [_words(variant) for variant in variants]
-    changed = [word for key, word in words.items() if any(one[key] != word for one in others)]
-    return ", ".join(changed) or ("base scene" if variants else words["damping"])
-
-
-def _words(scene: Any) -> dict[str, str]:
-    """Return what variants of pillars usually change, in words."""
-    ratio = scene.joints.damping_ratio
-    return {
-        "damping": "undamped" if ratio is None else f"ζ = {ratio:g}",
-        "start": f"{scene.ends.start} start",
-        "end": scene.ends.end,
-        "layers": "soft layer" if scene.soft_layers else "no soft layer",
-        "tension": "no tension" if scene.joints.tension is False else "tension",
-    }

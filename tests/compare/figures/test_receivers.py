@@ -5,7 +5,7 @@ import pytest
 
 from jointwave.compare.exact.blocks import lattice, spatial_lattice
 from jointwave.compare.figures.charts.waveforms import draw_solutions
-from jointwave.compare.figures.panels import curve_table, panels
+from jointwave.compare.figures.receivers import curve_table, panels
 from jointwave.compare.misfit.pairs import Comparison
 
 RECORD = {"record__stress": [5.0], "record__velocity": [5.25], "time__duration": 0.01}

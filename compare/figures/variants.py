@@ -1,0 +1,34 @@
+"""Names of the variants of a scene."""
+
+from typing import Any
+
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.misfit.pairs import Comparison
+
+
+def variant_names(comparisons: list[Comparison]) -> list[str]:
+    """Return the variants' names; the base scene is named by the keys that its variants change."""
+    base, *variants = (comparison.scene for comparison in comparisons)
+    names = [base.name or _base_name(base, variants), *(variant.name for variant in variants)]
+    return [name.replace("zeta ", "ζ = ") for name in names]
+
+
+def _base_name(base: AnyScene, variants: list[AnyScene]) -> str:
+    if not isinstance(base, Scene):
+        return "base scene"
+    words, others = _words(base), [_words(variant) for variant in variants]
+    changed = [word for key, word in words.items() if any(one[key] != word for one in others)]
+    return ", ".join(changed) or ("base scene" if variants else words["damping"])
+
+
+def _words(scene: Any) -> dict[str, str]:
+    """Return what variants of pillars usually change, in words."""
+    ratio = scene.joints.damping_ratio
+    return {
+        "damping": "undamped" if ratio is None else f"ζ = {ratio:g}",
+        "start": f"{scene.ends.start} start",
+        "end": scene.ends.end,
+        "layers": "soft layer" if scene.soft_layers else "no soft layer",
+        "tension": "no tension" if scene.joints.tension is False else "tension",
+    }
