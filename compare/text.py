@@ -22,8 +22,9 @@ def mean_and_worst(peak: Any) -> str:
 
 def in_seconds(x: float) -> str:
     """Return a time to two digits, in the unit that suits it."""
-    factor, unit = (1, "s") if x >= 1 else (1e3, "ms") if x >= 1e-3 else (1e6, "µs")
-    shown = factor * x
+    units = {"h": 3600, "min": 60, "s": 1, "ms": 1e-3}
+    unit = next((unit for unit, length in units.items() if x >= length), "µs")
+    shown = x / units.get(unit, 1e-6)
     return f"{shown:.0f} {unit}" if shown >= 10 else f"{shown:.2g} {unit}"
 
 

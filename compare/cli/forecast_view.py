@@ -8,6 +8,7 @@ import pandas as pd
 from jointwave.cases.size import spoken
 from jointwave.compare.cli.terminal import print_json, progress, say, show_table
 from jointwave.compare.studies.forecast import Run, forecasts
+from jointwave.compare.text import in_seconds
 
 UNKNOWN = "no estimate"  # no such run has been timed on this machine
 
@@ -38,21 +39,13 @@ def show_forecasts(
     say(f"{len(table)} would run, {_time(table.seconds)}; {most}nothing was run or written")
 
 
-def in_words(seconds: float) -> str:
-    """Return a time to three digits, in a suitable unit."""
-    for unit, length in (("h", 3600.0), ("min", 60.0), ("s", 1.0), ("ms", 1e-3)):
-        if seconds >= length:
-            return f"{seconds / length:.3g} {unit}"
-    return "under 1 ms"
-
-
 def _time(seconds: pd.Series) -> str:
     """Return in words the total seconds of runs, some of which were never timed."""
     untimed = int(seconds.isna().sum())
     if untimed and not seconds.sum():
         return f"{UNKNOWN} of the time: nothing of the kind was timed on this machine"
     others = f", plus {untimed} not timed on this machine" if untimed else ""
-    return f"about {in_words(seconds.sum())} of CPU time{others}"
+    return f"about {in_seconds(seconds.sum())} of CPU time{others}"
 
 
 def _cells(one: Any) -> list[str]:
@@ -63,6 +56,6 @@ def _cells(one: Any) -> list[str]:
         one.scheme,
         f"{one.steps:,}" if one.steps else "-",
         one.size,
-        UNKNOWN if pd.isna(one.seconds) else in_words(one.seconds),
+        UNKNOWN if pd.isna(one.seconds) else in_seconds(one.seconds),
         spoken(one.bytes) if one.steps else f"over {spoken(one.bytes)}",
     ]

@@ -5,8 +5,7 @@ in a finer step was luck.
 """
 
 from collections.abc import Sequence
-from itertools import pairwise
-from math import isnan, log
+from math import isnan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -77,13 +76,12 @@ def floor(table: pd.DataFrame, error: str) -> float:
 
 
 class Order(NamedTuple):
-    """The order measured along one curve: that between its two finest points, with the varied
-    key or its inverse; all of them; and the theoretical one."""
+    """The order measured along one curve, that between its two finest points, with the varied key
+    or its inverse; and the theoretical one."""
 
     curve: str
     key: str
     measured: float
-    steps: list[float]
     theory: float
 
 
@@ -103,10 +101,9 @@ def _order(curve: Curve, table: pd.DataFrame) -> Order | None:
     # The actual step if a key of steps is varied: two fractions may be one step.
     size = known["dt"] if "step" in key else known["settings"].map(lambda s: float(s[key]))
     points = known.assign(size=size).drop_duplicates("size", keep="last")
-    # The error falls along the points, whichever way the key goes.
-    pairs = pairwise(points.sort_values("numerical", ascending=False).itertuples())
-    steps = [abs(log(a.numerical / b.numerical) / log(a.size / b.size)) for a, b in pairs]
-    return Order(curve.label, key, steps[-1], steps, curve.order) if steps else None
+    finest = np.log(points.nsmallest(2, "numerical")[["numerical", "size"]]).diff().abs().iloc[1:]
+    ratios = list(finest["numerical"] / finest["size"])
+    return Order(curve.label, key, ratios[0], curve.order) if ratios else None
 
 
 def sentences(study: Study, table: pd.DataFrame) -> list[str]:
@@ -130,10 +127,9 @@ def sentences(study: Study, table: pd.DataFrame) -> list[str]:
 
 
 def _cheapest(table: pd.DataFrame, target: float) -> str:
-    if not (within := list(cheapest(table, target).itertuples())):
+    best, other, *_ = [*cheapest(table, target).itertuples(), None, None]
+    if best is None:
         return ""
-    best: Any = within[0]
-    other: Any = within[1] if len(within) > 1 else None
     text = (
         f"Within {percent(target)} % of the finest physics the cheapest is {best.curve} "
         f"({_errors(best)}; {in_seconds(best.seconds)})"

@@ -41,10 +41,9 @@ def _is_known(name: Any) -> Any:
 KNOWN = BeforeValidator(_is_known)
 
 
-def combinations(values: Mapping[str, Sequence[Any]]) -> Iterator[dict[str, Any]]:
-    """Yield every combination of the values of some keys, the last key first to change."""
-    for one in product(*values.values()):
-        yield dict(zip(values, one, strict=True))
+def combinations(values: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
+    """Return every combination of the values of some keys, the last key first to change."""
+    return [dict(zip(values, one, strict=True)) for one in product(*values.values())]
 
 
 Changes = dict[str, Any]

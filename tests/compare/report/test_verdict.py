@@ -136,7 +136,11 @@ def test_an_engine_without_a_distance_is_not_given_one():
 
 
 @pytest.mark.parametrize(
-    ("seconds", "text"), [(12.3, "12 s"), (1.234, "1.2 s"), (0.0123, "12 ms"), (4.5e-5, "45 µs")]
+    ("seconds", "text"),
+    [
+        *((7200.0, "2 h"), (90.0, "1.5 min"), (12.3, "12 s"), (1.234, "1.2 s")),
+        *((0.0123, "12 ms"), (4.5e-5, "45 µs")),
+    ],
 )
 def test_seconds_are_written_in_the_unit_that_suits_them(seconds, text):
     assert in_seconds(seconds) == text

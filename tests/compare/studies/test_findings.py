@@ -34,7 +34,7 @@ def test_order_is_that_of_the_errors(study):
     rows = [row(settings={key: n}, numerical=1e-3 / n**3) for n in (1, 2, 4)]
     rows.append(row(state="failed", settings={key: 3}))
     (order,) = orders(study([curve]), judged(rows))
-    assert order.steps == pytest.approx([3, 3])
+    assert order.measured == pytest.approx(3)
 
 
 def test_no_order_where_none_is_claimed_or_errors_are_not_known(study):
@@ -45,7 +45,7 @@ def test_no_order_where_none_is_claimed_or_errors_are_not_known(study):
     rows = [row(**one, numerical_floor=5e-5) for one in about]
     assert orders(study([curve]), judged(rows)) == []
     (order,) = orders(study([curve | {"order": 2}]), judged(rows))
-    assert order.steps == pytest.approx([2, 2])
+    assert order.measured == pytest.approx(2)
     still = [one._replace(numerical=1e-15) for one in rows]
     assert orders(study([curve | {"order": 2}]), judged(still)) == []
 

@@ -7,7 +7,6 @@ import pytest
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.size import LIMIT, estimates, refuse_beyond_memory
-from jointwave.compare.cli.forecast_view import in_words
 from jointwave.compare.engines import solve
 from jointwave.compare.runs import timings
 from jointwave.compare.studies.forecast import forecast, forecasts
@@ -125,11 +124,6 @@ def test_a_broken_or_protected_file_of_rates_costs_nothing(pillar, tmp_path, mon
     monkeypatch.setattr(timings, "_file", lambda: tmp_path / "no-folder" / "rates.json")
     timings.note("lattice", pillar(**SHORT), {}, 0.5)
     assert forecast(pillar(**SHORT), "lattice").seconds is None
-
-
-def test_times_in_words():
-    words = {2e-4: "under 1 ms", 0.02: "20 ms", 4.0: "4 s", 90.0: "1.5 min", 7200.0: "2 h"}
-    assert {seconds: in_words(seconds) for seconds in words} == words
 
 
 @pytest.fixture
