@@ -127,17 +127,18 @@ def sentences(study: Study, table: pd.DataFrame) -> list[str]:
 
 
 def _cheapest(table: pd.DataFrame, target: float) -> str:
-    best, other, *_ = [*cheapest(table, target).itertuples(), None, None]
-    if best is None:
+    within: list[Any] = list(cheapest(table, target).itertuples())
+    if not within:
         return ""
+    best, *others = within
     text = (
         f"Within {percent(target)} % of the finest physics the cheapest is {best.curve} "
         f"({_errors(best)}; {in_seconds(best.seconds)})"
     )
-    if other is None:
+    if not others:
         return f"{text}; no other curve reaches it."
-    times = f"{other.seconds / best.seconds:.3g} times as long"
-    return f"{text}; the next best, {other.curve} ({_errors(other)}), steps {times}."
+    times = f"{others[0].seconds / best.seconds:.3g} times as long"
+    return f"{text}; the next best, {others[0].curve} ({_errors(others[0])}), steps {times}."
 
 
 def _errors(point: Any) -> str:
