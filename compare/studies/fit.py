@@ -105,11 +105,9 @@ def fit(
 
 def _solver_of(scene: AnyScene, asked: str | None) -> str:
     """Return the solver of every trial; raises SceneError if it does not apply."""
-    if asked is None and isinstance(scene, Scene) and scene.block_count <= SHORT:
-        asked = lattice.SOLVER.name if lattice.applies(scene) else None
-    name = asked or DEM.name
-    answer = applies(name, scene)
-    if not answer:
+    short = isinstance(scene, Scene) and scene.block_count <= SHORT and lattice.applies(scene)
+    name = asked or (lattice.SOLVER.name if short else DEM.name)
+    if not (answer := applies(name, scene)):
         raise SceneError(scene.where, "", None, f"{name} does not apply: {answer.reason}")
     return name
 

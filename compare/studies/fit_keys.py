@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from fnmatch import fnmatch
 from functools import reduce
-from itertools import pairwise
 from math import exp, inf, isfinite, log, nan
 from typing import Any, NamedTuple
 
@@ -23,7 +22,7 @@ FIXED = (
     *("expect.*", "domain.*", "regions.*.dip", "segments.*.y", "segments.*.block"),
     *("joint_sets.*.dip", "joint_sets.*.spacing", "joint_sets.*.offset", "joint_sets.*.scatter*"),
 )
-FORMS = "must be KEY, KEY=START or KEY=LOW:START:HIGH, LOW first"
+FORMS = "must be KEY, KEY=START or KEY=LOW:START:HIGH, of numbers, LOW first"
 
 
 class FreeKey(NamedTuple):
@@ -59,12 +58,12 @@ class FreeKey(NamedTuple):
 
 def free_keys(texts: list[str], scene: AnyScene) -> list[FreeKey]:
     """Return the keys of `--free`, several in one text separated by commas; raises SceneError."""
-    found = [_free_key(text, scene) for text in ",".join(texts).split(",")]
-    names = [one.key for one in found]
-    for key in names:
-        if names.count(key) > 1:
-            raise SceneError("--free", key, None, "must be given only once")
-    return found
+    found: dict[str, FreeKey] = {}
+    for text in ",".join(texts).split(","):
+        one = _free_key(text, scene)
+        if found.setdefault(one.key, one) is not one:
+            raise SceneError("--free", one.key, None, "must be given only once")
+    return [*found.values()]
 
 
 def _free_key(text: str, scene: AnyScene) -> FreeKey:
@@ -73,9 +72,9 @@ def _free_key(text: str, scene: AnyScene) -> FreeKey:
     try:
         given = [float(part) for part in numbers.split(":")] if equals else []
     except ValueError:
-        raise SceneError("--free", text, None, f"{FORMS}, of numbers") from None
-    ordered = all(one < other for one, other in pairwise(given))
-    if not key or len(given) not in (0, 1, 3) or not (ordered and all(map(isfinite, given))):
+        given = [nan]
+    ordered = all(map(isfinite, given)) and given == sorted(set(given))
+    if not key or len(given) not in (0, 1, 3) or not ordered:
         raise SceneError("--free", text, None, FORMS)
     words, held = ("number", nan) if key == CLOCK else _held(key, scene)
     if held is None and not given:

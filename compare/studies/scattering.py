@@ -24,7 +24,7 @@ import numpy as np
 from jointwave.cases.material.rock import Values, elastic_rock
 from jointwave.cases.read import load
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.compare.engines import Progress, solve
+from jointwave.compare.engines import solve
 from jointwave.compare.exact.plane import parallel_joints
 from jointwave.compare.exact.plane.oblique_joint import Joint
 from jointwave.compare.exact.plane.pulse import axes_of
@@ -32,7 +32,6 @@ from jointwave.compare.exact.plane.waves import KINDS, Kind, polarisations, slow
 from jointwave.compare.solvers.continuum import JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies import store
-from jointwave.compare.studies.store import Pool, Store, alone
 
 SCENE = Path(__file__).parent / "joints.toml"
 ANGLES = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0)  # degrees from the joints' normal
@@ -87,20 +86,6 @@ def points(study: str, brief: bool = False) -> list[JointsRow]:
         for kind in KINDS
         for place in places[:: 2 if brief else 1]
     ]
-
-
-def run(
-    study: str,
-    folder: Path,
-    progress: Progress | None = None,
-    brief: bool = False,
-    pool: Pool | None = None,
-) -> list[JointsRow]:
-    """Return the rows of its points, in order; they are saved in `folder`. Their seconds are CPU
-    time: as many points may run at a time as there are cores."""
-    with alone():
-        rows: Store[JointsRow] = Store(JointsRow, folder)
-        return rows.compute(points(study, brief), key, measure, pool, progress)
 
 
 def key(point: JointsRow) -> str:

@@ -12,8 +12,9 @@ from jointwave.compare.exact.plane.waves import KINDS
 from jointwave.compare.figures.export import blank, save
 from jointwave.compare.figures.style import style
 from jointwave.compare.runs.timings import machine
-from jointwave.compare.studies.scattering import AT, COUNTS, TITLES, closed_form, run
-from jointwave.compare.studies.store import Pool
+from jointwave.compare.studies import scattering
+from jointwave.compare.studies.scattering import AT, COUNTS, TITLES, JointsRow, closed_form
+from jointwave.compare.studies.store import Pool, Store, alone
 from jointwave.compare.studies.summary import Summary, write_tables
 from jointwave.compare.text import percent
 
@@ -44,9 +45,14 @@ def make_study(
 ) -> Summary:
     """Run a study of TITLES; write its table and figure into `out`, its points into OUT/NAME/.
 
-    brief : only every other point, see `points`.
+    Seconds are CPU time: as many points may run at a time as there are cores. brief : only every
+    other point, see `points`.
     """
-    rows, title = pd.DataFrame(run(name, out / name, progress, brief, pool)), TITLES[name]
+    saved: Store[JointsRow] = Store(JointsRow, out / name)
+    wanted = scattering.points(name, brief)
+    with alone():
+        found = saved.compute(wanted, scattering.key, scattering.measure, pool, progress)
+    rows, title = pd.DataFrame(found), TITLES[name]
     data = rows.rename_axis("row").to_xarray().assign_attrs(title=title, **machine())
     figure = save(draw(name, rows), out, name, title)
     files, said = [*write_tables(out, name, rows, data), *figure.drawings], sentences(rows)

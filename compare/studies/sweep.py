@@ -62,6 +62,11 @@ class Case(NamedTuple):
         """The keys with their values."""
         return ", ".join(f"{key}={value}" for key, value in self.settings.items())
 
+    @property
+    def variant(self) -> str:
+        """The name of its variant."""
+        return self.scene.name if self.scene else ""
+
 
 class Sweep(NamedTuple):
     """A sweep of a scene: its name, all variants at every point, and the folder; None writes
@@ -131,15 +136,15 @@ def run(
     about, outcome = partial(_key, work=work), partial(_outcome, work=work)
     found = saved.compute(asked.cases, about, outcome, pool, progress, lambda one: _failed(DIED))
     return pd.DataFrame(
-        {key: cell(value) for key, value in case.settings.items()} | _place_of(case) | row
+        {key: cell(value) for key, value in case.settings.items()}
+        | {
+            "variant": case.variant,
+            "folder": str(case.folder / case.variant if case.folder else ""),
+        }
+        | row
         for case, rows in zip(asked.cases, found, strict=True)
         for row in rows
     )
-
-
-def _place_of(case: Case) -> dict[str, str]:
-    variant = case.scene.name if case.scene else ""
-    return {"variant": variant, "folder": str(case.folder / variant) if case.folder else ""}
 
 
 def _has_files(rows: Rows) -> bool:
@@ -191,13 +196,12 @@ def _peaks(result: xr.Dataset) -> Iterator[dict[str, Any]]:
     For several components the norm, without sign: the speed for a velocity in space.
     """
     for quantity in (name for name in PEAKS if name in result):
-        at = [Place(quantity, "", one) for one in places_of(result, quantity)[0]]
-        for place, wave in zip(at, result[quantity].values, strict=True):
-            parts = wave.reshape(len(wave), -1)
-            values = parts[:, 0] if parts.shape[1] == 1 else np.linalg.norm(parts, axis=1)
+        for at, wave in zip(places_of(result, quantity)[0], result[quantity].values, strict=True):
+            several = wave.ndim > 1 and wave.shape[1] > 1
+            values = np.linalg.norm(wave, axis=1) if several else wave.ravel()
             k = int(np.argmax(np.abs(values)))
             peak = {"peak": float(values[k]), "time_of_peak": float(result.time[k])}
-            yield {"quantity": quantity, **place.coordinates, **peak}
+            yield {"quantity": quantity, **Place(quantity, "", at).coordinates, **peak}
 
 
 def compare_scene(
