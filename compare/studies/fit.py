@@ -95,12 +95,11 @@ def fit(
             "(--free KEY=START), bound the keys, or free fewer"
         )
     after = list(map(np.linalg.norm, trials.residuals(best.x.tolist())))
-    names, places = zip(*((one.name, one.place) for one in trials.measured), strict=True)
-    about = {"name": names, "place": list(places), "before": before, "after": after}
+    waveforms = pd.DataFrame(trials.measured)[["name", "place"]].assign(before=before, after=after)
     values, correlation = _estimates(keys, best)
     fitted = changed(scene, {k: v for k, v in values.value.items() if k != CLOCK})
     notes = _notes(values, correlation, float(max(after)))
-    return Fit(fitted, name, values, correlation, pd.DataFrame(about), trials.count, notes)
+    return Fit(fitted, name, values, correlation, waveforms, trials.count, notes)
 
 
 def _solver_of(scene: AnyScene, asked: str | None) -> str:

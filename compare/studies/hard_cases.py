@@ -27,11 +27,11 @@ from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.compare.engines import ENGINES, Progress, applies, solve, solver
-from jointwave.compare.figures.export import blank, save
+from jointwave.compare.figures.export import save
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.scenes import find, shipped
 from jointwave.compare.studies import store
-from jointwave.compare.studies.hard_map import Column, cells_of, columns, computed, draw_map
+from jointwave.compare.studies.hard_map import SCENE, Column, cells_of, columns, computed, draw_maps
 from jointwave.compare.studies.store import Pool, Store
 from jointwave.compare.studies.summary import Summary, frame, write_tables
 from jointwave.results.dataset import energy_residual, scene_hash
@@ -52,7 +52,6 @@ SPENT = ("viscous", "friction", "fracture")
 RINGING = {"load.period": 1e-3, "time.duration": 2.0, "record.interval": 1.0}
 FRACTION = 1.001  # of the critical step
 ABOVE_CRITICAL = f"{FRACTION:g} of the critical step"
-SHORT = "hard/short-pillar"
 
 
 class HardRow(NamedTuple):
@@ -116,7 +115,7 @@ def hard_cases() -> list[HardRow]:
         for scheme in engine.schemes
         if scene.kind == "pillar" or scheme in ("leapfrog", "explicit")
     ]
-    short = [row for row in found if row[:2] == (SHORT, "") and row.scheme != "implicit"]
+    short = [row for row in found if row[:2] == (SCENE, "") and row.scheme != "implicit"]
     return found + [row._replace(should=state) for row in short for state in (REFUSED, STOPPED)]
 
 
@@ -196,13 +195,7 @@ def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = 
     folder = out / NAME
     cells = cells_of(Store[Column](Column, folder).compute(columns(), store.key, computed, pool))
     rows = Store[HardRow](HardRow, folder).compute(hard_cases(), key, run, pool, progress)
-    maps = list(cells.groupby("engine", sort=False))
-    with blank(3.6) as figure:
-        axes = figure.subplots(1, len(maps), squeeze=False, sharey=True)[0]
-        for k, (ax, (engine, own)) in enumerate(zip(axes, maps, strict=True)):
-            draw_map(ax, str(engine), own, k)
-        axes[0].set_ylabel("step over undamped critical step")
-    drawn = save(figure, out, NAME, TITLE)
+    drawn = save(draw_maps(cells), out, NAME, TITLE)
     files = write_tables(out, NAME, frame(rows, HardRow)) + write_tables(out, f"{NAME}-map", cells)
     files.append(drawn.file("svg"))
     said = sentences(rows, cells)
@@ -213,13 +206,10 @@ def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = 
 
 def table(rows: list[HardRow]) -> pd.DataFrame:
     """Return the rows under headings of their case."""
-    remarks, margins = [_remark(row) for row in rows], [row.margin for row in rows]
-    found = frame(rows, HardRow).assign(**{"margin": margins, "": remarks})
-    found = found.rename(columns={"ended": "ends", "fall": "decrease"})
-    titles = pd.Index([row.title for row in rows])
-    found = found.set_index([titles, found.engine + ", " + found.scheme])
-    shown = ["ends", "energy", "decrease", "misfit", "margin", ""]
-    return found[shown].rename_axis(["", "engine and scheme"])
+    labels = [(row.title, f"{row.engine}, {row.scheme}") for row in rows]
+    cells = [(x.ended, x.energy, x.fall, x.misfit, x.margin, _remark(x)) for x in rows]
+    index = pd.MultiIndex.from_tuples(labels, names=["", "engine and scheme"])
+    return pd.DataFrame(cells, index, ["ends", "energy", "decrease", "misfit", "margin", ""])
 
 
 def _remark(row: HardRow) -> str:

@@ -13,10 +13,12 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
 
 from jointwave import cases
 from jointwave.cases.errors import UnstableError
 from jointwave.compare.engines import ENGINES, solve
+from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.style import style
 from jointwave.compare.scenes import find
 
@@ -94,11 +96,21 @@ def cells_of(found: list[Column]) -> pd.DataFrame:
     return cells.assign(wrong=wrong, far=wrong & beyond)
 
 
-def draw_map(ax: Axes, engine: str, cells: pd.DataFrame, k: int) -> None:
-    """Draw the map of an engine under the theoretical line; crosses mark cells on its wrong side.
+def draw_maps(cells: pd.DataFrame) -> Figure:
+    """Return the maps of all engines under the theoretical line; crosses mark cells on its wrong
+    side.
 
-    Its cells are the SVG group stability-map-k, the line stability-line-k.
+    The cells of engine k are the SVG group stability-map-k, its line stability-line-k.
     """
+    with blank(3.6) as figure:
+        axes = figure.subplots(1, cells.engine.nunique(), squeeze=False, sharey=True)[0]
+        for k, (engine, own) in enumerate(cells.groupby("engine", sort=False)):
+            _draw(axes[k], str(engine), own, k)
+        axes[0].set_ylabel("step over undamped critical step")
+    return figure
+
+
+def _draw(ax: Axes, engine: str, cells: pd.DataFrame, k: int) -> None:
     grid = cells.pivot(index="step", columns="ratio", values="stable")
     colours = ListedColormap([LIGHT, style(engine).colour])
     mesh = ax.pcolormesh(grid.columns, grid.index, grid, shading="nearest", cmap=colours)
