@@ -35,4 +35,6 @@ def __dir__():
 def __getattr__(name):
     if name not in _modules:
         raise AttributeError(f"module 'jointwave' has no attribute {name!r}")
+    if name in ("simulate", "compare"):
+        import_module("jointwave.accessor")  # of the results, `result.jw.plot()`
     return getattr(import_module(_modules[name]), name)

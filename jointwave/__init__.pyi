@@ -8,6 +8,7 @@ from jointwave.cases.material.closure import bandis_closure as bandis_closure
 from jointwave.cases.schema.scene import Scene as Scene
 from jointwave.compare.engines import simulate as simulate
 from jointwave.compare.exact.bar.deconvolution import deconvolve as deconvolve
+from jointwave.compare.figures.charts.maps import plot_map as plot_map
 from jointwave.compare.figures.charts.waveforms import figure as figure
 from jointwave.compare.misfit.external import read_curves as read_curves
 from jointwave.compare.misfit.metrics import misfit as misfit

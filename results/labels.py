@@ -50,7 +50,7 @@ LABELS = {
     "field_block": ("block of the cell, 0 at the loaded end", ""),
     "field_displacement": ("displacement of the node", "m"),
     "field_velocity": ("velocity of the node", "m/s"),
-    "field_stress": ("axial stress of the cell, compression positive", "Pa"),
+    "field_stress": ("stress of the cell (axial in a pillar), compression positive", "Pa"),
 }
 
 

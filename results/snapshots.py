@@ -1,4 +1,4 @@
-"""Snapshots of the whole pillar, the common form of field results, and their storage in results."""
+"""Snapshots of the whole body, the common form of field results, and their storage in results."""
 
 from __future__ import annotations
 
@@ -21,20 +21,21 @@ DIMENSIONS = {
     "block": ("cell",),
     "displacement": ("field_time", "node", "component"),
     "velocity": ("field_time", "node", "component"),
-    "stress": ("field_time", "cell"),
+    "stress": ("field_time", "cell", "stress_component"),
 }
 
 
 class Snapshots(NamedTuple):
-    """The whole pillar at some instants, on linear cells; blocks share no nodes.
+    """The whole body at some instants, on linear cells; blocks share no nodes.
 
     time : float array [snapshots], s.
-    points : float array [nodes, 3], x, y, z of the unloaded pillar, m.
+    points : float array [nodes, 3], x, y, z of the unloaded body, m.
     kind : of the cells, in meshio's names: "line", "triangle", "quad", "tetra", "hexahedron".
     cells : int32 array [cells, corners], nodes in VTK's order.
     block : int32 array [cells], the block of each cell, 0 at the loaded end.
     displacement, velocity : float arrays [snapshots, nodes, 3], m and m/s.
-    stress : float array [snapshots, cells], Pa, axial, compression positive; None if unknown.
+    stress : float array [snapshots, cells], Pa, axial, compression positive; of a rock mass
+    [snapshots, cells, 3], xx, yy, xy; None if unknown.
     """
 
     time: np.ndarray
@@ -128,11 +129,16 @@ def refuse_beyond_room(scene: AnyScene, nodes: int) -> None:
 def with_snapshots(result: xr.Dataset, s: Snapshots) -> xr.Dataset:
     """Return a result with snapshots as variables field_NAME, on dimensions of their own."""
     variables = {
-        f"field_{name}": (dimensions, getattr(s, name))
+        f"field_{name}": (dimensions[: values.ndim], values)
         for name, dimensions in DIMENSIONS.items()
-        if getattr(s, name) is not None
+        if (values := getattr(s, name)) is not None
     }
-    coords = {"field_time": ("field_time", s.time), "component": ("component", list("xyz"))}
+    coords: dict[str, Any] = {
+        "field_time": ("field_time", s.time),
+        "component": ("component", list("xyz")),
+    }
+    if s.stress is not None and s.stress.ndim == 3:
+        coords["stress_component"] = ("stress_component", ["xx", "yy", "xy"])
     found = result.assign(labelled(variables)).assign_coords(labelled(coords))
     found["field_cells"].attrs["kind"] = s.kind
     return found

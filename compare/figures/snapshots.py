@@ -51,7 +51,7 @@ def draw_snapshots(name: str, scene: Scene, s: Snapshots) -> Figure:
     """
     settings = settings_for(scene, {"": s})
     body = body_of(s, scene, settings)
-    colours = colours_of([body], settings)
+    colours = colours_of([body.values], settings.quantity.sign)
     with blank(HEAD + STRIP * len(s.time)) as figure:
         axes = figure.subplots(len(s.time), 1, squeeze=False)[:, 0]
         for i, (ax, time) in enumerate(zip(axes, s.time, strict=True)):

@@ -57,22 +57,27 @@ def _at_points(receivers: BlockReceivers, motion: np.ndarray) -> np.ndarray:
 
 
 def mean_stress(
-    system: PlaneSystem, receivers: BlockReceivers, velocity: np.ndarray, contact: np.ndarray
+    system: PlaneSystem,
+    receivers: BlockReceivers,
+    velocity: np.ndarray,
+    contact: np.ndarray,
+    first: int = 0,
 ) -> np.ndarray:
     """Return the mean stress of the places [r, n, (xx, yy, xy)], Pa, compression positive.
 
     velocity : of the places [r, 3, n]. contact : samples of the watched contacts [w, rows, n].
+    first : number of the first sample.
     """
     blocks, places = system.blocks, receivers.places
+    watched, place, side = receivers.touching.T
     sums = np.zeros((len(places), 2, 2, contact.shape[-1]))
-    for w, r, side in receivers.touching:
-        own = _moments(blocks.links, receivers.watched[w], side, contact[w])
-        sums[r] += own if side else -own
+    own = _moments(blocks.links, receivers.watched[watched], side, contact[watched])
+    np.add.at(sums, place, np.where(side, 1.0, -1.0)[:, None, None, None] * own)
     rows = system.sources.rows
     held = np.flatnonzero(np.isin(places, rows))
     if len(held):
         row = np.searchsorted(rows, places[held])
-        steps = system.time.stride * np.arange(contact.shape[-1])
+        steps = system.time.stride * (first + np.arange(contact.shape[-1]))
         acting = np.moveaxis(system.sources.sums(steps, row)[..., 2:], 0, -1)
         acting -= np.einsum("hkq,hqn->hkn", system.resistance[row, 2:], velocity[held])
         sums[held] += acting.reshape(len(held), 2, 2, -1)
@@ -80,15 +85,17 @@ def mean_stress(
     return np.stack([mean[:, i, j] for i, j in COMPONENTS], axis=-1)
 
 
-def _moments(links: Links, c: int, side: int, samples: np.ndarray) -> np.ndarray:
-    """Return the sums of arm times force of a contact on its block j, about the centroid of its
-    block of a side [2, 2, n], N m."""
+def _moments(links: Links, c: np.ndarray, side: np.ndarray, samples: np.ndarray) -> np.ndarray:
+    """Return the sums of arm times force of contacts on their blocks j, about the centroid of their
+    block of a side [c, 2, 2, n], N m."""
     normal = links.normal[c]
-    along = np.array([-normal[1], normal[0]])
-    arm = (links.start[c] + links.end[c]) / 2 - (links.beside_i, links.beside_j)[side][c]
-    force = samples[[FORCE_X, FORCE_Y]]
-    spread = np.outer(normal, -samples[BEND]) + np.outer(along, samples[ALONG])
-    return arm[:, None, None] * force + along[:, None, None] * spread
+    along = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
+    centroid = np.where(side[:, None], links.beside_j[c], links.beside_i[c])
+    arm = (links.start[c] + links.end[c]) / 2 - centroid
+    force = samples[:, [FORCE_X, FORCE_Y]]
+    spread = np.einsum("ck,cn->ckn", normal, -samples[:, BEND])
+    spread += np.einsum("ck,cn->ckn", along, samples[:, ALONG])
+    return arm[:, :, None, None] * force[:, None] + along[:, :, None, None] * spread[:, None]
 
 
 def _tractions(links: Links, receivers: BlockReceivers, contact: np.ndarray) -> np.ndarray:

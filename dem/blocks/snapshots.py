@@ -9,6 +9,8 @@ from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.polygons import owner
 from jointwave.dem.blocks.leapfrog import march, samples_for
 from jointwave.dem.blocks.model import PlaneState
+from jointwave.dem.blocks.receivers import BlockReceivers
+from jointwave.dem.blocks.record import mean_stress
 from jointwave.dem.blocks.system import PlaneSystem
 from jointwave.results.arrays import copied
 from jointwave.results.snapshots import SnapshotRecorder, snapshots, with_snapshots
@@ -19,31 +21,41 @@ class PlaneRecorder(SnapshotRecorder):
 
     def __init__(self, system: PlaneSystem, state: PlaneState) -> None:
         self.system, self.partition = system, system.blocks.partition
-        everywhere = np.arange(self.partition.count)
-        model = system.model._replace(places=everywhere, watched=everywhere[:0])
+        everywhere = _everywhere(system)
+        model = system.model._replace(places=everywhere.places, watched=everywhere.watched)
 
-        def capture(sample: int) -> tuple[np.ndarray, np.ndarray]:
-            """Return displacement and velocity of all blocks [N, 3], m and m/s, rad and rad/s, by
-            a sample with the step that it needs, on a copy of the state."""
+        def capture(sample: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+            """Return displacement and velocity of all blocks [N, 3], m and m/s, rad and rad/s, and
+            their stress [N, 3], Pa, by a sample with the step that it needs, on a copy of the
+            state."""
             step = sample * system.time.stride
             drive = None if model.held is None else system.sources.drive(step, step + 1)
             shake = None if system.shaking is None else system.shaking(np.array([step]))
             found = samples_for(model, 1)
             march(model, copied(state), found, 1, (0, 1), drive, shake)
-            return found.displacement[..., 0], found.velocity[..., 0]
+            stress = mean_stress(system, everywhere, found.velocity, found.contact, sample)
+            return found.displacement[..., 0], found.velocity[..., 0], stress[:, 0]
 
         super().__init__(system.blocks.scene, len(self.partition.corners), capture)
 
     def add_to(self, result: xr.Dataset) -> xr.Dataset:
         """Return the run's result with its snapshots; displacement counts from the first."""
         time = result["time"].values[:: self.every]
-        u, v = (np.stack(x) for x in zip(*self.frames[: len(time)], strict=True))
+        u, v, stress = (np.stack(x) for x in zip(*self.frames[: len(time)], strict=True))
         cells, block = triangles(self.partition)
         moved, moving = (corner_motion(self.partition, x) for x in (u - u[0], v))
         corners = self.partition.corners
-        return with_snapshots(
-            result, snapshots(time, corners, "triangle", cells, block, moved, moving)
-        )
+        found = snapshots(time, corners, "triangle", cells, block, moved, moving, stress[:, block])
+        return with_snapshots(result, found)
+
+
+def _everywhere(system: PlaneSystem) -> BlockReceivers:
+    """Return receivers of all blocks, without points."""
+    blocks, count = system.blocks.links.blocks, system.blocks.partition.count
+    contact, side = np.nonzero(blocks < count)  # others are walls
+    touching = np.stack([contact, blocks[contact, side], side], axis=1)
+    places, none = np.arange(count), np.zeros((0, 0))
+    return BlockReceivers(places, none, none, touching, np.arange(len(blocks)), none)
 
 
 def triangles(partition: Partition) -> tuple[np.ndarray, np.ndarray]:

@@ -5,9 +5,19 @@ from jointwave.compare.cli.commands import (
     experiments,
     fit,
     installation,
+    picture,
     scenes,
     solutions,
 )
 from jointwave.compare.cli.options import app
 
-__all__ = ["animation", "app", "experiments", "fit", "installation", "scenes", "solutions"]
+__all__ = [
+    "animation",
+    "app",
+    "experiments",
+    "fit",
+    "installation",
+    "picture",
+    "scenes",
+    "solutions",
+]

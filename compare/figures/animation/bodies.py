@@ -1,16 +1,24 @@
-"""Bodies as the faces of their cells: moved, coloured, and projected onto a picture."""
+"""Bodies as the faces of their cells: moved, coloured, and projected onto a picture; of maps and
+films alike."""
 
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.figures.animation.settings import STRESS, VELOCITY, ViewSettings
+from jointwave.compare.figures.animation.settings import (
+    PEAK,
+    PRINCIPAL,
+    STRESS,
+    VELOCITY,
+    ViewSettings,
+)
 from jointwave.compare.figures.style import FIELD, UNSIGNED
 from jointwave.results.snapshots import Snapshots
 
@@ -27,7 +35,8 @@ FACES = {
 FRONT, OBLIQUE = (0.0, 0.0), (0.1, 0.4)  # to the right and up per metre away from the viewer
 EDGE, WIDTH = "#333333", 0.4  # of the faces' edges, points
 MANY = 1000  # faces whose edges are thinner, in order not to hide the colours
-LOUDEST = 99.8  # percentile of an unsigned quantity shown by the last colour
+LOUDEST = 99.8  # percentile that the last colour shows ...
+SPIKE = 1.25  # ... where the largest value exceeds it by this factor
 
 
 class Body(NamedTuple):
@@ -43,13 +52,18 @@ class Body(NamedTuple):
     faces: np.ndarray
     values: np.ndarray
 
+    def front(self) -> "Body":
+        """Return the faces nearest to the viewer alone."""
+        along, away, _ = self.rest[self.faces].mean(axis=1).T
+        near = away <= away.min() + 1e-6 * np.ptp(along)
+        return self._replace(faces=self.faces[near], values=self.values[:, near])
+
     def profile(self) -> pd.DataFrame:
         """Return the mean value of the faces nearest to the viewer by instant, in columns by the
         place along the axis."""
-        along, away, _ = self.rest[self.faces].mean(axis=1).T
-        near = away <= away.min() + 1e-6 * np.ptp(along)
-        values = pd.DataFrame(self.values[:, near].T)
-        return values.groupby(along[near].round(9)).mean().T
+        front = self.front()
+        along, values = front.rest[front.faces, 0].mean(axis=1), pd.DataFrame(front.values.T)
+        return values.groupby(along.round(9)).mean().T
 
 
 def body_of(s: Snapshots, scene: object, settings: ViewSettings) -> Body:
@@ -60,15 +74,30 @@ def body_of(s: Snapshots, scene: object, settings: ViewSettings) -> Body:
     axes = np.stack([right, np.cross(up, right), up], axis=1)
     thick = np.array([1.0, settings.stretch, settings.stretch])
     faces, cells = _outside(s)
-    if settings.quantity == STRESS:
-        assert s.stress is not None
-        values = s.stress[:, cells]
-    elif settings.quantity == VELOCITY:
-        values = (s.velocity @ up)[:, faces].mean(axis=2)
-    else:
-        values = np.linalg.norm(s.velocity, axis=2)[:, faces].mean(axis=2)
+    values = _values(s, settings, faces, cells)
     motion = settings.scale * thick * (s.displacement @ axes)
     return Body(thick * (s.points @ axes), motion, faces, settings.quantity.factor * values)
+
+
+def _values(
+    s: Snapshots, settings: ViewSettings, faces: np.ndarray, cells: np.ndarray
+) -> np.ndarray:
+    """Return what the colours show of faces, SI [snapshots, faces]; of a peak a single one."""
+    quantity, speed = settings.quantity, np.linalg.norm(s.velocity, axis=2)
+    if quantity in (STRESS, PRINCIPAL):
+        assert s.stress is not None
+        return (s.stress if s.stress.ndim == 2 else _principal(s.stress))[:, cells]
+    if quantity == VELOCITY:
+        return (s.velocity @ settings.up)[:, faces].mean(axis=2)
+    speed = speed.max(axis=0, keepdims=True) if quantity == PEAK else speed
+    return speed[:, faces].mean(axis=2)
+
+
+def _principal(stress: np.ndarray) -> np.ndarray:
+    """Return the principal stress of larger size of stresses [..., (xx, yy, xy)]."""
+    xx, yy, xy = np.moveaxis(stress, -1, 0)
+    middle = (xx + yy) / 2
+    return middle + np.where(middle < 0, -1.0, 1.0) * np.hypot((xx - yy) / 2, xy)
 
 
 def _outside(s: Snapshots) -> tuple[np.ndarray, np.ndarray]:
@@ -98,14 +127,23 @@ def _solid(s: Snapshots, side: float) -> Snapshots:
     return s
 
 
-def colours_of(bodies: list[Body], settings: ViewSettings) -> ScalarMappable:
-    """Return the colours of a quantity, symmetric around zero where it has a sign."""
-    every = [np.abs(body.values) for body in bodies]
-    if settings.quantity.sign:
-        peak = max(float(values.max()) for values in every) or 1.0
-        return ScalarMappable(Normalize(-peak, peak), FIELD)
-    peak = max(float(np.percentile(values, LOUDEST)) for values in every) or 1.0
-    return ScalarMappable(Normalize(0.0, peak), UNSIGNED)
+def colours_of(
+    every: list[np.ndarray], sign: str, colours: tuple[str, str] = (FIELD, UNSIGNED)
+) -> ScalarMappable:
+    """Return the colours of some values, symmetric around zero where they have a sign.
+
+    The last colour is at the largest value, or at a percentile of all if few exceed it by far;
+    then the colour bar ends in an arrow. colours : with and without a sign.
+    """
+    sizes = [np.abs(values).ravel() for values in every]
+    most = max(float(one.max(initial=0.0)) for one in sizes)
+    peak = max(float(np.percentile(one, LOUDEST)) for one in sizes if one.size) if most else 1.0
+    is_clipped = most > SPIKE * peak > 0
+    peak = peak if is_clipped else most or 1.0
+    shown = colormaps[colours[not sign]].copy()
+    if is_clipped:
+        shown.colorbar_extend = "both" if sign else "max"
+    return ScalarMappable(Normalize(-peak if sign else 0.0, peak), shown)
 
 
 class BodyView:

@@ -39,7 +39,8 @@ class Frame:
         self.simulated, self.settings, self.time = simulated, settings, simulated.time
         scene, found = simulated.scene, simulated.found
         self.bodies = {name: body_of(s, scene, settings) for name, s in found.items()}
-        self.colours = colours_of(list(self.bodies.values()), settings)
+        values = [body.values for body in self.bodies.values()]
+        self.colours = colours_of(values, settings.quantity.sign)
         self.views: dict[str, BodyView] = {}
         self.along: dict[str, pd.DataFrame] = {}
         self.profiles: dict[str, Line2D] = {}

@@ -37,6 +37,9 @@ class Quantity(NamedTuple):
 STRESS = Quantity("axial stress (MPa)", 1e-6, "compression positive")
 VELOCITY = Quantity("velocity across (m/s)", 1.0, "upwards positive")
 SPEED = Quantity("particle speed (m/s)")
+PEAK = Quantity("peak particle velocity (m/s)")
+PRINCIPAL = Quantity("larger principal stress (MPa)", 1e-6, "compression positive")
+SLIP = Quantity("slip of joints (mm)", 1e3)
 
 
 class ViewSettings(NamedTuple):
@@ -67,12 +70,18 @@ def settings_for(
     scale : of displacements, instead of ours. A pillar is seen so that most of its motion across
     the axis is upwards, a rock mass in its plane.
     """
-    up, stretch, quantity = np.array([0.0, 1.0, 0.0]), 1.0, SPEED
+    up, stretch, quantity = np.array([0.0, 1.0, 0.0]), stretch_of(scene), SPEED
     if isinstance(scene, Scene):
         up, quantity = _upwards(found), _quantity(scene, found)
-        stretch = max(1.0, THIN * scene.pillar.length / scene.pillar.side)
     largest = min(_largest_scale(scene, s, stretch) for s in found.values())
     return ViewSettings(up, scale or max(1.0, round_down(largest)), stretch, quantity)
+
+
+def stretch_of(scene: AnyScene) -> float:
+    """Return by how much the thickness of a thin pillar is drawn larger; 1 of a rock mass."""
+    if not isinstance(scene, Scene):
+        return 1.0
+    return max(1.0, THIN * scene.pillar.length / scene.pillar.side)
 
 
 def _upwards(found: dict[str, Snapshots]) -> np.ndarray:

@@ -1,0 +1,82 @@
+"""The command that draws a scene, or what its results look like over the whole body."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from jointwave.cases.errors import SceneError
+from jointwave.compare.cli import terminal
+from jointwave.compare.cli.options import SetOption, StrictOption, VariantOption, app, load
+from jointwave.compare.engines import ENGINES
+from jointwave.compare.scenes import shipped
+
+MOST = 2  # results that are drawn
+
+
+@app.command()
+def picture(
+    source: Annotated[
+        str,
+        typer.Argument(
+            metavar="SCENE|FOLDER",
+            help="A scene, drawn as it is; or a folder of results of `run`, with snapshots.",
+            autocompletion=shipped,
+        ),
+    ],
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help=".png, .svg or .pdf; default NAME.png here.")
+    ] = None,
+    quantity: Annotated[
+        str | None,
+        typer.Option("--map", help="Of a folder: ppv (the default), speed, stress or slip."),
+    ] = None,
+    time: Annotated[
+        float | None, typer.Option(metavar="T", help="s (default: where the map is strongest).")
+    ] = None,
+    changes: SetOption = [],
+    variant: VariantOption = None,
+    strict: StrictOption = False,
+) -> None:
+    """Draw a scene, or a map of its results.
+
+    A scene is drawn with its joints, boundaries, receivers, loads and waves, every variant that
+    looks different. Results with snapshots (`run --set record.fields=1e-3`) are drawn as a map of
+    the whole body: peak particle velocity, or speed, stress or slip at one instant; those of two
+    engines side by side with their difference.
+    """
+    from jointwave.compare.figures import paper
+    from jointwave.compare.figures.export import write_drawing
+
+    folder = Path(source)
+    path = out or Path(f"{folder.resolve().name.removesuffix('.toml')}.png")
+    paper.check_file(path)
+    if folder.is_dir():
+        if changes or variant is not None:
+            raise SceneError("--set, --variant", "", None, "are of a scene, not of a folder")
+        figure, title = _map(folder, quantity or "ppv", time)
+    elif quantity is not None or time is not None:
+        allowed = f"is of results: `jointwave run {source} --set record.fields=1e-3 --out FOLDER`"
+        raise SceneError("--map" if quantity else "--time", "", None, f"{allowed} first")
+    else:
+        from jointwave.compare.figures.drawing.scene import scene_figure
+        from jointwave.compare.misfit.pairs import Comparison
+
+        scenes = load(source, changes, variant, strict)
+        title = scenes[0].title
+        figure = scene_figure("scene", [Comparison(one) for one in scenes]).figure
+    terminal.say(f"wrote {write_drawing(path, figure, title)}")
+
+
+def _map(folder: Path, quantity: str, time: float | None):
+    """Return the map of a folder's results, at most two, and its title."""
+    from jointwave.compare.figures.body_maps import maps_of, scene_of
+    from jointwave.compare.figures.charts.maps import draw_maps
+    from jointwave.results.netcdf import load_netcdf
+
+    files = [file for name in ENGINES if (file := folder / f"{name}.nc").exists()]
+    if not files:
+        raise SceneError(str(folder), "", None, "has no result of an engine, such as dem.nc")
+    results = [load_netcdf(file) for file in files[:MOST]]
+    scene = scene_of(results[0])
+    return draw_maps(maps_of(scene, results, quantity, time), scene), scene.title

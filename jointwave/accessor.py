@@ -1,0 +1,49 @@
+"""The accessor `result.jw` of xarray: figures of a result. `jointwave.simulate` and `compare` bring
+it along; a script that reads results from files imports this module."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import xarray as xr
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@xr.register_dataset_accessor("jw")
+class ResultFigures:
+    """Figures of a result, of an engine, an exact solution or a file."""
+
+    def __init__(self, result: xr.Dataset) -> None:
+        self.result = result
+
+    def plot(self, *others: xr.Dataset, width: float = 190.0, font_size: float = 8.0) -> Figure:
+        """Return the waveforms at every receiver, with those of other results: of other solvers in
+        the same axes, of other variants in a row of their own.
+
+        width : mm. font_size : points. A static state is subtracted.
+        """
+        from jointwave.compare.figures.body_maps import scene_of
+        from jointwave.compare.figures.charts.waveforms import draw_solutions
+        from jointwave.compare.figures.style import printed
+        from jointwave.compare.misfit.pairs import Comparison
+
+        found: dict[str, Comparison] = {}
+        for one in (self.result, *others):
+            variant = found.setdefault(one.attrs["variant"], Comparison(scene_of(one)))
+            variant.results[one.attrs["engine"]] = one
+        return draw_solutions(list(found.values()), False, printed(width, font_size))
+
+    def plot_map(
+        self,
+        quantity: str = "ppv",
+        other: xr.Dataset | None = None,
+        time: float | None = None,
+        width: float = 190.0,
+        font_size: float = 8.0,
+    ) -> Figure:
+        """Return a map of the whole body, as `jointwave.plot_map` does."""
+        from jointwave.compare.figures.charts.maps import plot_map
+
+        return plot_map(self.result, quantity, other, time, width, font_size)

@@ -1,0 +1,186 @@
+"""Maps of whole bodies: what they show against the results, on one scale, in words and colours."""
+
+import numpy as np
+import pytest
+from matplotlib.collections import LineCollection, PolyCollection
+
+import jointwave as jw
+from jointwave.compare.figures.body_maps import difference, maps_of
+from jointwave.compare.figures.charts.maps import draw_maps
+from jointwave.results.snapshots import snapshots_of
+
+SQUARES = {
+    "title": "a wave",
+    "domain": {"size": [4.0, 6.0]},
+    "rock": {"density": 2500.0, "intact_modulus": 4e10, "intact_poisson": 0.0},
+    "joint_sets": [
+        {"name": str(dip), "dip": dip, "spacing": 1.0, "normal_stiffness": 1e12}
+        | {"shear_stiffness": 4e11}
+        for dip in (0.0, 90.0)
+    ],
+    "waves": [
+        {"kind": "P", "direction": [0.0, 1.0], "shape": "ricker", "amplitude": 0.2}
+        | {"quantity": "velocity", "period": 0.01}
+    ],
+    "boundaries": {"left": "free", "right": "free", "bottom": "quiet", "top": "quiet"},
+    "time": {"duration": 0.03},
+    "record": {"points": [[2.5, 2.5]], "fields": 5e-4},
+}
+SHEARED = {"waves.0.kind": "S"}  # along the level joints
+
+
+@pytest.fixture(scope="module")
+def results():
+    """Return a P wave up through square blocks, by both engines."""
+    scene = jw.load(SQUARES)
+    return scene, jw.simulate(scene), jw.simulate(scene, "continuum-jointed")
+
+
+@pytest.fixture(scope="module")
+def sheared():
+    scene = jw.load(SQUARES, changes=SHEARED)
+    return scene, jw.simulate(scene)
+
+
+@pytest.fixture(scope="module")
+def blow():
+    """Return a short row of blocks in space that is struck obliquely."""
+    changes = {"pillar.length": 10.0, "record": {"velocity": [5.25], "fields": 2e-3}}
+    scene = jw.load("beyond/eccentric-blow", changes=changes | {"time.duration": 0.02})
+    return scene, jw.simulate(scene)
+
+
+def drawn(figure):
+    """Return the axes of maps by title, and those of colour bars by label."""
+    axes = {ax.get_title(loc="left"): ax for ax in figure.axes if ax.get_title(loc="left")}
+    bars = {ax.get_xlabel(): ax for ax in figure.axes if not ax.get_title(loc="left")}
+    return axes, bars
+
+
+def faces_of(ax):
+    return next(one for one in ax.collections if isinstance(one, PolyCollection))
+
+
+def test_the_ppv_is_that_of_the_result(results):
+    """Of every cell the mean over its nodes, the same as by `peak_velocity_map`."""
+    _, blocks, _ = results
+    axes, bars = drawn(jw.plot_map(blocks))
+    faces, s = faces_of(axes["rigid blocks"]), snapshots_of(blocks)
+    expected = jw.peak_velocity_map(blocks).values[s.cells].mean(axis=1)
+    np.testing.assert_allclose(faces.get_array(), expected, rtol=1e-12)
+    corners = np.array([path.vertices[:3] for path in faces.get_paths()])
+    np.testing.assert_allclose(corners, s.points[s.cells, :2])
+    assert list(bars) == ["peak particle velocity (m/s)"]
+    assert axes["rigid blocks"].get_aspect() == 1.0
+
+
+def test_two_engines_share_a_scale_beside_their_difference(results):
+    """The difference is the second less the first, on the smaller cells."""
+    scene, blocks, rock = results
+    axes, bars = drawn(jw.plot_map(blocks, "speed", rock, time=0.015))
+    names = ["rigid blocks", "jointed rock", "jointed rock − rigid blocks"]
+    assert list(axes) == names and len(bars) == 2
+    one, other, less = (faces_of(axes[name]) for name in names)
+    assert one.get_clim() == other.get_clim() and less.get_clim()[0] == -less.get_clim()[1]
+    assert one.get_clim()[1] >= max(one.get_array().max(), other.get_array().max()) / 1.25
+    assert len(less.get_array()) == len(other.get_array()) > len(one.get_array())
+    place = np.array([path.vertices[:4].mean(axis=0) for path in other.get_paths()])
+    here = np.hypot(*(place - [2.5, 2.5]).T).argmin()
+    of_block = blocks.velocity.sel(time=0.015, method="nearest").values[0]
+    expected = other.get_array()[here] - np.hypot(*of_block)
+    assert less.get_array()[here] == pytest.approx(expected, abs=1e-3)
+    swapped = difference(*reversed(maps_of(scene, [blocks, rock], "speed", 0.015).values()))
+    np.testing.assert_allclose(np.sort(-swapped.values), np.sort(less.get_array()), atol=1e-15)
+
+
+def test_without_a_time_the_strongest_snapshot_is_shown(results):
+    _, blocks, _ = results
+    figure = jw.plot_map(blocks, "stress")
+    shown = faces_of(drawn(figure)[0]["rigid blocks"]).get_array()
+    squares = (blocks.field_stress.sel(stress_component="yy").values ** 2).mean(axis=1)
+    strongest = int(squares.argmax())
+    assert f"at {1e3 * blocks.field_time.values[strongest]:.4g} ms" in figure.get_suptitle()
+    yy = 1e-6 * blocks.field_stress.values[strongest, :, 1]
+    np.testing.assert_allclose(shown, yy, atol=0.01 * np.abs(yy).max())  # the wave's is uniaxial
+
+
+def test_slip_is_the_jump_along_joints(sheared):
+    """That of receivers on a level and on an upright joint, and what is drawn."""
+    scene, blocks = sheared
+    (one,) = maps_of(scene, [blocks], "slip", 0.015).values()
+    places = [[2.5, 2.0], [2.0, 3.5]]
+    recorded = jw.load(SQUARES, changes=SHEARED | {"record.joints": places})
+    slip = jw.simulate(recorded).slip.sel(time=0.015, method="nearest").values
+    middle = one.joints.mean(axis=1)
+    here = [np.hypot(*(middle - place).T).argmin() for place in places]
+    assert one.values[here] == pytest.approx(1e3 * np.abs(slip), rel=0.02)
+    lines = next(
+        shape
+        for shape in drawn(jw.plot_map(blocks, "slip", time=0.015))[0]["rigid blocks"].collections
+        if isinstance(shape, LineCollection)
+    )
+    np.testing.assert_allclose(np.sort(lines.get_array()), np.sort(one.values))
+
+
+def test_a_pillar_in_space_is_seen_from_the_front(blow):
+    """Its blocks from end to end, thickness as drawn; the stress is that along it."""
+    scene, blocks = blow
+    axes, bars = drawn(jw.plot_map(blocks, "stress", time=0.01))
+    faces = faces_of(axes["rigid blocks"])
+    i = int(np.abs(blocks.field_time.values - 0.01).argmin())
+    np.testing.assert_allclose(faces.get_array(), 1e-6 * blocks.field_stress.values[i])
+    ends = [path.vertices[:, 0] for path in faces.get_paths()]
+    assert np.min(ends) == pytest.approx(0.0) and np.max(ends) == pytest.approx(10.0)
+    assert list(bars) == ["axial stress (MPa), compression positive"]
+    (slipped,) = maps_of(scene, [blocks], "slip").values()
+    assert len(slipped.values) == 19 and slipped.values.max() > 0
+
+
+def test_few_large_values_are_clipped_and_counted(results, collisions):
+    """One cell of many at ten times the others: an arrow, and its share of the area in words."""
+    scene, _, rock = results
+    (one,) = maps_of(scene, [rock], "ppv").values()
+    one = one._replace(corners=np.tile(one.corners, (10, 1, 1)))
+    values = np.full(len(one.corners), 0.1)
+    values[7] = 1.0
+    figure = draw_maps({"a": one._replace(values=values)}, scene)
+    (bar,) = drawn(figure)[1]
+    share = 100 * one.sizes[7] / one.sizes.sum()
+    assert bar == f"peak particle velocity (m/s)\n{share:.2g} % of the area is beyond"
+    faces = faces_of(drawn(figure)[0]["a"])
+    assert faces.get_clim() == (0.0, pytest.approx(0.1))
+    assert faces.get_cmap().colorbar_extend == "max"
+    assert collisions(figure) == []
+
+
+@pytest.mark.parametrize("quantity", ["ppv", "stress", "slip"])
+def test_nothing_lies_over_anything_else(results, collisions, quantity):
+    _, blocks, rock = results
+    assert collisions(jw.plot_map(blocks, quantity, rock)) == []
+
+
+def test_what_cannot_be_drawn_is_said_in_one_line(results, blow):
+    _, blocks, _ = results
+    for arguments, said in (
+        (("heat",), "map = 'heat': must be one of ppv, speed, stress, slip"),
+        (("speed", None, 9.0), "time = 9.0: must be from 0 to 0.03 s"),
+        (("ppv", None, 0.01), "ppv the largest of all"),
+        (("ppv", blow[1]), "different bodies"),
+        (("ppv", blocks.drop_vars("field_cells")), "record.fields: is needed for a map"),
+    ):
+        with pytest.raises(jw.SceneError, match=said):
+            jw.plot_map(blocks, *arguments)
+    bar = jw.simulate(jw.load("guo-li-2002/fig-03", changes={"record.fields": 1e-3}))
+    with pytest.raises(jw.SceneError, match="map = 'slip': is of joints along which something"):
+        jw.plot_map(bar, "slip")
+
+
+def test_a_result_has_its_figures(results, blow):
+    """`result.jw`: a panel of waveforms for each component that moves, and maps."""
+    _, blocks, rock = results
+    figure = blocks.jw.plot(rock)
+    titles = [ax.get_title(loc="left") for ax in figure.axes]
+    assert any("velocity y at [2.5, 2.5] m" in title for title in titles)
+    assert [len(ax.lines) for ax in figure.axes if ax.lines][0] >= 2
+    assert len(drawn(blocks.jw.plot_map("ppv", rock))[0]) == 3
+    assert blow[1].jw.plot(width=90).get_figwidth() == pytest.approx(90 / 25.4)
