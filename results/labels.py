@@ -51,6 +51,8 @@ LABELS = {
     "field_displacement": ("displacement of the node", "m"),
     "field_velocity": ("velocity of the node", "m/s"),
     "field_stress": ("stress of the cell (axial in a pillar), compression positive", "Pa"),
+    "field_joints": ("ends of the joint between two blocks", "m"),
+    "field_slip": ("slip of the joint", "m"),
 }
 
 

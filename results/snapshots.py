@@ -144,6 +144,18 @@ def with_snapshots(result: xr.Dataset, s: Snapshots) -> xr.Dataset:
     return found
 
 
+def with_slip(result: xr.Dataset, joints: np.ndarray, slip: np.ndarray) -> xr.Dataset:
+    """Return a result with the slip (m) of joints at its snapshots [snapshots, joints].
+
+    joints : ends [joints, 2, 3], m.
+    """
+    variables = {
+        "field_joints": (("joint", "end", "component"), joints),
+        "field_slip": (("field_time", "joint"), slip),
+    }
+    return result.assign(labelled(variables))
+
+
 def snapshots_of(result: xr.Dataset) -> Snapshots | None:
     """Return the snapshots of a result; None if it has none."""
     if "field_cells" not in result:

@@ -26,7 +26,7 @@ from jointwave.compare.figures.animation.settings import (
     Quantity,
     settings_for,
 )
-from jointwave.results.snapshots import Snapshots, snapshots_of
+from jointwave.results.snapshots import snapshots_of
 
 #: By name; a pillar's stress is that along it.
 QUANTITIES = {"ppv": PEAK, "speed": SPEED, "stress": PRINCIPAL, "slip": SLIP}
@@ -85,13 +85,9 @@ def maps_of(
         shown = STRESS
     found: dict[str, Map] = {}
     for result, name in zip(results, names_of(results), strict=True):
-        s = snapshots_of(result)
-        if s is None:
-            why = "is needed for a map: the result has no snapshots"
-            raise SceneError(scene.title, "record.fields", None, why)
         engine, comma, more = name.partition(", ")
         words = solver(engine).label if engine in names() else engine
-        found[words + comma + more] = one = _map(scene, s, shown, time)
+        found[words + comma + more] = one = _map(scene, result, shown, time)
         time = time if one.time is None else one.time
     first, *others = (one.corners.reshape(-1, 2) for one in found.values())
     for one in others:
@@ -116,17 +112,23 @@ def names_of(results: Sequence[xr.Dataset]) -> list[str]:
     return found
 
 
-def _map(scene: AnyScene, s: Snapshots, quantity: Quantity, time: float | None) -> Map:
-    """Return the map of snapshots, of the one nearest to a time."""
+def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | None) -> Map:
+    """Return the map of a result's snapshots, of the one nearest to a time."""
+    s = snapshots_of(result)
+    if s is None:
+        why = "is needed for a map: the result has no snapshots"
+        raise SceneError(scene.title, "record.fields", None, why)
     settings = settings_for(scene, {"": s})._replace(scale=1.0, stretch=1.0, quantity=quantity)
     body = body_of(s, scene, settings).front()
     corners, joints = body.rest[body.faces][..., [0, 2]], _joints(scene)
     values = body.values
     if quantity == SLIP:
-        if not len(joints) or isinstance(scene, Scene) and not is_spatial(scene):
+        if not len(joints) or (isinstance(scene, Scene) and not is_spatial(scene)):
             why = "is of joints along which something moves; this body has none"
             raise SceneError(scene.title, "map", "slip", why)
-        values = quantity.factor * _slip(body, corners, joints)
+        recorded = "field_slip" in result
+        slip = _recorded_slip(result, joints) if recorded else _slip(body, corners, joints)
+        values = quantity.factor * slip
     found = Map(corners, joints, values[0], None, quantity)
     if len(values) < len(s.time) or quantity == PEAK:
         return found
@@ -159,6 +161,14 @@ def _joints(scene: AnyScene) -> np.ndarray:
 
 def _lengths(pieces: np.ndarray) -> np.ndarray:
     return np.linalg.norm(pieces[:, 1] - pieces[:, 0], axis=1)
+
+
+def _recorded_slip(result: xr.Dataset, joints: np.ndarray) -> np.ndarray:
+    """Return the size of the slip that a result has of joints, m [snapshots, pieces]: that of rigid
+    blocks is without the strain of the rock, which parts the blocks as well."""
+    tree = shapely.STRtree(shapely.linestrings(result["field_joints"].values[..., :2]))
+    nearest = tree.query_nearest(shapely.points(joints.mean(axis=1)), all_matches=False)[1]
+    return np.abs(result["field_slip"].values[:, nearest])
 
 
 def _slip(body: Body, corners: np.ndarray, joints: np.ndarray) -> np.ndarray:

@@ -40,12 +40,10 @@ def quantities(
         stress = mean_stress(system, receivers, velocity, contact)
         found["stress"] = np.einsum("pr,rnk->pnk", receivers.weights, stress)
     if record.joints:
-        traction = _tractions(system.blocks.links, receivers, contact)
+        traction = tractions(system.blocks.links, receivers, contact)
         found["traction"] = np.einsum("pw,wnk->pnk", joints, traction)
-        for k, (name, row) in enumerate((("gap", GAP), ("slip", SLIP))):
-            column, excess = system.blocks.links.column, system.blocks.joints.excess[k]
-            softness = np.append(excess, 0.0)[np.minimum(column[receivers.watched], len(excess))]
-            moved = contact[:, row] + softness[:, None] * traction[..., k]
+        for k, name in enumerate(("gap", "slip")):
+            moved = across_joint(system, receivers, contact, traction, k)
             found[name] = joints @ (moved - moved[:, :1])
     return found
 
@@ -98,7 +96,21 @@ def _moments(links: Links, c: np.ndarray, side: np.ndarray, samples: np.ndarray)
     return arm[:, :, None, None] * force[:, None] + along[:, :, None, None] * spread[:, None]
 
 
-def _tractions(links: Links, receivers: BlockReceivers, contact: np.ndarray) -> np.ndarray:
+def across_joint(
+    system: PlaneSystem,
+    receivers: BlockReceivers,
+    contact: np.ndarray,
+    traction: np.ndarray,
+    k: int,
+) -> np.ndarray:
+    """Return the opening (k = 0) or the slip (1) of the joints of the watched contacts [w, n], m,
+    without the strain of the rock that a contact stands for; their traction as by `tractions`."""
+    column, excess = system.blocks.links.column, system.blocks.joints.excess[k]
+    softness = np.append(excess, 0.0)[np.minimum(column[receivers.watched], len(excess))]
+    return contact[:, (GAP, SLIP)[k]] + softness[:, None] * traction[..., k]
+
+
+def tractions(links: Links, receivers: BlockReceivers, contact: np.ndarray) -> np.ndarray:
     """Return the mean traction of the watched contacts [w, n, 2], normal and along, Pa."""
     normal = links.normal[receivers.watched]
     along = np.stack([-normal[:, 1], normal[:, 0]], axis=1)

@@ -102,7 +102,9 @@ def _add_bar(
     room = (figure.get_figwidth() - BESIDE) * (len(axes) / columns if columns > 1 else 1.0)
     words = fill(label, int(_letters() * room)) + _beyond(maps, colours)
     shrink = 0.6 if columns == 1 else 1.0
-    bar = figure.colorbar(colours, ax=axes, label=words, location="bottom", aspect=40, shrink=shrink)
+    bar = figure.colorbar(
+        colours, ax=axes, label=words, location="bottom", aspect=40, shrink=shrink
+    )
     bar.locator = MaxNLocator(5)
 
 

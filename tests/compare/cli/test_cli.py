@@ -131,6 +131,7 @@ STRICT = {
     "plan": (SCENE, "--misfit", "0.1"),
     "animate": (SCENE,),
     "fit": (SCENE, "--with", "a.csv", "--free", "load.amplitude"),
+    "picture": (SCENE, "--out", "a.png"),
     "view": (SCENE, "--out", "a.png"),
 }
 

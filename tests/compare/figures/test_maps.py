@@ -184,3 +184,16 @@ def test_a_result_has_its_figures(results, blow):
     assert [len(ax.lines) for ax in figure.axes if ax.lines][0] >= 2
     assert len(drawn(blocks.jw.plot_map("ppv", rock))[0]) == 3
     assert blow[1].jw.plot(width=90).get_figwidth() == pytest.approx(90 / 25.4)
+
+
+def test_stress_of_snapshots_is_that_of_receivers(results):
+    """Of the block, and of the element at the middle of the block."""
+    _, *both = results
+    for result, tolerance in zip(both, (1e-9, 0.02), strict=True):
+        s = snapshots_of(result)
+        middle = s.points[s.cells, :2].mean(axis=1)
+        here = np.hypot(*(middle - [2.5, 2.5]).T).argmin()
+        recorded = result.stress.sel(time=s.time, method="nearest").values[0]
+        np.testing.assert_allclose(
+            s.stress[:, here], recorded, atol=tolerance * np.abs(recorded).max()
+        )

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from jointwave.cases.read import load_tables
-from jointwave.compare.figures.charts.peak_velocities import cells_of, peak_velocities
+from jointwave.compare.figures.body_maps import maps_of
+from jointwave.compare.figures.charts.peak_velocities import peak_velocities
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +38,8 @@ def comparison(compared):
 def test_the_map_is_the_peak_of_each_block(comparison):
     """At the receiver that of its waveform: a peak of omega = 2 pi / T is missed by (omega dt)^2/8
     at most between snapshots. Cells fill the domain."""
-    (corners, peaks), *_ = cells_of(comparison).values()
+    (found,) = maps_of(comparison.scene, [comparison.results["dem"]], "ppv").values()
+    corners, peaks = found.corners, found.values
     middle = corners.mean(axis=1)
     here = np.abs(middle - [2.5, 2.5]).max(axis=1) < 0.5
     wave = comparison.results["dem"].velocity.values[0]
