@@ -9,7 +9,7 @@ export PYTHONDONTWRITEBYTECODE :=
 TESTS := $(RUN) python -m pytest -n auto --maxprocesses 8 --dist worksteal --junitxml out/tests.xml
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-all docs check types fuzz bench bench-peers lock test-lowest test-wheel clean distclean
+.PHONY: help setup demo test test-all docs gallery check types fuzz bench bench-peers lock test-lowest test-wheel clean distclean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -32,6 +32,9 @@ docs:  ## the documentation as pages, site/index.html
 	@tools/setup.sh docs
 	@$(RUN) python tools/docs/notebooks.py
 	@NO_MKDOCS_2_WARNING=1 $(RUN) python -m mkdocs build --strict
+
+gallery: setup  ## the pictures of docs/gallery, each from the scene and the lines beside it
+	@$(RUN) python tools/docs/gallery.py
 
 fuzz: setup  ## bad scenes, loads, curves, studies, meshes and commands, twenty times as many as in make test, others in each run
 	@FUZZ=20 $(RUN) python -m pytest tests/fuzz

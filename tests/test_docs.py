@@ -44,7 +44,11 @@ def folder(tmp_path, monkeypatch, modules_of):
     return tmp_path
 
 
-@pytest.mark.parametrize("page", [p for p in PAGES if "```python" in p.read_text()], ids=name_of)
+#: Those with code; pages of the gallery have tests of their own.
+WITH_CODE = [p for p in PAGES if "```python" in p.read_text() and p.parent.name != "gallery"]
+
+
+@pytest.mark.parametrize("page", WITH_CODE, ids=name_of)
 def test_python_of_a_page_runs(page, folder):
     """Block after block, beside the files that the page shows; they assert what they say."""
     space: dict = {}

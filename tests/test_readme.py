@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -58,6 +59,7 @@ def test_python_prints_what_it_says(scene_file, capsys, monkeypatch):
     exec(compile(blocks("python")[0], "README.md", "exec"), {})
     said = capsys.readouterr().out
     assert 0 < float(said.split()[0]) < 0.02
+    assert (scene_file.parent / "waveforms.png").stat().st_size > 10_000
 
 
 def test_numbers_of_the_free_pillar(pillar):
@@ -69,6 +71,25 @@ def test_numbers_of_the_free_pillar(pillar):
         assert 100 * misfit(dem, solve(name, scene)) == pytest.approx(percent, abs=0.05)
 
 
+def test_commands_exist(modules_of):
+    """Every line that begins with the program's name, with its options."""
+    commands = modules_of(ROOT / "tools" / "docs")("commands")
+    known, lines = commands.all_commands(), re.findall(r"^    jointwave (.*)$", README, re.M)
+    assert len(lines) > 5
+    for line in lines:
+        name, *rest = shlex.split(line, comments=True)
+        assert {word for word in rest if word[:2] == "--"} <= set(commands.options(known[name]))
+
+
+@pytest.mark.slow
+def test_the_first_picture_is_made_by_its_commands(jointwave, tmp_path, monkeypatch):
+    """Both lines below it, run as they stand."""
+    monkeypatch.chdir(tmp_path)
+    for line in re.findall(r"^    jointwave ((?:run|picture) .*tunnel)$", README, re.M):
+        jointwave(*shlex.split(line))
+    assert (tmp_path / "tunnel.png").stat().st_size > 50_000
+
+
 def test_pictures_and_pages_that_it_links_are_there():
     """No dead link into the project."""
     for link in re.findall(r"\]\(([^)h][^)]*)\)", README):
@@ -76,4 +97,4 @@ def test_pictures_and_pages_that_it_links_are_there():
 
 
 def test_it_is_read_in_one_go():
-    assert README.count("\n") <= 150
+    assert README.count("\n") <= 120

@@ -35,6 +35,7 @@ FACES = {
 FRONT, OBLIQUE = (0.0, 0.0), (0.1, 0.4)  # to the right and up per metre away from the viewer
 EDGE, WIDTH = "#333333", 0.4  # of the faces' edges, points
 MANY = 1000  # faces whose edges are thinner, in order not to hide the colours
+CELLS = 4000  # faces above which they have no edges
 LOUDEST = 99.8  # percentile that the last colour shows ...
 SPIKE = 1.25  # ... where the largest value exceeds it by this factor
 
@@ -164,9 +165,13 @@ class BodyView:
         self.farther = np.array([-right, 1.0, -up])  # along the line of sight
         drawn = (body.rest + body.motion) @ self.projection
         self.low, self.high = drawn.min(axis=(0, 1)), drawn.max(axis=(0, 1))
-        edges = EDGE if body.faces.shape[1] > 3 else "face"  # triangles are parts of blocks
+        # Triangles, and many quadrilaterals, are parts of blocks.
+        edges = EDGE if body.faces.shape[1] > 3 and len(body.faces) <= CELLS else "face"
         width = WIDTH * min(1.0, MANY / len(body.faces))
-        self.faces = PolyCollection([], edgecolors=edges, linewidths=width)
+        # Edges that blend into the background would leave seams between faces of one colour.
+        self.faces = PolyCollection(
+            [], edgecolors=edges, linewidths=width, antialiaseds=edges == EDGE
+        )
         self.faces.set(cmap=colours.get_cmap(), norm=colours.norm, clip_on=False)
         ax.add_collection(self.faces, autolim=False)
         margin = 0.02 * (self.high - self.low).min()

@@ -105,7 +105,7 @@ def _add_bar(
     bar = figure.colorbar(
         colours, ax=axes, label=words, location="bottom", aspect=40, shrink=shrink
     )
-    bar.locator = MaxNLocator(5)
+    bar.locator = MaxNLocator(min(6, int(_letters() * room / 10)))
 
 
 def _letters() -> float:

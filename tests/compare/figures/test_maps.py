@@ -187,13 +187,14 @@ def test_a_result_has_its_figures(results, blow):
 
 
 def test_stress_of_snapshots_is_that_of_receivers(results):
-    """Of the block, and of the element at the middle of the block."""
+    """Of the block, and the mean of the elements around it: a curvature of (pi dx / cT)^2 / 2."""
     _, *both = results
     for result, tolerance in zip(both, (1e-9, 0.02), strict=True):
         s = snapshots_of(result)
         middle = s.points[s.cells, :2].mean(axis=1)
-        here = np.hypot(*(middle - [2.5, 2.5]).T).argmin()
+        away = np.hypot(*(middle - [2.5, 2.5]).T)
+        around = away < 1.01 * away.min()
         recorded = result.stress.sel(time=s.time, method="nearest").values[0]
         np.testing.assert_allclose(
-            s.stress[:, here], recorded, atol=tolerance * np.abs(recorded).max()
+            s.stress[:, around].mean(axis=1), recorded, atol=tolerance * np.abs(recorded).max()
         )

@@ -1,0 +1,85 @@
+"""The gallery: runs the lines of its pages, and writes their pictures and scenes anew.
+
+    python tools/docs/gallery.py [NAME ...]
+
+A page shows a scene, shipped or beside the page, and the lines that draw it.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+from contextlib import chdir
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+from PIL import Image, ImageSequence
+
+ROOT = Path(__file__).parents[2]
+GALLERY = ROOT / "docs" / "gallery"
+CODE = re.compile(r"```python\n(.*?)```", re.DOTALL)
+SCENE = re.compile(r"```toml title=\"([^\"]+)\"\n(.*?)```", re.DOTALL)
+SHIPPED = re.compile(r"is shipped as `([^`]+)`")
+PICTURE = re.compile(r"!\[[^\]]*\]\(([^)]+)\)")
+COLOURS, SMALL = 128, (640, 360)  # of a palette; pixels of a film
+FILM = ("--frames", "25", "--seconds", "2.5")
+
+
+class Page(NamedTuple):
+    """A page: its scene's file, as it is shown and as it is kept, its lines, and its pictures."""
+
+    path: Path
+    file: str
+    shown: str
+    kept: str
+    code: str
+    pictures: list[str]
+
+
+def read(path: Path) -> Page:
+    """Return a page."""
+    text = path.read_text(encoding="utf-8")
+    ((file, shown),), (code,), shipped = (
+        SCENE.findall(text),
+        CODE.findall(text),
+        SHIPPED.search(text),
+    )
+    kept = ROOT / "cases" / f"{shipped[1]}.toml" if shipped else GALLERY / file
+    return Page(path, file, shown, kept.read_text(), code, PICTURE.findall(text))
+
+
+def run(page: Page, folder: Path) -> None:
+    """Run a page's lines in a folder, beside its scene."""
+    (folder / page.file).write_text(page.kept, encoding="utf-8")
+    with chdir(folder):
+        exec(compile(page.code, str(page.path), "exec"), {})
+
+
+def make(page: Page, folder: Path) -> None:
+    """Write a page's scene and its pictures anew."""
+    whole = f'```toml title="{page.file}"\n{page.kept}```'
+    text = SCENE.sub(lambda _: whole, page.path.read_text(encoding="utf-8"))
+    page.path.write_text(text, encoding="utf-8")
+    run(page, folder)
+    for made in (folder / name for name in page.pictures):
+        if made.suffix == ".gif":
+            command = ("jointwave", "animate", page.file, "--out", made.name, *FILM)
+            subprocess.run([sys.executable, "-m", *command], check=True, cwd=folder)
+        with Image.open(made) as picture:
+            duration = picture.info.get("duration", 0)
+            found = [one.convert("RGB") for one in ImageSequence.Iterator(picture)]
+        if made.suffix == ".gif":
+            found = [one.resize(SMALL) for one in found]
+        palette = found[len(found) // 2].quantize(COLOURS, Image.Quantize.FASTOCTREE)
+        first, *rest = (one.quantize(palette=palette, dither=Image.Dither.NONE) for one in found)
+        film = {"save_all": True, "append_images": rest, "duration": duration, "loop": 0}
+        first.save(made, optimize=True, **(film if rest else {}))
+        shutil.copy(made, GALLERY)
+
+
+if __name__ == "__main__":
+    for path in sorted(GALLERY.glob("*.md")):
+        if path.stem != "index" and path.stem in (sys.argv[1:] or path.stem):
+            with TemporaryDirectory() as place:
+                make(read(path), Path(place))
