@@ -1,8 +1,6 @@
 """The gallery: runs the lines of its pages, and writes their pictures and scenes anew.
 
     python tools/docs/gallery.py [NAME ...]
-
-A page shows a scene, shipped or beside the page, and the lines that draw it.
 """
 
 import re
@@ -40,11 +38,8 @@ class Page(NamedTuple):
 def read(path: Path) -> Page:
     """Return a page."""
     text = path.read_text(encoding="utf-8")
-    ((file, shown),), (code,), shipped = (
-        SCENE.findall(text),
-        CODE.findall(text),
-        SHIPPED.search(text),
-    )
+    ((file, shown),), (code,) = SCENE.findall(text), CODE.findall(text)
+    shipped = SHIPPED.search(text)
     kept = ROOT / "cases" / f"{shipped[1]}.toml" if shipped else GALLERY / file
     return Page(path, file, shown, kept.read_text(), code, PICTURE.findall(text))
 
@@ -58,23 +53,24 @@ def run(page: Page, folder: Path) -> None:
 
 def make(page: Page, folder: Path) -> None:
     """Write a page's scene and its pictures anew."""
-    whole = f'```toml title="{page.file}"\n{page.kept}```'
-    text = SCENE.sub(lambda _: whole, page.path.read_text(encoding="utf-8"))
-    page.path.write_text(text, encoding="utf-8")
+    whole, text = f'```toml title="{page.file}"\n{page.kept}```', page.path.read_text()
+    page.path.write_text(SCENE.sub(lambda _: whole, text))
     run(page, folder)
     for made in (folder / name for name in page.pictures):
         if made.suffix == ".gif":
             command = ("jointwave", "animate", page.file, "--out", made.name, *FILM)
             subprocess.run([sys.executable, "-m", *command], check=True, cwd=folder)
-        with Image.open(made) as picture:
-            duration = picture.info.get("duration", 0)
-            found = [one.convert("RGB") for one in ImageSequence.Iterator(picture)]
-        if made.suffix == ".gif":
-            found = [one.resize(SMALL) for one in found]
+        with Image.open(made) as drawn:
+            size, film = drawn.size, {}
+            if made.suffix == ".gif":
+                size, film = (
+                    SMALL,
+                    {"save_all": True, "duration": drawn.info["duration"], "loop": 0},
+                )
+            found = [one.convert("RGB").resize(size) for one in ImageSequence.Iterator(drawn)]
         palette = found[len(found) // 2].quantize(COLOURS, Image.Quantize.FASTOCTREE)
         first, *rest = (one.quantize(palette=palette, dither=Image.Dither.NONE) for one in found)
-        film = {"save_all": True, "append_images": rest, "duration": duration, "loop": 0}
-        first.save(made, optimize=True, **(film if rest else {}))
+        first.save(made, optimize=True, **film, **({"append_images": rest} if rest else {}))
         shutil.copy(made, GALLERY)
 
 
