@@ -89,10 +89,9 @@ def maps_of(
         words = solver(engine).label if engine in names() else engine
         found[words + comma + more] = one = _map(scene, result, shown, time)
         time = time if one.time is None else one.time
-    first, *others = (one.corners.reshape(-1, 2) for one in found.values())
-    for one in others:
-        apart = np.abs([first.min(0) - one.min(0), first.max(0) - one.max(0)]).max()
-        if apart > CLOSE * np.ptp(first):
+    ends = [(one.corners.min((0, 1)), one.corners.max((0, 1))) for one in found.values()]
+    for end in ends[1:]:
+        if not np.allclose(ends[0], end, rtol=0.0, atol=CLOSE * np.ptp(ends[0])):
             raise SceneError(scene.title, "", None, "the two results are of different bodies")
     return found
 

@@ -1,6 +1,6 @@
 """The gallery: runs the lines of its pages, and writes their pictures and scenes anew.
 
-    python tools/docs/gallery.py [NAME ...]
+python tools/docs/gallery.py [NAME ...]
 """
 
 import re

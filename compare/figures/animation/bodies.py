@@ -143,7 +143,8 @@ def colours_of(
     peak = peak if is_clipped else most or 1.0
     shown = colormaps[colours[not sign]].copy()
     if is_clipped:
-        shown.colorbar_extend = "both" if sign else "max"
+        ends = "both" if sign else "max"
+        shown.colorbar_extend = ends  # type: ignore[assignment]  # its stub has bool
     return ScalarMappable(Normalize(-peak if sign else 0.0, peak), shown)
 
 

@@ -138,11 +138,12 @@ def _draw(ax: Axes, one: Map, colours: ScalarMappable, stretch: float) -> None:
         faces.set(facecolor=ROCKS[0], edgecolor="face")
         order = np.abs(one.values).argsort()  # the largest is drawn last
         one = one._replace(joints=one.joints[order], values=one.values[order])
-        valued = edges = LineCollection(list(one.joints), linewidth=SLIPPED, capstyle="round")
+        edges = LineCollection(list(one.joints), linewidth=SLIPPED, capstyle="round")
     else:
         faces.set(edgecolor="face", linewidth=0.4, antialiased=False)
         width = min(0.4, WIDTH / max(1, len(one.joints)))
-        valued, edges = faces, LineCollection(list(one.joints), linewidth=width, color=JOINT)
+        edges = LineCollection(list(one.joints), linewidth=width, color=JOINT)
+    valued = edges if one.quantity == SLIP else faces
     valued.set(array=one.values, cmap=colours.get_cmap(), norm=colours.norm)
     for shape in (faces, edges):
         ax.add_collection(shape)

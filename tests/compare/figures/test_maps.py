@@ -181,7 +181,7 @@ def test_a_result_has_its_figures(results, blow):
     figure = blocks.jw.plot(rock)
     titles = [ax.get_title(loc="left") for ax in figure.axes]
     assert any("velocity y at [2.5, 2.5] m" in title for title in titles)
-    assert [len(ax.lines) for ax in figure.axes if ax.lines][0] >= 2
+    assert next(len(ax.lines) for ax in figure.axes if ax.lines) >= 2
     assert len(drawn(blocks.jw.plot_map("ppv", rock))[0]) == 3
     assert blow[1].jw.plot(width=90).get_figwidth() == pytest.approx(90 / 25.4)
 
