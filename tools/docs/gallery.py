@@ -1,7 +1,4 @@
-"""The gallery: runs the lines of its pages, and writes their pictures and scenes anew.
-
-python tools/docs/gallery.py [NAME ...]
-"""
+"""The gallery: runs the lines of its pages (of NAME ...), writes their pictures and scenes anew."""
 
 import re
 import shutil
