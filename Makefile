@@ -28,8 +28,9 @@ test-all:  ## make test with the slow tests, the longest hard cases
 	@tools/setup.sh browser
 	@$(TESTS) -m "slow or not slow" tests cases
 
-docs:  ## the documentation as pages, site/index.html
+docs:  ## the documentation as pages, site/index.html; writes docs/reference
 	@tools/setup.sh docs
+	@$(RUN) python tools/docs/hooks.py
 	@$(RUN) python tools/docs/notebooks.py
 	@NO_MKDOCS_2_WARNING=1 $(RUN) python -m mkdocs build --strict
 

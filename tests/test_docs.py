@@ -160,6 +160,14 @@ def test_generated_parts_are_known(tools):
         assert "<!-- generated" not in hooks.generated(text)
 
 
+@pytest.mark.parametrize("name", ["commands.md", "scene.md"])
+def test_reference_is_written_out(name, tools):
+    """Who reads the file itself reads what is generated; `make docs` writes it."""
+    text = (DOCS / "reference" / name).read_text(encoding="utf-8")
+    assert text.count("<!-- end -->") == text.count("<!-- generated") > 0
+    assert text == tools("hooks").written_out(text)
+
+
 def test_api_reads_signatures_and_docstrings(tools):
     """A documented function stands with its arguments; entries of a docstring become a list."""
     api = tools("api")

@@ -1,8 +1,9 @@
 """What mkdocs calls while it builds: generated parts of pages, and formulas as MathML.
 
-A line `<!-- generated: NAME -->` or `<!-- generated: NAME ARGUMENT -->` of a page is replaced by
-what `GENERATED[NAME]` returns. Browsers show MathML by themselves, so no script and no network is
-needed to read the formulas.
+A line `<!-- generated: NAME -->` or `<!-- generated: NAME ARGUMENT -->` of a page is followed by
+what `GENERATED[NAME]` returns, up to a line `<!-- end -->` where the page has it written out.
+As a program it writes out the pages of docs/reference. Browsers show MathML by themselves, so no
+script and no network is needed to read the formulas.
 """
 
 import re
@@ -26,7 +27,12 @@ GENERATED = {
     "commands": lambda _: commands.page(),
     "example": lambda name: notebooks.page(name),
 }
-MARK = re.compile(r"^<!-- generated: (\S+) ?(.*?) -->$", re.MULTILINE)
+MARK = re.compile(
+    r"^<!-- generated: (?P<name>\S+) ?(?P<argument>[^\n]*?) -->$"
+    r"(?:\n\n.*?\n<!-- end -->$)?",  # written out
+    re.MULTILINE | re.DOTALL,
+)
+WRITTEN = "<!-- generated: {} -->\n\n{}\n\n<!-- end -->"
 FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 
 
@@ -38,7 +44,19 @@ BAR = re.compile(r"<mo[^>]*>(&#x0007C;|&#x02016;)</mo>")
 
 def generated(markdown: str) -> str:
     """Return a page with its generated parts in place; raises KeyError for an unknown one."""
-    return MARK.sub(lambda found: GENERATED[found[1]](found[2]), markdown)
+    return MARK.sub(_part, markdown)
+
+
+def written_out(markdown: str) -> str:
+    """Return a page with its generated parts between the lines that mark them."""
+    return MARK.sub(
+        lambda found: WRITTEN.format(f"{found['name']} {found['argument']}".strip(), _part(found)),
+        markdown,
+    )
+
+
+def _part(found: re.Match) -> str:
+    return GENERATED[found["name"]](found["argument"])
 
 
 def mathml(html: str) -> str:
@@ -62,3 +80,8 @@ def on_page_markdown(markdown: str, **_) -> str:
 def on_page_content(html: str, **_) -> str:
     """Turn the formulas of a rendered page into MathML."""
     return mathml(html)
+
+
+if __name__ == "__main__":
+    for page in sorted((ROOT / "docs" / "reference").glob("*.md")):
+        page.write_text(written_out(page.read_text(encoding="utf-8")), encoding="utf-8")

@@ -31,8 +31,10 @@ def _section(table: TableOf, prefix: str) -> str:
     shown = f"`{table.heading}`" if table.path else "Top of the file"
     comments = field_comments(table.model)
     rows = [_row(table.dotted(name), name, f, comments[name], prefix) for name, f in table.fields]
-    heading = f"### {shown} {{ #{_anchor(table.path, prefix)} }}"
-    return "\n".join([heading, "", inspect.getdoc(table.model) or "", "", HEAD, *rows])
+    anchor = f'<a id="{_anchor(table.path, prefix)}"></a>'
+    return "\n".join(
+        [anchor, "", f"### {shown}", "", inspect.getdoc(table.model) or "", "", HEAD, *rows]
+    )
 
 
 def _row(key: str, name: str, field: FieldInfo, comment: str, prefix: str) -> str:
