@@ -36,14 +36,9 @@ class ResultFigures:
         return draw_solutions(list(found.values()), False, printed(width, font_size))
 
     def plot_map(
-        self,
-        quantity: str = "ppv",
-        other: xr.Dataset | None = None,
-        time: float | None = None,
-        width: float = 190.0,
-        font_size: float = 8.0,
+        self, quantity: str = "ppv", other: xr.Dataset | None = None, time: float | None = None
     ) -> Figure:
         """Return a map of the whole body, as `jointwave.plot_map` does."""
         from jointwave.compare.figures.charts.maps import plot_map
 
-        return plot_map(self.result, quantity, other, time, width, font_size)
+        return plot_map(self.result, quantity, other, time)

@@ -84,10 +84,8 @@ def maps_of(
     if isinstance(scene, Scene) and shown == PRINCIPAL:
         shown = STRESS
     found: dict[str, Map] = {}
-    for result, name in zip(results, names_of(results), strict=True):
-        engine, comma, more = name.partition(", ")
-        words = solver(engine).label if engine in names() else engine
-        found[words + comma + more] = one = _map(scene, result, shown, time)
+    for result, name in zip(results, _names(results), strict=True):
+        found[name] = one = _map(scene, result, shown, time)
         time = time if one.time is None else one.time
     ends = [(one.corners.min((0, 1)), one.corners.max((0, 1))) for one in found.values()]
     for end in ends[1:]:
@@ -96,25 +94,20 @@ def maps_of(
     return found
 
 
-def names_of(results: Sequence[xr.Dataset]) -> list[str]:
-    """Return what results are called: their engines, and where these are the same their variants
-    or numbers."""
-    found = [str(one.attrs["engine"]) for one in results]
-    for more in (
-        [str(one.attrs["variant"]) for one in results],
-        map(str, range(1, 1 + len(found))),
-    ):
+def _names(results: Sequence[xr.Dataset]) -> list[str]:
+    """Return what results are called: by their solvers, of equal ones also by variant or number."""
+    engines, variants = ([str(one.attrs[key]) for one in results] for key in ("engine", "variant"))
+    found = [solver(name).label if name in names() else name for name in engines]
+    for more in (variants, [str(k + 1) for k in range(len(found))]):
         if len(set(found)) < len(found):
-            found = [
-                f"{one}, {word}" if word else one for one, word in zip(found, more, strict=True)
-            ]
+            found = [", ".join(filter(None, both)) for both in zip(found, more, strict=True)]
     return found
 
 
 def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | None) -> Map:
     """Return the map of a result's snapshots, of the one nearest to a time."""
     s = snapshots_of(result)
-    if s is None:
+    if s is None or (s.stress is None and quantity in (STRESS, PRINCIPAL)):
         why = "is needed for a map: the result has no snapshots"
         raise SceneError(scene.title, "record.fields", None, why)
     settings = settings_for(scene, {"": s})._replace(scale=1.0, stretch=1.0, quantity=quantity)
@@ -129,7 +122,7 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
         slip = _recorded_slip(result, joints) if recorded else _slip(body, corners, joints)
         values = quantity.factor * slip
     found = Map(corners, joints, values[0], None, quantity)
-    if len(values) < len(s.time) or quantity == PEAK:
+    if quantity == PEAK:
         return found
     if time is None:
         i = int((values**2 @ found.sizes).argmax())
@@ -150,12 +143,9 @@ def _joints(scene: AnyScene) -> np.ndarray:
     here = partition.contacts.of_joints(len(scene.joint_sets))
     ends = np.stack([partition.contacts.start, partition.contacts.end], axis=1)[here]
     longest = float(np.ptp(partition.corners, axis=0).max()) / PIECES
-    counts = np.ceil(_lengths(ends) / longest).astype(int)
-    start, step = ends[:, 0], (ends[:, 1] - ends[:, 0]) / counts[:, None]
-    whose = np.repeat(np.arange(len(ends)), counts)
-    k = np.arange(len(whose)) - (np.cumsum(counts) - counts)[whose]
-    start = start[whose] + k[:, None] * step[whose]
-    return np.stack([start, start + step[whose]], axis=1)
+    lines = shapely.segmentize(shapely.linestrings(ends), longest)
+    places, line = shapely.get_coordinates(lines, return_index=True)
+    return np.stack([places[:-1], places[1:]], axis=1)[line[1:] == line[:-1]]
 
 
 def _lengths(pieces: np.ndarray) -> np.ndarray:
@@ -198,8 +188,8 @@ def difference(one: Map, other: Map) -> Map:
     """Return the second map less the first, on the faces of the one that has more."""
     if one.quantity == SLIP:
         return one._replace(values=other.values - one.values)
-    fine, coarse, sign = (
-        (one, other, 1) if len(one.corners) > len(other.corners) else (other, one, -1)
-    )
-    there = coarse.values[_nearest(coarse.corners, fine.corners.mean(axis=1))]
-    return fine._replace(values=sign * (there - fine.values))
+    if len(one.corners) <= len(other.corners):
+        there = one.values[_nearest(one.corners, other.corners.mean(axis=1))]
+        return other._replace(values=other.values - there)
+    there = other.values[_nearest(other.corners, one.corners.mean(axis=1))]
+    return one._replace(values=there - one.values)

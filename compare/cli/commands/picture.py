@@ -1,5 +1,6 @@
 """The command that draws a scene, or what its results look like over the whole body."""
 
+import re
 from pathlib import Path
 from typing import Annotated
 
@@ -11,8 +12,6 @@ from jointwave.compare.cli.options import SetOption, StrictOption, VariantOption
 from jointwave.compare.engines import ENGINES
 from jointwave.compare.scenes import shipped
 
-MOST = 2  # results that are drawn
-
 
 @app.command()
 def picture(
@@ -20,7 +19,7 @@ def picture(
         str,
         typer.Argument(
             metavar="SCENE|FOLDER",
-            help="A scene, drawn as it is; or a folder of results of `run`, with snapshots.",
+            help="A scene, drawn as it is; or results of `run` with snapshots, a folder or a file.",
             autocompletion=shipped,
         ),
     ],
@@ -49,9 +48,9 @@ def picture(
     from jointwave.compare.figures.export import write_drawing
 
     folder = Path(source)
-    path = out or Path(f"{folder.resolve().name.removesuffix('.toml')}.png")
+    path = out or Path(re.sub(r"\.(toml|nc)$", "", folder.resolve().name) + ".png")
     paper.check_file(path)
-    if folder.is_dir():
+    if folder.is_dir() or folder.suffix == ".nc":
         if changes or variant is not None:
             raise SceneError("--set, --variant", "", None, "are of a scene, not of a folder")
         figure, title = _map(folder, quantity or "ppv", time)
@@ -74,9 +73,10 @@ def _map(folder: Path, quantity: str, time: float | None):
     from jointwave.compare.figures.charts.maps import draw_maps
     from jointwave.results.netcdf import load_netcdf
 
-    files = [file for name in ENGINES if (file := folder / f"{name}.nc").exists()]
+    files = [folder / f"{name}.nc" for name in ENGINES] if folder.is_dir() else [folder]
+    files = [file for file in files if file.exists()]
     if not files:
         raise SceneError(str(folder), "", None, "has no result of an engine, such as dem.nc")
-    results = [load_netcdf(file) for file in files[:MOST]]
+    results = [load_netcdf(file) for file in files[:2]]
     scene = scene_of(results[0])
     return draw_maps(maps_of(scene, results, quantity, time), scene), scene.title

@@ -128,20 +128,18 @@ def _solid(s: Snapshots, side: float) -> Snapshots:
     return s
 
 
-def colours_of(
-    every: list[np.ndarray], sign: str, colours: tuple[str, str] = (FIELD, UNSIGNED)
-) -> ScalarMappable:
+def colours_of(every: list[np.ndarray], sign: str, colours: str | None = None) -> ScalarMappable:
     """Return the colours of some values, symmetric around zero where they have a sign.
 
     The last colour is at the largest value, or at a percentile of all if few exceed it by far;
-    then the colour bar ends in an arrow. colours : with and without a sign.
+    then the colour bar ends in an arrow. colours : other ones than ours.
     """
     sizes = [np.abs(values).ravel() for values in every]
     most = max(float(one.max(initial=0.0)) for one in sizes)
     peak = max(float(np.percentile(one, LOUDEST)) for one in sizes if one.size) if most else 1.0
     is_clipped = most > SPIKE * peak > 0
     peak = peak if is_clipped else most or 1.0
-    shown = colormaps[colours[not sign]].copy()
+    shown = colormaps[colours or (FIELD if sign else UNSIGNED)].copy()
     if is_clipped:
         ends = "both" if sign else "max"
         shown.colorbar_extend = ends  # type: ignore[assignment]  # its stub has bool

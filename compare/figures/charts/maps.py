@@ -50,32 +50,24 @@ def plot_map(
     Raises SceneError without snapshots, for another quantity or time, and for different bodies.
     """
     scene, given = scene_of(result), [result] if other is None else [result, other]
-    found = maps_of(scene, given, quantity, time)
-    return draw_maps(found, scene, printed(width, font_size))
+    return draw_maps(maps_of(scene, given, quantity, time), scene, printed(width, font_size))
 
 
 def draw_maps(maps: dict[str, Map], scene: AnyScene, rc: dict[Any, Any] = RC) -> Figure:
     """Return maps of one scene by name: side by side, flat ones one below the other."""
-    first, stretch = next(iter(maps.values())), stretch_of(scene)
-    colours = colours_of([one.values for one in maps.values()], first.quantity.sign)
-    groups = [(maps, colours, first.quantity.label)]
-    if len(maps) == 2:
-        (a, one), (b, other) = maps.items()
-        less = difference(one, other)
-        colours = colours_of([less.values], "signed", (DIFFERENCE, DIFFERENCE))
-        unit = first.quantity.name.partition(" (")[2]
-        groups.append(({f"{b} − {a}": less}, colours, f"difference ({unit}"))
-    count = sum(len(group) for group, *_ in groups)
+    first, count = next(iter(maps.values())), len(maps)
     across, up = np.ptp(first.corners, axis=(0, 1))
     with blank(1.0, rc=rc) as figure:
-        axes = _axes(figure, float(stretch * up / across), count, len(groups))
-        left = list(axes)
-        for group, colours, label in groups:
-            own, left = left[: len(group)], left[len(group) :]
-            for ax, (name, one) in zip(own, group.items(), strict=True):
-                _draw(ax, one, colours, stretch)
-                ax.set_title(name, parse_math=False)
-            _add_bar(figure, own, list(group.values()), colours, label)
+        ratio, parts = float(stretch_of(scene) * up / across), 1 + (count == 2)
+        axes = _axes(figure, ratio, count + parts - 1, parts)
+        colours = colours_of([one.values for one in maps.values()], first.quantity.sign)
+        _draw(figure, axes[:count], maps, colours, first.quantity.label)
+        if count == 2:
+            (a, one), (b, other) = maps.items()
+            less = {f"{b} − {a}": difference(one, other)}
+            colours = colours_of([*(one.values for one in less.values())], "signed", DIFFERENCE)
+            unit = first.quantity.name.partition(" (")[2]
+            _draw(figure, axes[count:], less, colours, f"difference ({unit}")
         _label(figure, axes, scene, first.time)
     return figure
 
@@ -94,18 +86,21 @@ def _axes(figure: Figure, ratio: float, count: int, bars: int) -> list[Axes]:
     return list(axes)
 
 
-def _add_bar(
-    figure: Figure, axes: list[Axes], maps: list[Map], colours: ScalarMappable, label: str
+def _draw(
+    figure: Figure, axes: list[Axes], maps: dict[str, Map], colours: ScalarMappable, label: str
 ) -> None:
-    """Add the colour bar of some maps below them."""
+    """Draw maps by name into axes, and their colour bar below."""
     columns = axes[0].get_subplotspec().get_gridspec().ncols  # type: ignore[union-attr]
-    room = (figure.get_figwidth() - BESIDE) * (len(axes) / columns if columns > 1 else 1.0)
-    words = fill(label, int(_letters() * room)) + _beyond(maps, colours)
-    shrink = 0.6 if columns == 1 else 1.0
-    bar = figure.colorbar(
-        colours, ax=axes, label=words, location="bottom", aspect=40, shrink=shrink
-    )
-    bar.locator = MaxNLocator(min(6, int(_letters() * room / 10)))
+    share, shrink = (len(axes) / columns, 1.0) if columns > 1 else (1.0, 0.6)
+    letters = _letters() * share * (figure.get_figwidth() - BESIDE)
+    for ax, (name, one) in zip(axes, maps.items(), strict=True):
+        _draw_one(ax, one, colours)
+        wide = letters / (len(axes) if columns > 1 else 1)
+        ax.set_title(fill(name, int(wide)), parse_math=False)
+    words = fill(label, int(letters)) + _beyond(list(maps.values()), colours)
+    look: dict[str, Any] = {"location": "bottom", "aspect": 40, "shrink": shrink}
+    bar = figure.colorbar(colours, ax=axes, label=words, **look)
+    bar.locator = MaxNLocator(min(6, int(letters / 10)))
 
 
 def _letters() -> float:
@@ -123,6 +118,7 @@ def _label(figure: Figure, axes: list[Axes], scene: AnyScene, time: float | None
     stretch = stretch_of(scene)
     thicker = f"; thickness × {stretch:.2g}" * (stretch > 1.01)
     for ax in axes:
+        ax.set(aspect=stretch, anchor="SW" if len(axes) > 1 else "S")
         if isinstance(scene, Scene):
             ax.set(xlabel=f"y (m){thicker}", yticks=[])
             ax.spines["left"].set_visible(False)
@@ -131,7 +127,7 @@ def _label(figure: Figure, axes: list[Axes], scene: AnyScene, time: float | None
         ax.label_outer()
 
 
-def _draw(ax: Axes, one: Map, colours: ScalarMappable, stretch: float) -> None:
+def _draw_one(ax: Axes, one: Map, colours: ScalarMappable) -> None:
     """Draw a map into axes, its joints above it."""
     faces = PolyCollection(list(one.corners), rasterized=len(one.corners) > MANY)
     if one.quantity == SLIP:
@@ -147,8 +143,8 @@ def _draw(ax: Axes, one: Map, colours: ScalarMappable, stretch: float) -> None:
     valued.set(array=one.values, cmap=colours.get_cmap(), norm=colours.norm)
     for shape in (faces, edges):
         ax.add_collection(shape)
-    low, high = (f(one.corners, axis=(0, 1)) for f in (np.min, np.max))
-    ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect=stretch)
+    (left, low), (right, high) = one.corners.min((0, 1)), one.corners.max((0, 1))
+    ax.set(xlim=(left, right), ylim=(low, high))
 
 
 def _beyond(maps: list[Map], colours: ScalarMappable) -> str:

@@ -49,6 +49,7 @@ def test_results_are_drawn_side_by_side_with_their_difference(jointwave, folder)
     assert {"rigid blocks", "jointed rock", "jointed rock − rigid blocks"} <= set(words)
     assert "axial stress (MPa), compression positive" in words and "difference (MPa)" in words
     assert jointwave("picture", folder).out == "wrote short.png\n"
+    assert jointwave("picture", f"{folder}/dem.nc", "--map", "speed").out == "wrote dem.png\n"
 
 
 def test_a_mistake_is_one_line(jointwave, folder):

@@ -159,6 +159,14 @@ def test_nothing_lies_over_anything_else(results, collisions, quantity):
     assert collisions(jw.plot_map(blocks, quantity, rock)) == []
 
 
+def test_two_variants_of_one_engine_are_told_apart(results, sheared, collisions):
+    """By their names or numbers; long titles are wrapped."""
+    figure = jw.plot_map(results[1], "speed", sheared[1])
+    assert collisions(figure) == []
+    titles = [title.replace("\n", " ") for title in drawn(figure)[0]]
+    assert titles == ["rigid blocks, 1", "rigid blocks, 2", "rigid blocks, 2 − rigid blocks, 1"]
+
+
 def test_what_cannot_be_drawn_is_said_in_one_line(results, blow):
     _, blocks, _ = results
     for arguments, said in (
