@@ -94,20 +94,6 @@ def applies(name: str, scene: AnyScene) -> Answer:
     return one.applies(scene)
 
 
-def simulate(
-    scene: AnyScene, solver: str = "dem", progress: Progress | None = None, **options: Any
-) -> xr.Dataset:
-    """Return waveforms, energies and cost of a scene by an engine or an exact solution.
-
-    solver : "dem" (rigid blocks), "continuum-jointed", "continuum-equivalent", or an exact solution
-    ("lattice"; see `solvers`). progress : called with the finished fraction. options : `comm`, of
-    mpi4py, for a continuum shared by several processes; `keeper`, for checkpoints.
-
-    Raises SceneError if the solver does not apply, UnstableError if a run becomes unstable.
-    """
-    return solve(solver, scene, progress, **options)
-
-
 def solve(
     name: str,
     scene: AnyScene,

@@ -1,13 +1,21 @@
 """Scenes by path, or by the name of a shipped one, with the solvers that they name checked."""
 
+from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from jointwave import cases
 from jointwave.cases.errors import SceneError, nearest
-from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.scene_type import AnyScene, pillar_of
 from jointwave.compare import engines as registry
 
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from jointwave.cases.material.calibrate import Properties
+
+#: A scene, its file, the name of a shipped one, or its tables.
+AnySource: TypeAlias = "AnyScene | str | PathLike[str] | dict[str, Any]"
 SHIPPED = Path(cases.__file__).parent
 MOST = 1000  # files of a folder that a name is looked for among
 
@@ -34,24 +42,59 @@ def find(scene: str | Path) -> Path:
 
 
 def load(
-    scene: str | Path | dict[str, Any], variant: str = "", changes: dict[str, Any] | None = None
+    scene: AnySource, variant: str = "", changes: dict[str, Any] | None = None
 ) -> AnyScene:
-    """Return a scene, immutable and validated.
+    """Return a scene, immutable and validated. All functions that take a scene take what this does.
 
-    scene : a file, a shipped scene ("guo-li-2002/fig-03"), or its tables as a dictionary.
-    variant : its name; empty: the scene as it stands. changes : of keys by their dotted path,
-    {"joints.damping_ratio": 0.02}.
+    scene : a file, a shipped scene ("guo-li-2002/fig-03"), its tables as a dictionary, or a scene,
+    which is returned as it is. variant : its name; empty: the scene as it stands. changes : of keys
+    by their dotted path, {"joints.damping_ratio": 0.02}.
 
     Raises jointwave.SceneError, a line a mistake with file, key, value and what is allowed.
     """
     if isinstance(scene, dict):
         return _checked(cases.load_tables(scene, variant, changes))
-    return _checked(cases.load_variant(find(scene), variant, changes))
+    if isinstance(scene, str | PathLike):
+        return _checked(cases.load_variant(find(Path(scene)), variant, changes))
+    if getattr(scene, "kind", "") not in ("pillar", "rock mass"):
+        allowed = "must be a file, the name of a shipped scene, tables, or a loaded scene"
+        raise SceneError("scene", "type", type(scene).__name__, allowed)
+    if variant or changes:
+        allowed = "are of a file, a shipped scene or tables, not of a loaded scene"
+        raise SceneError(scene.where, "variant and changes", None, allowed)
+    return scene
 
 
-def load_variants(scene: str | Path, changes: dict[str, Any] | None = None) -> list[AnyScene]:
+def properties(scene: AnySource) -> "Properties":
+    """Return what follows from a pillar: stiffnesses, speeds, impedance, damping of every joint.
+
+    Raises SceneError for a rock mass.
+    """
+    from jointwave.cases.material.calibrate import calibrate
+
+    return calibrate(pillar_of(load(scene), "jointwave.properties"))
+
+
+def simulate(
+    scene: AnySource, solver: str = "dem", progress: registry.Progress | None = None, **options: Any
+) -> "xr.Dataset":
+    """Return waveforms, energies and cost of a scene by an engine or an exact solution.
+
+    scene : as `load` takes it. solver : "dem" (rigid blocks), "continuum-jointed",
+    "continuum-equivalent", or an exact solution ("lattice"; see `solvers`). progress : called with
+    the finished fraction. options : `comm`, of mpi4py, for a continuum shared by several processes;
+    `keeper`, for checkpoints.
+
+    Raises SceneError if the solver does not apply, UnstableError if a run becomes unstable.
+    """
+    return registry.solve(solver, load(scene), progress, **options)
+
+
+def load_variants(
+    scene: str | PathLike[str], changes: dict[str, Any] | None = None
+) -> list[AnyScene]:
     """Return a scene and all its variants, each as `load` does."""
-    return [_checked(one) for one in cases.load(find(scene), changes)]
+    return [_checked(one) for one in cases.load(find(Path(scene)), changes)]
 
 
 def _checked(scene: Any) -> Any:

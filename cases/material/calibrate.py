@@ -13,7 +13,7 @@ from jointwave.cases.material.dashpots import dashpots
 from jointwave.cases.material.elastic import joint_stiffness
 from jointwave.cases.material.stiffness import rock_mass, stiffness
 from jointwave.cases.material.strength import Strength, strength
-from jointwave.cases.scene_type import AnyScene, pillar_of
+from jointwave.cases.scene_type import AnyScene
 
 if TYPE_CHECKING:
     from jointwave.cases.material.constant_q import Mechanisms
@@ -226,14 +226,6 @@ def _half_block(whole: float, rock: float | None, spacing: float) -> float:
 
 #: The scene that was calibrated last, while it lives, and its properties: a run asks several times.
 _last: list[tuple[ref[Scene], Properties]] = []
-
-
-def properties(scene: AnyScene) -> Properties:
-    """Return what follows from a pillar: stiffnesses, speeds, impedance, damping of every joint.
-
-    Raises SceneError for a rock mass.
-    """
-    return calibrate(pillar_of(scene, "jointwave.properties"))
 
 
 def calibrate(scene: Scene) -> Properties:

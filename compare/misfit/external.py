@@ -83,7 +83,7 @@ def _is_label(text: str) -> bool:
     return LABEL.fullmatch(split_unit(text)[0].removeprefix("-").lstrip()) is not None
 
 
-def read_curves(texts: Sequence[str], scenes: Sequence[AnyScene]) -> list[Curves]:
+def read_curves(texts: Sequence[str], scenes: Sequence[AnySource]) -> list[Curves]:
     """Read the arguments of `--with`, each FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
 
     FILE is NetCDF, written by `jointwave run` or with `time` and, for example, `stress`; or a table
@@ -107,7 +107,7 @@ def read_curves(texts: Sequence[str], scenes: Sequence[AnyScene]) -> list[Curves
         except ValueError as error:
             raise SceneError(str(path), "", None, str(error)) from None
     for curves in found:
-        _require_recorded(curves, scenes)
+        _require_recorded(curves, [load(one) for one in scenes])
     return found
 
 

@@ -16,6 +16,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import ENGINES, applies, names, solver
 from jointwave.compare.exact.conditions import has_thick_layer
+from jointwave.compare.scenes import AnySource, load
 from jointwave.compare.solvers.record import Answer, Kind, Rock
 
 
@@ -116,10 +117,10 @@ def _fineness(name: str, scene: AnyScene) -> tuple[bool, int, int]:
     return first, int(of.rock), int(of.form)
 
 
-def solvers(scene: AnyScene) -> dict[str, str]:
+def solvers(scene: AnySource) -> dict[str, str]:
     """Return all engines and exact solutions of a scene's kind by name, with the reason why one
     does not apply; "" if it does."""
-    return {name: answer.reason for name, answer in applicable(scene).items()}
+    return {name: answer.reason for name, answer in applicable(load(scene)).items()}
 
 
 def applicable(scene: AnyScene) -> dict[str, Answer]:

@@ -23,9 +23,10 @@ import xarray as xr
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import Properties, calibrate, mechanisms_of
-from jointwave.cases.schema.scene import Scene
+from jointwave.cases.scene_type import pillar_of
 from jointwave.compare.readings.attenuation import known_distances, sampling, variables, waveforms
 from jointwave.compare.readings.recordings import Recording
+from jointwave.compare.scenes import AnySource, load
 
 HEARD = 1e-3  # of the largest amplitude: frequencies that are looked at
 FINER = 64  # wavenumbers in the width of a peak
@@ -75,7 +76,9 @@ def _peaks(k: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return k[i] + shift * (k[1] - k[0]), top - (left - right) * shift / 4
 
 
-def dispersion_theory(scene: Scene, frequency: Sequence[float] | np.ndarray) -> xr.Dataset:
+def dispersion_theory(
+    scene: AnySource, frequency: Sequence[float] | np.ndarray
+) -> xr.Dataset:
     """Return phase_speed (m/s), attenuation (1/m) and quality [rock, frequency] along an endless
     pillar of a scene's ordinary joints.
 
@@ -83,11 +86,12 @@ def dispersion_theory(scene: Scene, frequency: Sequence[float] | np.ndarray) -> 
     frequency : Hz. Where waves do not pass, the attenuation says so. Raises SceneError of a pillar
     with segments.
     """
-    if scene.segments:
-        raise SceneError(scene.where, "segments", None, "give each rock in its own scene")
-    p, omega = calibrate(scene), 2 * np.pi * np.asarray(frequency, dtype=float)
+    pillar = pillar_of(load(scene), "dispersion_theory")
+    if pillar.segments:
+        raise SceneError(pillar.where, "segments", None, "give each rock in its own scene")
+    p, omega = calibrate(pillar), 2 * np.pi * np.asarray(frequency, dtype=float)
     loss = 1 + 1j * omega * (p.time_constant or 0.0)
-    rock, mass = (mechanisms_of(scene, model) for model in ("jointed", "equivalent"))
+    rock, mass = (mechanisms_of(pillar, model) for model in ("jointed", "equivalent"))
     of_rock, of_mass = (loss if one is None else one.modulus(1j * omega) for one in (rock, mass))
     slowness = omega / p.bar_speed / np.sqrt(of_mass)
     k = {"rigid blocks": 2 / p.spacing * np.arcsin(slowness * p.spacing / 2 + 0j), "bar": slowness}

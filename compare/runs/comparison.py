@@ -11,11 +11,12 @@ from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.pairs import Comparison, measure, measure_curves
 from jointwave.compare.misfit.ranking import applicable
 from jointwave.compare.runs import timings
+from jointwave.compare.scenes import AnySource, load
 from jointwave.compare.solvers.record import Answer
 
 
 def compare(
-    scene: AnyScene,
+    scene: AnySource,
     curves: Sequence[Curves] = (),
     progress: Progress | None = None,
     align: bool = False,
@@ -27,6 +28,7 @@ def compare(
     the finished fraction. align : whether the clocks of the curves are shifted onto the solution
     that fits best. spectral : whether to add envelope and phase misfits.
     """
+    scene = load(scene)
     comparison = solved(scene, applicable(scene), progress)
     comparison.rows = measure(comparison.results, spectral, scene)
     for one in curves:

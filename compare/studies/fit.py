@@ -19,6 +19,7 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import Progress, applies
 from jointwave.compare.exact.blocks import lattice
 from jointwave.compare.misfit.external import Curves
+from jointwave.compare.scenes import AnySource, load
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies.fit_keys import CLOCK, FreeKey, changed, free_keys
 from jointwave.compare.studies.fit_trials import started, trials_of
@@ -62,7 +63,7 @@ class Fit:
 
 
 def fit(
-    scene: AnyScene,
+    scene: AnySource,
     curves: Sequence[Curves],
     free: Sequence[str],
     solver: str | None = None,
@@ -80,6 +81,7 @@ def fit(
     Raises SceneError for keys and curves that cannot be fitted, StoppedError if the search does not
     converge.
     """
+    scene = load(scene)
     if not curves or not free:
         raise SceneError(scene.where, "", None, "a fit needs a curve of this scene and a free key")
     keys = free_keys(list(free), scene)

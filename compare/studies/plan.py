@@ -18,6 +18,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import ENGINES, Progress
 from jointwave.compare.misfit import ranking
 from jointwave.compare.misfit.metrics import JUDGED, misfit
+from jointwave.compare.scenes import AnySource, load
 from jointwave.compare.studies.elements import (
     EXPLICIT,
     Elements,
@@ -121,14 +122,14 @@ class Plan:
 
 
 def plan(
-    scene: AnyScene, misfit: float, seconds: float | None = None, progress: Progress | None = None
+    scene: AnySource, misfit: float, seconds: float | None = None, progress: Progress | None = None
 ) -> Plan:
     """Return the runs made to find the cheapest one within a misfit, and the choice among them.
 
     seconds : limit of stepping, s: the best misfit within it if `misfit` costs more.
     Raises SceneError if there is no exact solution and no affordable run converges.
     """
-    began = perf_counter()
+    began, scene = perf_counter(), load(scene)
     found = ranking.finest(_applicable(scene), scene)
     if found is None:
         raise SceneError(scene.where, "", None, "no solver resolves all physics of the scene")

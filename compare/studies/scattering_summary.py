@@ -8,12 +8,13 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from jointwave.compare.engines import Progress, solver
-from jointwave.compare.exact.plane.waves import KINDS
+from jointwave.compare.exact.plane.waves import KINDS, Kind
 from jointwave.compare.figures.export import blank, save
 from jointwave.compare.figures.style import style
 from jointwave.compare.runs.timings import machine
 from jointwave.compare.studies import scattering
-from jointwave.compare.studies.scattering import AT, COUNTS, TITLES, JointsRow, closed_form
+from jointwave.compare.studies.joint_waves import closed_form
+from jointwave.compare.studies.scattering import AT, COUNTS, TITLES, JointsRow, joints_of
 from jointwave.compare.studies.store import Pool, Store, alone
 from jointwave.compare.studies.summary import Summary, write_tables
 from jointwave.compare.text import percent
@@ -117,10 +118,10 @@ def draw(name: str, rows: pd.DataFrame) -> Figure:
     return figure
 
 
-def _exact(name: str, kind: str) -> tuple[np.ndarray, np.ndarray]:
+def _exact(name: str, kind: Kind) -> tuple[np.ndarray, np.ndarray]:
     """Return the varied values and the moduli [4, values] in closed form."""
     if name == "oblique-joint":
         x: np.ndarray = np.arange(0, 88, 0.5)
-        return x, closed_form(kind, x)
+        return x, closed_form(joints_of(1), kind, x)
     x = np.arange(1, COUNTS[-1] + 1)
-    return x, np.array([closed_form(kind, AT, int(n)) for n in x]).T
+    return x, np.array([closed_form(joints_of(int(n)), kind, AT) for n in x]).T

@@ -9,7 +9,7 @@ from jointwave.cases.histories import Gabor
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.read import load_tables
 from jointwave.compare.engines import solve
-from jointwave.compare.exact.bar.deconvolution import deconvolve
+from jointwave.compare.readings.deconvolution import deconvolve
 
 PERIOD, CYCLES = 0.01, 3
 PULSE = Gabor(0.02, PERIOD, CYCLES)

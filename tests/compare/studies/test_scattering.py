@@ -6,7 +6,8 @@ import pytest
 
 from jointwave.compare.engines import solve
 from jointwave.compare.studies import scattering as points
-from jointwave.compare.studies.scattering import JointsRow, measure, scene_of
+from jointwave.compare.studies.joint_waves import amplitudes, scene_of
+from jointwave.compare.studies.scattering import JointsRow, joints_of, measure
 from jointwave.compare.studies.scattering_summary import WAVES, draw, make_study
 
 #: |R_p|, |R_s|, |T_p|, |T_s| of P at nu = 0.25, K_n = Z_p omega, K_s = Z_s omega, found by solving
@@ -46,16 +47,16 @@ def test_a_turned_joint_is_the_same_joint():
         "waves.0.through": [0.0, -6.0],
     }
     places = [[6.0, 1.0], [7.0, 2.0], [5.0, 3.0], [6.0, 9.0], [7.0, 10.0], [5.0, 11.0]]
-    scene = scene_of("P", 0.0, changes=changes | {"record.points": places})
-    found = points.amplitudes(scene, solve("oblique-joint", scene).velocity.values)
+    scene = scene_of(joints_of(1), "P", 0.0, changes | {"record.points": places})
+    found = amplitudes(scene, solve("oblique-joint", scene).velocity.values)
     assert found[:4] == pytest.approx(KNOWN[30.0], abs=6e-5) and found[4] < 1e-8
 
 
 def test_motion_that_is_no_plane_wave_is_left_over():
-    scene = scene_of("P", 30.0)
+    scene = scene_of(joints_of(1), "P", 30.0)
     velocity = solve("oblique-joint", scene).velocity.values.copy()
     velocity[0] *= 1.1
-    assert 0.01 < points.amplitudes(scene, velocity)[4] < 0.1
+    assert 0.01 < amplitudes(scene, velocity)[4] < 0.1
 
 
 @pytest.mark.slow

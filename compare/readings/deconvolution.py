@@ -20,11 +20,12 @@ import xarray as xr
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import Properties, calibrate
-from jointwave.cases.scene_type import AnyScene, pillar_of
+from jointwave.cases.scene_type import pillar_of
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar import equivalent_bar, jointed_bar
 from jointwave.compare.exact.bar.transfer import Bar, RockFrom, end_of, transfer
 from jointwave.compare.exact.conditions import DAMPED, holds
+from jointwave.compare.scenes import AnySource, load
 
 HELD = (
     *("spatial motion", "reversed load", "gravity", "prestress", "stiff layers", "soft layers"),
@@ -32,7 +33,7 @@ HELD = (
 )
 
 
-def deconvolve(scene: AnyScene, surface: xr.DataArray, water_level: float = 1e-3) -> xr.DataArray:
+def deconvolve(scene: AnySource, surface: xr.DataArray, water_level: float = 1e-3) -> xr.DataArray:
     """Return the wave incident on a column's quiet start, from the motion of its free end.
 
     It can serve as the load of a compliant base (`load.quantity`). Unit and sampling interval are
@@ -49,7 +50,7 @@ def deconvolve(scene: AnyScene, surface: xr.DataArray, water_level: float = 1e-3
     """
     from scipy.fft import next_fast_len
 
-    bar, impedance = _column(pillar_of(scene, "deconvolve"))
+    bar, impedance = _column(pillar_of(load(scene), "deconvolve"))
     n, time = surface.sizes["time"], surface.time.values
     dt = (time[-1] - time[0]) / (n - 1)
     lead = ceil(_crossing(bar) / dt)
