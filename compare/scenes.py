@@ -41,9 +41,7 @@ def find(scene: str | Path) -> Path:
     return path
 
 
-def load(
-    scene: AnySource, variant: str = "", changes: dict[str, Any] | None = None
-) -> AnyScene:
+def load(scene: AnySource, variant: str = "", changes: dict[str, Any] | None = None) -> AnyScene:
     """Return a scene, immutable and validated. All functions that take a scene take what this does.
 
     scene : a file, a shipped scene ("guo-li-2002/fig-03"), its tables as a dictionary, or a scene,

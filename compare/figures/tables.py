@@ -11,8 +11,8 @@ from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison, Row
 from jointwave.compare.misfit.places import Place, places_of
 from jointwave.compare.readings import (
-    arias_intensity,
-    peak_velocity,
+    arias,
+    ppv,
     quality_factor,
     response_spectrum,
     wave_speed,
@@ -112,7 +112,7 @@ def _readings(result: xr.Dataset) -> Iterator[dict[str, float | str]]:
     time = result["time"].values
     periods = np.geomspace(SHORTEST * (time[1] - time[0]), time[-1] - time[0], PERIODS)
     acceleration = response_spectrum(result, periods)["pseudo_acceleration"].max("axis")
-    peaks, intensities = peak_velocity(result).values, arias_intensity(result).max("axis").values
+    peaks, intensities = ppv(result).values, arias(result).max("axis").values
     for i, (at, values) in enumerate(
         zip(places_of(result, "velocity")[0], acceleration.values, strict=True)
     ):

@@ -25,6 +25,7 @@ from jointwave.cases.warnings import look_like_milliseconds
 from jointwave.compare.engines import names
 from jointwave.compare.misfit.external_netcdf import is_netcdf, read_netcdf
 from jointwave.compare.misfit.places import LABEL, QUANTITIES, Place, parsed, recorded, same
+from jointwave.compare.scenes import AnySource, load
 
 LEAST_SAMPLES = 3  # needed for a parabola through the peak of a correlation
 EXAMPLES = "stress@20, -stress@20 [MPa] or velocity_x@20.25 [mm/s]"

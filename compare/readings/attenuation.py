@@ -1,4 +1,4 @@
-"""Transfer function, apparent Q and speed of a wave between two receivers.
+"""Spectra; transfer function, apparent Q and speed of a wave between two receivers.
 
 Take records of one passage: `result.sel(time=slice(0, 0.02))` leaves out what is reflected later.
 """
@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.errors import SceneError
+from jointwave.cases.units import UNITS
 from jointwave.compare.misfit.metrics import delay, motion
 from jointwave.compare.readings.recordings import Recording, recording
 from jointwave.results.labels import RECEIVERS
@@ -43,6 +44,25 @@ def sampling(of: xr.DataArray | xr.Dataset) -> float:
     """Return the time between samples, s."""
     time = of["time"].values
     return float(time[-1] - time[0]) / (len(time) - 1)
+
+
+def spectra(result: Recording, quantity: str = "velocity", axis: str | None = None) -> xr.DataArray:
+    """Return the Fourier spectrum of one component at every receiver, per Hz: the integral of
+    x e^{-i omega t} dt of its motion x by the trapezium rule, complex [receiver, frequency].
+
+    result, quantity, axis : as `waveforms` has them. `abs` of it is the amplitude spectrum.
+    """
+    row = waveforms(result, quantity, axis)
+    frequency, x = _frequencies(row), row.values.copy()
+    x[:, [0, -1]] /= 2
+    turned = np.exp(-2j * np.pi * frequency.values * float(row["time"][0]))
+    found = xr.Variable(("receiver", "frequency"), sampling(row) * np.fft.rfft(x) * turned)
+    attrs = {
+        "long_name": f"spectrum of the {quantity}",
+        "units": f"{next(iter(UNITS[quantity]))}/Hz",
+    }
+    coords = {"frequency": frequency, "distance": row["distance"]}
+    return xr.DataArray(found, coords, name="spectrum", attrs=attrs)
 
 
 def wave_speed(

@@ -76,9 +76,7 @@ def _peaks(k: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return k[i] + shift * (k[1] - k[0]), top - (left - right) * shift / 4
 
 
-def dispersion_theory(
-    scene: AnySource, frequency: Sequence[float] | np.ndarray
-) -> xr.Dataset:
+def dispersion_theory(scene: AnySource, frequency: Sequence[float] | np.ndarray) -> xr.Dataset:
     """Return phase_speed (m/s), attenuation (1/m) and quality [rock, frequency] along an endless
     pillar of a scene's ordinary joints.
 

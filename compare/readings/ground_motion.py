@@ -19,7 +19,7 @@ from jointwave.compare.readings.recordings import Recording, recording
 GRAVITY = 9.81  # m/s2
 
 
-def peak_velocity(result: Recording, quantity: str = "velocity") -> xr.DataArray:
+def ppv(result: Recording, quantity: str = "velocity") -> xr.DataArray:
     """Return the peak particle velocity at every receiver, m/s: of the vector's length.
 
     Of a recorded acceleration at its samples, from rest at the first one. quantity : of a recording
@@ -53,14 +53,10 @@ def peak_velocity_map(result: xr.Dataset) -> xr.DataArray:
 
 def _peak(velocity: xr.DataArray, components: str, time: str) -> xr.DataArray:
     found = ((velocity**2).sum(components) ** 0.5).max(time)
-    return found.rename("peak_velocity").assign_attrs(
-        long_name="peak particle velocity", units="m/s"
-    )
+    return found.rename("ppv").assign_attrs(long_name="peak particle velocity", units="m/s")
 
 
-def arias_intensity(
-    result: Recording, gravity: float = GRAVITY, quantity: str = "velocity"
-) -> xr.DataArray:
+def arias(result: Recording, gravity: float = GRAVITY, quantity: str = "velocity") -> xr.DataArray:
     """Return the Arias intensity pi / (2 g) times the integral of the squared acceleration at every
     receiver in each direction, m/s (Arias, in: Seismic Design for Nuclear Power Plants, 1970).
 
@@ -75,9 +71,7 @@ def arias_intensity(
         before = after.shift(time=1)
         squares = (before**2 + before * after + after**2) / 3
     intensity = pi / (2 * gravity) * dt * squares.sum("time")
-    return intensity.rename("arias_intensity").assign_attrs(
-        long_name="Arias intensity", units="m/s"
-    )
+    return intensity.rename("arias").assign_attrs(long_name="Arias intensity", units="m/s")
 
 
 def response_spectrum(

@@ -82,7 +82,7 @@ def scene_of(
         through = [-larger * BACK * x for x in direction]
         keys |= {"waves.0.kind": "S", "waves.0.through": through}
     depths = middle + np.append(0.0, np.cumsum(series.spacings)) - thick / 2
-    areal = series.rock.density * middle  # the mass in a damping ratio, kg/m2
+    areal = 4 * series.rock.density * middle  # 4 m of c_n = 2 zeta sqrt(m K_n), kg/m2
     keys["joint_sets"] = [
         {
             "name": f"joint {k}",
@@ -90,7 +90,7 @@ def scene_of(
             "through": [larger * width / 2, float(depth)],
             "normal_stiffness": one.normal_stiffness,
             "shear_stiffness": one.shear_stiffness,
-            "damping_ratio": one.normal_viscosity / (2 * sqrt(areal * one.normal_stiffness)) or None,
+            "damping_ratio": one.normal_viscosity / sqrt(areal * one.normal_stiffness) or None,
         }
         for k, (depth, one) in enumerate(zip(depths, series.joints, strict=True))
     ]

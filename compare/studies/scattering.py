@@ -4,7 +4,6 @@ The scenes of the waves, and what is read off their motion, are those of `joint_
 """
 
 from math import nan
-from pathlib import Path
 from time import process_time
 from typing import Any, NamedTuple
 

@@ -131,13 +131,13 @@ def test_peaks_and_intensities_of_an_acceleration(files):
     """PPV is the vector's, from rest; the intensity of straight lines is a dt (a_0^2 + a_0 a_1 +
     a_1^2) / 3 an interval. To those of the velocity by the error of 200 samples a period."""
     velocity = velocity_of(200)
-    for read in (jw.peak_velocity, jw.arias_intensity):
+    for read in (jw.ppv, jw.arias):
         found = read(files["two.txt"]).sum().item()
         assert found == pytest.approx(read(velocity).item(), rel=2e-4)
     ramp = ([0.0, 1.0], [0.0, 3.0])
-    intensity = jw.arias_intensity(ramp, gravity=10.0, quantity="acceleration")
+    intensity = jw.arias(ramp, gravity=10.0, quantity="acceleration")
     assert intensity.item() == pytest.approx(np.pi / 20 * 3.0)  # of 9 t^2
-    assert jw.peak_velocity(ramp, "acceleration").item() == pytest.approx(1.5)
+    assert jw.ppv(ramp, "acceleration").item() == pytest.approx(1.5)
 
 
 @pytest.fixture
