@@ -91,7 +91,10 @@ def simulate(
 def load_variants(
     scene: str | PathLike[str], changes: dict[str, Any] | None = None
 ) -> list[AnyScene]:
-    """Return a scene and all its variants, each as `load` does."""
+    """Return the scene of a file, or a shipped one, and all its variants, each as `load` does."""
+    if not isinstance(scene, str | PathLike):
+        allowed = "must be a file or the name of a shipped scene"
+        raise SceneError("scene", "type", type(scene).__name__, allowed)
     return [_checked(one) for one in cases.load(find(Path(scene)), changes)]
 
 

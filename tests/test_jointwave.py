@@ -24,6 +24,7 @@ TABLES = {
     "record": {"stress": [2.0]},
     "variants": [{"name": "damped", "joints": {"damping_ratio": 0.05}}],
 }
+MOVED = TABLES | {"record": {"velocity": [1.25]}}
 
 
 def test_a_scene_is_loaded_from_a_name_a_file_or_tables(tmp_path):
@@ -41,6 +42,58 @@ def test_a_scene_is_loaded_from_a_name_a_file_or_tables(tmp_path):
         jw.load(TABLES, changes={"pillar.block": 0.3})
 
 
+def test_whatever_takes_a_scene_takes_its_file_its_name_and_its_tables(tmp_path):
+    name = "beyond/ricker-one-layer"
+    scene, file = jw.load(name), tmp_path / "scene.toml"
+    file.write_text(find(name).read_text())
+    assert jw.load(scene) is scene
+    expected = jw.simulate(scene, "lattice")
+    for given in (file, str(file), name):
+        assert jw.simulate(given, "lattice").stress.equals(expected.stress)
+        assert jw.solvers(given) == jw.solvers(scene)
+        assert jw.properties(given).impedance == jw.properties(scene).impedance
+        assert jw.transmission(given).T_p == jw.transmission(scene).T_p
+        assert jw.dispersion_theory(given, [50.0]).equals(jw.dispersion_theory(scene, [50.0]))
+    assert jw.simulate(TABLES).stress.equals(jw.simulate(jw.load(TABLES)).stress)
+    assert "lattice" in jw.compare(TABLES).results
+
+
+@pytest.mark.parametrize(
+    "call, words",
+    [
+        (lambda: jw.simulate(3), "type = 'int': must be a file, the name of a shipped scene"),
+        (lambda: jw.simulate("none.toml"), "none.toml: cannot be read"),
+        (lambda: jw.simulate(TABLES, "rocks"), "'rocks' is unknown; allowed: dem,"),
+        (lambda: jw.load(jw.load(TABLES), "damped"), "not of a loaded scene"),
+        (lambda: jw.load_variants(TABLES), "must be a file or the name of a shipped scene"),
+        (lambda: jw.plan(TABLES, misfit=0), "misfit = 0: must be a positive number"),
+        (lambda: jw.ppv(3), "type = 'int': must be a result, a file, an array"),
+        (lambda: jw.ppv(([0, 1], [0, 1]), "speed"), "quantity = 'speed': must be one of stress"),
+        (lambda: jw.arias(([0, 1], [0, 1]), gravity=0.0), "gravity = 0.0: must be positive"),
+        (lambda: jw.spectra(jw.simulate(MOVED), axis="q"), "axis = 'q': must be one of y"),
+        (lambda: jw.transfer_function(([0, 1], [0, 1]), 1), "receiver = 1: must be from -1 to 0"),
+        (lambda: jw.misfit(TABLES, TABLES), "type = 'dict': must be a result"),
+    ],
+)
+def test_a_wrong_argument_gives_one_line_with_what_is_allowed(call, words):
+    with pytest.raises(jw.SceneError, match=words) as refused:
+        call()
+    assert "\n" not in str(refused.value)
+
+
+def test_results_that_share_nothing_have_no_misfit():
+    """Neither zero, nor a message of numpy's."""
+    one, other, longer = (
+        jw.simulate(jw.load(TABLES, changes=changes), "lattice")
+        for changes in ({}, {"record.stress": [3.0]}, {"time.duration": 0.04})
+    )
+    with pytest.raises(jw.SceneError, match="the results share none"):
+        jw.misfit(one, other)
+    with pytest.raises(jw.SceneError, match="must have the other's samples"):
+        jw.misfit(one, longer)
+    assert jw.misfit(longer, one) < 1e-6
+
+
 def test_a_scene_is_solved_measured_and_drawn():
     scene = jw.load(TABLES)
     blocks, exact = jw.simulate(scene), jw.simulate(scene, "lattice")
@@ -49,7 +102,7 @@ def test_a_scene_is_solved_measured_and_drawn():
     assert jw.properties(scene).block_count == 10
     found = jw.compare(scene)
     assert {"dem", "lattice"} <= found.results.keys()
-    assert len(jw.figure([found], width=90.0).axes) == 1
+    assert len(jw.figure(found, width=90.0).axes) == len(jw.figure([found]).axes) == 1
 
 
 def test_keys_are_fitted_and_numerics_planned():
@@ -65,6 +118,23 @@ def test_keys_are_fitted_and_numerics_planned():
     found = jw.fit(scene, [curve], ["load.amplitude"]).values
     assert found.value["load.amplitude"] == pytest.approx(2e6, rel=1e-3)
     assert jw.plan(scene, misfit=0.05).misfit <= 0.05
+
+
+def test_readings_of_an_array_are_those_by_hand():
+    """A bell: its peak, the square of its slope, its spectrum."""
+    time, width = np.linspace(1.0, 3.0, 2001), 0.05
+    bell = 3.0 * np.exp(-(((time - 2.0) / width) ** 2))
+    record = (time, bell)
+    assert jw.ppv(record).item() == 3.0
+    slope_squared = 9.0 * np.sqrt(np.pi / 2) / width
+    expected = np.pi / (2 * 9.81) * slope_squared
+    assert jw.arias(record).item() == pytest.approx(expected, rel=1e-3)
+    found = jw.spectra(record)[0]
+    omega = 2 * np.pi * found.frequency.values
+    area = 3.0 * width * np.sqrt(np.pi)
+    exact = area * np.exp(-((omega * width / 2) ** 2) - 2j * omega)
+    assert found.values == pytest.approx(exact, abs=1e-12 * area)
+    assert found.units == "m/s/Hz" and jw.ppv(record).units == jw.arias(record).units == "m/s"
 
 
 def test_names_that_are_not_there_are_no_attributes():

@@ -12,9 +12,11 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from jointwave.cases.errors import SceneError
 from jointwave.compare.misfit.places import UNITS, Place, shown, waveforms
 from jointwave.compare.misfit.weight import EXCITED, weigh
 
+ALIKE = 1e-9  # of the duration, by which samples may lie apart
 JUDGED = 10.0  # times its own error: the smallest misfit that a reference can resolve
 
 
@@ -102,7 +104,19 @@ class Pairing(NamedTuple):
 def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
     """Return the relative L2 misfit of two results of a scene: that of the worst waveform, one
     component of one quantity at one receiver less its static state, among those that carry at
-    least 5 % of their quantity's motion at the receiver."""
+    least 5 % of their quantity's motion at the receiver.
+
+    Raises SceneError for results that share no receiver, or not the reference's times.
+    """
+    for result in (one, other):
+        if not isinstance(result, xr.Dataset):
+            allowed = "must be a result: a Dataset, of `simulate` or a file"
+            raise SceneError("misfit", "type", type(result).__name__, allowed)
+    if not set(waveforms(one)) & set(waveforms(other)):
+        raise SceneError("misfit", "receivers", None, "the results share none")
+    ours, theirs = one["time"].values[: other.sizes["time"]], other["time"].values
+    if len(ours) < len(theirs) or np.abs(ours - theirs).max() > ALIKE * np.ptp(theirs):
+        raise SceneError("misfit", "time", None, "the first result must have the other's samples")
     return worst(one, other).misfit
 
 

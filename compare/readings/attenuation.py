@@ -32,9 +32,11 @@ def waveforms(
     found = result[quantity].copy(data=motion(result[[quantity]])[quantity].values)
     receiver, places = next((d, RECEIVERS[str(d)]) for d in found.dims if d in RECEIVERS)
     for components in set(found.dims) - {receiver, "time"}:
+        named = list(found[components].values)
         loudest = abs(found).max([receiver, "time"]).values.argmax()
-        chosen = list(found[components].values).index(axis) if axis else int(loudest)
-        found = found.isel({components: chosen})
+        if axis and axis not in named:
+            raise SceneError("result", "axis", axis, f"must be one of {', '.join(named)}")
+        found = found.isel({components: named.index(axis) if axis else int(loudest)})
     along = np.array([result[name].values - result[name].values[0] for name in places])
     found = found.transpose(receiver, "time").rename({receiver: "receiver"})
     return found.assign_coords(distance=("receiver", np.hypot.reduce(along, axis=0)))
@@ -97,7 +99,7 @@ def transfer_function(
     & Wiggins, Geophys. J. R. Astr. Soc. 47, 1976).
     """
     row = waveforms(result, quantity, axis)
-    first, last = (np.fft.rfft(row[i].values) for i in (one, other))
+    first, last = (np.fft.rfft(wave.values) for wave in _pair(row, one, other))
     level = water_level * np.abs(first).max()
     ratio = last * first.conj() / np.maximum(np.abs(first), level) ** 2
     attrs = {"long_name": f"transfer function of the {quantity}", "units": "1"}
@@ -118,12 +120,12 @@ def quality_factor(
     Quantitative Seismology, 2002, 5.5). What joints reflect is lost to Q as heat is.
     """
     row = waveforms(result, quantity, axis)
-    spectra = [np.fft.rfft(row[i].values) for i in (one, other)]
+    first, last = (np.fft.rfft(wave.values) for wave in _pair(row, one, other))
     frequency, way, late = _frequencies(row), _way(row, one, other), _delay(row, one, other)
-    heard = np.abs(spectra[0]) > HEARD * np.abs(spectra[0]).max()
+    heard = np.abs(first) > HEARD * np.abs(first).max()
     heard[0] = False
     omega = 2 * np.pi * frequency.values[heard]
-    ratio = spectra[1][heard] / spectra[0][heard]
+    ratio = last[heard] / first[heard]
     lag = omega * late - np.angle(
         ratio * np.exp(1j * omega * late)
     )  # the rest is below half a turn
@@ -153,6 +155,15 @@ def _frequencies(row: xr.DataArray) -> xr.Variable:
     return xr.Variable("frequency", frequency, {"long_name": "frequency", "units": "Hz"})
 
 
+def _pair(row: xr.DataArray, *receivers: int) -> list[xr.DataArray]:
+    """Return the waveforms at receivers by number."""
+    count = row.sizes["receiver"]
+    for one in receivers:
+        if not -count <= one < count:
+            raise SceneError("result", "receiver", one, f"must be from {-count} to {count - 1}")
+    return [row[one] for one in receivers]
+
+
 def known_distances(row: xr.DataArray) -> np.ndarray:
     """Return the receivers' distances from the first one, m; raises SceneError without them."""
     found = row["distance"].values
@@ -164,8 +175,12 @@ def known_distances(row: xr.DataArray) -> np.ndarray:
 
 def _way(row: xr.DataArray, one: int, other: int) -> float:
     distance = known_distances(row)
+    _pair(row, one, other)
+    if distance[other] == distance[one]:
+        raise SceneError("result", "receivers", f"{one} and {other}", "must be two places")
     return float(distance[other] - distance[one])
 
 
 def _delay(row: xr.DataArray, one: int, other: int) -> float:
-    return delay(row[other].values, row[one].values, sampling(row))
+    first, last = _pair(row, one, other)
+    return delay(last.values, first.values, sampling(row))

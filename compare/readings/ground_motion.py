@@ -62,6 +62,8 @@ def arias(result: Recording, gravity: float = GRAVITY, quantity: str = "velocity
 
     gravity : g, m/s2. quantity : of a recording that does not name its own.
     """
+    if not gravity > 0:
+        raise SceneError("arias", "gravity", gravity, "must be positive, m/s2")
     found = recording(result, quantity)
     dt = sampling(found)
     if "velocity" in found:

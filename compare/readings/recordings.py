@@ -35,11 +35,17 @@ def recording(source: Recording, quantity: str = "velocity") -> xr.Dataset:
     """
     if isinstance(source, xr.Dataset):
         return source
+    if quantity not in UNITS:
+        raise SceneError("recording", "quantity", quantity, f"must be one of {', '.join(UNITS)}")
     if isinstance(source, xr.DataArray):
         return _of_array(source, quantity)
     if isinstance(source, str | PathLike):
         return _of_file(str(source), quantity)
-    time, values, *at = (np.asarray(one, dtype=float) for one in source)
+    try:
+        time, values, *at = (np.asarray(one, dtype=float) for one in source)
+    except (TypeError, ValueError):
+        allowed = "must be a result, a file, an array over time, or (times, values)"
+        raise SceneError("recording", "type", type(source).__name__, allowed) from None
     rows = np.atleast_2d(values)
     if rows.ndim != 2 or rows.shape[1] != len(time) or (at and len(at[0]) != len(rows)):
         allowed = f"must be [n] or [receiver, n] for {len(time)} times, and one place a receiver"

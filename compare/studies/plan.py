@@ -8,6 +8,7 @@ no accuracy, and a run meets the misfit only if all runs of smaller steps do so,
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from math import inf
+from numbers import Real
 from time import perf_counter
 from typing import Any, NamedTuple
 
@@ -130,6 +131,8 @@ def plan(
     Raises SceneError if there is no exact solution and no affordable run converges.
     """
     began, scene = perf_counter(), load(scene)
+    if not (isinstance(misfit, Real) and misfit > 0):
+        raise SceneError("plan", "misfit", misfit, "must be a positive number, as 0.02")
     found = ranking.finest(_applicable(scene), scene)
     if found is None:
         raise SceneError(scene.where, "", None, "no solver resolves all physics of the scene")

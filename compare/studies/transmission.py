@@ -77,7 +77,10 @@ def transmission(
     Raises SceneError for joints that are not linear, parallel and through all rock.
     """
     scene, names = load(scene), [solvers] if isinstance(solvers, str) else list(solvers)
-    degrees = np.atleast_1d(np.asarray(angles, dtype=float))
+    try:
+        degrees = np.atleast_1d(np.asarray(angles, dtype=float))
+    except (TypeError, ValueError):
+        degrees = np.array([nan])
     if incidence not in KINDS:
         raise SceneError("transmission", "incidence", incidence, "must be 'P' or 'SV'")
     if degrees.ndim != 1 or not ((degrees >= 0) & (degrees < 90)).all():
@@ -90,7 +93,7 @@ def transmission(
             raise SceneError(scene.where, "angles", angles, allowed)
         measure: Callable[[str, float], list[float]] = partial(_of_pillar, scene, period)
     else:
-        measure = partial(_of_rock_mass, _joints_of(scene, period), incidence)
+        measure = partial(_of_rock_mass, _joints_of(scene, period), scene.title, incidence)
     points = list(product(names, degrees.tolist()))
     for k, point in enumerate(points):
         rows.append(measure(*point))
@@ -133,12 +136,12 @@ def _joints_of(scene: RockMass, period: float) -> ParallelJoints:
 
 
 def _of_rock_mass(
-    joints: ParallelJoints, incidence: Kind, solver: str, angle: float
+    joints: ParallelJoints, title: str, incidence: Kind, solver: str, angle: float
 ) -> list[float]:
     """Return R_p, R_s, T_p, T_s and the residual by one solver at one angle, degrees."""
     if solver == EXACT:
         return [*closed_form(joints, incidence, angle).tolist(), nan]
-    trial = scene_of(joints, incidence, angle)
+    trial = scene_of(joints, incidence, angle, {"title": title})
     return amplitudes(trial, solve(solver, trial).velocity.values)
 
 

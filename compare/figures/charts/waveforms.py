@@ -92,13 +92,14 @@ def waveforms(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
 
 
 def figure(
-    comparisons: Sequence[Comparison], width: float = 190.0, font_size: float = 8.0
+    comparisons: Comparison | Sequence[Comparison], width: float = 190.0, font_size: float = 8.0
 ) -> Figure:
     """Return a figure for a paper of a scene's comparisons, one for each variant.
 
     width : mm. font_size : points.
     """
-    return draw_solutions(list(comparisons), False, printed(width, font_size))
+    found = [comparisons] if isinstance(comparisons, Comparison) else list(comparisons)
+    return draw_solutions(found, False, printed(width, font_size))
 
 
 def draw_solutions(
