@@ -14,8 +14,8 @@ from jointwave.compare.readings import arias as arias
 from jointwave.compare.readings import deconvolve as deconvolve
 from jointwave.compare.readings import dispersion as dispersion
 from jointwave.compare.readings import dispersion_theory as dispersion_theory
-from jointwave.compare.readings import peak_velocity_map as peak_velocity_map
 from jointwave.compare.readings import ppv as ppv
+from jointwave.compare.readings import ppv_map as ppv_map
 from jointwave.compare.readings import quality_factor as quality_factor
 from jointwave.compare.readings import recording as recording
 from jointwave.compare.readings import response_spectrum as response_spectrum

@@ -10,8 +10,8 @@ from jointwave.compare.readings.deconvolution import deconvolve
 from jointwave.compare.readings.dispersion import dispersion, dispersion_theory
 from jointwave.compare.readings.ground_motion import (
     arias,
-    peak_velocity_map,
     ppv,
+    ppv_map,
     response_spectrum,
 )
 from jointwave.compare.readings.recordings import recording
@@ -21,8 +21,8 @@ __all__ = [
     "deconvolve",
     "dispersion",
     "dispersion_theory",
-    "peak_velocity_map",
     "ppv",
+    "ppv_map",
     "quality_factor",
     "recording",
     "response_spectrum",

@@ -38,7 +38,7 @@ def _of(result: xr.Dataset, quantity: str) -> xr.DataArray:
     return result[quantity].transpose(..., "time")
 
 
-def peak_velocity_map(result: xr.Dataset) -> xr.DataArray:
+def ppv_map(result: xr.Dataset) -> xr.DataArray:
     """Return the peak particle velocity over all snapshots of a result [node], m/s, with the nodes'
     x, y and z (m) as coordinates.
 

@@ -62,11 +62,11 @@ def faces_of(ax):
 
 
 def test_the_ppv_is_that_of_the_result(results):
-    """Of every cell the mean over its nodes, the same as by `peak_velocity_map`."""
+    """Of every cell the mean over its nodes, the same as by `ppv_map`."""
     _, blocks, _ = results
     axes, bars = drawn(jw.plot_map(blocks))
     faces, s = faces_of(axes["rigid blocks"]), snapshots_of(blocks)
-    expected = jw.peak_velocity_map(blocks).values[s.cells].mean(axis=1)
+    expected = jw.ppv_map(blocks).values[s.cells].mean(axis=1)
     np.testing.assert_allclose(faces.get_array(), expected, rtol=1e-12)
     corners = np.array([path.vertices[:3] for path in faces.get_paths()])
     np.testing.assert_allclose(corners, s.points[s.cells, :2])

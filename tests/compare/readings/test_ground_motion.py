@@ -7,8 +7,8 @@ import xarray as xr
 from jointwave.cases.errors import SceneError
 from jointwave.compare.readings.ground_motion import (
     arias,
-    peak_velocity_map,
     ppv,
+    ppv_map,
     response_spectrum,
 )
 
@@ -48,11 +48,11 @@ def test_the_map_is_the_peak_of_every_node_at_its_place():
             "field_points": (("node", "component"), [[0.0, 1.0, 0.0], [2.0, 3.0, 0.0]]),
         }
     )
-    found = peak_velocity_map(result)
+    found = ppv_map(result)
     assert found.values.tolist() == [2.0, 5.0]
     assert (found.x.values.tolist(), found.y.values.tolist()) == ([0.0, 2.0], [1.0, 3.0])
     with pytest.raises(SceneError, match=r"record\.fields: is needed"):
-        peak_velocity_map(result.drop_vars("field_velocity"))
+        ppv_map(result.drop_vars("field_velocity"))
 
 
 @pytest.mark.parametrize("dt", [0.02, 0.005])
