@@ -112,7 +112,7 @@ def _period(scene: AnyScene, frequency: float | None) -> float:
         if not 0 < frequency < np.inf:
             raise SceneError("transmission", "frequency", frequency, "must be positive, Hz")
         return 1 / frequency
-    periods = [float(one.period) for one in scene.pulses if getattr(one, "period", None)]
+    periods = [found for one in scene.pulses if (found := getattr(one, "period", None))]
     if not periods:
         raise SceneError(scene.where, "period", None, "no pulse has one: give frequency, in Hz")
     return periods[0]

@@ -19,7 +19,7 @@ import numpy as np
 from jointwave.cases.material.rock import ElasticRock, Values
 
 Kind = Literal["P", "SV"]
-KINDS = ("P", "SV")
+KINDS: tuple[Kind, ...] = ("P", "SV")
 
 
 class Face(NamedTuple):
