@@ -67,6 +67,12 @@ def solver(name: str) -> Solver:
     return next(one for one in records if isinstance(one, Solver) and one.name == name)
 
 
+def label_of(name: str) -> str:
+    """Return an engine or exact solution in words, "rigid blocks, exact"; other names as they
+    are."""
+    return solver(name).label if name in names() else name
+
+
 def solvers() -> list[Solver]:
     """Return all records, engines first."""
     return [solver(name) for name in names()]

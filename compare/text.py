@@ -6,13 +6,13 @@ from typing import Any
 NONE = "–"  # where there is no number
 
 
-def percent(x: float) -> str:
-    """Return a ratio in percent to three digits; below 0.001 % only that it is."""
+def percent(x: float, digits: int = 3) -> str:
+    """Return a ratio in percent to some digits; below 0.001 % only that it is."""
     if not isfinite(x):
         return NONE
     if 0 < x < 1e-5:
         return "< 0.001"
-    return f"{100 * x:#.3g}".rstrip(".")
+    return f"{100 * x:#.{digits}g}".rstrip(".")
 
 
 def mean_and_worst(peak: Any) -> str:

@@ -8,8 +8,8 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from jointwave.compare.engines import in_order
-from jointwave.compare.figures.charts.axes import chart, label_of, set_heading
+from jointwave.compare.engines import in_order, label_of
+from jointwave.compare.figures.charts.axes import chart, set_heading
 from jointwave.compare.figures.style import style
 from jointwave.compare.figures.units import UNITS
 from jointwave.compare.misfit.places import Place, places_of

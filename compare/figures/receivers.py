@@ -69,6 +69,12 @@ class Panel(NamedTuple):
         rest = self.curves.drop(columns=self.reference)
         return rest.sub(self.curves[self.reference], axis="index")
 
+    @property
+    def largest_residual(self) -> float:
+        """The largest of them over the largest value; 0 without a reference or without motion."""
+        rest, peak = self.residuals.abs().max().max(), self.curves.abs().max().max()
+        return float(rest / peak) if rest > 0 else 0.0
+
 
 def panels(comparisons: list[Comparison]) -> list[list[Panel]]:
     """Return the panels of every variant, one list each.

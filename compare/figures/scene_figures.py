@@ -29,11 +29,11 @@ def figures_of(
     """
     return [
         scene_figure(name, comparisons),
+        *peak_velocities(name, comparisons),
         *waveforms(name, comparisons),
         *_space_time(name, comparisons, fields),
         *spectra(name, comparisons),
         *propagation(name, comparisons),
-        *peak_velocities(name, comparisons),
         *energy(name, comparisons),
     ]
 
@@ -44,7 +44,9 @@ def _space_time(
     variants = zip(comparisons, variant_names(comparisons), fields, strict=False)
     return [
         space_time(
-            f"{name}-space-time-{k}{'-exact' * shown.exact}", comparison.scene, variant, shown
+            f"{name}-space-time-{k}{'-exact' * shown.exact}",
+            *(comparison.scene, variant, shown),
+            folded=k > 0,
         )
         for k, (comparison, variant, found) in enumerate(variants)
         for shown in diagrams_of(comparison.scene, found)

@@ -3,10 +3,13 @@
 from collections.abc import Callable, Iterable, Sequence
 from math import isnan
 
-from jointwave.compare.engines import ENGINES
+from jointwave.compare.engines import ENGINES, label_of
 from jointwave.compare.report.scenes import SolvedScene
 from jointwave.compare.report.verdict import NOT_CHECKED
-from jointwave.compare.text import in_seconds, times
+from jointwave.compare.text import in_seconds, percent, times
+
+FEW = 2  # references that are named
+CLOSE = 0.2  # the largest misfit that a solution is said to be within
 
 
 def lead(scenes: Sequence[SolvedScene]) -> dict[str, str]:
@@ -16,27 +19,40 @@ def lead(scenes: Sequence[SolvedScene]) -> dict[str, str]:
 
 
 def _sentence(engine: str, scenes: list[SolvedScene]) -> str:
-    """Return how far an engine lies from the finest physics, and at what cost."""
-    scores = [one.scores[engine] for one in scenes]
-    totals = [x for one in scores if not isnan(x := one.total.judged)]
-    own = [x for one in scores if not isnan(x := one.own.judged)]
-    said = f"({ENGINES[engine].sentence}): "
-    said += f"{_span(_short, totals)} % from the finest physics" if totals else NOT_CHECKED.word
-    said += f", own numerical error ≤ {_short(max(own))} %" if own else ""
-    unchecked = sum(bool(one.unchecked) for one in scores)
-    if totals and unchecked:
-        said += f", {NOT_CHECKED.word} on {unchecked} of {len(scenes)} scenes"
+    """Return how far an engine lies from the finest physics, by kind of scene, and at what cost."""
+    kinds = dict.fromkeys(one.scene.kind for one in scenes)
+    of_kind = {kind: [one for one in scenes if one.scene.kind == kind] for kind in kinds}
+    apart = [
+        _distance(engine, some) + f" for the {kind}{'s' * (len(some) > 1)}" * (len(kinds) > 1)
+        for kind, some in of_kind.items()
+    ]
     costs = [one.costs[engine] for one in scenes]
+    cost = f"{_span(times, costs)} the time of the cheapest"
     if max(costs) == 1:
-        return f"{said}; cheapest, {_span(in_seconds, (s.seconds[engine] for s in scenes))} a run."
-    return f"{said}; {_span(times, costs)} the time of the cheapest."
+        cost = f"the cheapest: {_span(in_seconds, (one.seconds[engine] for one in scenes))} a run"
+    return f"{ENGINES[engine].sentence} {' and '.join(apart)}; {cost}."
+
+
+def _distance(engine: str, scenes: list[SolvedScene]) -> str:
+    """Return the largest misfit from the references, which are named if there are few."""
+    scores = [one.scores[engine] for one in scenes]
+    found = [x for one in scores if not isnan(x := one.total.judged)]
+    if not found:
+        return NOT_CHECKED.word
+    against = dict.fromkeys(v.against for one in scores for v in one.variants if v.against)
+    names = " or ".join(map(_reference, against)) if len(against) <= FEW else "the finest physics"
+    near = f"within {percent(max(found), 2)} % of {names}"
+    said = near if max(found) <= CLOSE else f"up to {percent(max(found), 2)} % from {names}"
+    unchecked = sum(bool(one.unchecked) for one in scores)
+    return f"{said}, {NOT_CHECKED.word} on {unchecked} of {len(scenes)}," if unchecked else said
+
+
+def _reference(name: str) -> str:
+    label = label_of(name)
+    exact = label.removesuffix(", exact")
+    return label if exact == label else f"the exact {exact}"
 
 
 def _span(write: Callable[[float], str], values: Iterable[float]) -> str:
     ordered = sorted(values)
     return " to ".join(dict.fromkeys(write(x) for x in (ordered[0], ordered[-1])))
-
-
-def _short(x: float) -> str:
-    """Return a ratio in percent to two digits."""
-    return "< 0.001" if 0 < x < 1e-5 else f"{100 * x:.2g}"

@@ -8,6 +8,7 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from jointwave.compare.engines import label_of
 from jointwave.compare.figures.style import style
 from jointwave.compare.text import in_seconds, percent, table_cell, times
 
@@ -28,6 +29,7 @@ def render(page: dict[str, Any], out: Path) -> str:
     environment.globals |= {
         "style": Markup(loader.get_source(environment, "page.css")[0]),
         "colour": lambda name: style(name).colour,
+        "label": label_of,
         "link": lambda file: file.relative_to(out).as_posix(),
     }
     environment.filters |= {
@@ -51,11 +53,19 @@ def unbroken(text: str) -> str:
     return text.replace(" %", "\u00a0%").replace("≤ ", "≤\u00a0")
 
 
+def in_words(text: Any) -> str:
+    """Return the name of a solution, or of a pair "one ~ other (%)", in words; other text as it
+    is."""
+    pair, percent_sign, rest = str(text).partition(" (%)")
+    return " ~ ".join(map(label_of, pair.split(" ~ "))) + percent_sign + rest
+
+
 def rows(table: pd.DataFrame) -> Markup:
     """Return a table in HTML, its labels on the left, alike ones together, and numbers on the
-    right."""
+    right; solutions and pairs of them are in words."""
     if table.index.nlevels > 1:
         table = pd.concat([rows for _, rows in table.groupby(level=0, sort=False)])
-    cells = table.apply(lambda column: column.map(lambda x: table_cell(x, str(column.name))))
+    cells = table.apply(lambda c: c.map(lambda x: in_words(table_cell(x, str(c.name)))))
+    cells = cells.rename(index=in_words, columns=in_words)
     named = table.index.names != [None]
     return Markup(cells.to_html(border=0, index=named, justify="unset"))

@@ -118,25 +118,28 @@ def _page(
     studies: Sequence[dict[str, Any]] = (),
 ) -> dict[str, Any]:
     """Return what the templates show: scenes, the paper's or one's own, rock masses and studies."""
-    numbered = any(one.request.number for one in solved)
+    every, numbered = [*solved, *rock], any(one.request.number for one in solved)
     links = {
         "Figures" if numbered else "Scenes": [(one.request.name, one.link) for one in solved],
         "Rock masses": [(one.request.name, one.link) for one in rock],
-        "Studies": [(one["id"], one["contents"]) for one in studies],
+        "Studies": [(s["id"], s["contents"]) for s in studies if not s["appendix"]],
+        "Appendix": [(s["id"], s["contents"]) for s in studies if s["appendix"]],
     }
     versions = {name: number for one in solved for name, number in one.versions.items()}
     versions |= {name: version(name) for name in PACKAGES}
-    worst = {f"{one.request.label} (%)": one.worst for one in solved}
+    worst = {f"{one.request.label} (%)": one.worst for one in every}
+    shown = next((one for one in solved if one.about), solved[0])
     return {
         "subtitle": subtitle,
         "command": command,
-        "lead": lead(solved),
+        "picture": shown.lead,
+        "lead": lead(every),
         "summary": pd.concat(worst, axis=1),
         "claims": [(one.request, claim) for one in solved for claim in one.claims],
-        "about": next((one.about for one in solved if one.about), None),
+        "about": shown.about,
+        "every_scene": every,
         "scenes": solved,
         "rock_masses": rock,
-        "rock_lead": lead(rock),
         "studies": studies,
         "contents": {heading: found for heading, found in links.items() if found},
         "machine": measured_on(),

@@ -12,6 +12,9 @@ import pandas as pd
 from jointwave import cases
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.figures.export import Drawn, save
+from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.lead import lead_figure
+from jointwave.compare.figures.panels import panels
 from jointwave.compare.figures.scene_figures import along_pillar, figures_of
 from jointwave.compare.figures.tables import distance_frame, reading_frame
 from jointwave.compare.misfit.pairs import Comparison
@@ -61,7 +64,8 @@ class Shown(NamedTuple):
 class SolvedScene(NamedTuple):
     """A scene solved by all that applies.
 
-    scene : its first variant, and the seconds of stepping it by engine. tables : by name, and the
+    scene : its first variant, and the seconds of stepping it by engine. lead : the picture at the
+    head of its page; None without receivers. tables : by name, and the
     files of those that are written. scores : where its engines stand. worst : misfits by pair.
     versions : of the packages that solved it. about : what its misfit is made of, of the paper's
     free pillar.
@@ -70,6 +74,7 @@ class SolvedScene(NamedTuple):
     request: SceneRequest
     scene: AnyScene
     seconds: dict[str, float]
+    lead: Shown | None
     figures: list[Shown]
     claims: list[Claim]
     tables: dict[str, pd.DataFrame]
@@ -125,7 +130,7 @@ def solve(request: SceneRequest, folder: Path) -> SolvedScene:
         request,
         comparisons[0].scene,
         {engine: float(results[engine].attrs["seconds_stepping"]) for engine in scores},
-        _draw(request, comparisons, folder),
+        *_draw(request, comparisons, folder),
         claims_of(request.number, comparisons),
         {
             "verdicts": tables.verdict_table(scores),
@@ -143,9 +148,21 @@ def solve(request: SceneRequest, folder: Path) -> SolvedScene:
     )
 
 
-def _draw(request: SceneRequest, comparisons: list[Comparison], folder: Path) -> list[Shown]:
+def _draw(
+    request: SceneRequest, comparisons: list[Comparison], folder: Path
+) -> tuple[Shown | None, list[Shown]]:
+    """Return the picture at the head, a map or else the waveform that is furthest from its
+    reference in the first variant, and all figures."""
     fields = [along_pillar(one.scene) for one in comparisons]
-    return [
-        Shown(save(p.figure, folder, p.name, p.title, p.table, png=False), p.caption, p.folded)
-        for p in figures_of(request.name, comparisons, fields)
-    ]
+    figures = figures_of(request.name, comparisons, fields)
+    shown = {one.name: _save(one, folder) for one in figures}
+    lead = shown.get(f"{request.name}-peak-velocity-0")
+    if lead is None and (moving := panels(comparisons)[0]):
+        panel = max(moving, key=lambda one: one.largest_residual)
+        lead = _save(lead_figure(request.name, panel), folder)
+    return lead, list(shown.values())
+
+
+def _save(one: SceneFigure, folder: Path) -> Shown:
+    drawn = save(one.figure, folder, one.name, one.title, one.table, png=False)
+    return Shown(drawn, one.caption, one.folded)

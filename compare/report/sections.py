@@ -38,7 +38,8 @@ def sections(
     for i, name in enumerate(REPORTED, start=1):
         study = load(name)
         found = summarise_study(folder, name, study, run_study(study, folder / name, pool))
-        yield section("study", found, f"jointwave study {name}", id=f"study-{name}")
+        about = {"id": f"study-{name}", "appendix": name == "convergence"}
+        yield section("study", found, f"jointwave study {name}", **about)
         if i == 1 and others is not None:
             found = peers.summarise(others, folder)
             yield section("peers", found, "make bench-peers", contents="Other codes")
@@ -49,7 +50,9 @@ def sections(
     progress(HARD)
     if hard:
         found = make_hard_cases(folder, pool, lambda x: progress(HARD + (1 - HARD) * x))
-        yield section("hard", found, "jointwave study stability", contents="Hard cases")
+        yield section(
+            "hard", found, "jointwave study stability", contents="Hard cases", appendix=True
+        )
     yield _snapshots(out)
     progress(1.0)
 
@@ -57,7 +60,7 @@ def sections(
 def section(kind: str, found: Summary, command: str, **more: Any) -> dict[str, Any]:
     """Return what a section shows; kind : of its caption. more : the id that it has on the page and
     its words in the contents, if not those of the summary."""
-    about = {"kind": kind, "found": found, "command": command}
+    about = {"kind": kind, "found": found, "command": command, "appendix": False}
     return about | {"id": found.name, "contents": found.title} | more
 
 

@@ -14,6 +14,8 @@ from jointwave.compare.report.verdict import EngineScore
 from jointwave.compare.text import mean_and_worst
 from jointwave.results.dataset import energy_residual, open_ledger
 
+MANY = 8  # columns: a table of more is transposed
+
 
 def _under(rows: list[dict[str, Any]], *index: str) -> pd.DataFrame:
     return pd.DataFrame(rows).set_index(list(index)) if rows else pd.DataFrame()
@@ -40,7 +42,8 @@ def verdict_table(scores: dict[str, EngineScore]) -> pd.DataFrame:
 
 
 def misfit_table(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return the relative L2 misfits: a row a pair, a column a variant and receiver.
+    """Return the relative L2 misfits: a row a pair, a column a variant and receiver, or where these
+    are many the other way round.
 
     Faint waveforms and displacements, which are velocities once more, are in `distance_table`.
     """
@@ -56,7 +59,12 @@ def misfit_table(comparisons: list[Comparison]) -> pd.DataFrame:
         at = row.pair.kind, _pair(row), meaning(row.pair)
         cells.setdefault(at, {})[label] = 100 * row.distance.misfit
     names = ["kind", "pair", "cause of the difference"]
-    return pd.DataFrame(list(cells.values()), pd.MultiIndex.from_tuples(cells, names=names))
+    table = pd.DataFrame(list(cells.values()), pd.MultiIndex.from_tuples(cells, names=names))
+    if len(table.columns) <= MANY:
+        return table
+    long = table.droplevel(2).T.rename(index=lambda at: at.removesuffix(" (%)"))
+    long = long.rename(columns=lambda pair: f"{pair} (%)", level=1)
+    return long.rename_axis(index="variant and receiver", columns=[None, None])
 
 
 def _pair(row: Row) -> str:

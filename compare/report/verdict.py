@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from math import isfinite, isnan, nan
 from typing import Any, NamedTuple
 
-from jointwave.compare.engines import ENGINES
+from jointwave.compare.engines import ENGINES, label_of
 from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.differences import (
     STRESS,
@@ -130,7 +130,7 @@ class EngineScore(NamedTuple):
     @property
     def explanation(self) -> str:
         """The references, variants that nothing checks, and bounds that are not met."""
-        against = dict.fromkeys(one.against for one in self.variants if one.against)
+        against = dict.fromkeys(label_of(one.against) for one in self.variants if one.against)
         said = [f"compared with {' and '.join(against)}: {self.total.where}"] if against else []
         if self.unchecked:
             said.append(f"{NOT_CHECKED.word}: {', '.join(self.unchecked)}".removesuffix(": "))

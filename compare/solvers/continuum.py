@@ -89,7 +89,7 @@ JOINTED_ROCK = _of(
     "jointed",
     rock=Rock.JOINTED,
     label="jointed rock",
-    sentence="continuum, every joint resolved",
+    sentence="Jointed rock, a continuum with every joint, is",
     line=Line("#f0a030", 3.4, 1),
     distances={
         Kind.BETWEEN: {
@@ -102,7 +102,7 @@ EQUIVALENT_ROCK = _of(
     "equivalent",
     rock=Rock.HOMOGENISED,
     label="homogenised rock",
-    sentence="homogenised continuum",
+    sentence="Homogenised rock, a continuum without joints, is",
     line=Line("#8fd4bd", 4.8, 0),
     distances={Kind.BETWEEN: {"dem": "two engines, with and without joints"}},
 )

@@ -116,7 +116,8 @@ class Solver:
     Attributes
     ----------
     rock, form : how it resolves the rock mass, and how its solution is known.
-    label : in a legend, beside its name. sentence : of an engine, in the lead of the report.
+    label : in a legend, beside its name. sentence : of an engine, how its sentence in
+        the lead of the report begins.
     kinds : of scenes that it can solve: "pillar", "rock mass".
     dimension : 1 where it has no motion across the axis beside a plane wave.
     discretised : whether an engine discretises this very model; a solution of one mechanism alone

@@ -26,7 +26,7 @@ from jointwave.cases.effects import active_effects
 from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import shortest_period
-from jointwave.compare.engines import ENGINES, Progress, applies, solve, solver
+from jointwave.compare.engines import ENGINES, Progress, applies, label_of, solve, solver
 from jointwave.compare.figures.export import save
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.scenes import find, shipped
@@ -100,7 +100,7 @@ class HardRow(NamedTuple):
     @property
     def name(self) -> str:
         """Its title, engine and scheme."""
-        return f"{self.title}, {self.engine}, {self.scheme}"
+        return f"{self.title}, {label_of(self.engine)}, {self.scheme}"
 
 
 def hard_cases() -> list[HardRow]:
@@ -206,7 +206,7 @@ def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = 
 
 def table(rows: list[HardRow]) -> pd.DataFrame:
     """Return the rows under headings of their case."""
-    labels = [(row.title, f"{row.engine}, {row.scheme}") for row in rows]
+    labels = [(row.title, f"{label_of(row.engine)}, {row.scheme}") for row in rows]
     cells = [(x.ended, x.energy, x.fall, x.misfit, x.margin, _remark(x)) for x in rows]
     index = pd.MultiIndex.from_tuples(labels, names=["", "engine and scheme"])
     return pd.DataFrame(cells, index, ["ends", "energy", "decrease", "misfit", "margin", ""])
@@ -229,7 +229,7 @@ def sentences(rows: list[HardRow], cells: pd.DataFrame) -> list[str]:
     if least is not None and isfinite(least.margin):
         found.append(f"The least margin is {least.margin:.3g}: {least.name}.")
     return found + [
-        f"{engine}: {len(own):,} cells, {own.wrong.sum()} on the wrong side of the line, "
-        f"{own.far.sum()} of them beyond one cell of it."
+        f"{label_of(str(engine))}: {len(own):,} cells, {own.wrong.sum()} on the wrong side of the "
+        f"line, {own.far.sum()} of them beyond one cell of it."
         for engine, own in cells.groupby("engine", sort=False)
     ]

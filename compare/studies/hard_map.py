@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 
 from jointwave import cases
 from jointwave.cases.errors import UnstableError
-from jointwave.compare.engines import ENGINES, solve
+from jointwave.compare.engines import ENGINES, label_of, solve
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.style import style
 from jointwave.compare.scenes import find
@@ -120,6 +120,6 @@ def _draw(ax: Axes, engine: str, cells: pd.DataFrame, k: int) -> None:
     wrong = cells[cells.wrong]
     ax.plot(wrong.ratio, wrong.step, "x", color="#d00000", markersize=5)
     ax.set(xscale="log", yscale="log", xlabel="damping ratio of the highest mode")
-    ax.set_title(f"({chr(97 + k)})  {engine}: {len(wrong)} cells on the wrong side")
+    ax.set_title(f"({chr(97 + k)})  {label_of(engine)}: {len(wrong)} cells on the wrong side")
     ax.text(0.06, 0.12, "stable", transform=ax.transAxes)
     ax.text(0.94, 0.9, "unstable", transform=ax.transAxes, ha="right")

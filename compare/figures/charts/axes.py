@@ -10,7 +10,6 @@ from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from jointwave.compare.engines import names, solver
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.style import RC, SIZE
 
@@ -84,8 +83,3 @@ def set_heading(ax: Axes, heading: str, small: bool = False) -> None:
     size = rcParams["font.size"] * (5 / 6 if small else 1.0)
     letters = int(72 * width / (0.85 * LETTER * size))
     ax.set_title(fill(heading, letters), fontsize=size, parse_math=False)
-
-
-def label_of(name: str) -> str:
-    """Return the label of a solution in legends, "lattice: rigid blocks, exact"."""
-    return f"{name}: {solver(name).label}" if name in names() else name

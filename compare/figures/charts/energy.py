@@ -6,7 +6,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from jointwave.compare.engines import ENGINES, in_order
+from jointwave.compare.engines import ENGINES, in_order, label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading, share
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.style import TERMS, Style, style
@@ -32,10 +32,11 @@ def energy(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     caption = (
         "Work of the load, and the energies that balance it. Below, on an axis of its own, the "
         "residual over the largest work, at most: "
-        f"{', '.join(f'{engine} {size:.1g}' for engine, size in worst.items())}."
+        f"{', '.join(f'{label_of(str(name))} {size:.1g}' for name, size in worst.items())}."
     )
     figure = _draw(ledgers, unit)
-    return [SceneFigure(f"{name}-energy", "Energy over time", caption, figure, ledgers)]
+    title = f"Energy over time: imbalance at most {worst.max():.1g} of the largest work"
+    return [SceneFigure(f"{name}-energy", title, caption, figure, ledgers, folded=True)]
 
 
 def ledgers_of(comparisons: list[Comparison]) -> pd.DataFrame:
@@ -89,4 +90,4 @@ def _draw_ledger(upper: Axes, lower: Axes, engine: str, rows: pd.DataFrame, unit
             drawn = Style(TERMS[term], 2.0 if term == "work" else 1.4, line.dashes, 1)
             upper.plot(time, rows[column] / unit.size, label=term, **drawn.of_line())
     positive = np.where(size > LEAST, size, np.nan)  # the axis is logarithmic
-    lower.semilogy(time, positive, label=engine, **line.of_line())
+    lower.semilogy(time, positive, label=label_of(engine), **line.of_line())

@@ -27,7 +27,7 @@ def peak_velocities(name: str, comparisons: list[Comparison]) -> list[SceneFigur
             maps = maps_of(one.scene, results, "ppv")
             title, stem = f"Peak particle velocity, {variant}", f"{name}-peak-velocity-{k}"
             drawn = draw_maps(maps, one.scene)
-            found.append(SceneFigure(stem, title, CAPTION, drawn, _table(maps), True))
+            found.append(SceneFigure(stem, title, CAPTION, drawn, _table(maps), bool(k)))
     return found
 
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.engines import ENGINES, in_order
+from jointwave.compare.engines import ENGINES, in_order, label_of
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.receivers import FORCES, MOTION, ROTATION, by_component, peaks
@@ -85,7 +85,8 @@ def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
             shown, scale = shown - values[other], float(np.abs(values[other]).max())
             share = float(np.abs(shown).max()) / scale if scale else 0.0
         unit = unit_for(UNITS[quantity], float(np.abs(shown).max()))
-        return Diagram(f"{one} − {other}" if other else one, shown / unit.size, unit, share)
+        name = " − ".join(map(label_of, filter(None, (one, other))))
+        return Diagram(name, shown / unit.size, unit, share)
 
     between = [diagram(p.one, p.other) for p in pairs() if {p.one, p.other} <= set(engines)]
     errors = [diagram(n, own) for n in engines if (own := own_exact(n, fields, scene))]
@@ -95,17 +96,19 @@ def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
     return [*shown, Diagrams(True, *about, errors)] if errors else shown
 
 
-def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneFigure:
+def space_time(
+    name: str, scene: Scene, variant: str, shown: Diagrams, folded: bool = False
+) -> SceneFigure:
     """Return the figure of one variant's diagrams; those of numerical errors are folded.
 
-    name : unique on the page. variant : its name there.
+    name : unique on the page. variant : its name there. folded : in any case.
     """
     title = f"{shown.words} along the pillar over time, {variant}"
     title = f"Numerical error of {title}" if shown.exact else f"{title[0].upper()}{title[1:]}"
     y, time = np.meshgrid(shown.y, shown.time, indexing="ij")
     values = {f"{d.name} ({d.unit.name})": d.values.ravel() for d in shown.diagrams}
     table = pd.DataFrame({"y (m)": y.ravel(), "time (s)": time.ravel(), **values})
-    return SceneFigure(name, title, CAPTION, _draw(scene, shown), table, shown.exact)
+    return SceneFigure(name, title, CAPTION, _draw(scene, shown), table, folded or shown.exact)
 
 
 def _draw(scene: Scene, shown: Diagrams) -> Figure:

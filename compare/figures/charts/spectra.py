@@ -6,7 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from jointwave.compare.figures.charts.axes import chart, label_of, set_heading
+from jointwave.compare.engines import label_of
+from jointwave.compare.figures.charts.axes import chart, set_heading
 from jointwave.compare.figures.charts.marks import Frequency, marks_of
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.receivers import Panel, in_rows

@@ -11,8 +11,8 @@ from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from jointwave.compare.engines import ENGINES, in_order
-from jointwave.compare.figures.charts.axes import chart, label_of, set_heading, share
+from jointwave.compare.engines import ENGINES, in_order, label_of
+from jointwave.compare.figures.charts.axes import chart, set_heading, share
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.receivers import Panel, curve_table, in_rows, panels
 from jointwave.compare.figures.style import PALE, RC, Style, given_style, printed, style
@@ -22,6 +22,7 @@ from jointwave.compare.misfit.pairs import Comparison
 #: Keys of a scene that do not change its physics, or only its numerical solution.
 ASIDE = {"title", "source", "name", "expect", "numerics", "record", "where"}
 MOST = 6  # variants in one pair of axes
+ROWS = 8  # of axes in the first figure: the rest of many receivers is folded
 HEIGHTS = [2.1, 0.75]  # inches of waveforms and of their residuals
 NARROW = 3.3  # inches of a panel: figures of twice its width have two side by side
 THIN = 1.4  # points, the widest line of residuals
@@ -67,28 +68,36 @@ class Overlay(NamedTuple):
 
 
 def waveforms(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
-    """Return the waveforms of every variant at every receiver, with external curves.
+    """Return the waveforms of every variant at every receiver, with external curves; the first
+    figure is of at most ROWS rows, the others are folded.
 
     Variants that differ by one key share one pair of axes per engine, followed by all solutions of
-    each variant.
+    each variant; otherwise the first variant stands before the others.
     """
     overlaid, table = by_variant(comparisons), curve_table(comparisons)
-    every = SceneFigure(
-        f"{name}-waveforms",
-        "Waveforms of every solution, variant by variant" if overlaid else TITLE,
-        f"{STYLES} {BELOW}",
-        draw_solutions(comparisons),
-        table,
-        folded=bool(overlaid),
-    )
+    if not (rows := in_rows(comparisons)):
+        return []
+    solved = [[by_solution(panel) for panel in row] for row in rows]
+    first = ROWS if overlaid else sum(row[0].variant == rows[0][0].variant for row in rows[:ROWS])
+    key = f"Variants differ by {changed_key(comparisons)}; the first is wide and light, the last"
+    variants = f"{key} thin and dark. Dotted: the reference. {BELOW}"
+    every = f"{STYLES} {BELOW}"
+    parts = [
+        ("variants", "Variants overlaid, engine by engine", variants, overlaid[:first]),
+        ("variants-2", "Variants at the other receivers", variants, overlaid[first:]),
+        ("waveforms", "Waveforms of every solution, variant by variant", every, solved),
+    ]
     if not overlaid:
-        return [every]
-    title, figure = "Variants overlaid, engine by engine", draw_overlays(overlaid)
-    caption = (
-        f"Variants differ by {changed_key(comparisons)}; the first is wide and light, the last "
-        f"thin and dark. Dotted: the reference. {BELOW}"
-    )
-    return [SceneFigure(f"{name}-variants", title, caption, figure, table), every]
+        title = f"{TITLE}, {rows[0][0].variant}" if len(comparisons) > 1 else TITLE
+        parts = [
+            ("waveforms", title, every, solved[:first]),
+            ("waveforms-2", "Waveforms of the other variants or receivers", every, solved[first:]),
+        ]
+    return [
+        SceneFigure(f"{name}-{stem}", title, caption, draw_overlays(grid), table, folded=k > 0)
+        for k, (stem, title, caption, grid) in enumerate(parts)
+        if grid
+    ]
 
 
 def figure(
@@ -125,13 +134,14 @@ def draw_overlays(
         if len({overlay.quantity for overlay, *_ in pairs}) == 1:
             share(upper for _, upper, *_ in pairs)
         for overlay, upper, *lower in pairs:
-            _draw_waveforms(upper, overlay)
+            draw_waveforms(upper, overlay)
             if lower:
                 _draw_residuals(lower[0], overlay)
     return figure
 
 
-def _draw_waveforms(ax: Axes, overlay: Overlay) -> None:
+def draw_waveforms(ax: Axes, overlay: Overlay) -> None:
+    """Draw an overlay into axes."""
     unit = DRAWN[UNITS[overlay.quantity]]
     # A velocity has no static state but the remainder of a relaxation.
     rests = overlay.at_rest and overlay.quantity != "velocity"
@@ -148,7 +158,7 @@ def _draw_residuals(ax: Axes, overlay: Overlay) -> None:
     largest = max(float(residual.abs().max()) for _, residual in found)
     peak = max(float(t.curve.abs().max()) for t in overlay.traces)
     unit = unit_for(UNITS[overlay.quantity], largest)
-    size = f", at most {100 * largest / peak:.2g}\u00a0% of the peak" if peak else ""
+    size = f", ≤ {100 * largest / peak:.2g}\u00a0% of the peak" if peak else ""
     set_heading(ax, f"less {overlay.reference} ({unit.name}){size}", small=True)
     ax.locator_params(axis="y", nbins=4)
     thin = [(r, t.style._replace(width=min(t.style.width, THIN)), t.label) for t, r in found]
@@ -173,7 +183,9 @@ def by_solution(panel: Panel) -> Overlay:
         if (name := beside.curves.name) in panel.given:
             drawn = given_style(k, len(beside.time))
             traces.append(Trace(name, drawn, panel.given[name]))
-    return Overlay(panel.heading, panel.place.quantity, panel.at_rest, panel.reference, traces)
+    return Overlay(
+        panel.heading, panel.place.quantity, panel.at_rest, label_of(panel.reference), traces
+    )
 
 
 def by_variant(comparisons: list[Comparison]) -> list[list[Overlay]]:
@@ -204,8 +216,8 @@ def _of_engine(engine: str, row: list[Panel]) -> Overlay:
     at_rest = rest.pop() if len(rest) == 1 else 0.0
     traces += [dots for _, dots in references]
     several, place = len({name for name, _ in references}) != 1, row[0].place
-    words = f"the {REFERENCE}" if several else references[0][0]
-    return Overlay(f"{engine}, {place.heading}", place.quantity, at_rest, words, traces)
+    words = f"the {REFERENCE}" if several else label_of(references[0][0])
+    return Overlay(f"{label_of(engine)}, {place.heading}", place.quantity, at_rest, words, traces)
 
 
 def variant_styles(count: int) -> list[Style]:

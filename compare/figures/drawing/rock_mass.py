@@ -26,6 +26,7 @@ SETS = ("#4477aa", "#ee6677", "#228833", "#aa3377", "#ccbb44", "#66ccee")
 OVER = 0.16  # margin for arrows, of the domain's size
 LENGTH, SHORT = 0.12, 0.05  # of the domain's size: arrows of waves, and other arrows
 MOST = 12  # arrows of a pressure on one edge
+FEW = 4  # receivers that are listed with their coordinates
 DENSE = 3000  # contacts above which their lines are thin
 
 
@@ -40,7 +41,6 @@ def sketch_of(scene: RockMass) -> Sketch:
         *_sides(scene, partition),
         *receivers("point", record.points, "o"),
         *receivers("point of a joint", record.joints, "^"),
-        *_coordinates(record.points + record.joints, (high - low)[0]),
         *(shape for wave in scene.waves for shape in _wave(wave, low, high, size)),
         *(shape for load in scene.loads for shape in _load(scene, load, size)),
     ]
@@ -53,7 +53,8 @@ def sketch_of(scene: RockMass) -> Sketch:
         words = f"prestress {', '.join(f'{part:g}' for part in stress)} MPa"
         shapes.append(note(np.array([high[0], above]), words, "right"))
     margin = OVER * (high - low)
-    return Sketch(shapes, low - margin, high + margin, ("x", "y"))
+    at = _listed("points", record.points) + _listed("points of joints", record.joints)
+    return Sketch(shapes, low - margin, high + margin, ("x", "y"), size=at)
 
 
 def _blocks(scene: RockMass, partition: Partition) -> list[Artist]:
@@ -85,14 +86,11 @@ def _sides(scene: RockMass, partition: Partition) -> list[Artist]:
     return shapes
 
 
-def _coordinates(places: list[list[float]], size: float) -> list[Artist]:
-    """Return the coordinates of receivers, on the side where no other one is near."""
-    shapes = []
-    for x, y in places:
-        near = [p for p in places if p[0] - x < 0.3 * size and abs(p[1] - y) < 0.06 * size]
-        way, align = (-1, "right") if [x, y] < max(near) else (1, "left")
-        shapes.append(note(np.array([x + 0.015 * way * size, y]), f"[{x:g}, {y:g}]", align))
-    return shapes
+def _listed(name: str, places: list[list[float]]) -> str:
+    """Return the coordinates of a few receivers, or the number of many, as a line."""
+    few = ", ".join(f"[{x:g}, {y:g}]" for x, y in places[:FEW])
+    words = f"{name} {few} m" if len(places) <= FEW else f"{len(places)} {name}"
+    return f"\n{words}" if places else ""
 
 
 def _wave(wave: Wave, low: np.ndarray, high: np.ndarray, size: float) -> list[Artist]:

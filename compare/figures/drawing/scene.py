@@ -1,6 +1,5 @@
 """The figure of a scene: a drawing for each appearance, its load over time and a legend."""
 
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -26,7 +25,7 @@ TITLE = "The scene"
 CAPTION = (
     "Drawn from the scene file; blue marks: receivers, red: loads and waves, as over time beside."
 )
-PULSE, FOOT, TALLEST = 1.3, 0.8, 5.0  # inches: of a pulse, below a drawing, and of the tallest one
+PULSE, LOW, FOOT, TALLEST = 1.3, 0.75, 0.7, 3.6  # inches: pulse, lowest drawing, below, tallest
 ENTRIES, LINE = 6, 0.25  # of the legend in a line, and inches of one
 SAMPLES = 400
 UNITS = {
@@ -36,29 +35,35 @@ UNITS = {
     "velocity": "m/s",
     "acceleration": "m/s²",
 }
-#: What a drawing shows of a pillar or a rock mass.
+#: What a drawing shows of a pillar or a rock mass beside its lines.
 SEEN = (
-    *("pillar", "soft_layers", "segments", "scatter", "load", "ends", "domain", "regions"),
-    *("joint_sets", "waves", "loads", "boundaries", "gravity", "prestress", "record"),
+    *("pillar", "segments", "scatter", "load", "ends", "domain", "regions"),
+    *("waves", "loads", "boundaries", "gravity", "prestress"),
 )
 
 
 def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
     """Return the figure of a scene; variants with the same appearance share a drawing."""
-    drawing: ModuleType = pillar
-    if not isinstance(comparisons[0].scene, Scene):
-        from jointwave.compare.figures.drawing import rock_mass as drawing  # imports shapely
-
-    groups: dict[str, tuple[list[str], Any]] = {}
+    groups: dict[str, tuple[list[str], AnyScene, Sketch]] = {}
     for words, comparison in zip(variant_names(comparisons), comparisons, strict=True):
-        seen = str([getattr(comparison.scene, key, None) for key in SEEN])
-        groups.setdefault(seen, ([], comparison.scene))[0].append(words)
-    scenes = {", ".join(names): scene for names, scene in list(groups.values())[:MOST]}
-    sketches = {words: drawing.sketch_of(scene) for words, scene in scenes.items()}
-    numbers = pd.concat({words: sketch.table() for words, sketch in sketches.items()})
+        scene, sketch = comparison.scene, sketch_of(comparison.scene)
+        seen = f"{[getattr(scene, key, None) for key in SEEN]} {sketch.table().to_csv()}"
+        groups.setdefault(seen, ([], scene, sketch))[0].append(words)
+    few = {", ".join(names): found for names, *found in list(groups.values())[:MOST]}
+    numbers = pd.concat({words: sketch.table() for words, (_, sketch) in few.items()})
     numbers = numbers.rename_axis(["variant", None]).reset_index("variant").reset_index(drop=True)
-    figure = _figure(scenes, list(sketches.values()))
+    scenes = {words: scene for words, (scene, _) in few.items()}
+    figure = _figure(scenes, [sketch for _, sketch in few.values()])
     return SceneFigure(f"{name}-scene", TITLE, CAPTION, figure, numbers)
+
+
+def sketch_of(scene: AnyScene) -> Sketch:
+    """Return the sketch of a pillar or a rock mass."""
+    if isinstance(scene, Scene):
+        return pillar.sketch_of(scene)
+    from jointwave.compare.figures.drawing import rock_mass  # imports shapely
+
+    return rock_mass.sketch_of(scene)
 
 
 def _figure(scenes: dict[str, AnyScene], sketches: list[Sketch]) -> Figure:
@@ -67,7 +72,8 @@ def _figure(scenes: dict[str, AnyScene], sketches: list[Sketch]) -> Figure:
     pairs = 1 if one else 2
     rows, width = -(-len(scenes) // pairs), WIDTH / pairs - PULSE - 0.9
     ratio = max(sketch.ratio for sketch in sketches)
-    height = max(min(TALLEST, ratio * width), PULSE) + FOOT
+    height = max(min(TALLEST, ratio * width), LOW) + FOOT
+    height += LINE * max(sketch.size.count("\n") for sketch in sketches)
     with blank(rows * height + 2 * LINE) as figure:
         widths = [width, PULSE] * pairs
         axes = figure.subplots(rows, 2 * pairs, squeeze=False, width_ratios=widths).reshape(-1, 2)
@@ -101,7 +107,7 @@ def _draw_pulse(ax: Axes, scene: AnyScene) -> None:
     kind = getattr(pulse, "kind", "load")
     words = f"{kind} wave" if kind in ("P", "S") else kind
     ax.set(xlabel="time (ms)", title=f"{words}, {pulse.shape} ({unit.name})")
-    ax.set(anchor="SW", box_aspect=0.8)
+    ax.set(anchor="SW", box_aspect=0.6)
 
 
 def pulse_curve(pulse: Pulse, duration: float) -> tuple[np.ndarray, np.ndarray]:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
+from jointwave.compare.engines import label_of
 from jointwave.compare.misfit.pairs import Comparison
 
 
@@ -42,7 +43,7 @@ def claim(text: str, *figures: int) -> Callable[[Callable[..., tuple[str, bool]]
 
 def listed(numbers: pd.Series | pd.DataFrame, form: str, unit: str = "") -> str:
     """Return the number or the row of numbers of each engine, in the order of the legend."""
-    rows = pd.DataFrame(numbers).iterrows()
+    rows = pd.DataFrame(numbers).rename(index=label_of).iterrows()
     return "; ".join(f"{name} {', '.join(f'{x:{form}}' for x in row)}{unit}" for name, row in rows)
 
 

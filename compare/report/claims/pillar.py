@@ -116,10 +116,10 @@ def mostly_dispersion(comparisons: list[Comparison]) -> tuple[str, bool]:
     holds = rigid < 0.5 * total
     return (
         f"On the paper's free pillar the rigid blocks lie {total:.1%} from the homogenised bar. "
-        f"Their numerical error is {misfit(results[DEM.name], own):.2%} (dem ~ lattice); rigid "
-        f"instead of deformable blocks cost {rigid:.1%} (dem ~ jointed-bar). Elastic rock with its "
-        f"{scene.block_count - 1} joints resolved lies {misfit(jointed, bar):.1%} from the "
-        f"homogenised bar: the joints' own dispersion "
+        f"Their numerical error is {misfit(results[DEM.name], own):.2%}; rigid instead of "
+        f"deformable blocks cost {rigid:.1%}, the misfit from the exact jointed bar. Elastic "
+        f"rock with its {scene.block_count - 1} joints resolved lies {misfit(jointed, bar):.1%} "
+        f"from the homogenised bar: the joints' own dispersion "
         f"{'explains' if holds else 'does not explain'} most of the distance.",
         holds,
     )

@@ -115,7 +115,8 @@ def left_by_the_quiet_end(comparisons: list[Comparison]) -> tuple[str, bool]:
     measured = left.abs().max() / sent.abs().max()
     return (
         f"A dashpot on a full-mass block reflects {quiet_harmonic(scene):.1%} of a harmonic of the "
-        f"load's period, and {predicted:.2%} of the pulse's peak; dem reflects {measured:.2%}.",
+        f"load's period, and {predicted:.2%} of the pulse's peak; {DEM.label} reflect "
+        f"{measured:.2%}.",
         np.isclose(measured, predicted, rtol=0.01),
     )
 
@@ -154,6 +155,6 @@ def matched_end(comparisons: list[Comparison]) -> tuple[str, bool]:
     matched, quiet = found["matched"], found["quiet"][DEM.name]
     return (
         f"Peak of the reflected over the incident pulse with the dashpot behind half a joint: "
-        f"{listed(matched, '.2%')}; {DEM.name} with the quiet end: {quiet:.2%}.",
+        f"{listed(matched, '.2%')}; {DEM.label} with the quiet end: {quiet:.2%}.",
         matched.max() < 0.01 and matched[DEM.name] < quiet,
     )

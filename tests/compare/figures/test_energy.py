@@ -77,7 +77,7 @@ def test_missing_has_an_axis_of_its_own(picture, ink):
 
 def test_caption_says_the_largest_that_is_missing(picture, comparisons):
     worst = ledgers_of(comparisons)[RESIDUAL].abs().max()
-    assert f"dem {worst:.1g}." in picture.caption
+    assert f"rigid blocks {worst:.1g}." in picture.caption
 
 
 def test_no_ledger_no_picture(pillar, compared):

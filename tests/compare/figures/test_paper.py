@@ -77,7 +77,7 @@ def test_what_is_asked_for_is_drawn(pillar):
     runs = [("dem", None), ("exact", "lattice")]
     figure = draw_solutions([solve(scene, runs, [], done.append)], False, printed(190.0, 8.0))
     lines = {line.get_label(): line for line in figure.axes[0].lines}
-    assert {"dem: rigid blocks", "lattice: rigid blocks, exact"} < set(lines)
+    assert {"rigid blocks", "rigid blocks, exact"} < set(lines)
     assert not any("jointed" in label for label in lines) and done == [0.5, 1.0]
     exact = 1e-6 * lattice.solve(scene).stress.values[0]
     np.testing.assert_allclose(lines["lattice: rigid blocks, exact"].get_ydata(), exact)

@@ -55,8 +55,8 @@ def test_difference_from_what_the_engine_is_exactly_is_round_off(pillar):
     inner = result.isel(stress_y=slice(1, -1))
     closed = inner.assign(stress=(("stress_y", "time"), k / p.area * (u[joints - 1] - u[joints])))
     shown, errors = diagrams_of(scene, {"dem": inner, "lattice": closed})
-    assert [d.name for d in shown.diagrams] == ["dem"] and errors.exact
-    assert [d.name for d in errors.diagrams] == ["dem − lattice"]
+    assert [d.name for d in shown.diagrams] == ["rigid blocks"] and errors.exact
+    assert [d.name for d in errors.diagrams] == ["rigid blocks − rigid blocks, exact"]
     assert 0 < errors.diagrams[0].share < 1e-9
 
 
@@ -132,13 +132,16 @@ def test_engines_stand_beside_each_other_and_their_errors_apart(pillar):
     scene = pillar(pillar__length=10.0, record__stress=[5.0], time__duration=0.02)
     shown, errors = diagrams_of(scene, along_pillar(scene))
     assert [d.name for d in shown.diagrams] == [
-        "dem",
-        "dem − continuum-jointed",
-        "dem − continuum-equivalent",
+        "rigid blocks",
+        "rigid blocks − jointed rock",
+        "rigid blocks − homogenised rock",
         "continuum-equivalent − continuum-jointed",
     ]
     names = [d.name for d in errors.diagrams]
-    assert names[:2] == ["dem − lattice", "continuum-jointed − jointed-bar"]
+    assert names[:2] == [
+        "rigid blocks − rigid blocks, exact",
+        "jointed rock − jointed bar, exact",
+    ]
     assert names[2].startswith("continuum-equivalent − ") and len(names) == 3
     picture = space_time("fig", scene, "as it stands", shown)
     assert picture.title == "Stress along the pillar over time, as it stands"

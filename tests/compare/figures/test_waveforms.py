@@ -69,7 +69,7 @@ def test_variants_of_one_key_share_a_pair_of_axes_an_engine(pillar, key):
     found = solved(*(s.model_copy(update={"name": n}) for s, n in zip(scenes, "ab", strict=True)))
     assert changed_key(found) == key
     ((dem, jointed, bar),) = by_variant(found)
-    for overlay, engine in ((dem, "dem"), (jointed, "continuum-jointed")):
+    for overlay, engine in ((dem, "rigid blocks"), (jointed, "jointed rock")):
         waves = [t for t in overlay.traces if t.label != REFERENCE]
         assert [t.label for t in waves] == ["a", "b"] and engine in overlay.heading
         for trace, comparison in zip(waves, found, strict=True):
