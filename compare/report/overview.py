@@ -41,8 +41,9 @@ def _distance(engine: str, scenes: list[SolvedScene]) -> str:
         return NOT_CHECKED.word
     against = dict.fromkeys(v.against for one in scores for v in one.variants if v.against)
     names = " or ".join(map(_reference, against)) if len(against) <= FEW else "the finest physics"
-    near = f"within {percent(max(found), 2)} % of {names}"
-    said = near if max(found) <= CLOSE else f"up to {percent(max(found), 2)} % from {names}"
+    apart = percent(max(found), 2).removeprefix("< ")
+    close = max(found) <= CLOSE
+    said = f"within {apart} % of {names}" if close else f"up to {apart} % from {names}"
     unchecked = sum(bool(one.unchecked) for one in scores)
     return f"{said}, {NOT_CHECKED.word} on {unchecked} of {len(scenes)}," if unchecked else said
 

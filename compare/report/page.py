@@ -54,10 +54,11 @@ def unbroken(text: str) -> str:
 
 
 def in_words(text: Any) -> str:
-    """Return the name of a solution, or of a pair "one ~ other (%)", in words; other text as it
-    is."""
-    pair, percent_sign, rest = str(text).partition(" (%)")
-    return " ~ ".join(map(label_of, pair.split(" ~ "))) + percent_sign + rest
+    """Return the name of a solution, of a pair "one ~ other (%)", or of one to see, in words; other
+    text as it is."""
+    reason, see, name = str(text).rpartition(": see ")
+    pair, unit, rest = name.partition(" (%)")
+    return reason + see + " ~ ".join(map(label_of, pair.split(" ~ "))) + unit + rest
 
 
 def rows(table: pd.DataFrame) -> Markup:

@@ -46,12 +46,12 @@ def overlaps():
 
 
 @pytest.fixture(scope="session")
-def shows_verdict_and_cost():
+def shows_picture_and_answer():
     """Return a function that fails unless the first screen of an open page shows both."""
 
     def check(page, width, height):
-        for place in (page.locator(".grade").first, page.locator("ul.lead")):
-            box = place.bounding_box()
+        picture, answer = page.locator("#overview-figure"), page.locator("ul.lead")
+        for box in (picture.bounding_box(), answer.bounding_box()):
             assert box["x"] >= 0 and box["x"] + box["width"] <= width
             assert box["y"] + box["height"] <= height
         assert "time" in page.locator("ul.lead").inner_text()

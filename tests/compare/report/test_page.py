@@ -30,13 +30,14 @@ def page(tmp_path):
     """Return a function that renders a page of nothing but the given parts, without its style."""
     nothing = {
         "subtitle": "About",
+        "picture": None,
         "lead": {},
         "summary": pd.DataFrame(),
         "claims": [],
         "about": None,
+        "every_scene": [],
         "scenes": [],
         "rock_masses": [],
-        "rock_lead": {},
         "studies": [],
         "contents": {},
         "command": "jointwave report",
@@ -68,7 +69,9 @@ def scene(tmp_path, figure, pillar):
         shown = [Shown(one, "What is seen.", folded) for one, folded in figures]
         files = {"misfits": tmp_path / "misfits.csv"}
         about = {}, pd.Series(), {}
-        return SolvedScene(request, one, {"dem": 1.0}, shown, list(claims), tables, files, *about)
+        return SolvedScene(
+            request, one, {"dem": 1.0}, None, shown, list(claims), tables, files, *about
+        )
 
     return make
 
@@ -85,7 +88,14 @@ def test_a_failed_claim_is_red_and_named_at_the_top(page, scene):
 
 def test_a_claim_about_the_whole_that_fails_is_red(page):
     html = page(about=Claim("It is not so.", False))
-    assert '<p class="fails">It is not so.</p>' in html
+    assert '<p class="fails">' in html and "It is not so.</p>" in html
+
+
+def test_solutions_and_pairs_of_them_are_in_words(page):
+    index = pd.Index(["dem ~ jointed-bar", "lab.csv ~ continuum-jointed"], name="pair")
+    html = page(summary=pd.DataFrame({"fig. 2 (%)": [0.5, 1.0], "of": ["lattice", "no"]}, index))
+    assert "rigid blocks ~ jointed bar, exact" in html and "lab.csv ~ jointed rock" in html
+    assert "<td>rigid blocks, exact</td>" in html
 
 
 def test_text_of_scenes_is_escaped(page, scene):

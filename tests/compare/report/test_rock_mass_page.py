@@ -38,6 +38,7 @@ def test_it_has_every_picture_and_nothing_of_pillars(found):
     text, report = found
     drawn = re.findall(r'<figure id="square-([a-z-]+)-figure"', text)
     assert drawn == ["scene", "waveforms", "spectra", "energy"]
+    assert text.index('id="overview-figure"') < text.index('class="lead"')
     assert "pillar" not in text and not report.page["rock_masses"]
 
 

@@ -1,6 +1,7 @@
 """Verdicts on engines, from synthetic results with known distances."""
 
 from math import nan
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -106,8 +107,9 @@ def ranked(seconds, **total):
     return solved(found, dict(zip(found, seconds, strict=True)))
 
 
-def solved(scores, seconds):
-    return SolvedScene(None, None, seconds, [], [], {}, {}, scores, None, {})
+def solved(scores, seconds, kind="pillar"):
+    scene = SimpleNamespace(kind=kind)
+    return SolvedScene(None, scene, seconds, None, [], [], {}, {}, scores, None, {})
 
 
 def test_costs_are_ratios_to_the_cheapest_of_each_scene():
@@ -119,14 +121,25 @@ def test_costs_are_ratios_to_the_cheapest_of_each_scene():
     said = lead(scenes)
     assert list(said) == ["dem", "continuum-jointed"]
     assert [[*one.costs.values()] for one in scenes] == [[1, pytest.approx(15)], [2, 1], [1]]
-    assert "0.2 to 4 % from the finest physics" in said["dem"]
-    assert "1.0× to 2.0× the time of the cheapest" in said["dem"]
-    assert "0 to < 0.001 %" in said["continuum-jointed"]
+    assert said["dem"] == (
+        "Rigid blocks are within 4.0 % of the exact jointed bar; 1.0× to 2.0× the time of the "
+        "cheapest."
+    )
+    assert "within 0.001 % of the exact jointed bar" in said["continuum-jointed"]
 
 
 def test_the_cheapest_everywhere_says_its_seconds():
     said = lead([ranked([2e-3], dem=0.04), ranked([3.14], dem=0.04)])
-    assert said["dem"].endswith("cheapest, 2 ms to 3.1 s a run.")
+    assert said["dem"].endswith("the cheapest: 2 ms to 3.1 s a run.")
+
+
+def test_pillars_and_rock_masses_have_each_their_own_distance():
+    near, far = ({"dem": scored(x, "jointed-bar")} for x in (0.04, 0.28))
+    said = lead([solved(near, {"dem": 1.0}), solved(far, {"dem": 1.0}, "rock mass")])
+    assert said["dem"].startswith(
+        "Rigid blocks are within 4.0 % of the exact jointed bar for the pillar and up to 28 % from "
+        "the exact jointed bar for the rock mass"
+    )
 
 
 def test_an_engine_without_a_distance_is_not_given_one():
