@@ -14,7 +14,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.figures.export import Drawn, save
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.lead import lead_figure
-from jointwave.compare.figures.panels import panels
+from jointwave.compare.figures.receivers import panels
 from jointwave.compare.figures.scene_figures import along_pillar, figures_of
 from jointwave.compare.figures.tables import distance_frame, reading_frame
 from jointwave.compare.misfit.pairs import Comparison
