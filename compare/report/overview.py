@@ -23,7 +23,7 @@ def _sentence(engine: str, scenes: list[SolvedScene]) -> str:
     kinds = dict.fromkeys(one.scene.kind for one in scenes)
     of_kind = {kind: [one for one in scenes if one.scene.kind == kind] for kind in kinds}
     apart = [
-        _distance(engine, some) + f" for the {kind}{'s' * (len(some) > 1)}" * (len(kinds) > 1)
+        _distance(engine, some, f" for the {kind}{'s' * (len(some) > 1)}" * (len(kinds) > 1))
         for kind, some in of_kind.items()
     ]
     costs = [one.costs[engine] for one in scenes]
@@ -33,19 +33,20 @@ def _sentence(engine: str, scenes: list[SolvedScene]) -> str:
     return f"{ENGINES[engine].sentence} {' and '.join(apart)}; {cost}."
 
 
-def _distance(engine: str, scenes: list[SolvedScene]) -> str:
-    """Return the largest misfit from the references, which are named if there are few."""
+def _distance(engine: str, scenes: list[SolvedScene], of: str) -> str:
+    """Return the largest misfit from the references, which are named if there are few; of : which
+    scenes, in words."""
     scores = [one.scores[engine] for one in scenes]
     found = [x for one in scores if not isnan(x := one.total.judged)]
     if not found:
-        return NOT_CHECKED.word
+        return NOT_CHECKED.word + of
     against = dict.fromkeys(v.against for one in scores for v in one.variants if v.against)
     names = " or ".join(map(_reference, against)) if len(against) <= FEW else "the finest physics"
     apart = percent(max(found), 2).removeprefix("< ")
     close = max(found) <= CLOSE
     said = f"within {apart} % of {names}" if close else f"up to {apart} % from {names}"
     unchecked = sum(bool(one.unchecked) for one in scores)
-    return f"{said}, {NOT_CHECKED.word} on {unchecked} of {len(scenes)}," if unchecked else said
+    return f"{said}{of}" + f" ({unchecked} of {len(scenes)} {NOT_CHECKED.word})" * bool(unchecked)
 
 
 def _reference(name: str) -> str:

@@ -20,6 +20,7 @@ from jointwave.compare.studies.work_precision import REPORTED
 from jointwave.compare.studies.work_precision import run as run_study
 from jointwave.compare.studies.work_precision import summarise as summarise_study
 
+APPENDIX = ("convergence", "uniform-chain")  # the studies of steps and elements alone
 HARD = 0.5  # of the progress, where the hard cases are asked for
 
 
@@ -38,7 +39,7 @@ def sections(
     for i, name in enumerate(REPORTED, start=1):
         study = load(name)
         found = summarise_study(folder, name, study, run_study(study, folder / name, pool))
-        about = {"id": f"study-{name}", "appendix": name == "convergence"}
+        about = {"id": f"study-{name}", "appendix": name in APPENDIX}
         yield section("study", found, f"jointwave study {name}", **about)
         if i == 1 and others is not None:
             found = peers.summarise(others, folder)

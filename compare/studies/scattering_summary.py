@@ -95,7 +95,7 @@ def draw(name: str, rows: pd.DataFrame) -> Figure:
     points, NAME-k-j-w.
     """
     varied, heading = VARIED[name]
-    with blank(4.2) as figure:
+    with blank(3.6) as figure:
         axes = figure.subplots(1, len(KINDS), squeeze=False, sharey=True)[0]
         for k, (ax, kind) in enumerate(zip(axes, KINDS, strict=True)):
             x, exact = _exact(name, kind)

@@ -127,7 +127,7 @@ def draw(name: str, table: pd.DataFrame, costs: dict[str, str]) -> Figure:
     """
     errors = [error for error in ERRORS if any(len(done(table, error, cost)) for cost in costs)]
     count = table["curve"].nunique()
-    with blank(0.6 + 0.09 * count + 3.4 * len(errors)) as figure:
+    with blank(0.6 + 0.09 * count + 2.8 * len(errors)) as figure:
         axes = figure.subplots(len(errors), len(costs), squeeze=False, sharey="row")
         for i, error in enumerate(errors):
             for j, cost in enumerate(costs):

@@ -21,7 +21,7 @@ from jointwave.compare.misfit.pairs import pairs
 from jointwave.compare.misfit.ranking import own_exact
 
 LEAST = 1e-9  # SI: smaller values count as no motion
-HEIGHT = 3.2  # inches
+HEIGHT = 2.9  # inches
 CAPTION = (
     "Motion relative to the static state: compression is red, tension blue. A difference has its "
     "own colour scale, up to its largest value. A soft layer is dashed."

@@ -23,7 +23,7 @@ from jointwave.compare.misfit.pairs import Comparison
 ASIDE = {"title", "source", "name", "expect", "numerics", "record", "where"}
 MOST = 6  # variants in one pair of axes
 ROWS = 8  # of axes in the first figure: the rest of many receivers is folded
-HEIGHTS = [2.1, 0.75]  # inches of waveforms and of their residuals
+HEIGHTS = [1.9, 0.7]  # inches of waveforms and of their residuals
 NARROW = 3.3  # inches of a panel: figures of twice its width have two side by side
 THIN = 1.4  # points, the widest line of residuals
 REFERENCE = "reference"

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 from matplotlib.artist import Artist
+from matplotlib.text import Text
 
 from jointwave.cases.material.contacts import contacts, welds
 from jointwave.cases.schema.scene import Scene
@@ -60,10 +61,11 @@ def sketch_of(scene: Scene) -> Sketch:
     size = (
         f": {scene.block_count:,} blocks {blocks}{average}, {pillar.side:g} m × {pillar.side:g} m"
     )
+    over = 1.4 if any(isinstance(one, Text) and one.get_text() for one in shapes) else 0.6
     return Sketch(
         shapes,
         np.array([-beside, -half - 0.5 * unit[1]]),
-        np.array([pillar.length + beside, half + 1.4 * unit[1]]),
+        np.array([pillar.length + beside, half + over * unit[1]]),
         ("y", "x"),
         stretch,
         size + (f"; thickness × {stretch:.2g}" if stretch > 1.01 else ""),

@@ -156,7 +156,8 @@ def test_solutions_are_in_words(whole):
     assert not re.findall(r"\bdem\b|continuum-\w+|\blattice\b|jointed-bar", said)
 
 
-HINTS = """() => [...document.querySelectorAll(".scroll, .picture")].filter(e => e.checkVisibility())
+HINTS = """() => [...document.querySelectorAll(".scroll, .picture")]
+  .filter(e => e.checkVisibility())
   .map(e => [e.scrollWidth > e.clientWidth, getComputedStyle(e, "::before").maxHeight !== "0px"])"""
 
 
