@@ -50,7 +50,7 @@ def shows_picture_and_answer():
     """Return a function that fails unless the first screen of an open page shows both."""
 
     def check(page, width, height):
-        picture, answer = page.locator("#overview-figure"), page.locator("ul.lead")
+        picture, answer = page.locator("#overview-picture"), page.locator("ul.lead")
         for box in (picture.bounding_box(), answer.bounding_box()):
             assert box["x"] >= 0 and box["x"] + box["width"] <= width
             assert box["y"] + box["height"] <= height

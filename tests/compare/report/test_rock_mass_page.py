@@ -37,8 +37,8 @@ def found(once, one_joint, in_toml):
 def test_it_has_every_picture_and_nothing_of_pillars(found):
     text, report = found
     drawn = re.findall(r'<figure id="square-([a-z-]+)-figure"', text)
-    assert drawn == ["scene", "waveforms", "spectra", "energy"]
-    assert text.index('id="overview-figure"') < text.index('class="lead"')
+    assert drawn == ["lead", "scene", "waveforms", "spectra", "energy"]
+    assert text.index('id="overview-picture"') < text.index('class="lead"')
     assert "pillar" not in text and not report.page["rock_masses"]
 
 
