@@ -94,7 +94,7 @@ def test_misfits_and_waveforms_of_a_comparison(command, tmp_path):
     bands = pd.read_csv(tmp_path / "ensemble-waveforms.csv")
     median = bands["jointed-bar p50 | stress at y = 5 m (Pa)"]
     np.testing.assert_allclose(median, exact[0], rtol=1e-5, atol=1.0)  # six digits of 1e6 Pa
-    assert "jointed-bar" in (tmp_path / "ensemble-waveforms.svg").read_text()
+    assert "jointed bar, exact" in (tmp_path / "ensemble-waveforms.svg").read_text()
     assert (tmp_path / "ensemble-waveforms.png").read_bytes().startswith(b"\x89PNG")
 
 
