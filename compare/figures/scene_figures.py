@@ -57,15 +57,14 @@ def _space_time(
     name: str, comparisons: list[Comparison], fields: list[dict[str, xr.Dataset]]
 ) -> list[SceneFigure]:
     variants = zip(comparisons, variant_names(comparisons), fields, strict=False)
-    return [
+    figures = [
         space_time(
-            f"{name}-space-time-{k}{'-exact' * shown.exact}",
-            *(comparison.scene, variant, shown),
-            folded=k > 0,
+            f"{name}-space-time-{k}{'-exact' * shown.exact}", comparison.scene, variant, shown
         )
         for k, (comparison, variant, found) in enumerate(variants)
         for shown in diagrams_of(comparison.scene, found)
     ]
+    return figures[:1] + [replace(one, folded=True) for one in figures[1:]]
 
 
 SECTIONS, TIMES = 60, 240  # largest numbers of intervals between sections and between samples

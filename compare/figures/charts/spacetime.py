@@ -96,19 +96,17 @@ def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
     return [*shown, Diagrams(True, *about, errors)] if errors else shown
 
 
-def space_time(
-    name: str, scene: Scene, variant: str, shown: Diagrams, folded: bool = False
-) -> SceneFigure:
+def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneFigure:
     """Return the figure of one variant's diagrams; those of numerical errors are folded.
 
-    name : unique on the page. variant : its name there. folded : in any case.
+    name : unique on the page. variant : its name there.
     """
     title = f"{shown.words} along the pillar over time, {variant}"
     title = f"Numerical error of {title}" if shown.exact else f"{title[0].upper()}{title[1:]}"
     y, time = np.meshgrid(shown.y, shown.time, indexing="ij")
     values = {f"{d.name} ({d.unit.name})": d.values.ravel() for d in shown.diagrams}
     table = pd.DataFrame({"y (m)": y.ravel(), "time (s)": time.ravel(), **values})
-    return SceneFigure(name, title, CAPTION, _draw(scene, shown), table, folded or shown.exact)
+    return SceneFigure(name, title, CAPTION, _draw(scene, shown), table, shown.exact)
 
 
 def _draw(scene: Scene, shown: Diagrams) -> Figure:

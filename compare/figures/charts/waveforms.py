@@ -82,21 +82,18 @@ def waveforms(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     key = f"Variants differ by {changed_key(comparisons)}; the first is wide and light, the last"
     variants = f"{key} thin and dark. Dotted: the reference. {BELOW}"
     every = f"{STYLES} {BELOW}"
+    shown = solved if overlaid else solved[:first]
+    title = f"{TITLE}, {rows[0][0].variant}" if len(comparisons) > 1 else TITLE
+    title = "Waveforms of every solution, variant by variant" if overlaid else title
     parts = [
         ("variants", "Variants overlaid, engine by engine", variants, overlaid[:first]),
         ("variants-2", "Variants at the other receivers", variants, overlaid[first:]),
-        ("waveforms", "Waveforms of every solution, variant by variant", every, solved),
+        ("waveforms", title, every, shown),
+        ("waveforms-2", "Waveforms of the others", every, solved[len(shown) :]),
     ]
-    if not overlaid:
-        title = f"{TITLE}, {rows[0][0].variant}" if len(comparisons) > 1 else TITLE
-        parts = [
-            ("waveforms", title, every, solved[:first]),
-            ("waveforms-2", "Waveforms of the other variants or receivers", every, solved[first:]),
-        ]
     return [
         SceneFigure(f"{name}-{stem}", title, caption, draw_overlays(grid), table, folded=k > 0)
-        for k, (stem, title, caption, grid) in enumerate(parts)
-        if grid
+        for k, (stem, title, caption, grid) in enumerate(part for part in parts if part[-1])
     ]
 
 

@@ -53,8 +53,8 @@ def sketch_of(scene: RockMass) -> Sketch:
         words = f"prestress {', '.join(f'{part:g}' for part in stress)} MPa"
         shapes.append(note(np.array([high[0], above]), words, "right"))
     margin = OVER * (high - low)
-    at = _listed("points", record.points) + _listed("points of joints", record.joints)
-    return Sketch(shapes, low - margin, high + margin, ("x", "y"), size=at)
+    places = _listed("points", record.points) + _listed("points of joints", record.joints)
+    return Sketch(shapes, low - margin, high + margin, ("x", "y"), size=places)
 
 
 def _blocks(scene: RockMass, partition: Partition) -> list[Artist]:

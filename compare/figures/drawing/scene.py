@@ -49,11 +49,12 @@ def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
         scene, sketch = comparison.scene, sketch_of(comparison.scene)
         seen = f"{[getattr(scene, key, None) for key in SEEN]} {sketch.table().to_csv()}"
         groups.setdefault(seen, ([], scene, sketch))[0].append(words)
-    few = {", ".join(names): found for names, *found in list(groups.values())[:MOST]}
-    numbers = pd.concat({words: sketch.table() for words, (_, sketch) in few.items()})
+    few = list(groups.values())[:MOST]
+    scenes = {", ".join(names): scene for names, scene, _ in few}
+    sketches = [sketch for *_, sketch in few]
+    numbers = pd.concat(dict(zip(scenes, (one.table() for one in sketches), strict=True)))
     numbers = numbers.rename_axis(["variant", None]).reset_index("variant").reset_index(drop=True)
-    scenes = {words: scene for words, (scene, _) in few.items()}
-    figure = _figure(scenes, [sketch for _, sketch in few.values()])
+    figure = _figure(scenes, sketches)
     return SceneFigure(f"{name}-scene", TITLE, CAPTION, figure, numbers)
 
 
