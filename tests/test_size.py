@@ -22,10 +22,10 @@ from jointwave.compare.exact.bar import images
 from jointwave.compare.misfit.external_netcdf import read_netcdf
 from jointwave.compare.misfit.places import COMPONENT_DIMENSIONS, QUANTITIES
 from jointwave.compare.report import peers
-from jointwave.compare.runs.checkpoint.resume import result_of
 from jointwave.compare.runs.output import read_kept
 from jointwave.compare.studies.measure import PointRow
 from jointwave.results.labels import RECEIVERS
+from jointwave.results.netcdf import load_netcdf
 
 AT_ONCE = 200e6  # bytes: what reading a scene of ten million blocks takes, not one run refused here
 
@@ -269,7 +269,7 @@ BOMBS = {
     "curves in one place": lambda p: read_netcdf(
         classic(p / "a.nc", 2**20, NETCDF_NAMES, 9_000_000), 3
     ),
-    "a result": lambda p: result_of(classic(p / "a.nc", 2**28, ["stress"], 2**31 + 4096), {}),
+    "a result": lambda p: load_netcdf(classic(p / "a.nc", 2**28, ["stress"], 2**31 + 4096)),
     "curves as CSV": lambda p: read_columns(lines(p / "a.csv", "0,0\n" * 5_000_000)),
     "curves in one line": lambda p: read_columns(lines(p / "a.csv", "0," * 1_500_000)),
     "a hollow CSV": lambda p: read_columns(hollow(p / "a.csv", b"0,0\n", 20_000_000)),

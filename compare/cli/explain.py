@@ -18,14 +18,13 @@ from jointwave.compare.cli.terminal import say, show_facts
 from jointwave.compare.engines import ENGINES, solver
 from jointwave.compare.misfit.ranking import NOT_CHECKED, Reference, applicable, reference_of
 from jointwave.compare.readings.entering_wave import entering_waves
-from jointwave.compare.runs import timings
+from jointwave.compare.solvers.limiting import limiting
 from jointwave.compare.solvers.record import Prepared
 from jointwave.compare.solvers.wave_speeds import speeds
-from jointwave.compare.studies.step_cost import step_costs, with_every_effect
 
 #: The units of facts, and what facts are called whose names do not say it.
 UNITS = {
-    "m": "from to block length",
+    "m": "from to block length at size",
     "m2": "area",
     "m/s": "bar_speed shear_speed intact_bar_speed velocity p_speed s_speed",
     "s": "critical dt",
@@ -38,6 +37,10 @@ LABELS = {key: f"{key}, {unit}" for unit, keys in UNITS.items() for key in keys.
     "bytes_at_most": "bytes at most, during subdivision",
     "rigid_blocks_lack": "part of the intact rock's stiffness that rigid blocks cannot represent",
     "speeds": "speeds of P and S waves, m/s",
+    "limits_the_step": "limits the step",
+    "lifted": "part of all that is lifted with it",
+    "longer_step": "factor of the step without",
+    "mass_added": "part of the mass that scaling adds",
     "transmission": "transmission from the segment before",
 }
 UNCHECKED = Reference("", f"{NOT_CHECKED}: no other solution resolves more")
@@ -45,11 +48,10 @@ UNCHECKED = Reference("", f"{NOT_CHECKED}: no other solution resolves more")
 Facts = dict[str, Any]
 
 
-def explanation(scene: AnyScene, measured: bool = False) -> Facts:
+def explanation(scene: AnyScene) -> Facts:
     """Return the effects of a scene, its steps, and what can solve it, SI.
 
-    measured : time a step of a pillar's rigid blocks, which may compile kernels for a minute; else
-    its cost is that of earlier runs here. Raises SceneError where no engine that applies can run.
+    Raises SceneError where no engine that applies can run.
     """
     answers = applicable(scene)
     able = [name for name, answer in answers.items() if answer]
@@ -59,17 +61,26 @@ def explanation(scene: AnyScene, measured: bool = False) -> Facts:
     return {
         "title": scene.title,
         "variant": scene.name,
-        **(_pillar(scene, measured) if isinstance(scene, Scene) else _rock_mass(scene, runs)),
+        **(_pillar(scene) if isinstance(scene, Scene) else _rock_mass(scene, runs)),
         "enters": [wave._asdict() for wave in entering_waves(scene)],
         "effects": {e.name: {"active": e.active, "why": e.reason} for e in effects(scene)},
         "steps": [
             {"engine": name, "critical": r.critical, "dt": r.dt, "steps": r.steps, "bytes": r.bytes}
             for name, r in runs.items()
         ],
+        "limits_the_step": _limits(
+            scene, [name for name, run in runs.items() if run.scheme != "implicit"]
+        ),
         "cannot_run": failures,
         "solutions": {k: {"applies": bool(a), "why_not": a.reason} for k, a in answers.items()},
         "references": {name: r._asdict() for name, r in references.items()},
     }
+
+
+def _limits(scene: AnyScene, engines: Iterable[str]) -> list[Facts]:
+    """Return the block or the element that limits the explicit step of each engine, if any does."""
+    found = ((name, limiting(name, ENGINES[name].model, scene)) for name in engines)
+    return [{"engine": name, **facts} for name, facts in found if facts]
 
 
 def _prepared(scene: AnyScene, engines: list[str]) -> tuple[dict[str, Prepared], dict[str, str]]:
@@ -87,10 +98,9 @@ def _prepared(scene: AnyScene, engines: list[str]) -> tuple[dict[str, Prepared],
     return runs, {name: str(error) for name, error in errors.items()}
 
 
-def _pillar(scene: Scene, measured: bool) -> Facts:
+def _pillar(scene: Scene) -> Facts:
     """Return the rock of each segment of a pillar, with the long-wave stress 2 Z2 / (Z1 + Z2) that
-    it takes from the one before; and what a step of one rigid block costs here, of this scene and
-    with every effect, ns, None where it was never measured."""
+    it takes from the one before."""
     p = calibrate(scene)
     before = [p.each[0], *p.each]
     ends = p.contact_y[np.cumsum([0, *(one.block_count for one in p.each)])].tolist()
@@ -112,11 +122,7 @@ def _pillar(scene: Scene, measured: bool) -> Facts:
         }
         for (start, stop), one, other in zip(pairwise(ends), p.each, before, strict=False)
     ]
-    costs = [timings.block_step(scene), None]
-    if measured:
-        costs = [one.ns for one in step_costs([scene, with_every_effect(scene)])]
-    names = "nanoseconds_per_block_step", "nanoseconds_with_everything"
-    return {"segments": segments, **dict(zip(names, costs, strict=True))}
+    return {"segments": segments}
 
 
 def _rock_mass(scene: RockMass, engines: Iterable[str]) -> Facts:

@@ -1,61 +1,70 @@
 """The output of `--dry-run`: the estimates of runs, one by one and together."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from time import process_time
 from typing import Any
 
 import pandas as pd
 
 from jointwave.cases.size import spoken
-from jointwave.compare.cli.terminal import print_json, progress, say, show_table
+from jointwave.compare.cli.frames import show_frame
+from jointwave.compare.cli.terminal import print_json, progress, say
 from jointwave.compare.studies.forecast import Run, forecasts
 from jointwave.compare.text import in_seconds
 
-UNKNOWN = "no estimate"  # no such run has been timed on this machine
+UNKNOWN = "no estimate"
+HEADS = {
+    **{name: name for name in ("point", "variant", "engine", "scheme", "steps", "size")},
+    **{"times": "runs", "seconds": "time", "bytes": "memory"},
+}
+WORDS: dict[str, Callable[[Any], str]] = {
+    "steps": "{:,}".format,
+    "times": "{:,.0f}".format,
+    "seconds": lambda x: UNKNOWN if pd.isna(x) else in_seconds(x),
+    "bytes": spoken,
+}
+MOST = 25  # rows; more are summed by the part of the command and the engine
 
 
 def show_forecasts(
-    wanted: Sequence[Run], as_json: bool, failing: Mapping[str, str] | None = None
+    wanted: Sequence[Run],
+    as_json: bool,
+    failing: Mapping[str, str] | None = None,
+    drawing: Mapping[str, float] = {},
 ) -> None:
-    """Print the estimated cost of each run, and of all together.
+    """Print the estimated cost of each run, and of the whole command.
 
-    failing : points of a sweep that would not run, with the reason; more are found here. Raises
-    SceneError for a run that is not possible and no point of a sweep.
+    failing : points of a sweep that would not run, with the reason; more are found here. drawing :
+    seconds of it, by what is drawn. Raises SceneError for a run that is not possible and no point
+    of a sweep.
     """
+    begun = process_time()  # the command begins as this one has begun
     with progress(f"{len(wanted)} runs") as advance:
-        table, failed = forecasts(wanted, advance)
-    failed = {**(failing or {}), **failed}
+        table, failed = forecasts(wanted, advance, True)
+    failed, count = {**(failing or {}), **failed}, table.times.sum()
+    total, read = begun + table.seconds.sum(), sum(run.is_read for run in wanted)
+    total, untimed = total + sum(drawing.values()), int(table.seconds.isna().sum())
     if as_json:
-        facts: dict[str, Any] = {"runs": table.to_dict("records"), "seconds": table.seconds.sum()}
-        facts |= {"untimed": int(table.seconds.isna().sum())}
+        facts: dict[str, Any] = {"runs": table.to_dict("records"), "seconds": total, "read": read}
+        facts |= {"drawing": drawing, "untimed": untimed}
         failures = [{"point": point, "message": text} for point, text in failed.items()]
         print_json(facts | {"failing": failures})
         return
-    first = 0 if table.point.any() else 1
-    columns = ["", "variant", "engine", "scheme", "steps", "size", "time", "memory"]
-    show_table(columns[first:], [_cells(one)[first:] for one in table.itertuples()])
+    if len(table) > MOST:
+        how = {"times": "sum", "seconds": "sum", "bytes": "max"}
+        table = table.groupby(["point", "engine"], sort=False, as_index=False).agg(how)
+    show_frame(_shown(table))
     for point, message in failed.items():
         say(f"would fail: {point}: {message}", "red")
-    most = f"the largest needs about {spoken(table.bytes.max())} of memory; " if len(table) else ""
-    say(f"{len(table)} would run, {_time(table.seconds)}; {most}nothing was run or written")
+    said = [f"{read} would be read"] * bool(read)
+    said += [f"{what} drawn in {in_seconds(seconds)}" for what, seconds in drawing.items()]
+    said += [f"about {in_seconds(total)} of CPU time"]
+    said += [f"{untimed} not timed on this machine"] * bool(untimed)
+    say(f"{count:,.0f} would run, {', '.join(said)}; nothing was written")
 
 
-def _time(seconds: pd.Series) -> str:
-    """Return in words the total seconds of runs, some of which were never timed."""
-    untimed = int(seconds.isna().sum())
-    if untimed and not seconds.sum():
-        return f"{UNKNOWN} of the time: nothing of the kind was timed on this machine"
-    others = f", plus {untimed} not timed on this machine" if untimed else ""
-    return f"about {in_seconds(seconds.sum())} of CPU time{others}"
-
-
-def _cells(one: Any) -> list[str]:
-    return [
-        one.point,
-        one.variant or "-",
-        one.engine,
-        one.scheme,
-        f"{one.steps:,}" if one.steps else "-",
-        one.size,
-        UNKNOWN if pd.isna(one.seconds) else in_seconds(one.seconds),
-        spoken(one.bytes) if one.steps else f"over {spoken(one.bytes)}",
-    ]
+def _shown(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the table in words, without the columns in which nothing stands."""
+    found = table.assign(**{x: table[x].map(how) for x, how in WORDS.items() if x in table})
+    left = [name for name in HEADS if name in found and found[name].astype(bool).any()]
+    return found[left].rename(columns=HEADS)

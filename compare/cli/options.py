@@ -93,9 +93,18 @@ DryOption = Annotated[
     typer.Option("--dry-run", help="Only print what would run, with time and memory."),
 ]
 StrictOption = Annotated[bool, typer.Option("--strict", help="Treat warnings as errors.")]
+ResultsOption = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="DIR",
+        help="Folder of the scene's results, read where they are the same (default: out/SCENE).",
+    ),
+]
+FreshOption = Annotated[bool, typer.Option("--fresh", help="Compute anew what could be read.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print machine-readable JSON.")]
 
 CORES = os.cpu_count() or 1
+RESULTS = Path("out")  # default folder of the results of all scenes, each in a folder of its name
 
 
 def _print_version(wanted: bool) -> None:
@@ -132,6 +141,11 @@ def load(
         found = [scenes.load(scene, variant, overrides)]
     warn(found, strict)
     return found
+
+
+def results_of(scene: str, given: Path | None = None) -> Path:
+    """Return the folder of a scene's results: as given, else the default one."""
+    return given or RESULTS / Path(scene).stem
 
 
 def warn(

@@ -1,6 +1,6 @@
 """Studies on the terminal: their progress, and their summary."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -12,7 +12,8 @@ from jointwave.compare.cli.terminal import print_json, progress, say
 from jointwave.compare.engines import Progress
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.runs.processes import started
-from jointwave.compare.studies.forecast import Run
+from jointwave.compare.runs.reuse import ResultFolder
+from jointwave.compare.studies.forecast import Run, runs_of
 from jointwave.compare.studies.store import Pool, on_pool, plain
 from jointwave.compare.studies.summary import Summary
 from jointwave.compare.studies.sweep import Sweep, Work, run
@@ -43,7 +44,7 @@ def run_and_show(
 def sweep(
     asked: Sweep,
     work: Work,
-    runs_of: Callable[[AnyScene], list[Run]],
+    solvers: Callable[[AnyScene], Iterable[str]],
     workers: int,
     dry: bool,
     as_json: bool,
@@ -51,13 +52,16 @@ def sweep(
 ) -> None:
     """Run every case of a sweep and show its table; dry : only print estimates.
 
-    runs_of : returns the runs of a scene. strict : treat warnings as errors. Raises SceneError if
-    all cases fail.
+    solvers : returns the names of a scene's solvers. strict : treat warnings as errors. Raises
+    SceneError if all cases fail.
     """
     warn(asked.scenes, strict)
     if dry:
-        valid = [(case.point, case.scene) for case in asked.cases if case.scene is not None]
-        runs = [(point, scene, name) for point, scene in valid for *_, name in runs_of(scene)]
+        runs: list[Run] = []
+        for case in asked.cases:
+            if case.scene is not None:
+                stored = ResultFolder(case.folder)
+                runs += runs_of(solvers(case.scene), case.scene, stored, point=case.point)
         failing = {case.point: case.message for case in asked.cases if case.scene is None}
         show_forecasts(runs, as_json, failing)
         return

@@ -12,6 +12,7 @@ from jointwave.compare.misfit.ranking import applicable
 from jointwave.compare.runs.comparison import solved
 from jointwave.compare.runs.jobs import names_of
 from jointwave.compare.runs.output import refuse_foreign
+from jointwave.compare.runs.reuse import NOWHERE, ResultFolder
 
 #: First bytes of a file of each kind: only such a file is overwritten.
 BEGINS = {".pdf": (b"%PDF",), ".svg": (b"<?xml", b"<svg"), ".png": (b"\x89PNG",)}
@@ -26,13 +27,17 @@ def check_file(path: Path) -> None:
 
 
 def solve(
-    scene: AnyScene, runs: list[tuple[str, str | None]], curves: list[Any], progress: Progress
+    scene: AnyScene,
+    runs: list[tuple[str, str | None]],
+    curves: list[Any],
+    progress: Progress,
+    stored: ResultFolder = NOWHERE,
 ) -> Comparison:
     """Return a scene's solutions and external curves.
 
     runs : (engine, model) each, see `compare.runs.jobs`; empty: all that apply.
     """
     asked = {name: applies(name, scene) for run in runs for name in names_of(*run, scene)}
-    found = solved(scene, asked or applicable(scene), progress)
+    found = solved(scene, asked or applicable(scene), progress, stored)
     found.besides += [align_curve(curve, scene, found.results, False) for curve in curves]
     return found

@@ -7,7 +7,7 @@ import xarray as xr
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.engines import ENGINES, applies, names, solve
+from jointwave.compare.engines import ENGINES, applies, names
 from jointwave.compare.figures.charts.energy import energy
 from jointwave.compare.figures.charts.peak_velocities import peak_velocities
 from jointwave.compare.figures.charts.propagation import propagation
@@ -19,6 +19,7 @@ from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import own_exact
+from jointwave.compare.runs.reuse import NOWHERE, ResultFolder
 
 
 def figures_of(
@@ -68,28 +69,33 @@ def _space_time(
 
 
 SECTIONS, TIMES = 60, 240  # largest numbers of intervals between sections and between samples
+ALONG = "-along-pillar"  # in the names of files of these results
 FEWEST = 8  # blocks; fewer show no wave
 
 
-def along_pillar(scene: AnyScene) -> dict[str, xr.Dataset]:
+def along_pillar(scene: AnyScene, stored: ResultFolder = NOWHERE) -> dict[str, xr.Dataset]:
     """Return results by name at joints or blocks all along the pillar, at some 240 times.
 
     Results of the engines, each run as in the comparison, and of the exact solution of each one's
     own model. Empty if the pillar has too few blocks to show a wave, and for a rock mass.
     Raises the errors of `compare.engines.solve`.
     """
+    found = {}
+    for name, result in stored.solve(*runs_along(scene), None, ALONG):
+        step = max(1, -(-(result.sizes["time"] - 1) // TIMES))
+        found[name] = result.isel(time=slice(None, None, step)).copy(deep=True)  # frees the rest
+    return found
+
+
+def runs_along(scene: AnyScene) -> tuple[list[str], AnyScene]:
+    """Return the solvers of `along_pillar`, and the scene that they solve."""
     if not isinstance(scene, Scene) or scene.block_count < FEWEST:
-        return {}
+        return [], scene
     wide = recorded_along(scene)
     every = [name for name in names() if applies(name, wide)]
     engines = [name for name in every if name in ENGINES]
     exact = [own for name in engines if (own := own_exact(name, every, wide))]
-    found = {}
-    for name in dict.fromkeys([*engines, *exact]):
-        result = solve(name, wide)
-        step = max(1, -(-(result.sizes["time"] - 1) // TIMES))
-        found[name] = result.isel(time=slice(None, None, step)).copy(deep=True)  # frees the rest
-    return found
+    return list(dict.fromkeys([*engines, *exact])), wide
 
 
 def recorded_along(scene: Scene) -> Scene:

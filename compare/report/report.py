@@ -2,7 +2,7 @@
 
 import platform
 import shlex
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from importlib.metadata import version
 from math import isfinite
@@ -17,19 +17,27 @@ from jointwave.compare.report import peers
 from jointwave.compare.report.overview import lead
 from jointwave.compare.report.page import render
 from jointwave.compare.report.scenes import (
+    DRAWING,
     ROCK_MASSES,
     SceneRequest,
     SolvedScene,
     asked_for,
     solve,
 )
+from jointwave.compare.report.scenes import planned as planned_of_scene
+from jointwave.compare.report.sections import planned as planned_of_sections
 from jointwave.compare.report.sections import sections
+from jointwave.compare.runs import timings
 from jointwave.compare.runs.output import write_text
+from jointwave.compare.runs.reuse import NOWHERE, ResultFolder
 from jointwave.compare.runs.timings import measured_on
+from jointwave.compare.scenes import load_variants
+from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.store import DIED, Pool, alone, in_processes
 from jointwave.compare.text import percent
 
 SCENES = 0.4  # of the progress of the paper's page; studies and hard cases are the rest
+UNTIMED = 2.0  # s, the drawing of a variant where none was timed on this machine
 LONG = 0.5  # s: a run that has taken so long is not repeated
 PAPERS = (
     "Figures 2 to 10 of Guo & Li (2002), Chin. J. Rock Mech. Eng. 21(8), 1124–1129, by rigid "
@@ -58,41 +66,58 @@ def build(
     scenes: Sequence[str] = (),
     peers_table: Path | None = None,
     hard: bool = True,
+    stored: ResultFolder = NOWHERE,
 ) -> Report:
     """Solve scenes by all that applies, and write their figures, tables and `out`/index.html.
 
     `scenes` are files or names of shipped ones; without any, the page has the paper's figures and
     after them the studies. `progress` is called with the finished fraction of the whole. `workers`
     processes share the work. `peers_table` is what `make bench-peers` wrote; None: where it writes,
-    if it did. `hard` : also put both engines to the hard cases.
+    if it did. `hard` : also put both engines to the hard cases. `stored` : the folder with a folder
+    of results for each scene.
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
     tell, out = progress or (lambda fraction: None), Path(out)
     pool = partial(in_processes, workers)
     requests = asked_for(scenes)
+    work = partial(solve, folder=out / "figures", stored=stored)
     if scenes:
-        solved = _solve(out, requests, pool, tell)
+        solved = _solve(work, requests, pool, tell)
         title = solved[0].scene.title if len(solved) == 1 else f"{len(solved)} scenes"
         command = f"jointwave report {shlex.join(dict.fromkeys(scenes))} --out DIR"
         page = _page(title, command, solved)
     else:
         others = peers.read(peers_table)
         requests += asked_for(ROCK_MASSES)
-        solved = _solve(out, requests, pool, lambda x: tell(SCENES * x))
+        solved = _solve(work, requests, pool, lambda x: tell(SCENES * x))
         studies = list(sections(out, pool, hard, others, lambda x: tell(SCENES + (1 - SCENES) * x)))
         paper, rock = solved[: -len(ROCK_MASSES)], solved[-len(ROCK_MASSES) :]
         page = _page(PAPERS, "jointwave report --out DIR", paper, rock, studies)
     return Report(write_text(out / "index.html", render(page, out)), page)
 
 
+def planned(
+    out: Path, scenes: Sequence[str], stored: ResultFolder
+) -> tuple[list[Run], dict[str, float]]:
+    """Return the runs of `build`, and the seconds of drawing the variants."""
+    requests = asked_for(scenes) + ([] if scenes else asked_for(ROCK_MASSES))
+    found = [run for one in requests for run in planned_of_scene(one, stored)]
+    count = sum(len(load_variants(one.file)) for one in requests)
+    drawing = {f"{count} variants": count * timings.each(DRAWING, UNTIMED)}
+    return found if scenes else found + planned_of_sections(out), drawing
+
+
 def _solve(
-    out: Path, requests: list[SceneRequest], pool: Pool, progress: Progress
+    work: Callable[[SceneRequest], SolvedScene],
+    requests: list[SceneRequest],
+    pool: Pool,
+    progress: Progress,
 ) -> list[SolvedScene]:
     """Return the scenes, solved and drawn by processes, and timed anew while no other process
     should be computing, but for runs that take long."""
     found: dict[str, SolvedScene] = {}
     points = {one.name: one for one in requests}
-    for name, one in pool(partial(solve, folder=out / "figures"), points):
+    for name, one in pool(work, points):
         if one is None:
             raise MemoryError(f"scene {name}: {DIED}")
         found[name] = one

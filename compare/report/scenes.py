@@ -5,6 +5,7 @@ import re
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
+from time import process_time
 from typing import NamedTuple
 
 import pandas as pd
@@ -15,19 +16,24 @@ from jointwave.compare.figures.export import Drawn, save
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.lead import lead_figure
 from jointwave.compare.figures.receivers import panels
-from jointwave.compare.figures.scene_figures import along_pillar, figures_of
+from jointwave.compare.figures.scene_figures import ALONG, along_pillar, figures_of, runs_along
 from jointwave.compare.figures.tables import distance_frame, reading_frame
 from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.misfit.ranking import applicable
 from jointwave.compare.report import tables
 from jointwave.compare.report.claims import claims_of
 from jointwave.compare.report.claims.claim import Claim
 from jointwave.compare.report.claims.pillar import mostly_dispersion
 from jointwave.compare.report.verdict import EngineScore, engine_scores
+from jointwave.compare.runs import timings
 from jointwave.compare.runs.comparison import compare
 from jointwave.compare.runs.output import write_csv
+from jointwave.compare.runs.reuse import NOWHERE, ResultFolder
 from jointwave.compare.scenes import find, load_variants
+from jointwave.compare.studies.forecast import Run, runs_of
 
 PAPER = Path(cases.__file__).parent / "guo-li-2002"
+DRAWING = "drawing of a variant"
 FREE_PILLAR = 3  # the figure that says what the paper's own comparison is made of
 #: The shipped scenes of rock masses that the page shows beside the paper's figures.
 ROCK_MASSES = ("rock-mass/one-joint",)
@@ -115,9 +121,26 @@ def asked_for(scenes: Sequence[str]) -> list[SceneRequest]:
     return list(found.values())
 
 
-def solve(request: SceneRequest, folder: Path) -> SolvedScene:
-    """Solve a scene's variants by all that applies, and write its pictures and tables."""
-    comparisons = [compare(scene, spectral=True) for scene in load_variants(request.file)]
+def planned(request: SceneRequest, stored: ResultFolder) -> list[Run]:
+    """Return the runs of `solve`."""
+    own, found = _own(request, stored), []
+    for scene in load_variants(request.file):
+        found += runs_of(applicable(scene), scene, own, point=request.label)
+        found += runs_of(*runs_along(scene), own, ALONG, request.label)
+    return found
+
+
+def _own(request: SceneRequest, stored: ResultFolder) -> ResultFolder:
+    return stored._replace(folder=stored.folder and stored.folder / request.file.stem)
+
+
+def solve(request: SceneRequest, folder: Path, stored: ResultFolder = NOWHERE) -> SolvedScene:
+    """Solve a scene's variants by all that applies, and write its pictures and tables.
+
+    stored : the folder with a folder of results for each scene.
+    """
+    own, scenes = _own(request, stored), load_variants(request.file)
+    comparisons = [compare(scene, spectral=True, stored=own) for scene in scenes]
     results, scores = comparisons[0].results, engine_scores(comparisons)
     frames = {"misfits": distance_frame(comparisons), "readings": reading_frame(comparisons)}
     files = {
@@ -130,7 +153,7 @@ def solve(request: SceneRequest, folder: Path) -> SolvedScene:
         request,
         comparisons[0].scene,
         {engine: float(results[engine].attrs["seconds_stepping"]) for engine in scores},
-        *_draw(request, comparisons, folder),
+        *_draw(request, comparisons, folder, own),
         claims_of(request.number, comparisons),
         {
             "verdicts": tables.verdict_table(scores),
@@ -149,17 +172,19 @@ def solve(request: SceneRequest, folder: Path) -> SolvedScene:
 
 
 def _draw(
-    request: SceneRequest, comparisons: list[Comparison], folder: Path
+    request: SceneRequest, comparisons: list[Comparison], folder: Path, stored: ResultFolder
 ) -> tuple[Shown | None, list[Shown]]:
     """Return the picture at the head, a map or else the waveform that is furthest from its
     reference in the first variant, and all figures."""
-    fields = [along_pillar(one.scene) for one in comparisons]
+    fields = [along_pillar(one.scene, stored) for one in comparisons]
+    began = process_time()
     figures = figures_of(request.name, comparisons, fields)
     shown = {one.name: _save(one, folder) for one in figures}
     lead = shown.get(f"{request.name}-peak-velocity-0")
     if lead is None and (moving := panels(comparisons)[0]):
         panel = max(moving, key=lambda one: one.largest_residual)
         lead = _save(lead_figure(request.name, panel), folder)
+    timings.note_each(DRAWING, (process_time() - began) / len(comparisons))
     return lead, list(shown.values())
 
 

@@ -1,6 +1,7 @@
 """The sections of the page that are not scenes: studies, effects, hard cases, snapshots."""
 
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,15 @@ from jointwave.compare.figures.snapshots import make_snapshots
 from jointwave.compare.report import peers
 from jointwave.compare.studies import effects, scattering
 from jointwave.compare.studies.effects_summary import summarise as summarise_effects
+from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.hard_cases import make_study as make_hard_cases
+from jointwave.compare.studies.hard_cases import planned as planned_hard_cases
 from jointwave.compare.studies.scattering_summary import make_study as make_joints
 from jointwave.compare.studies.store import Pool
 from jointwave.compare.studies.study import load
 from jointwave.compare.studies.summary import Summary
 from jointwave.compare.studies.work_precision import REPORTED
+from jointwave.compare.studies.work_precision import planned as planned_of_study
 from jointwave.compare.studies.work_precision import run as run_study
 from jointwave.compare.studies.work_precision import summarise as summarise_study
 
@@ -56,6 +60,15 @@ def sections(
         )
     yield _snapshots(out)
     progress(1.0)
+
+
+def planned(out: Path) -> list[Run]:
+    """Return the runs of the sections, with the hard cases."""
+    folder = out / "studies"
+    of_joints = [scattering.planned(name, folder / name, True) for name in scattering.TITLES]
+    of_studies = [planned_of_study(load(name), folder / name) for name in REPORTED]
+    of_effects = effects.planned(effects.reported(), out / "effects")
+    return [*chain(*of_joints, *of_studies), *of_effects, *planned_hard_cases(folder)]
 
 
 def section(kind: str, found: Summary, command: str, **more: Any) -> dict[str, Any]:

@@ -1,16 +1,15 @@
 """A scene solved by all solutions that apply, with the distances between them."""
 
 from collections.abc import Mapping, Sequence
-from time import perf_counter
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import Progress, solve
+from jointwave.compare.engines import Progress
 from jointwave.compare.misfit.alignment import align_curve
 from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.pairs import Comparison, measure, measure_curves
 from jointwave.compare.misfit.ranking import applicable
-from jointwave.compare.runs import timings
+from jointwave.compare.runs.reuse import NOWHERE, ResultFolder
 from jointwave.compare.scenes import AnySource, load
 from jointwave.compare.solvers.record import Answer
 
@@ -21,15 +20,17 @@ def compare(
     progress: Progress | None = None,
     align: bool = False,
     spectral: bool = False,
+    stored: ResultFolder = NOWHERE,
 ) -> Comparison:
     """Return a scene solved by all solutions that apply, with the distance of every pair.
 
     curves : external ones, of `read_curves`, to compare with every solution. progress : called with
     the finished fraction. align : whether the clocks of the curves are shifted onto the solution
-    that fits best. spectral : whether to add envelope and phase misfits.
+    that fits best. spectral : whether to add envelope and phase misfits. stored : the folder that
+    results are read from and written to; by default there is none.
     """
     scene = load(scene)
-    comparison = solved(scene, applicable(scene), progress)
+    comparison = solved(scene, applicable(scene), progress, stored)
     comparison.rows = measure(comparison.results, spectral, scene)
     for one in curves:
         beside = align_curve(one, scene, comparison.results, align)
@@ -39,23 +40,21 @@ def compare(
 
 
 def solved(
-    scene: AnyScene, answers: Mapping[str, Answer], progress: Progress | None = None
+    scene: AnyScene,
+    answers: Mapping[str, Answer],
+    progress: Progress | None = None,
+    stored: ResultFolder = NOWHERE,
 ) -> Comparison:
     """Solve a scene by the solutions that apply, without measuring any pair.
 
     answers : whether each requested solution applies, by name. Raises SceneError if none does.
     """
-    comparison = Comparison(scene)
     if not any(answers.values()):
         why = "; ".join(f"{name}: {answer.reason}" for name, answer in answers.items())
         raise SceneError(scene.where, "", None, f"nothing solves it: {why}")
-    for i, (name, answer) in enumerate(answers.items()):
-        if answer:
-            began = perf_counter()
-            comparison.results[name] = solve(name, scene)
-            timings.note(name, scene, comparison.results[name].attrs, perf_counter() - began)
-        else:
-            comparison.reasons[name] = answer.reason
-        if progress:
-            progress((i + 1) / len(answers))
-    return comparison
+    asked = [name for name, answer in answers.items() if answer]
+    return Comparison(
+        scene,
+        dict(stored.solve(asked, scene, progress)),
+        {name: answer.reason for name, answer in answers.items() if not answer},
+    )

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import ENGINES, applies, selection
+from jointwave.compare.engines import ENGINES, applies, selection, solver
 from jointwave.compare.solvers.record import Solver
 
 
@@ -47,15 +47,21 @@ def plan(scenes: list[AnyScene], runs: list[tuple[str, str | None]], out: Path) 
     not a result is in the place of one."""
     from jointwave.compare.runs.output import refuse_foreign
 
-    jobs = []
-    for scene in scenes:
-        folder = out / scene.name if scene.name else out
-        for engine, model in runs:
-            for name in names_of(engine, model, scene):
-                file = name if name in ENGINES else f"{engine}-{name}"
-                refuse_foreign(folder / f"{file}.nc")
-                jobs.append(Job(scene, name, folder / f"{file}.nc"))
+    jobs = [
+        Job(scene, name, result_path(out, scene, name))
+        for scene in scenes
+        for engine, model in runs
+        for name in names_of(engine, model, scene)
+    ]
+    for job in jobs:
+        refuse_foreign(job.path)
     return jobs
+
+
+def result_path(out: Path, scene: AnyScene, name: str, suffix: str = "") -> Path:
+    """Return the file of a solver's result, in the folder of its variant if it has a name."""
+    file = name if name in ENGINES else f"{solver(name).engine}-{name}"
+    return out / scene.name / f"{file}{suffix}.nc"
 
 
 def names_of(engine: str, model: str | None, scene: AnyScene) -> list[str]:

@@ -12,15 +12,12 @@ import xarray as xr
 from jointwave.cases.errors import SceneError, StoppedError
 from jointwave.compare.engines import Progress, solve, solver
 from jointwave.compare.runs import timings
-from jointwave.compare.runs.checkpoint.resume import (
-    CheckpointSettings,
-    RunCheckpointer,
-    result_of,
-)
+from jointwave.compare.runs.checkpoint.resume import CheckpointSettings, RunCheckpointer
 from jointwave.compare.runs.checkpoint.signals import Signals
 from jointwave.compare.runs.jobs import Job
 from jointwave.compare.runs.output import write_dataset
 from jointwave.compare.runs.processes import ALONE, Processes
+from jointwave.compare.runs.reuse import log_reading, signed
 from jointwave.results.dataset import energy_residual, open_ledger
 
 T = TypeVar("T")
@@ -96,14 +93,18 @@ def _run(
     job: Job, keeper: RunCheckpointer, progress: Progress, processes: Processes
 ) -> Done | None:
     """Run a job, unless its result exists, and write its files; None but on the first process."""
-    result = None
-    if not keeper.is_made:
+    result: Any = processes.by_first(keeper.finished)
+    if processes.told_by_first(lambda: result is None):
+        work = partial(solve, job.name, job.scene, progress, processes.comm, keeper)
         try:
-            result = solve(job.name, job.scene, progress, processes.comm, keeper)
+            result, *cost = timings.timed(work)
         except StoppedError as error:
             processes.by_first(partial(_write_stopped, job, error))
             raise
-    return processes.by_first(lambda: _written(job, keeper, result))
+        processes.by_first(lambda: _write(job, keeper, result, *cost))
+    elif result is not None:
+        log_reading({job.path: result})
+    return processes.by_first(lambda: _done(job, keeper, result))
 
 
 def _write_stopped(job: Job, error: StoppedError) -> None:
@@ -124,18 +125,19 @@ def _stopped(job: Job) -> Path:
     return job.path.with_suffix(".stopped.nc")
 
 
-def _written(job: Job, keeper: RunCheckpointer, result: xr.Dataset | None) -> Done:
-    """Write a result, None: that of an earlier command, and its snapshots; remove checkpoints."""
-    if result is None:
-        result = result_of(job.path, keeper.signature)
-        if result is None:
-            raise SceneError(str(job.path), "", None, "has changed since this command started")
+def _write(
+    job: Job, keeper: RunCheckpointer, result: xr.Dataset, seconds: float, part: float
+) -> None:
+    """Write a result and note its cost, unless it was continued: only a part of it was timed."""
+    write_dataset(job.path, signed(result, keeper.signature, seconds))
+    if keeper.done:
+        _stopped(job).unlink(missing_ok=True)
     else:
-        write_dataset(job.path, keeper.signed(result))
-        if keeper.done:
-            _stopped(job).unlink(missing_ok=True)
-        else:
-            timings.note(job.name, job.scene, result.attrs)
+        timings.note(job.name, job.scene, result.attrs, seconds, part)
+
+
+def _done(job: Job, keeper: RunCheckpointer, result: xr.Dataset) -> Done:
+    """Write the snapshots of a result and return its facts; its checkpoints are removed."""
     has_ledger = "energy" in result
     done = Done(
         job=job,

@@ -1,4 +1,5 @@
-"""Rates measured on this machine: the seconds of a step of one block or freedom, by kind of run.
+"""Rates measured on this machine: the seconds of a step of one block or freedom, by kind of run;
+of a byte of the waveforms of an exact solution, by its kind; and of what precedes the first step.
 
 They are saved beside the compiled kernels, so that rates of other versions of the program are not
 used. `--dry-run` estimates the time of runs by them.
@@ -7,66 +8,97 @@ used. `--dry-run` estimates the time of runs by them.
 import json
 import os
 import platform
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from time import perf_counter, process_time
+from typing import Any, TypeVar
 
 from jointwave.cases.effects import active_effects
 from jointwave.cases.files import read_json
 from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.size import waveform_bytes
 from jointwave.compare.engines import ENGINES
 from jointwave.compare.runs.output import write_text
 from jointwave.compare.runs.processes import started
-from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.solvers.record import Prepared
 from jointwave.numerics import jit
 from jointwave.results.dataset import scene_hash
 
+T = TypeVar("T")
+
 LARGEST_FILE = 10_000_000  # bytes
 SHORTEST = 0.01  # s: shorter runs do not replace a known rate
-CHANGED = 2.0  # a rate that has changed by this factor is rewritten
+CHANGED = 1.2  # a rate that has changed by this factor is rewritten
+
+
+def timed(work: Callable[[], T]) -> tuple[T, float, float]:
+    """Return the result of some work, its seconds, and the part of them that this process ran: less
+    than 1 where others compute at the same time."""
+    wall, cpu = perf_counter(), process_time()
+    result = work()
+    wall, cpu = perf_counter() - wall, process_time() - cpu
+    return result, wall, min(1.0, cpu / wall)
 
 
 def note(
-    name: str, scene: AnyScene, about: Mapping[str, Any], seconds: float | None = None
+    name: str,
+    scene: AnyScene,
+    about: Mapping[str, Any],
+    seconds: float | None = None,
+    part: float = 1.0,
 ) -> None:
     """Store the rate of a run.
 
-    about : attributes of its result. seconds : in total, used for exact solutions.
+    about : attributes of its result. seconds : in total, of which the steps are a part. part : of
+    all seconds that count, see `timed`.
     """
+    seconds = None if seconds is None else part * seconds
     if name not in ENGINES:
         if seconds is not None:
-            _keep(_of_exact(name, scene), seconds)
+            _keep(_of_scene(name, scene), seconds)
+            _keep(_key(name, scene, {}), seconds / waveform_bytes(scene))
         return
     units = ENGINES[name].units(scene, about["degrees_of_freedom"])
-    count, spent = about["steps"] * units, float(about["seconds_stepping"])
+    count, spent = about["steps"] * units, part * float(about["seconds_stepping"])
     key = _key(name, scene, about)
     if count and (spent > SHORTEST or key not in _known()):
         _keep(key, spent / count)
+    if seconds is not None:
+        _keep(_of_scene(name, scene), seconds - spent - part * float(about["seconds_compile"]))
+
+
+def setup(name: str, scene: AnyScene) -> float | None:
+    """Return the seconds of this very run before its first step; None if it was never timed."""
+    return _known().get(_of_scene(name, scene)) if name in ENGINES else 0.0
 
 
 def stepping(name: str, scene: AnyScene, run: Prepared) -> float | None:
     """Return the expected seconds of a run's steps; None if no such run was ever timed here."""
     if name not in ENGINES:
-        return _known().get(_of_exact(name, scene))
+        rate = _known().get(_key(name, scene, {}))
+        likely = None if rate is None else rate * waveform_bytes(scene)
+        return _known().get(_of_scene(name, scene), likely)
     rate = _known().get(_key(name, scene, {"processes": started().size, **run.settings}))
     return None if rate is None else rate * run.steps * ENGINES[name].units(scene, run.freedoms)
 
 
-def block_step(scene: AnyScene) -> float | None:
-    """Return the measured cost of a step of one rigid block of a pillar, ns; None if unknown."""
-    settings = {"scheme": scene.numerics.dem.scheme, "threads": 1}  # type: ignore[union-attr]
-    rate = _known().get(_key(DEM.name, scene, settings))
-    return None if rate is None else 1e9 * rate
+def note_each(what: str, seconds: float) -> None:
+    """Store what it takes to draw one of something."""
+    _keep(what, seconds)
+
+
+def each(what: str, otherwise: float) -> float:
+    """Return what it takes to draw one of something, s; `otherwise` if it was never timed."""
+    return _known().get(what, otherwise)
 
 
 def _key(name: str, scene: AnyScene, about: Mapping[str, Any]) -> str:
-    settings = (about[key] for key in ENGINES[name].cost)
+    settings = (about[key] for key in (ENGINES[name].cost if name in ENGINES else ()))
     return " ".join(map(str, (name, *settings, scene.kind, *sorted(active_effects(scene)))))
 
 
-def _of_exact(name: str, scene: AnyScene) -> str:
+def _of_scene(name: str, scene: AnyScene) -> str:
     return f"{name} {scene_hash(scene)}"
 
 

@@ -22,7 +22,8 @@ from jointwave.compare.solvers.continuum import JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies import store
 from jointwave.compare.studies.effect_removal import left_out
-from jointwave.compare.studies.step_cost import step_costs, with_every_effect
+from jointwave.compare.studies.forecast import Run
+from jointwave.compare.studies.step_cost import REPEATS, shortened, step_costs, with_every_effect
 from jointwave.compare.studies.store import FAILURES, Store, alone, reason_of
 from jointwave.results.dataset import scene_hash
 
@@ -83,6 +84,21 @@ def run(wanted: list[Variant], folder: Path, progress: Progress | None = None) -
     with alone():
         measured = saved.compute(wanted, key, measure, progress=progress)
     return pd.DataFrame([row for some in measured for row in some], columns=EffectRow._fields)
+
+
+def planned(wanted: list[Variant], folder: Path) -> list[Run]:
+    """Return the runs of the variants that are not saved yet, and those that time their steps."""
+    left, found = Store(list[EffectRow], folder).missing(wanted, key), []
+    for name, scene in left:
+        for engine in (one for one in (BLOCKS, ROCK) if applies(one, scene)):
+            for effect in (None, *active_effects(scene)):
+                with suppress(*FAILURES):
+                    one = scene if effect is None else left_out(scene, effect)
+                    short = shortened(one, engine)
+                    found += [Run(name, one, engine), Run(name, short, engine, 1 + REPEATS)]
+        full = shortened(with_every_effect(scene))
+        found.append(Run(name, full, BLOCKS, 1 + REPEATS))
+    return found
 
 
 def key(one: Variant) -> str:

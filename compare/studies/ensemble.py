@@ -73,7 +73,8 @@ def write(out: Path, numbers: pd.DataFrame, done: pd.DataFrame, keys: list[str])
             if "." not in name  # as in NAME.stopped.nc, of a run that was interrupted
         }
         files += [write_dataset(place / f"{name}-ensemble.nc", x) for name, x in found.items()]
-        if shown := bands.bands_of(found):
+        by_solver = {name.removeprefix("exact-"): x for name, x in found.items()}
+        if shown := bands.bands_of(by_solver):
             table = bands.table(shown)
             drawn = save(bands.draw(shown), place, "ensemble-waveforms", bands.TITLE, table)
             files += [drawn.file("csv"), *drawn.drawings]

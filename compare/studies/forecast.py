@@ -1,25 +1,59 @@
 """The steps, size, seconds and memory of runs before they start."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from functools import partial
+from time import process_time
 from typing import NamedTuple
 
 import pandas as pd
 
-from jointwave.cases.errors import SceneError
+from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import applies, names, solver
+from jointwave.compare.engines import ENGINES, Progress, applies, solve, solver
 from jointwave.compare.runs import timings
+from jointwave.compare.runs.reuse import ResultFolder
+from jointwave.compare.studies.measure import LONG
+from jointwave.compare.studies.step_cost import shortened
 
-Run = tuple[str, AnyScene, str]  # the point of a sweep, empty without; the scene; its solver
+ENOUGH = 10_000_000  # steps of one block or freedom, in which the start of a run costs little
+
+
+class Run(NamedTuple):
+    """A solution that a command would compute.
+
+    point : of a sweep, or the part of a study or page, "" without. times : how often. again : how
+    often more where its steps take so little time that they are timed anew. is_read : whether an
+    earlier result is read instead.
+    """
+
+    point: str
+    scene: AnyScene
+    name: str
+    times: float = 1.0
+    again: int = 0
+    is_read: bool = False
+
+
+def runs_of(
+    names: Iterable[str],
+    scene: AnyScene,
+    stored: ResultFolder,
+    suffix: str = "",
+    point: str = "",
+) -> list[Run]:
+    """Return the runs of `ResultFolder.solve`, of the solvers that apply."""
+    able = [name for name in names if applies(name, scene)]
+    return [Run(point, scene, name, is_read=stored.has(name, scene, suffix)) for name in able]
 
 
 class Forecast(NamedTuple):
     """The estimate of a run.
 
-    point : of a sweep, "" without. steps : of time, exactly; 0 for exact
-    solutions. size : blocks or freedoms, in words. seconds : of stepping, at the rate last measured
-    here; None if never measured. bytes : of memory, as the run itself estimates it at its start;
-    for exact solutions that of their waveforms, a lower bound.
+    steps : of time, exactly; 0 for exact solutions. size : blocks or freedoms, in words. stepping :
+    seconds of it, at the rate last measured here; None if never measured. setup : seconds before
+    the first step. seconds : of all its `times`. bytes : of memory, as the run itself estimates it
+    at its start; for exact solutions that of their waveforms, a lower bound.
     """
 
     point: str
@@ -28,43 +62,69 @@ class Forecast(NamedTuple):
     scheme: str
     steps: int
     size: str
+    stepping: float | None
+    setup: float
+    times: float
     seconds: float | None
     bytes: float
 
 
-def forecast(scene: AnyScene, name: str, point: str = "") -> Forecast:
-    """Return the estimated cost of a run of an engine or exact solution.
+def forecast(run: Run) -> Forecast:
+    """Return the estimated cost of a run of an engine or an exact solution.
 
     Raises SceneError if it cannot be run, as the run would.
     """
-    one = solver(name)
-    run = one.prepare(scene)
-    size = f"{one.units(scene, run.freedoms):,} {one.unit}" if run.steps else "-"
-    seconds = timings.stepping(name, scene, run)
-    return Forecast(point, scene.name, name, run.scheme, run.steps, size, seconds, run.bytes)
+    one, began = solver(run.name), process_time()
+    found = one.prepare(run.scene)
+    setup = timings.setup(run.name, run.scene)
+    if setup is None:
+        setup = process_time() - began if found.steps else 0.0
+    size = f"{one.units(run.scene, found.freedoms):,} {one.unit}" if found.steps else "-"
+    stepping = timings.stepping(run.name, run.scene, found)
+    times = run.times + (run.again if stepping is not None and stepping <= LONG else 0)
+    seconds = None if stepping is None else times * (setup + stepping)
+    cost = stepping, setup, times, seconds, found.bytes
+    return Forecast(run.point, run.scene.name, run.name, found.scheme, found.steps, size, *cost)
 
 
 def forecasts(
-    wanted: Sequence[Run], progress: Callable[[float], None] = lambda fraction: None
+    wanted: Sequence[Run],
+    progress: Progress = lambda fraction: None,
+    measured: bool = False,
 ) -> tuple[pd.DataFrame, dict[str, str]]:
-    """Return the table of estimates, a `Forecast` a row, and why points would fail.
+    """Return the table of estimates of what is not read, a `Forecast` a row, and why points would
+    fail.
 
+    measured : time the first steps of a run of a kind that was never timed on this machine.
     Raises SceneError for a run that is not possible and has no point.
     """
     found: list[Forecast] = []
     failing = {}
-    for i, (point, scene, name) in enumerate(wanted):
+    for i, run in enumerate(wanted):
+        if run.is_read:
+            continue
         try:
-            found.append(forecast(scene, name, point))
+            one = forecast(run)
+            if measured and one.stepping is None:
+                _time(run)
+                one = forecast(run)
+            found.append(one)
         except SceneError as error:
-            if not point:
+            if not run.point:
                 raise
-            failing[point] = str(error)
+            failing[run.point] = str(error)
         progress((i + 1) / len(wanted))
     table = pd.DataFrame(found, columns=Forecast._fields)
     return table.astype({"seconds": float}), failing
 
 
-def all_runs(scenes: Iterable[AnyScene]) -> list[Run]:
-    """Return the runs of all solvers that apply to some scenes."""
-    return [("", scene, name) for scene in scenes for name in names() if applies(name, scene)]
+def _time(run: Run) -> None:
+    """Run the beginning of a scene and note what it costs, if it is stable; the first run compiles.
+
+    What precedes the first step is that of the whole scene.
+    """
+    short = shortened(run.scene, run.name, ENOUGH)
+    with suppress(UnstableError):
+        for _ in range(2):
+            result, *cost = timings.timed(partial(solve, run.name, short))
+        timings.note(run.name, run.scene if run.name in ENGINES else short, result.attrs, *cost)

@@ -13,6 +13,7 @@ over the spectrum of a Ricker wavelet (CUBES). Steps above the critical one are 
 by the divergence monitor if the scene allows them.
 """
 
+from contextlib import suppress
 from math import inf, isfinite, nan, pi
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -31,7 +32,16 @@ from jointwave.compare.figures.export import save
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.scenes import find, shipped
 from jointwave.compare.studies import store
-from jointwave.compare.studies.hard_map import SCENE, Column, cells_of, columns, computed, draw_maps
+from jointwave.compare.studies.forecast import Run
+from jointwave.compare.studies.hard_map import (
+    SCENE,
+    Column,
+    cells_of,
+    cells_to_run,
+    columns,
+    computed,
+    draw_maps,
+)
 from jointwave.compare.studies.store import Pool, Store
 from jointwave.compare.studies.summary import Summary, frame, write_tables
 from jointwave.results.dataset import energy_residual, scene_hash
@@ -187,6 +197,21 @@ def largest_fall(result: xr.Dataset) -> float:
 def key(row: HardRow) -> str:
     """Return the key of a row: everything that determines it."""
     return store.key(row[:5], scene_hash(cases.load_variant(find(row.scene), row.variant)))
+
+
+def planned(out: Path) -> list[Run]:
+    """Return the runs of the cases and of the maps' cells that are not saved yet, with what they
+    are held against; a cell above the critical step ends early."""
+    folder, found = out / NAME, []
+    for row in Store(HardRow, folder).missing(hard_cases(), key):
+        with suppress(SceneError):
+            scene = scene_of(row)
+            exact = (pair.split(" ~ ")[1] for pair in scene.expect if pair.startswith(row.engine))
+            names = [row.engine, *(one for one in exact if one not in ENGINES)][:2]
+            solver(row.engine).prepare(scene)
+            found += [Run("cases", scene, one) for one in names if applies(one, scene)]
+    left = Store(Column, folder).missing(columns(), store.key)
+    return found + [Run("maps", *cells_to_run(one)) for one in left]
 
 
 def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = None) -> Summary:

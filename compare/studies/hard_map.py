@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 
 from jointwave import cases
 from jointwave.cases.errors import UnstableError
+from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import ENGINES, label_of, solve
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.style import style
@@ -80,6 +81,17 @@ def computed(column: Column) -> Column:
         return True
 
     return column._replace(stable=[is_stable(x * critical) for x in column.steps])
+
+
+def cells_to_run(column: Column) -> tuple[AnyScene, str, int]:
+    """Return the scene of a column's longest step, its engine, and its number of stable cells."""
+    engine = ENGINES[column.engine]
+    critical = engine.prepare(cases.load_variant(find(SCENE), "", PUSHED)).critical
+    interval = critical * STEPS / SAMPLES
+    times = {"record.interval": interval, "time.duration": interval * SAMPLES}
+    step = {f"numerics.{engine.engine}.step_fraction": 1.0}
+    stable = sum(x < boundary(np.array(column.ratio)) for x in column.steps)
+    return cases.load_variant(find(SCENE), "", PUSHED | times | step), engine.name, int(stable)
 
 
 def cells_of(found: list[Column]) -> pd.DataFrame:

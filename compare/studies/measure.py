@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from jointwave.compare.engines import solve
+from jointwave.cases.errors import SceneError
+from jointwave.compare.engines import applies, solve
 from jointwave.compare.studies.reference import errors
 from jointwave.compare.studies.store import FAILURES
 from jointwave.compare.studies.study import StudyPoint
@@ -74,6 +75,14 @@ def _run(point: StudyPoint) -> xr.Dataset:
     result = solve(point.curve.method, scene)
     result.attrs.setdefault("seconds_stepping", perf_counter() - began)  # of exact solutions
     return result
+
+
+def is_valid(point: StudyPoint) -> bool:
+    """Return whether a point has a scene, to which its method applies."""
+    try:
+        return bool(applies(point.curve.method, point.scene))
+    except SceneError:
+        return False
 
 
 def _counts(result: xr.Dataset) -> dict[str, float]:

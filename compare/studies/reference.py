@@ -1,5 +1,6 @@
 """References of errors: exact solutions, or fine runs whose own error is bounded."""
 
+from collections.abc import Sequence
 from math import nan
 from typing import Any, NamedTuple
 
@@ -81,14 +82,33 @@ def _known(
     """Return a reference of the study's scene with some physics changed; None without."""
     if against is None:
         return None
+    scenes = _scenes_of(against, study, physics)
+    if isinstance(against, str):
+        return exact_reference(against, *scenes)
+    fine, coarse = (_solved(against.method, scene) for scene in scenes)
+    return Reference(against.method, fine, _misfit(coarse, fine, study), str(against.changes))
+
+
+def _scenes_of(against: str | FineRun, study: Study, physics: dict[str, Any]) -> list[AnyScene]:
+    """Return the scene of an exact reference, or of a fine run and of the coarser one."""
     if isinstance(against, str):
         scene = study.changed(physics)  # an exact solution has no numerics
         numerics: dict[str, Any] = {"numerics": type(scene.numerics)(), "expect": {}}
-        return exact_reference(against, scene.model_copy(update=numerics))
+        return [scene.model_copy(update=numerics)]
     changes = physics | against.changes
-    fine = _solved(against.method, study.changed(changes))
-    coarse = _solved(against.method, study.changed(changes | against.coarser))
-    return Reference(against.method, fine, _misfit(coarse, fine, study), str(against.changes))
+    return [study.changed(changes), study.changed(changes | against.coarser)]
+
+
+def references(points: Sequence[StudyPoint]) -> list[tuple[str, AnyScene]]:
+    """Return the solver and the scene of every reference of some points, each once."""
+    found: dict[tuple[str, str], tuple[str, AnyScene]] = {}
+    for point in points:
+        for against, physics in ((own_of(point), point.physics), (finest_of(point.study), {})):
+            if against is not None:
+                name = against if isinstance(against, str) else against.method
+                for scene in _scenes_of(against, point.study, physics):
+                    found[name, scene_hash(scene)] = name, scene
+    return list(found.values())
 
 
 def _error(result: xr.Dataset, against: Reference | None, study: Study) -> tuple[float, float]:

@@ -4,6 +4,7 @@ The scenes of the waves, and what is read off their motion, are those of `joint_
 """
 
 from math import nan
+from pathlib import Path
 from time import process_time
 from typing import Any, NamedTuple
 
@@ -16,6 +17,7 @@ from jointwave.compare.exact.plane.waves import KINDS, Kind
 from jointwave.compare.solvers.continuum import JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies import store
+from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.joint_waves import (
     SCENE,
     ParallelJoints,
@@ -74,6 +76,13 @@ def points(study: str, brief: bool = False) -> list[JointsRow]:
         for kind in KINDS
         for place in places[:: 2 if brief else 1]
     ]
+
+
+def planned(study: str, folder: Path, brief: bool = False) -> list[Run]:
+    """Return the runs of the points that are not saved yet."""
+    left = store.Store(JointsRow, folder).missing(points(study, brief), key)
+    scenes = [scene_of(joints_of(one.joints), one.incidence, one.angle) for one in left]
+    return [Run(study, scene, one.solver) for one, scene in zip(left, scenes, strict=True)]
 
 
 def key(point: JointsRow) -> str:

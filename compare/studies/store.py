@@ -101,6 +101,10 @@ class Store(Generic[T]):
                 progress(len(found) / len(named))
         return [found[key(point)] for point in points]
 
+    def missing(self, points: Sequence[P], key: Callable[[P], str]) -> list[P]:
+        """Return the points without a saved result."""
+        return [point for point in points if self._saved(key(point)) is None]
+
     def _saved(self, name: str) -> T | None:
         """Return a saved result; None without one, or if it is no longer valid."""
         if self.folder is None or not (path := self.folder / f"{name}.json").is_file():

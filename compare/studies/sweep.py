@@ -27,7 +27,7 @@ from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.places import Place, places_of
 from jointwave.compare.runs import comparison
 from jointwave.compare.runs.jobs import plan
-from jointwave.compare.runs.output import write_dataset
+from jointwave.compare.runs.reuse import ResultFolder
 from jointwave.compare.runs.run import execute
 from jointwave.compare.scenes import find, load, load_variants
 from jointwave.compare.studies import ensemble, store
@@ -209,11 +209,9 @@ def compare_scene(
 ) -> Rows:
     """Compare a scene as `jointwave compare` does, and keep all results; return a row for each
     distance."""
-    found = comparison.compare(scene, curves, None, align, spectral)
+    found = comparison.compare(scene, curves, None, align, spectral, ResultFolder(folder))
     if folder is not None:
         write_comparisons([found], folder / scene.name)
-        for name, result in found.results.items():
-            write_dataset(folder / scene.name / f"{name}.nc", result)
     if not found.rows:
         allowed = "has nothing to compare: no pair of solutions applies"
         raise SceneError(scene.where, "", None, allowed)

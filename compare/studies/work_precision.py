@@ -19,7 +19,9 @@ from jointwave.compare.figures.export import blank, save
 from jointwave.compare.figures.style import style
 from jointwave.compare.runs.timings import machine
 from jointwave.compare.studies.findings import done, floor, judged, orders, sentences
-from jointwave.compare.studies.measure import PointRow, measure
+from jointwave.compare.studies.forecast import Run
+from jointwave.compare.studies.measure import PointRow, is_valid, measure
+from jointwave.compare.studies.reference import references
 from jointwave.compare.studies.store import Pool, Store, alone
 from jointwave.compare.studies.store import key as store_key
 from jointwave.compare.studies.study import Study, StudyPoint
@@ -66,6 +68,17 @@ def run(
     with alone() if study.timed else nullcontext():
         pool = None if study.timed else pool
         return rows.compute(study.points(), key, measure, pool, progress)
+
+
+def planned(study: Study, folder: Path) -> list[Run]:
+    """Return the runs of a study's points that are not saved yet, and of their references."""
+    points = Store(PointRow, folder).missing(study.points(), key)
+    again = study.repeats if study.timed and study.repeats > 1 else 0
+    valid = [point for point in points if is_valid(point)]
+    return [
+        *(Run(one.curve.label, one.scene, one.curve.method, 1, again) for one in valid),
+        *(Run("references", scene, name) for name, scene in references(valid)),
+    ]
 
 
 def key(point: StudyPoint) -> str:

@@ -32,14 +32,24 @@ def critical_plane_step(links: Links, columns: Columns, inertia: Inertia, local:
         damping = _stiffness(
             links, columns, (eta[0] * columns.normal, eta[1] * columns.shear), count
         )
-    scale = 1 / np.sqrt(np.stack([inertia.mass, inertia.mass, inertia.moment], axis=1))
 
     def largest(a: float, b: float) -> float:
         both = a * own if damping is None else a * own + b * damping
-        scaled = scale[:, :, None] * both * scale[:, None, :]
-        return 2 * (1 + local) * float(np.linalg.eigvalsh(scaled)[:, -1].max())
+        return (1 + local) * float(_highest(both, inertia).max())
 
     return critical_step(largest, damping is not None)
+
+
+def squared_frequencies(links: Links, columns: Columns, inertia: Inertia) -> np.ndarray:
+    """Return the bound of each block on the square of the largest frequency [count], 1/s2."""
+    own = _stiffness(links, columns, tuple(columns.stiffest), len(inertia.mass))
+    return _highest(own, inertia)
+
+
+def _highest(matrices: np.ndarray, inertia: Inertia) -> np.ndarray:
+    """Return twice the largest eigenvalue of each block's matrix [count, 3, 3] over its inertia."""
+    scale = 1 / np.sqrt(np.stack([inertia.mass, inertia.mass, inertia.moment], axis=1))
+    return 2 * np.linalg.eigvalsh(scale[:, :, None] * matrices * scale[:, None, :])[:, -1]
 
 
 def _stiffness(

@@ -3,7 +3,9 @@
 import os
 import sys
 from importlib.util import find_spec
+from math import inf
 from pathlib import Path
+from time import process_time
 from typing import Annotated, Any
 
 import typer
@@ -12,12 +14,16 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli import terminal
 from jointwave.compare.cli.options import (
+    DryOption,
+    FreshOption,
     JsonOption,
+    ResultsOption,
     SceneArgument,
     SetOption,
     StrictOption,
     app,
     load,
+    results_of,
 )
 
 ScaleOption = Annotated[
@@ -26,6 +32,7 @@ ScaleOption = Annotated[
 ]
 OneVariantOption = Annotated[str, typer.Option(help="Use this variant instead of the base scene.")]
 FRAMES, SECONDS = 201, 10.0
+FRAME = "frames"  # among the rates of this machine
 
 
 @app.command()
@@ -37,8 +44,14 @@ def animate(
         Path | None, typer.Option(metavar="FILE", help=".mp4 or .gif; default SCENE.mp4 here.")
     ] = None,
     scale: ScaleOption = None,
-    frames: Annotated[int, typer.Option(min=2, max=5000, help="Number of frames.")] = FRAMES,
+    frames: Annotated[
+        int | None,
+        typer.Option(min=2, max=5000, help=f"Default: record.fields has them, else {FRAMES}."),
+    ] = None,
     seconds: Annotated[float, typer.Option(help="Length of the animation.")] = SECONDS,
+    results: ResultsOption = None,
+    fresh: FreshOption = False,
+    dry: DryOption = False,
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
@@ -52,19 +65,36 @@ def animate(
     _require_positive("--seconds", seconds)
     from jointwave.compare.figures.animation.frame import PIXELS
     from jointwave.compare.figures.animation.video import refuse, write_video
+    from jointwave.compare.runs import timings
+    from jointwave.compare.runs.reuse import SNAPSHOTS, ResultFolder
 
     (one,) = load(scene, changes, variant, strict)
     path = out or Path(f"{_name(scene, one)}.mp4")
     refuse(path)
-    frame = _frame(one, one.time.duration / (frames - 1), scale)
+    stored, interval = ResultFolder(results_of(scene, results), fresh), interval_of(one, frames)
+    if dry:
+        from jointwave.compare.cli.forecast_view import show_forecasts
+        from jointwave.compare.figures.animation.snapshots import shown_engines, with_snapshots
+        from jointwave.compare.studies.forecast import runs_of
+
+        seen = one if interval is None else with_snapshots(one, interval)
+        suffix = "" if interval is None else SNAPSHOTS
+        count = round(one.time.duration / (seen.record.fields or inf)) + 1
+        runs = runs_of(shown_engines(seen), seen, stored, suffix)
+        drawn = {f"{count} {FRAME}": count * timings.each(FRAME, 0.05)}
+        show_forecasts(runs, as_json, drawing=drawn)
+        return
+    frame = _frame(one, interval, scale, stored)
+    count, began = len(frame.time), process_time()
     with terminal.progress("pictures") as advance:
 
         def images():
-            for i in range(frames):
+            for i in range(count):
                 yield frame.image(i)
-                advance((i + 1) / frames)
+                advance((i + 1) / count)
 
-        write_video(path, images(), PIXELS, frames / seconds)
+        write_video(path, images(), PIXELS, count / seconds)
+    timings.note_each(FRAME, (process_time() - began) / count)
     if not as_json:
         _say(path, frame)
         return
@@ -85,25 +115,30 @@ def view(
         float | None, typer.Option(metavar="T", help="s (default: middle of the scene).")
     ] = None,
     scale: ScaleOption = None,
+    results: ResultsOption = None,
+    fresh: FreshOption = False,
     strict: StrictOption = False,
 ) -> None:
     """Show a scene by both engines, displaced and coloured by the wave.
 
     Pillars are shown in three dimensions, rock masses in their plane, coloured by particle speed.
     Opens a window of PyVista with a slider over time; with --out, or without a display or PyVista,
-    writes an image at the time T.
+    writes an image of the instant nearest to T: of the scene's own snapshots, else of 201.
     """
     _require_positive("--scale", scale)
+    from jointwave.compare.runs.reuse import ResultFolder
+
     (one,) = load(scene, changes, variant, strict)
     at, end = one.time.duration / 2 if time is None else time, one.time.duration
     if not 0 < at <= end:
         allowed = f"must be greater than 0 and at most time.duration = {end:g} s"
         raise SceneError("--time", "", None, f"{allowed}, not {at:g}")
+    stored = ResultFolder(results_of(scene, results), fresh)
     if out is None and _has_display() and find_spec("pyvista") is not None:
         from jointwave.compare.figures.animation.window import open_window
 
-        frame = _frame(one, end / (FRAMES - 1), scale)
-        open_window(frame, round(at / end * (FRAMES - 1)))
+        frame = _frame(one, interval_of(one), scale, stored)
+        open_window(frame, _nearest(frame, at))
         return
     from jointwave.compare.figures.export import write_drawing
     from jointwave.compare.runs.output import refuse_foreign
@@ -112,21 +147,34 @@ def view(
     if path.suffix != ".png":
         raise SceneError("--out", str(path), None, "must end in .png")
     refuse_foreign(path, (b"\x89PNG",))
-    frame = _frame(one, at, scale)
-    frame.show(1)
+    frame = _frame(one, interval_of(one), scale, stored)
+    frame.show(_nearest(frame, at))
     write_drawing(path, frame.figure, one.title, {"savefig.dpi": "figure"})
     _say(path, frame)
 
 
-def _frame(scene: AnyScene, interval: float, scale: float | None) -> Any:
+def _frame(scene: AnyScene, interval: float | None, scale: float | None, stored: Any) -> Any:
     """Simulate a scene by both engines and return the frame of its instants, one per interval."""
     from jointwave.compare.figures.animation.frame import Frame
     from jointwave.compare.figures.animation.settings import settings_for
     from jointwave.compare.figures.animation.snapshots import take
 
     with terminal.progress("both engines") as advance:
-        simulated = take(scene, interval, advance)
+        simulated = take(scene, interval, advance, stored)
     return Frame(simulated, settings_for(simulated.scene, simulated.found, scale))
+
+
+def interval_of(scene: AnyScene, frames: int | None = None) -> float | None:
+    """Return the seconds from one of so many frames to the next, absent: as many as the scene
+    records snapshots, for which it is None, else FRAMES."""
+    if frames is None and scene.record.fields is not None:
+        return None
+    return scene.time.duration / ((frames or FRAMES) - 1)
+
+
+def _nearest(frame: Any, time: float) -> int:
+    """Return the instant nearest to a time, s."""
+    return min(range(len(frame.time)), key=lambda i: abs(frame.time[i] - time))
 
 
 def _require_positive(key: str, value: float | None) -> None:

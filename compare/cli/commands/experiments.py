@@ -1,6 +1,7 @@
 """Commands that weigh accuracy against cost over many runs: effects, plan, study, report."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,6 +10,9 @@ import typer
 from jointwave.compare.cli import completion, terminal
 from jointwave.compare.cli.options import (
     CORES,
+    RESULTS,
+    DryOption,
+    FreshOption,
     JsonOption,
     OutOption,
     SceneArgument,
@@ -31,6 +35,7 @@ def effects(
     out: Annotated[Path, typer.Option(help="Folder for table, diagram and points.")] = Path(
         "effects"
     ),
+    dry: DryOption = False,
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
@@ -39,11 +44,15 @@ def effects(
     For a pillar, or a rock mass that rigid blocks can represent. Results are saved in DIR and not
     measured again.
     """
+    from jointwave.compare.cli.forecast_view import show_forecasts
     from jointwave.compare.cli.study_view import run_and_show
-    from jointwave.compare.studies.effects import Variant, run
+    from jointwave.compare.studies.effects import Variant, planned, run
     from jointwave.compare.studies.effects_summary import summarise
 
     wanted = [Variant(scene, one) for one in load(scene, changes, variant or "", strict)]
+    if dry:
+        show_forecasts(planned(wanted, out), as_json)
+        return
     run_and_show(
         wanted[0].scene.title,
         out,
@@ -87,6 +96,7 @@ def study(
     ],
     out: Annotated[Path, typer.Option(help="Folder for tables and points.")] = Path("studies"),
     workers: WorkersOption = CORES,
+    dry: DryOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Run a study: a scene solved in many ways, each with its error and its cost, as one table
@@ -97,21 +107,26 @@ def study(
     engines on hard cases, each with a criterion from theory; `oblique-joint` compares reflection
     and transmission of P and SV waves at one joint, over the angle, `parallel-joints` at several.
     """
+    from jointwave.compare.cli.forecast_view import show_forecasts
     from jointwave.compare.cli.study_view import run_and_show
 
     folder = out / Path(name).stem
     work: Callable[[Any, Any], Any]
+    runs: Callable[[], list[Any]]
     if name == "stability":
         from jointwave.compare.studies import hard_cases as hard
 
         title, work = hard.TITLE, lambda pool, tell: hard.make_study(out, pool, progress=tell)
+        runs = partial(hard.planned, out)
     elif name in ("oblique-joint", "parallel-joints"):
-        from jointwave.compare.studies.scattering import TITLES
+        from jointwave.compare.studies.scattering import TITLES, planned
         from jointwave.compare.studies.scattering_summary import make_study
 
         title, work = TITLES[name], lambda pool, tell: make_study(name, out, tell, pool=pool)
+        runs = partial(planned, name, folder)
     else:
         from jointwave.compare.studies.study import load
+        from jointwave.compare.studies.work_precision import planned as planned_points
         from jointwave.compare.studies.work_precision import run, summarise
 
         asked = load(name)
@@ -119,7 +134,11 @@ def study(
             asked.title,
             lambda pool, tell: summarise(out, folder.name, asked, run(asked, folder, pool, tell)),
         )
+        runs = partial(planned_points, asked, folder)
 
+    if dry:
+        show_forecasts(runs(), as_json)
+        return
     run_and_show(title, folder, workers, work, as_json)
 
 
@@ -134,6 +153,8 @@ def report(
         ),
     ] = None,
     out: OutOption = Path("report"),
+    fresh: FreshOption = False,
+    dry: DryOption = False,
     peers: Annotated[
         Path | None,
         typer.Option(help="Table of make bench-peers (default: out/peers/points.csv if present)."),
@@ -143,16 +164,24 @@ def report(
 ) -> None:
     """Write scenes with all figures, misfits and costs as one self-contained HTML page.
 
-    Without a scene: the figures of Guo & Li (2002), the paper's claims, and all studies.
+    Without a scene: the figures of Guo & Li (2002), the paper's claims, and all studies. Results
+    are read from and stored in out/SCENE, points of studies in DIR.
     """
     for one in scenes or []:
         load(one, [], None, strict)
+    from jointwave.compare.cli.forecast_view import show_forecasts
     from jointwave.compare.cli.report_view import show_report
-    from jointwave.compare.report.report import build
+    from jointwave.compare.report.report import build, planned
+    from jointwave.compare.runs.reuse import ResultFolder
 
+    stored = ResultFolder(RESULTS, fresh)
+    if dry:
+        runs, drawing = planned(out, scenes or (), stored)
+        show_forecasts(runs, as_json, drawing=drawing)
+        return
     with (
         locked(out, out / "figures", out / "studies"),
         terminal.progress("report") as advance,
     ):
-        found = build(out, advance, 2, scenes or (), peers)
+        found = build(out, advance, 2, scenes or (), peers, stored=stored)
     show_report(found, as_json)

@@ -12,6 +12,7 @@ from typing import Annotated, Any
 import typer
 
 from jointwave import cases
+from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli import terminal
 from jointwave.compare.cli.options import (
@@ -20,9 +21,9 @@ from jointwave.compare.cli.options import (
     Engine,
     EngineOption,
     EnsembleOption,
+    FreshOption,
     JsonOption,
     ModelOption,
-    OutOption,
     SceneArgument,
     SetOption,
     StrictOption,
@@ -31,6 +32,7 @@ from jointwave.compare.cli.options import (
     WorkersOption,
     app,
     load,
+    results_of,
 )
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.runs.checkpoint.signals import watched
@@ -61,7 +63,9 @@ def run(
     variant: VariantOption = None,
     swept: SweepOption = [],
     members: EnsembleOption = 0,
-    out: OutOption = Path("results"),
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for results (default: out/SCENE).")
+    ] = None,
     every: Annotated[
         float,
         typer.Option(
@@ -74,6 +78,7 @@ def run(
     resume: Annotated[
         bool, typer.Option("--resume", help="Continue an interrupted run from its checkpoint.")
     ] = False,
+    fresh: FreshOption = False,
     workers: WorkersOption = CORES,
     dry: DryOption = False,
     strict: StrictOption = False,
@@ -84,8 +89,9 @@ def run(
     With record.fields also its snapshots, as a .pvd file for ParaView. Under mpiexec the processes
     share each run of the continuum; everything else is done by the first of them.
 
-    With --resume a killed run continues from its last checkpoint, with a bit-identical result;
-    complete results are kept. Ctrl-C saves the partial result.
+    Results that are there already are read; --fresh computes them anew. With --resume a killed run
+    continues from its last checkpoint, with a bit-identical result. Ctrl-C saves the partial
+    result.
 
     --sweep runs every value of a key, DIR/KEY=VALUE/... each, in several processes; finished
     points are not run again, failed ones are listed. --ensemble does so for every member of a
@@ -96,6 +102,9 @@ def run(
     from jointwave.compare.runs import run as runs
     from jointwave.compare.runs.checkpoint.resume import CheckpointSettings
 
+    if fresh and (resume or swept or members):
+        raise SceneError("--fresh", "", None, "has no meaning with --resume, --sweep, --ensemble")
+    out = results_of(scene, out)
     wanted = jobs.wanted([e.value for e in engine], model or [])
     if swept or members:
         from jointwave.compare.cli.study_view import sweep
@@ -104,21 +113,25 @@ def run(
         cases_of = sweep_of(scene, changes, variant, swept, out, members)
         work = partial(run_scene, runs=wanted)
 
-        def runs_of(one: AnyScene) -> list[tuple[str, AnyScene, str]]:
-            return [("", job.scene, job.name) for job in jobs.plan([one], wanted, out)]
+        def solvers(one: AnyScene) -> list[str]:
+            return [job.name for job in jobs.plan([one], wanted, out)]
 
-        sweep(cases_of, work, runs_of, workers, dry, as_json, strict)
+        sweep(cases_of, work, solvers, workers, dry, as_json, strict)
         return
     scenes = load(scene, changes, variant, strict)
     asked = jobs.plan(scenes, wanted, out)
     if dry:
         from jointwave.compare.cli.forecast_view import show_forecasts
+        from jointwave.compare.runs.reuse import ResultFolder
+        from jointwave.compare.studies.forecast import runs_of
 
-        show_forecasts([("", job.scene, job.name) for job in asked], as_json)
+        stored = ResultFolder(out, fresh)
+        found = [run for job in asked for run in runs_of([job.name], job.scene, stored)]
+        show_forecasts(found, as_json)
         return
     processes = started()
     folders = {job.path.parent for job in asked}
-    settings = CheckpointSettings(every, resume, watched())
+    settings = CheckpointSettings(every, resume, watched(), fresh)
     with ExitStack() as held, terminal.progress(f"{len(asked)} runs") as advance:
         processes.by_first(lambda: held.enter_context(locked(out, *folders)))
         done = runs.execute(asked, advance, processes, settings)
@@ -131,10 +144,6 @@ def explain(
     changes: SetOption = [],
     variant: VariantOption = None,
     strict: StrictOption = False,
-    measured: Annotated[
-        bool,
-        typer.Option("--measure", help="Time a rigid block's step; may compile a minute."),
-    ] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Print the effects of a scene, its critical steps, the exact solutions that apply, and the
@@ -142,4 +151,4 @@ def explain(
     from jointwave.compare.cli.explain import explanation, show_explanation
 
     for one in load(scene, changes, variant or "", strict):
-        (terminal.print_json if as_json else show_explanation)(explanation(one, measured))
+        (terminal.print_json if as_json else show_explanation)(explanation(one))

@@ -14,8 +14,10 @@ from jointwave.compare.cli.options import (
     DryOption,
     EngineOption,
     EnsembleOption,
+    FreshOption,
     JsonOption,
     ModelOption,
+    ResultsOption,
     SceneArgument,
     SetOption,
     StrictOption,
@@ -25,6 +27,7 @@ from jointwave.compare.cli.options import (
     WorkersOption,
     app,
     load,
+    results_of,
     warn,
 )
 
@@ -45,6 +48,8 @@ def compare(
     swept: SweepOption = [],
     members: EnsembleOption = 0,
     workers: WorkersOption = CORES,
+    results: ResultsOption = None,
+    fresh: FreshOption = False,
     dry: DryOption = False,
     strict: StrictOption = False,
     every: Annotated[
@@ -61,6 +66,8 @@ def compare(
     error, the stepping time, and the verdict. --all, --json, --out and --with also run all other
     solvers; --all shows every misfit of every pair, and data over model for external curves.
 
+    Results are read from and stored in the folder of --results, else of --out.
+
     --with adds a waveform of another code, figure or experiment: a table with a header such as
     "time [ms], stress@20 [MPa]", a seismogram, or a NetCDF file. A label names the only curve of a
     file without names, or takes one out of several: curve.csv:stress@20,
@@ -75,35 +82,38 @@ def compare(
     --ensemble every member of a scene with random joints, with statistics of all.
     """
     from jointwave.compare.cli.comparison_view import show_comparisons
-    from jointwave.compare.misfit.ranking import deciding
+    from jointwave.compare.misfit.ranking import applicable, deciding
     from jointwave.compare.runs import comparison
+    from jointwave.compare.runs.reuse import ResultFolder
 
     if swept or members:
         from jointwave.compare.cli.study_view import sweep
-        from jointwave.compare.studies.forecast import all_runs
         from jointwave.compare.studies.sweep import compare_scene, sweep_of
 
         asked = sweep_of(scene, changes, variant, swept, out, members)
         curves = _read_curves(given, asked.scenes, align, strict)
         work = partial(compare_scene, spectral=spectral, curves=curves, align=align)
-        sweep(asked, work, lambda one: all_runs([one]), workers, dry, as_json, strict)
+        sweep(asked, work, applicable, workers, dry, as_json, strict)
         return
     scenes = load(scene, changes, variant, strict)
     curves = _read_curves(given, scenes, align, strict)
+    stored = ResultFolder(results_of(scene, results or out), fresh)
+    shows_all = every or as_json or out is not None or bool(curves)
     if dry:
         from jointwave.compare.cli.forecast_view import show_forecasts
-        from jointwave.compare.studies.forecast import all_runs
+        from jointwave.compare.studies.forecast import runs_of
 
-        show_forecasts(all_runs(scenes), as_json)
+        wanted = applicable if shows_all else deciding
+        runs = [run for one in scenes for run in runs_of(wanted(one), one, stored)]
+        show_forecasts(runs, as_json)
         return
-    shows_all = every or as_json or out is not None or bool(curves)
     found = []
     for one in scenes:
         with terminal.progress(one.name or one.title) as advance:
             if shows_all:
-                found.append(comparison.compare(one, curves, advance, align, spectral))
+                found.append(comparison.compare(one, curves, advance, align, spectral, stored))
             else:
-                found.append(comparison.solved(one, deciding(one), advance))
+                found.append(comparison.solved(one, deciding(one), advance, stored))
     if out is not None:
         from jointwave.compare.figures.comparison import write_comparisons
 
@@ -122,6 +132,8 @@ def figure(
     given: WithOption = [],
     width: Annotated[float, typer.Option(min=60, max=1000, help="Width, mm.")] = 90.0,
     font_size: Annotated[float, typer.Option(min=4, max=40, help="Size of letters, pt.")] = 8.0,
+    results: ResultsOption = None,
+    fresh: FreshOption = False,
     strict: StrictOption = False,
 ) -> None:
     """Draw the waveforms of a scene as a figure for a paper.
@@ -134,16 +146,17 @@ def figure(
     from jointwave.compare.figures.export import write_drawing
     from jointwave.compare.figures.style import printed
     from jointwave.compare.runs import jobs
+    from jointwave.compare.runs.reuse import ResultFolder
 
     paper.check_file(out)
     rc = printed(width, font_size)
     scenes = load(scene, changes, variant, strict)
     runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []
     curves = _read_curves(given, scenes, False, strict)
-    found = []
+    stored, found = ResultFolder(results_of(scene, results), fresh), []
     for one in scenes:
         with terminal.progress(one.name or one.title) as advance:
-            found.append(paper.solve(one, runs, curves, advance))
+            found.append(paper.solve(one, runs, curves, advance, stored))
     drawn = waveforms.figure(found, width, font_size)
     terminal.say(f"wrote {write_drawing(out, drawn, scenes[0].title, rc)}")
 

@@ -8,8 +8,9 @@ import xarray as xr
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene, checked
-from jointwave.compare.engines import ENGINES, Progress, applies, solve
+from jointwave.compare.engines import ENGINES, Progress, applies
 from jointwave.compare.figures.units import UNITS
+from jointwave.compare.runs.reuse import NOWHERE, SNAPSHOTS, ResultFolder
 from jointwave.results.snapshots import Snapshots, snapshots_of
 
 
@@ -32,35 +33,44 @@ class SceneSnapshots(NamedTuple):
         return next(iter(self.found.values())).time
 
 
-def take(scene: AnyScene, interval: float, progress: Progress | None = None) -> SceneSnapshots:
+def take(
+    scene: AnyScene,
+    interval: float | None,
+    progress: Progress | None = None,
+    stored: ResultFolder = NOWHERE,
+) -> SceneSnapshots:
     """Simulate a scene with both engines and return snapshots of each, one per interval, s.
 
-    Their stress is that of the motion, minus the static state. The rock is jointed if that model
-    applies, else homogenised. Raises SceneError and UnstableError as the engines do, and SceneError
-    if none applies.
+    interval : None: those that the scene records itself. stored : a folder of results. The stress
+    is that of the motion, minus the static state. The rock is jointed if that model applies, else
+    homogenised. Raises SceneError and UnstableError as the engines do, and SceneError if none
+    applies.
     """
-    between = interval / max(1, ceil(interval / scene.interval - 1e-9))  # sampled at least as often
-    record = scene.record.model_copy(update={"fields": interval, "interval": between})
-    asked = checked(scene.model_copy(update={"record": record}))
-    answers = {name: applies(name, asked) for name in ENGINES}
-    shown = [name for name, answer in answers.items() if answer][:2]
-    reasons = {name: answer.reason for name, answer in answers.items() if not answer}
+    asked = scene if interval is None else with_snapshots(scene, interval)
+    shown = shown_engines(asked)
+    reasons = {name: answer.reason for name in ENGINES if not (answer := applies(name, asked))}
     if not shown:
         why = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
         raise SceneError(scene.where, "", None, f"no engine has snapshots of it: {why}")
     found, results = {}, {}
-    for i, name in enumerate(shown):
-
-        def part(fraction: float, i: int = i) -> None:
-            if progress is not None:
-                progress((i + fraction) / len(shown))
-
-        result = solve(name, asked, part)
+    for name, result in stored.solve(shown, asked, progress, "" if interval is None else SNAPSHOTS):
         taken = snapshots_of(result)
         assert taken is not None
         found[name] = taken._replace(stress=_less_static(result, taken.stress))
         results[name] = result[[q for q in UNITS if q in result]]
     return SceneSnapshots(asked, found, {} if len(found) > 1 else reasons, results)
+
+
+def shown_engines(scene: AnyScene) -> list[str]:
+    """Return the rigid blocks and the model of the rock that are shown, those that apply."""
+    return [name for name in ENGINES if applies(name, scene)][:2]
+
+
+def with_snapshots(scene: AnyScene, interval: float) -> AnyScene:
+    """Return a scene that records snapshots at an interval, s, and samples at least as often."""
+    between = interval / max(1, ceil(interval / scene.interval - 1e-9))
+    record = scene.record.model_copy(update={"fields": interval, "interval": between})
+    return checked(scene.model_copy(update={"record": record}))
 
 
 def _less_static(result: xr.Dataset, stress: np.ndarray | None) -> np.ndarray | None:

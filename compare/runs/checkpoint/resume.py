@@ -1,6 +1,5 @@
 """Checkpoints of a run at intervals of wall time, its interruption, its start and continuation."""
 
-import json
 import sys
 from pathlib import Path
 from time import monotonic
@@ -14,29 +13,27 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import ENGINES
 from jointwave.compare.runs.checkpoint.files import Checkpoints
 from jointwave.compare.runs.checkpoint.signals import Signals, exit_code, word
-from jointwave.compare.runs.checkpoint.signature import Signature, signature
+from jointwave.compare.runs.checkpoint.signature import signature
 from jointwave.compare.runs.processes import Processes
-from jointwave.results.netcdf import load_netcdf
-
-ATTRIBUTE = "signature"  # of a result: everything that determines its bits, as JSON
+from jointwave.compare.runs.reuse import read_result, unlike
 
 
 class CheckpointSettings(NamedTuple):
     """Checkpoint settings of a command's runs.
 
     every : interval between checkpoints in wall time, s; 0: none. resume : continue the runs of an
-        earlier command. signals : that end a run.
+        earlier command. signals : that end a run. fresh : compute anew what could be read.
     """
 
     every: float
     resume: bool
     signals: Signals
+    fresh: bool = False
 
 
 class RunCheckpointer:
     """Saves and restores one run, see `numerics.time_loop.Checkpointer`.
 
-    is_made : whether its result already exists and need not be recomputed.
     done : number of samples in its newest checkpoint, 0 for a new run.
     processes : that share the run; they decide together, as their clocks and signals differ.
     """
@@ -56,10 +53,8 @@ class RunCheckpointer:
         self.scene, self.settings, self.processes = scene, settings, processes
         self.signature = signature(scene, solver, processes.size)
         self.files = Checkpoints(result, self.signature, processes)
-        self.is_made = settings.resume and processes.told_by_first(
-            lambda: result_of(result, self.signature) is not None
-        )
-        resumes = settings.resume and not self.is_made and solver in ENGINES
+        is_made = processes.told_by_first(lambda: not unlike(result, self.signature))
+        resumes = settings.resume and not is_made and solver in ENGINES
         self.done = self.files.newest() if resumes else 0
         self._last: float | None = None
         self._warned = False
@@ -89,9 +84,11 @@ class RunCheckpointer:
             error.code = exit_code(asked)
             raise error
 
-    def signed(self, result: xr.Dataset) -> xr.Dataset:
-        """Return a result with the signature of everything that determines its bits."""
-        return result.assign_attrs({ATTRIBUTE: json.dumps(self.signature)})
+    def finished(self) -> xr.Dataset | None:
+        """Return the result of an earlier command, None where the run is to be computed."""
+        if self.settings.fresh:
+            return None
+        return read_result(self.files.result, self.scene, self.signature)
 
     def _save(self, samples: int, parts: Any) -> bool:
         """Write a checkpoint and return whether it succeeded; report the first failure."""
@@ -113,16 +110,3 @@ class RunCheckpointer:
     def _say(self, text: str) -> None:
         if self.processes.is_first:
             print(f"jointwave: {printable(text)}", file=sys.stderr, flush=True)
-
-
-def result_of(path: Path, about: Signature) -> xr.Dataset | None:
-    """Return the result with this signature; None if there is none or it cannot be read."""
-    if not path.is_file():
-        return None
-    try:
-        found = load_netcdf(path)
-    except MemoryError as error:
-        raise MemoryError(f"{path}: {error}") from None
-    except Exception:  # any unreadable result is recomputed
-        return None
-    return found if found.attrs.get(ATTRIBUTE) == json.dumps(about) else None

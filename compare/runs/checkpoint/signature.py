@@ -9,10 +9,15 @@ from pathlib import Path
 from jointwave import cases
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
+from jointwave.cases.warnings import warnings
 from jointwave.compare.engines import solver
 from jointwave.results.dataset import scene_hash
 
 Signature = dict[str, str]
+PROCESSES = "number of processes"
+#: Keys of [numerics.dem] that decide nothing but its own steps, and the one that decides no number.
+OF_STEPS = {"step_fraction", "scheme", "allow_unstable", "static_tolerance"}
+OF_TIME = {"threads"}
 
 
 def signature(scene: AnyScene, name: str, processes: int) -> Signature:
@@ -22,9 +27,9 @@ def signature(scene: AnyScene, name: str, processes: int) -> Signature:
     """
     found = {package: version(package) for package in ("numpy", "numba")}
     return {
-        "scene": _scene(scene),
+        "scene": _scene(scene, name),
         "engine": name,
-        "number of processes": str(processes),
+        PROCESSES: str(processes),
         "program": program(),
         "version of numpy, numba or basix": json.dumps(found | solver(name).libraries()),
     }
@@ -45,12 +50,19 @@ def program() -> str:
     return digest.hexdigest()
 
 
-def _scene(scene: AnyScene) -> str:
-    """Return a hash of a scene, including its mesh file."""
+def _scene(scene: AnyScene, name: str) -> str:
+    """Return a hash of what decides a solver's result of a scene, with the warnings that it bears
+    and its mesh file; the numerics of another engine do not, nor the bounds of [expect]."""
+    engine = solver(name).engine
+    numerics: dict = {"dem": OF_TIME if engine == "dem" else OF_TIME | OF_STEPS}
+    if engine != "continuum":
+        numerics["continuum"] = True
+    text = scene.model_dump_json(exclude={"expect": True, "numerics": numerics})
+    found = scene_hash(scene, text + json.dumps(warnings(scene)))
     holds_it = scene.numerics.continuum if isinstance(scene, Scene) else scene.domain
     mesh = holds_it.mesh_path
     # An unreadable mesh is reported where it is used, with a message of its own.
     if mesh is None or not Path(mesh).is_file():
-        return scene_hash(scene)
+        return found
     with Path(mesh).open("rb") as file:
-        return f"{scene_hash(scene)} {hashlib.file_digest(file, 'sha256').hexdigest()[:16]}"
+        return f"{found} {hashlib.file_digest(file, 'sha256').hexdigest()[:16]}"

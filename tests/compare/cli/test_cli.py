@@ -8,11 +8,8 @@ import sys
 import pytest
 import xarray as xr
 
-from jointwave.compare.cli import explain
 from jointwave.compare.cli.explain import explanation
 from jointwave.compare.cli.new import starter
-from jointwave.compare.engines import solve
-from jointwave.compare.runs import timings
 
 SCENE = "guo-li-2002/fig-03"
 SHORT = ("--set", "time.duration=0.02")
@@ -68,26 +65,15 @@ def test_explain_says_what_is_left_out_and_why(jointwave):
     }
 
 
-def test_explain_steps_no_block_unless_it_is_asked_to(pillar, monkeypatch):
-    """No kernel is compiled or loaded; measured rates are stored."""
-    scene = pillar(time__duration=0.01, numerics__continuum__elements_per_block=1)
-
-    def refuse(*_):
-        raise AssertionError("a block is stepped")
-
-    with monkeypatch.context() as held:
-        held.setattr(explain, "step_costs", refuse)
-        assert explanation(scene)["nanoseconds_per_block_step"] is None
-        with pytest.raises(AssertionError, match="a block is stepped"):
-            explanation(scene, measured=True)
-    result = solve("dem", scene)
-    timings.note("dem", scene, result.attrs)
-    found = explanation(scene)
-    steps = result.attrs["steps"] * scene.block_count
-    assert found["nanoseconds_per_block_step"] == pytest.approx(
-        1e9 * result.attrs["seconds_stepping"] / steps
-    )
-    assert found["references"]["dem"]["name"] == "jointed-bar"
+def test_explain_names_the_block_that_limits_the_step(pillar, jointwave):
+    """The thinnest block of a tunnel's rock; none of a pillar whose blocks are alike."""
+    said = jointwave("explain", "rock-mass/tunnel", "--variant", "no slip", "--json").out
+    found = {one["engine"]: one for one in json.loads(said)["limits_the_step"]}
+    assert found["dem"]["at"] == pytest.approx([22.2, 14.13], abs=0.01)
+    for one in found.values():
+        assert one["longer_step"] > 2 and 0 < one["lifted"] <= 0.05 and one["size"] < 1
+        assert 0 < one["mass_added"] < 0.1
+    assert not explanation(pillar())["limits_the_step"]
 
 
 def test_explain_gives_the_critical_steps_of_motion_in_space(jointwave):
@@ -297,9 +283,10 @@ def test_compare_writes_figure_curves_and_distances(jointwave, tmp_path):
     """The files named in the plugin's failure message: every curve, drawn and as numbers."""
     out = tmp_path / "out"
     jointwave("compare", SCENE, "--variant", "", *SHORT, "--no-spectral", "--out", out)
-    assert {path.suffix for path in out.iterdir()} == {".svg", ".pdf", ".png", ".csv"}
+    assert {path.suffix for path in out.iterdir()} == {".svg", ".pdf", ".png", ".csv", ".nc"}
     assert all(path.stat().st_size > 1000 for path in out.iterdir())
-    assert {path.stem for path in out.iterdir()} == {"comparison", "comparison-misfits"}
+    written = {path.stem for path in out.iterdir() if path.suffix != ".nc"}
+    assert written == {"comparison", "comparison-misfits"}
 
 
 def test_help_and_version_go_to_standard_output(jointwave):

@@ -64,13 +64,13 @@ def says(tmp_path, monkeypatch, one_joint, in_toml, jointwave):
 
 
 def test_a_scene_is_run_and_its_file_says_where_its_receivers_are(says, tmp_path):
-    assert "oblique-joint" in says("run joint.toml --engine exact").out
+    assert "oblique-joint" in says("run joint.toml --engine exact --out results").out
     with xr.open_dataset(tmp_path / "results" / "exact-oblique-joint.nc") as found:
         assert found.velocity.point_x.values.tolist() == [20.0, 20.0]
         assert found.velocity.point_y.values.tolist() == [10.0, 30.0]
         assert found.traction.joint_point_y.values.tolist() == [20.0]
         assert json.loads(found.effects) == ["quiet sides", "energy ledger", "incident waves"]
-    says("run joint.toml --engine exact --resume")
+    says("run joint.toml --engine exact --out results --resume")
 
 
 def test_effects_of_what_rigid_blocks_cannot_be_are_refused_in_one_line(says):
@@ -123,7 +123,7 @@ def test_tables_of_a_comparison_name_places(says, tmp_path):
 
 
 def test_one_waveform_of_a_result_is_asked_for_by_its_place(says):
-    says("run joint.toml --engine exact")
+    says("run joint.toml --engine exact --out results")
     file = "results/exact-oblique-joint.nc"
     rows = curves_of(says(f"{COARSE} --json --with {file}:velocity_x@[20,30]"))
     assert [row["quantity"] for row in rows] == ["velocity x"]

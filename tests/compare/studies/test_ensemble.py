@@ -88,8 +88,9 @@ def test_misfits_and_waveforms_of_a_comparison(command, tmp_path):
     row = rows[(rows[list(pair)] == list(pair.values())).all(axis=1) & (rows.number == "misfit")]
     assert sorted(of_pair.member) == [1, 2, 3]
     assert float(row["mean"].iloc[0]) == pytest.approx(of_pair.misfit.mean(), rel=1e-7)
-    exact = xr.load_dataset(tmp_path / "jointed-bar-ensemble.nc").stress.sel(statistic="p50")
-    every = [xr.load_dataset(tmp_path / f"member={k}" / "jointed-bar.nc").stress for k in (1, 2, 3)]
+    exact = xr.load_dataset(tmp_path / "exact-jointed-bar-ensemble.nc").stress.sel(statistic="p50")
+    files = [tmp_path / f"member={k}" / "exact-jointed-bar.nc" for k in (1, 2, 3)]
+    every = [xr.load_dataset(file).stress for file in files]
     np.testing.assert_allclose(exact, np.median(every, axis=0), rtol=1e-12, atol=1e-9)
     bands = pd.read_csv(tmp_path / "ensemble-waveforms.csv")
     median = bands["jointed-bar p50 | stress at y = 5 m (Pa)"]

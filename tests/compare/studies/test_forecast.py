@@ -9,12 +9,18 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.size import LIMIT, estimates, refuse_beyond_memory
 from jointwave.compare.engines import solve
 from jointwave.compare.runs import timings
-from jointwave.compare.studies.forecast import forecast, forecasts
+from jointwave.compare.studies.forecast import Run, forecast, forecasts
 from jointwave.compare.studies.step_cost import step_costs
 
 SHORT = {"time__duration": 0.01, "record__velocity": [20.25]}
 SPACE = {"load__direction": [0.6, 0.8, 0.0]}
 SCENE = "guo-li-2002/fig-03"
+
+
+def stepping(scene, name):
+    """Return the seconds of stepping that are foretold for a run."""
+    return forecast(Run("", scene, name)).stepping
+
 
 RUNS = {
     "blocks": ("dem", {}),
@@ -32,9 +38,9 @@ RUNS = {
 def test_steps_and_size_are_those_of_the_run(pillar, name):
     engine, changes = RUNS[name]
     scene = pillar(**SHORT, **changes)
-    found, result = forecast(scene, engine), solve(engine, scene)
+    found, result = forecast(Run("", scene, engine)), solve(engine, scene)
     assert found.steps == result.attrs.get("steps", 0)
-    assert found.bytes > 0 and found.seconds is None
+    assert found.bytes > 0 and found.seconds is None and found.stepping is None
     if engine == "dem":
         assert found.size == "100 blocks"
     elif engine.startswith("continuum-"):
@@ -61,7 +67,7 @@ def test_memory_is_what_the_arrays_take_within_a_factor_of_three(pillar, engine,
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert most > 2e6
-    assert most / 3 <= forecast(scene, engine).bytes <= 3 * most
+    assert most / 3 <= forecast(Run("", scene, engine)).bytes <= 3 * most
 
 
 def test_a_run_beyond_the_memory_is_refused_as_the_run_would_be(pillar, monkeypatch):
@@ -69,7 +75,7 @@ def test_a_run_beyond_the_memory_is_refused_as_the_run_would_be(pillar, monkeypa
     monkeypatch.setenv(LIMIT, "0.1")
     for name in ("dem", "continuum-jointed"):
         with pytest.raises(SceneError, match="would need about") as told:
-            forecast(scene, name)
+            forecast(Run("", scene, name))
         with pytest.raises(SceneError) as refused:
             solve(name, scene)
         assert str(told.value) == str(refused.value)
@@ -89,41 +95,58 @@ def test_time_is_that_of_the_last_run_of_the_kind(pillar, engine):
     scene = pillar(**SHORT)
     about = dict(solve(engine, scene).attrs) | {"seconds_stepping": 2.0}
     timings.note(engine, scene, about)
-    assert forecast(scene, engine).seconds == pytest.approx(2.0)
+    assert stepping(scene, engine) == pytest.approx(2.0)
     longer = pillar(**SHORT | {"time__duration": 0.02})
-    assert forecast(longer, engine).seconds == pytest.approx(4.0, rel=0.01)
-    assert forecast(pillar(**SHORT, joints__damping_ratio=0.1), engine).seconds is None
+    assert stepping(longer, engine) == pytest.approx(4.0, rel=0.01)
+    assert stepping(pillar(**SHORT, joints__damping_ratio=0.1), engine) is None
     timings.note(engine, scene, about | {"seconds_stepping": 1e-3})  # too short to tell
-    assert forecast(scene, engine).seconds == pytest.approx(2.0)
-    timings.note(engine, scene, about | {"seconds_stepping": 8.0})
-    assert forecast(scene, engine).seconds == pytest.approx(8.0)
+    assert stepping(scene, engine) == pytest.approx(2.0)
+    timings.note(engine, scene, about | {"seconds_stepping": 8.0, "seconds_compile": 1.0}, 11.0)
+    found = forecast(Run("", scene, engine, 3))
+    assert found.stepping == pytest.approx(8.0) and found.setup == pytest.approx(2.0)
+    assert found.seconds == pytest.approx(3 * (8.0 + 2.0))
 
 
 def test_an_exact_solution_has_the_time_of_its_own_scene(pillar):
+    """Or of another one of the kind, in proportion to its waveforms."""
     scene = pillar(**SHORT)
     timings.note("lattice", scene, {}, 0.5)
-    assert forecast(scene, "lattice").seconds == 0.5
-    assert forecast(pillar(**SHORT, ends__end="quiet"), "lattice").seconds is None
-    table, _ = forecasts([("", scene, "lattice"), ("", scene, "images")])
+    assert stepping(scene, "lattice") == 0.5
+    longer = pillar(**SHORT | {"time__duration": 0.02})
+    assert stepping(longer, "lattice") == pytest.approx(1.0, rel=0.01)
+    assert stepping(pillar(**SHORT, ends__end="quiet"), "lattice") is None
+    table, _ = forecasts([Run("", scene, "lattice"), Run("", scene, "images")])
     assert table.seconds.sum() == 0.5 and table.seconds.isna().sum() == 1
+
+
+def test_what_was_never_timed_is_timed_on_its_first_steps(pillar):
+    scene = pillar(**SHORT)
+    runs = [Run("", scene, name) for name in ("dem", "continuum-jointed", "lattice")]
+    table, _ = forecasts(runs, measured=True)
+    assert (table.seconds > 0).all() and (table.seconds < 60).all()
+
+
+def test_what_is_read_costs_nothing(pillar):
+    table, _ = forecasts([Run("", pillar(**SHORT), "dem", is_read=True)])
+    assert table.empty
 
 
 def test_what_explain_measures_is_known(pillar):
     scene = pillar(**SHORT)
-    assert timings.block_step(scene) is None
+    assert stepping(scene, "dem") is None
     (found,) = step_costs([scene])
     assert 0 < found.ns < 1e4 and found.noise >= 0
-    told = forecast(scene, "dem")
-    assert told.seconds == pytest.approx(1e-9 * timings.block_step(scene) * 100 * told.steps)
+    told = forecast(Run("", scene, "dem"))
+    assert told.stepping > 0.5e-9 * found.ns * 100 * told.steps
 
 
 def test_a_broken_or_protected_file_of_rates_costs_nothing(pillar, tmp_path, monkeypatch):
     timings._file().write_text("[1, 2")
-    assert forecast(pillar(**SHORT), "dem").seconds is None
+    assert stepping(pillar(**SHORT), "dem") is None
     (tmp_path / "no-folder").write_text("")
     monkeypatch.setattr(timings, "_file", lambda: tmp_path / "no-folder" / "rates.json")
     timings.note("lattice", pillar(**SHORT), {}, 0.5)
-    assert forecast(pillar(**SHORT), "lattice").seconds is None
+    assert stepping(pillar(**SHORT), "lattice") is None
 
 
 @pytest.fixture

@@ -39,12 +39,12 @@ def test_full_disk_leaves_the_old_result(disk, said, arguments):
     assert said(*run) == []
     filler, before = fill(disk), (disk / "dem.nc").read_bytes()
     there = {path.name for path in disk.iterdir()}
-    (line,) = said(*run, code=2)
+    (line,) = said(*run, "--fresh", code=2)
     assert line == f"jointwave: {disk / 'dem.nc'}: No space left on device"
     assert (disk / "dem.nc").read_bytes() == before
     assert {path.name for path in disk.iterdir()} == there
     filler.unlink()
-    assert said(*run) == []
+    assert said(*run, "--fresh") == []
 
 
 def test_full_disk_costs_a_checkpoint_but_not_the_run(

@@ -1,0 +1,177 @@
+"""Results that an earlier command has computed: read where they are the same, computed where not.
+
+A file says by its signature what computed it, and by a checksum whether it is whole.
+"""
+
+import hashlib
+import json
+import logging
+from collections.abc import Iterable, Iterator, Mapping
+from datetime import datetime
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import Progress, solve
+from jointwave.compare.runs import timings
+from jointwave.compare.runs.checkpoint.signature import (
+    PROCESSES,
+    Signature,
+    differences,
+    signature,
+)
+from jointwave.compare.runs.jobs import result_path
+from jointwave.compare.runs.output import write_dataset
+from jointwave.results.dataset import scene_hash
+from jointwave.results.netcdf import load_netcdf
+
+SIGNATURE, CHECKSUM, SECONDS = "signature", "checksum", "seconds_total"  # attributes of a result
+SNAPSHOTS = "-snapshots"  # in the names of files of films and views, which record more
+DAMAGED = "is damaged"
+
+log = logging.getLogger("jointwave")
+
+
+def signed(result: xr.Dataset, about: Signature, seconds: float) -> xr.Dataset:
+    """Return a result with the attributes of its file; seconds : that it took."""
+    whole = {CHECKSUM: _checksum(result), SECONDS: seconds}
+    return result.assign_attrs({SIGNATURE: json.dumps(about), **whole})
+
+
+def unlike(path: Path, about: Signature) -> str:
+    """Return why a file is not the result of this signature, by its attributes alone; "" if it is.
+
+    The number of processes does not matter: it changes a result by round-off only.
+    """
+    if not path.is_file():
+        return "is missing"
+    try:
+        held = load_netcdf(path, ()).attrs
+        other = dict(json.loads(held[SIGNATURE]))
+        held[CHECKSUM], float(held[SECONDS])
+    except KeyError:
+        return "does not say what computed it"
+    except Exception:  # the libraries raise many kinds
+        return DAMAGED
+    differing = [key for key in differences(about, other) if key != PROCESSES]
+    return f"is from another {', '.join(differing)}" if differing else ""
+
+
+def read_result(path: Path, scene: AnyScene, about: Signature) -> xr.Dataset | None:
+    """Return the result of this signature from a file; None where there is none, whose reason is
+    logged.
+
+    scene : that the result is for, which may differ from the one in the file in what decides
+    nothing, such as the bounds of `[expect]`.
+    """
+    found, why = None, unlike(path, about)
+    if not why:
+        try:
+            found = load_netcdf(path)
+            why = "" if found.attrs[CHECKSUM] == _checksum(found) else DAMAGED
+        except MemoryError as error:
+            why = f"needs too much memory to be read: {error}"
+        except Exception:
+            why = DAMAGED
+    if found is None or why:
+        if path.is_file():
+            log.info("computes %s anew: it %s", path, why)
+        return None
+    texts = {k: v.astype(str) for k, v in found.variables.items() if v.dtype == object}
+    numbers = {k: v.item() for k, v in found.attrs.items() if isinstance(v, np.generic)}
+    of_scene = {"scene_hash": scene_hash(scene), "scene": scene.model_dump_json()}
+    return found.assign(texts).assign_attrs(numbers | of_scene)
+
+
+def log_reading(read: Mapping[Path, xr.Dataset]) -> None:
+    """Log which files of a folder were read, when they were computed and how long that took."""
+    if read:
+        (first, *others), seconds = read, sum(one.attrs[SECONDS] for one in read.values())
+        names = ", ".join([str(first), *(path.name for path in others)])
+        last = datetime.fromtimestamp(max(path.stat().st_mtime for path in read))
+        when = f"{last:%Y-%m-%d %H:%M} in {seconds:.2g} s"
+        log.info("reads %s, computed on %s; --fresh computes anew", names, when)
+
+
+class ResultFolder(NamedTuple):
+    """A folder with the results of a scene; None: nothing is read or stored.
+
+    fresh : compute anew what could be read.
+    """
+
+    folder: Path | None = None
+    fresh: bool = False
+
+    def solve(
+        self,
+        names: Iterable[str],
+        scene: AnyScene,
+        progress: Progress | None = None,
+        suffix: str = "",
+    ) -> Iterator[tuple[str, xr.Dataset]]:
+        """Yield the name and the result of each solver, stored where it was not read.
+
+        suffix : of the file names, where the scene records other than its file says. Raises the
+        errors of `compare.engines.solve`.
+        """
+        every, folder, read = list(names), self.folder, {}
+        for i, name in enumerate(every):
+
+            def part(fraction: float, i: int = i) -> None:
+                if progress:
+                    progress((i + fraction) / len(every))
+
+            path = folder and result_path(folder, scene, name, suffix)
+            about = signature(scene, name, 1) if path else {}
+            found = read_result(path, scene, about) if path and not self.fresh else None
+            if path and found is not None:
+                read[path] = result = found
+            else:
+                log_reading(read)
+                read = {}
+                result, seconds, ran = timings.timed(partial(solve, name, scene, part))
+                timings.note(name, scene, result.attrs, seconds, ran)
+                if path and not _is_stored(path, signed(result, about, seconds)):
+                    folder = None
+            part(1.0)
+            yield name, result
+        log_reading(read)
+
+    def has(self, name: str, scene: AnyScene, suffix: str = "") -> bool:
+        """Return whether a result would be read."""
+        if self.folder is None or self.fresh:
+            return False
+        path = result_path(self.folder, scene, name, suffix)
+        return not unlike(path, signature(scene, name, 1))
+
+
+NOWHERE = ResultFolder()
+
+
+def _is_stored(path: Path, result: xr.Dataset) -> bool:
+    """Write a result and return whether that succeeded; the reason is logged if not."""
+    try:
+        write_dataset(path, result)
+    except (OSError, SceneError, MemoryError) as error:
+        place = getattr(error, "filename", None) or path
+        log.info("results are not stored: %s: %s", place, getattr(error, "strerror", error))
+        return False
+    return True
+
+
+def _checksum(result: xr.Dataset) -> str:
+    """Return a checksum of all variables, the same of a result and of its file."""
+    digest = hashlib.sha256()
+    for name in sorted(map(str, result.variables)):
+        values = result.variables[name]
+        digest.update(json.dumps([name, values.dims, values.shape]).encode())
+        if values.dtype.kind in "OSU":
+            digest.update(json.dumps(values.values.astype(str).tolist()).encode())
+        else:
+            digest.update(np.ascontiguousarray(values.values, "<f8").data)
+    return digest.hexdigest()

@@ -1,0 +1,167 @@
+"""Commands read what an earlier one has computed, and nothing else."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from jointwave.compare.runs import reuse
+from jointwave.compare.runs.checkpoint import signature
+
+SCENE = "guo-li-2002/fig-03"
+SHORT = ("--variant", "", "--set", "time.duration=0.01", "--set", "pillar.length=10")
+AT = ("--set", "record.stress=[5]", "--set", "record.velocity=[]")
+BOTH = ("--engine", "dem", "--engine", "continuum", "--model", "jointed")
+
+
+@pytest.fixture
+def lines(jointwave, monkeypatch, tmp_path, without_warnings):
+    """Return a function that runs a command on a short scene, and gives what it says of results;
+    they are in `results` of the test's folder."""
+    monkeypatch.setenv("JOINTWAVE_PROGRESS", "1000")
+    folder = tmp_path / "results"
+
+    def run(command, *options):
+        where = ("--out" if command == "run" else "--results", folder)
+        said = jointwave(command, SCENE, *SHORT, *AT, *where, *options).err
+        told = [line for line in without_warnings(said) if "compiling" not in line]
+        return [line.replace(f"{folder}/", "") for line in told]
+
+    run.folder = folder
+    return run
+
+
+def stamps(folder):
+    """Return when each result was written."""
+    return {path.name: path.stat().st_mtime_ns for path in folder.glob("*.nc")}
+
+
+def test_second_command_solves_nothing(lines, capsys, jointwave):
+    """Of `run`, `compare` and `figure`; what they answer is the same."""
+    assert lines("run", *BOTH) == []
+    before = stamps(lines.folder)
+    assert set(before) == {"dem.nc", "continuum-jointed.nc"}
+    first, second = lines("run", *BOTH)
+    assert first.startswith("jointwave: reads dem.nc, computed on 20")
+    assert first.endswith(" s; --fresh computes anew") and "reads continuum-jointed.nc" in second
+    (line,) = lines("compare", "--all")
+    assert "reads dem.nc, continuum-jointed.nc, computed on" in line
+    full = stamps(lines.folder)
+    assert full.items() >= before.items() and "exact-jointed-bar.nc" in full
+    figure = ("--engine", "dem", "--out", lines.folder / "a.svg")
+    assert "reads dem.nc, computed" in lines("figure", *figure)[0]
+    ask = ("compare", SCENE, *SHORT, *AT, "--json", "--results")
+    assert jointwave(*ask, lines.folder).out == jointwave(*ask, lines.folder).out
+    assert stamps(lines.folder) == full
+
+
+def test_what_is_read_is_what_was_computed(lines, jointwave):
+    """Every misfit is the same number, and of the same types: JSON has no others."""
+    ask = ("compare", SCENE, *SHORT, *AT, "--json", "--read", "--results", lines.folder)
+    assert json.loads(jointwave(*ask).out) == json.loads(jointwave(*ask).out)
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ("load.amplitude=2e6", "is from another scene"),
+        ("numerics.dem.step_fraction=0.04", "is from another scene"),
+        ("record.energy=false", "is from another scene"),
+        ("numerics.continuum.order=1", ""),
+        ("numerics.dem.threads=2", ""),
+    ],
+)
+def test_what_decides_numbers_decides_whether_a_result_is_read(change, why, lines):
+    lines("run")
+    before = stamps(lines.folder)
+    (line,) = lines("run", "--set", change)
+    if why:
+        assert line == f"jointwave: computes dem.nc anew: it {why}"
+    else:
+        assert "reads dem.nc" in line
+    assert (stamps(lines.folder) == before) == (not why)
+
+
+def test_another_program_computes_anew(lines, monkeypatch):
+    lines("run")
+    monkeypatch.setattr(signature, "program", lambda: "other")
+    assert lines("run") == ["jointwave: computes dem.nc anew: it is from another program"]
+
+
+@pytest.mark.parametrize("damage", ["a bit", "its end", "its signature"])
+def test_damaged_result_is_computed_anew(damage, lines):
+    """Wherever it is damaged, in the middle of the samples too: NetCDF has no checksum."""
+    lines("run")
+    path = lines.folder / "dem.nc"
+    whole = path.read_bytes()
+    broken = {
+        "a bit": whole[:-4000] + bytes([whole[-4000] ^ 1]) + whole[-3999:],
+        "its end": whole[:-4000],
+        "its signature": whole.replace(b"signature", b"signaturf"),
+    }
+    path.write_bytes(broken[damage])
+    why = "does not say what computed it" if damage == "its signature" else "is damaged"
+    assert lines("compare") == [f"jointwave: computes dem.nc anew: it {why}"]
+    assert "reads dem.nc" in lines("run")[0]
+
+
+def test_fresh_computes_anew(lines):
+    lines("run")
+    before = stamps(lines.folder)
+    for command in ("run", "compare"):
+        assert lines(command, "--fresh") == []
+        after = stamps(lines.folder)
+        assert after["dem.nc"] > before["dem.nc"]
+        before = after
+
+
+def test_film_and_view_share_their_snapshots(lines):
+    """By default both have 201 instants; a scene's own snapshots serve for both."""
+    film = ("--out", lines.folder / "a.gif", "--frames", 11)
+    options = ("--set", "record.fields=1e-3")
+    assert lines("animate", *film) == []
+    assert "reads dem-snapshots.nc, continuum-jointed-snapshots.nc" in lines("animate", *film)[0]
+    lines("run", *BOTH, *options)
+    film = ("--out", lines.folder / "a.gif")
+    for command in (("animate", *film), ("view", "--out", lines.folder / "a.png")):
+        assert "reads dem.nc, continuum-jointed.nc" in lines(*command, *options)[0]
+
+
+def test_folder_that_cannot_be_written_costs_the_reuse_alone(lines, jointwave):
+    lines.folder.write_text("a file")
+    assert lines("compare") == [f"jointwave: results are not stored: {lines.folder}: File exists"]
+
+
+def test_fresh_has_no_meaning_with_resume(jointwave):
+    said = jointwave("run", SCENE, "--fresh", "--resume", code=2).err
+    assert said.startswith("jointwave: --fresh: has no meaning with --resume")
+
+
+def test_what_would_be_read_is_foretold(lines, jointwave):
+    lines("run", *BOTH)
+    ask = ("compare", SCENE, *SHORT, *AT, "--dry-run", "--json", "--results", lines.folder)
+    facts = json.loads(jointwave(*ask).out)
+    assert facts["read"] == 2
+    assert not {"dem", "continuum-jointed"} & {run["engine"] for run in facts["runs"]}
+
+
+def test_other_process_reads_the_default_folder(tmp_path):
+    """As its user calls it: `run`, then `compare`, in one folder."""
+    options = {**os.environ, "JOINTWAVE_PROGRESS": "1000"}
+    said = []
+    for command in (("run", "--engine", "dem"), ("compare",)):
+        name, *more = command
+        call = [sys.executable, "-m", "jointwave", name, SCENE, *SHORT, *AT, *more]
+        done = subprocess.run(call, cwd=tmp_path, env=options, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        said.append(done.stderr)
+    assert "reads" not in said[0]
+    assert "jointwave: reads out/fig-03/dem.nc, computed on" in said[1]
+
+
+def test_checksum_is_that_of_the_file(lines):
+    lines("run")
+    with reuse.xr.open_dataset(lines.folder / "dem.nc") as found:
+        assert len(found.attrs[reuse.CHECKSUM]) == 64 and float(found.attrs[reuse.SECONDS]) > 0
