@@ -73,6 +73,14 @@ def label_of(name: str) -> str:
     return solver(name).label if name in names() else name
 
 
+def in_words(text: object) -> str:
+    """Return the name of a solution, of a pair "one ~ other (%)", or of one to see, in words; other
+    text as it is."""
+    reason, see, name = str(text).rpartition(": see ")
+    pair, unit, rest = name.partition(" (%)")
+    return reason + see + " ~ ".join(map(label_of, pair.split(" ~ "))) + unit + rest
+
+
 def solvers() -> list[Solver]:
     """Return all records, engines first."""
     return [solver(name) for name in names()]

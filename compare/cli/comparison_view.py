@@ -5,7 +5,7 @@ from typing import Any
 
 from jointwave.compare.cli.frames import show_frame
 from jointwave.compare.cli.terminal import print_json, say, say_warnings, show_facts
-from jointwave.compare.engines import ENGINES
+from jointwave.compare.engines import ENGINES, in_words, label_of
 from jointwave.compare.figures.tables import alignment_frame, reading_frame
 from jointwave.compare.misfit.pairs import GIVEN, Comparison
 from jointwave.compare.report.tables import distance_table, reason_table, run_table, verdict_table
@@ -48,8 +48,10 @@ def _show_verdicts(found: list[Comparison], every: bool) -> None:
     count = f"({len(found)} variants, the worst of each engine)" if several else scene.name
     say(f"{scene.title} {count}".rstrip(), "bold")
     if not scores:
-        say(f"no engine applies; exact solutions: {', '.join(found[0].results) or 'none'}")
-        show_facts({name: found[0].reasons[name] for name in ENGINES if name in found[0].reasons})
+        exact = ", ".join(map(label_of, found[0].results)) or "none"
+        say(f"no engine applies; solutions: {exact}")
+        reasons = found[0].reasons
+        show_facts({label_of(name): reasons[name] for name in ENGINES if name in reasons})
     else:
         table = verdict_table(scores).join(run_table(found)["stepping (s)"])
         if not every:
@@ -69,15 +71,17 @@ def _show_remarks(scores: dict[str, EngineScore]) -> None:
     """Print the references, static states that differ, and variants that are not checked or exceed
     their bounds."""
     variants = [one for of_all in scores.values() for one in of_all.variants]
-    reasons = dict.fromkeys(f"{one.against}: {one.reason}" for one in variants if one.against)
+    reasons = dict.fromkeys(
+        f"{label_of(one.against)} ({one.reason})" for one in variants if one.against
+    )
     if reasons:
         say(f"reference: {'; '.join(reasons)}")
     for engine, of_all in scores.items():
         words = max(of_all.variants, key=lambda one: one.static.misfit).static_words
         if words:
-            say(f"static state of {engine} {words}")
+            say(f"static state of {label_of(engine)} {in_words(words)}")
         if len(of_all.variants) > 1 and of_all.unchecked:
-            say(f"not checked independently: {engine} ({', '.join(of_all.unchecked)})")
+            say(f"not checked independently: {label_of(engine)} ({', '.join(of_all.unchecked)})")
         if of_all.broken:
             say(f"exceeds the scene's bound: {', '.join(dict.fromkeys(of_all.broken))}")
 

@@ -1,4 +1,4 @@
-"""`jointwave explain`: a scene before any run."""
+"""The facts of `jointwave explain`: a scene before any run."""
 
 from collections.abc import Iterable
 from itertools import pairwise
@@ -14,7 +14,6 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.cli.terminal import say, show_facts
 from jointwave.compare.engines import ENGINES, solver
 from jointwave.compare.misfit.ranking import NOT_CHECKED, Reference, applicable, reference_of
 from jointwave.compare.readings.entering_wave import entering_waves
@@ -22,27 +21,6 @@ from jointwave.compare.solvers.limiting import limiting
 from jointwave.compare.solvers.record import Prepared
 from jointwave.compare.solvers.wave_speeds import speeds
 
-#: The units of facts, and what facts are called whose names do not say it.
-UNITS = {
-    "m": "from to block length at size",
-    "m2": "area",
-    "m/s": "bar_speed shear_speed intact_bar_speed velocity p_speed s_speed",
-    "s": "critical dt",
-    "Pa": "equivalent_modulus stress",
-    "Pa/m": "joint_stiffness",
-    "Pa s/m": "impedance",
-    "J/m2": "energy",
-}
-LABELS = {key: f"{key}, {unit}" for unit, keys in UNITS.items() for key in keys.split()} | {
-    "bytes_at_most": "bytes at most, during subdivision",
-    "rigid_blocks_lack": "part of the intact rock's stiffness that rigid blocks cannot represent",
-    "speeds": "speeds of P and S waves, m/s",
-    "limits_the_step": "limits the step",
-    "lifted": "part of all that is lifted with it",
-    "longer_step": "factor of the step without",
-    "mass_added": "part of the mass that scaling adds",
-    "transmission": "transmission from the segment before",
-}
 UNCHECKED = Reference("", f"{NOT_CHECKED}: no other solution resolves more")
 
 Facts = dict[str, Any]
@@ -129,9 +107,3 @@ def _rock_mass(scene: RockMass, engines: Iterable[str]) -> Facts:
     """Return the blocks of a rock mass, and the speeds of its waves in engines."""
     found = {name: speeds(scene, ENGINES[name].rock) for name in engines}
     return block_summary(scene) | {"speeds": found}
-
-
-def show_explanation(found: Facts) -> None:
-    """Print the facts of a scene."""
-    say(f"{found['title']} {found['variant']}".rstrip(), "bold")
-    show_facts({k: v for k, v in found.items() if k not in ("title", "variant")}, LABELS)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Sequence
 from enum import StrEnum
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -18,11 +18,22 @@ from jointwave.compare.engines import selection
 from jointwave.compare.runs.processes import started
 from jointwave.compare.scenes import shipped
 
-app = typer.Typer(
-    epilog="Start with: jointwave list, jointwave compare guo-li-2002/fig-03, jointwave report",
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
+#: The commands in the order in which a new user meets them.
+ORDER = (
+    *("new", "list", "explain", "picture", "run", "compare", "view", "animate", "figure"),
+    *("report", "plan", "effects", "study", "fit", "doctor"),
 )
+
+
+class Commands(typer.core.TyperGroup):
+    """The commands, in their order."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Return the names of all commands."""
+        return sorted(super().list_commands(ctx), key=ORDER.index)
+
+
+app = typer.Typer(cls=Commands, pretty_exceptions_enable=False, rich_markup_mode=None)
 
 SceneArgument = Annotated[
     str,
@@ -33,7 +44,10 @@ SceneArgument = Annotated[
 ]
 #: What can simulate or solve a scene, as --engine selects it.
 Engine = StrEnum("Engine", list(selection()))  # type: ignore[misc]
-EngineOption = Annotated[list[Engine], typer.Option(help="Repeatable.")]
+EngineOption = Annotated[
+    list[Engine],
+    typer.Option(help="dem: rigid blocks; continuum: deformable rock; exact. Repeatable."),
+]
 ModelOption = Annotated[
     list[str] | None,
     typer.Option(
@@ -121,7 +135,16 @@ def root(
         typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
     ] = False,
 ) -> None:
-    """Stress waves in jointed rock: rigid blocks and continuum, refereed by exact solutions."""
+    """Stress waves in jointed rock: rigid blocks and continuum, refereed by exact solutions.
+
+    \b
+    First steps:
+      jointwave new my-scene           write a scene with every key explained
+      jointwave explain my-scene.toml  what it has, before anything is run
+      jointwave compare my-scene.toml  solve it by all means: how far apart, why
+      jointwave animate my-scene.toml  see the wave, as a film
+      jointwave list                   scenes that are shipped, used by their names
+    """
     command = context.invoked_subcommand
     if command not in ("run", "study") and started().comm is not None:
         allowed = f"jointwave {command} runs in one process; only run and study support mpiexec"

@@ -1,23 +1,29 @@
 """The output of `jointwave plan`: the choice among its runs, and whether it meets the misfit."""
 
+import shlex
 from typing import Any
 
 from jointwave.compare.cli.terminal import print_json, say, show_table
+from jointwave.compare.engines import label_of
+from jointwave.compare.runs.jobs import options_of
 from jointwave.compare.studies.plan import Plan, PlannedRun
 from jointwave.compare.studies.reference import Reference
 from jointwave.compare.text import percent
 
 
-def show_plans(found: list[Plan], as_json: bool) -> None:
-    """Print the choice for each scene."""
+def show_plans(found: list[Plan], path: str, changes: list[str], as_json: bool) -> None:
+    """Print the choice for each scene, with the command that runs it.
+
+    path, changes : of the scene, as the user gives them.
+    """
     if as_json:
         print_json([_facts(one) for one in found])
         return
     for one in found:
-        _show(one)
+        _show(one, path, changes)
 
 
-def _show(one: Plan) -> None:
+def _show(one: Plan, path: str, changes: list[str]) -> None:
     say(", ".join(filter(None, [one.scene.title, one.scene.name])))
     say(f"modelling error: from {_named(one.finest)} ({one.reason})")
     best, asked = one.chosen, percent(one.asked)
@@ -28,17 +34,20 @@ def _show(one: Plan) -> None:
         return
     say(f"numerical error: from {_named(best.reference)}, the engine's own model")
     errors = [percent(x) for x in (best.numerical, best.modelling, best.misfit, one.misfit)]
-    columns = ["numerical, %", "modelling, %", "sum, %", "with smaller steps, %", "stepping, s"]
-    show_table(columns, [[*errors, f"{best.seconds:.3g}"]])
-    say(f"{best.elements.name} {' '.join(f'--set {option}' for option in best.options)}")
+    columns = ["numerical", "modelling", "sum", "sum with smaller steps"]
+    columns = ["engine", *(f"{name} (%)" for name in columns), "stepping (s)"]
+    show_table(columns, [[label_of(best.elements.name), *errors, f"{best.seconds:.3g}"]])
+    chosen = ["jointwave", "run", path, "--variant", one.scene.name]
+    chosen += options_of(best.elements.name)
+    chosen += [part for text in [*changes, *best.options] for part in ("--set", text)]
+    say(shlex.join(chosen))
     met = "met by the sum" if one.is_met else "missed, this is the nearest"
     say(f"{asked} %: {met}, after {len(one.runs)} runs and {one.planning:.2g} s of planning")
 
 
 def _named(reference: Reference) -> str:
     """Describe the reference of errors, its accuracy, and its time limit."""
-    how = f"{reference.name} at " if reference.settings else "the exact solution "
-    words = f"{how}{reference.settings or reference.name}"
+    words = label_of(reference.name) + f" at {reference.settings}" * bool(reference.settings)
     if reference.error:
         words += f", known to {percent(reference.error)} %"
     until = reference.result.attrs.get("known_until")

@@ -12,8 +12,8 @@ def show_report(found: Report, as_json: bool) -> None:
         rows = summary.reset_index().values.tolist()
         print_json({"page": str(found.file), "columns": ["what", "pair", *summary], "rows": rows})
         return
-    for engine, sentence in page["lead"].items():
-        say(f"{engine} {sentence}")
+    for sentence in page["lead"].values():
+        say(sentence)
     if page["about"]:
         say(f"\n{page['about'].sentence}")
     say("\nLargest relative L2 misfit over the variants of each scene, in %:")

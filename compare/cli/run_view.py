@@ -3,10 +3,11 @@
 from collections.abc import Sequence
 
 from jointwave.compare.cli.terminal import print_json, say, say_warnings, show_facts
+from jointwave.compare.engines import label_of
 from jointwave.compare.runs.run import Done
 
-LABELS = {"from_y": "from, m", "to_y": "to, m", "mass": "mass, kg", "velocity": "velocity, m/s"}
-LABELS |= {"seconds_stepping": "stepping, s"}
+LABELS = {"from_y": "from (m)", "to_y": "to (m)", "mass": "mass (kg)", "velocity": "velocity (m/s)"}
+LABELS |= {"seconds_stepping": "stepping (s)", "energy_residual": "energy residual (of the work)"}
 TOLD_BELOW = ("fragments", "static_out_of_balance", "fields")
 
 
@@ -31,9 +32,15 @@ def show_runs(done: Sequence[Done], as_json: bool) -> None:
         print_json(facts)
         return
     rows = [{key: one[key] for key in one if key not in TOLD_BELOW} for one in facts]
+    for row in rows:
+        row["engine"] = label_of(str(row["engine"]))
     show_facts({"runs": rows}, LABELS)
     for one in done:
-        name, still, pieces = one.job.scene.name or one.job.name, one.out_of_balance, one.fragments
+        name, still, pieces = (
+            one.job.scene.name or label_of(one.job.name),
+            one.out_of_balance,
+            one.fragments,
+        )
         if still is not None:
             say(f"{name}: starts at rest, out-of-balance force ratio {still:.1e}")
         if pieces is not None:

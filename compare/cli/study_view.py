@@ -8,16 +8,27 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli.forecast_view import show_forecasts
 from jointwave.compare.cli.frames import show_frame
 from jointwave.compare.cli.options import warn
-from jointwave.compare.cli.terminal import print_json, progress, say
+from jointwave.compare.cli.terminal import print_json, progress, say, show_facts
 from jointwave.compare.engines import Progress
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.runs.processes import started
 from jointwave.compare.runs.reuse import ResultFolder
 from jointwave.compare.studies.forecast import Run, runs_of
 from jointwave.compare.studies.store import Pool, on_pool, plain
+from jointwave.compare.studies.study import load, shipped
 from jointwave.compare.studies.summary import Summary
 from jointwave.compare.studies.sweep import Sweep, Work, run
 from jointwave.compare.studies.sweep_table import summarise
+
+
+def show_studies(as_json: bool) -> None:
+    """Print the shipped studies: their names, titles and scenes."""
+    from jointwave.compare.studies.hard_cases import NAME, TITLE  # imports matplotlib
+    from jointwave.compare.studies.scattering import TITLES
+
+    facts = [{"study": k, "title": (one := load(k)).title, "scene": one.scene} for k in shipped()]
+    facts += [{"study": name, "title": title} for name, title in {NAME: TITLE, **TITLES}.items()]
+    print_json(facts) if as_json else show_facts({"studies": facts})
 
 
 def run_and_show(

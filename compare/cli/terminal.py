@@ -19,6 +19,7 @@ from jointwave.compare.text import cell
 
 EVERY = "JOINTWAVE_PROGRESS"  # in the environment: s from one line to the next, 0 for none
 PIPE, UNFOLDED = 220, 10_000  # characters: of a pipe, which has no width, and of short cells
+TURNED = 4  # rows: tables of more are not turned
 LONGEST = 40  # characters of a cell that is not folded
 
 
@@ -89,11 +90,16 @@ def say_warnings(lines: Iterable[str]) -> None:
 def show_table(columns: list[str], rows: list[list[str]]) -> None:
     """Print a table of text.
 
+    A table that is wider than the terminal and has few rows is turned: its columns become rows.
     Long cells are folded to the terminal's width. Short ones are not: a terminal that is too narrow
     wraps whole lines, which can still be read and copied.
     """
     from rich.table import Table
 
+    widths = (max(map(len, column)) + 2 for column in zip(columns, *rows, strict=True))
+    if len(rows) <= TURNED and sum(widths) - 2 > _console().width:
+        (first, *columns), *rows = map(list, zip(columns, *rows, strict=True))
+        columns = [first, *columns]
     is_short = all(len(text) <= LONGEST for row in rows for text in row)
     table = Table(box=None, pad_edge=False)
     for column in columns:
@@ -119,6 +125,8 @@ def show_facts(facts: Mapping[str, Any], labels: Mapping[str, str] | None = None
             if rows:
                 show_table([*map(label, keys)], rows)
         elif value not in (None, {}):
+            if isinstance(value, Mapping):
+                value = {label(key): one for key, one in value.items()}
             say(f"{label(name)}: {fact(value)}")
 
 

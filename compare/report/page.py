@@ -8,7 +8,7 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from jointwave.compare.engines import label_of
+from jointwave.compare.engines import in_words, label_of
 from jointwave.compare.figures.style import style
 from jointwave.compare.text import in_seconds, percent, table_cell, times
 
@@ -51,14 +51,6 @@ def picture(file: Path) -> str:
 def unbroken(text: str) -> str:
     """Return text whose numbers do not break from their signs."""
     return text.replace(" %", "\u00a0%").replace("≤ ", "≤\u00a0")
-
-
-def in_words(text: Any) -> str:
-    """Return the name of a solution, of a pair "one ~ other (%)", or of one to see, in words; other
-    text as it is."""
-    reason, see, name = str(text).rpartition(": see ")
-    pair, unit, rest = name.partition(" (%)")
-    return reason + see + " ~ ".join(map(label_of, pair.split(" ~ "))) + unit + rest
 
 
 def rows(table: pd.DataFrame) -> Markup:

@@ -42,6 +42,13 @@ def engine_of(model: str) -> str:
     return next((one for one, models in selection().items() if model in models), Solver.engine)
 
 
+def options_of(name: str) -> list[str]:
+    """Return the options that select an engine or exact solution."""
+    of = solver(name)
+    model = name if of.exact else of.model
+    return ["--engine", of.engine, *(["--model", model] if model else [])]
+
+
 def plan(scenes: list[AnyScene], runs: list[tuple[str, str | None]], out: Path) -> list[Job]:
     """Return the jobs, all of which apply; raises SceneError before any run, also if a file that is
     not a result is in the place of one."""

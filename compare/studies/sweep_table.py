@@ -6,6 +6,7 @@ from typing import Any
 import pandas as pd
 
 from jointwave.cases.errors import SceneError
+from jointwave.compare.figures.units import UNITS
 from jointwave.compare.misfit.metrics import Distance
 from jointwave.compare.misfit.places import Place
 from jointwave.compare.runs.output import write_csv
@@ -18,6 +19,17 @@ from jointwave.compare.studies.sweep import Sweep
 NUMBERS = {
     "engine": ("peak", "time_of_peak", "steps", "freedoms", "seconds", "energy_residual"),
     "pair": Distance._fields,
+}
+
+#: Their headings in a table, where the name alone does not say it.
+HEADINGS = {
+    "time_of_peak": "time of peak (s)",
+    "seconds": "stepping (s)",
+    "energy_residual": "energy residual (of the work)",
+    "misfit": "misfit (ratio)",
+    "delay": "delay (s)",
+    "peak_ratio": "peak ratio",
+    "period_ratio": "period ratio",
 }
 
 
@@ -33,7 +45,7 @@ def summarise(asked: Sweep, rows: pd.DataFrame) -> Summary:
     files = [] if asked.out is None else [write_csv(asked.out / "sweep.csv", rows)]
     facts = {"rows": _records(rows)}
     by, keys = "pair" if "pair" in done else "engine", list(asked.cases[0].settings)
-    shown, numbers, legend = done, list(NUMBERS[by]), "SI units; all numbers are in sweep.csv."
+    shown, numbers, legend = done, list(NUMBERS[by]), "All numbers are in sweep.csv."
     if MEMBER in keys:
         shown = ensemble.statistics(done, keys, numbers)
         facts["statistics"] = _records(shown)
@@ -70,9 +82,11 @@ def _display(rows: pd.DataFrame, by: str, keys: list[str], numbers: list[str]) -
     if keys:
         labels[", ".join(keys)] = [", ".join(str(row[key]) for key in keys) for row in records]
     labels["of"] = [_receiver(row) for row in records]
-    return rows[numbers].set_index(pd.MultiIndex.from_arrays([*labels.values()], names=labels))
+    table = rows[numbers].rename(columns=HEADINGS)
+    return table.set_index(pd.MultiIndex.from_arrays([*labels.values()], names=labels))
 
 
 def _receiver(row: dict[str, Any]) -> str:
     at = tuple(row[name] for name in ("x", "y") if name in row)
-    return Place(row["quantity"], "", at).heading if row["quantity"] else ""
+    name = row["quantity"]
+    return f"{Place(name, '', at).heading} ({UNITS[name]})" if name in UNITS else ""

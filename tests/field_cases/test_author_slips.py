@@ -188,6 +188,6 @@ def test_milliseconds_of_a_wave_are_named(one_joint):
 def test_explain_says_that_friction_bounds_no_tension(tmp_path, jointwave, in_toml):
     path = tmp_path / "slips.toml"
     path.write_text(in_toml(PILLAR | {"joints": {"friction_angle": 30.0}}))
-    said = jointwave("explain", path)
+    said = jointwave("explain", path, "--all")
     assert "every joint carries tension, also with friction" in said.out
     assert "carries any tension" in said.err

@@ -175,4 +175,4 @@ def test_a_new_scene_enters_what_it_says_and_explain_says_it(tmp_path, jointwave
     (wave,) = entering_waves(jw.load(path))
     assert wave.stress == pytest.approx(1e6) and wave.source.startswith(source)
     if template == "pillar":
-        assert "load, along the axis  1e+06       0.3086" in jointwave("explain", path).out
+        assert "load, along the axis  1e+06        0.3086" in jointwave("explain", path).out

@@ -9,12 +9,13 @@ def page() -> str:
 
 
 def all_commands() -> dict[str, Any]:
-    """Return the commands of jointwave by name."""
+    """Return the commands of jointwave by name, in the order of its help."""
     import typer
 
     from jointwave.compare.cli.commands import app
 
-    return typer.main.get_command(app).commands
+    group = typer.main.get_command(app)
+    return {name: group.commands[name] for name in group.list_commands(None)}
 
 
 def options(command: Any) -> list[str]:

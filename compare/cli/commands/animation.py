@@ -25,10 +25,20 @@ from jointwave.compare.cli.options import (
     load,
     results_of,
 )
+from jointwave.compare.engines import label_of
 
 ScaleOption = Annotated[
     float | None,
     typer.Option(metavar="X", help="Exaggeration of displacements (default: visible)."),
+]
+MapOption = Annotated[
+    str | None,
+    typer.Option(
+        "--map",
+        metavar="QUANTITY",
+        help="Colours: stress (the default of a pillar), speed (of a rock mass); of a pillar also "
+        "across, its velocity across the axis.",
+    ),
 ]
 OneVariantOption = Annotated[str, typer.Option(help="Use this variant instead of the base scene.")]
 FRAMES, SECONDS = 201, 10.0
@@ -38,11 +48,12 @@ FRAME = "frames"  # among the rates of this machine
 @app.command()
 def animate(
     scene: SceneArgument,
-    changes: SetOption = [],
-    variant: OneVariantOption = "",
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help=".mp4 or .gif; default SCENE.mp4 here.")
     ] = None,
+    shown: MapOption = None,
+    variant: OneVariantOption = "",
+    changes: SetOption = [],
     scale: ScaleOption = None,
     frames: Annotated[
         int | None,
@@ -57,9 +68,9 @@ def animate(
 ) -> None:
     """Animate the blocks and the wave of both engines as MP4 or GIF.
 
-    The frame gives the exaggeration of displacements. The continuum is the jointed rock if it
-    applies, else the homogenised rock; if neither does, the frame gives the reason. A rock mass is
-    coloured by particle speed.
+    Both share one colour scale, and the frame says how much is beyond it. It gives the exaggeration
+    of displacements. The continuum is the jointed rock if it applies, else the homogenised rock; if
+    neither does, the frame gives the reason.
     """
     _require_positive("--scale", scale)
     _require_positive("--seconds", seconds)
@@ -69,7 +80,7 @@ def animate(
     from jointwave.compare.runs.reuse import SNAPSHOTS, ResultFolder
 
     (one,) = load(scene, changes, variant, strict)
-    path = out or Path(f"{_name(scene, one)}.mp4")
+    quantity, path = _quantity(one, shown), out or Path(f"{_name(scene, one)}.mp4")
     refuse(path)
     stored, interval = ResultFolder(results_of(scene, results), fresh), interval_of(one, frames)
     if dry:
@@ -81,10 +92,10 @@ def animate(
         suffix = "" if interval is None else SNAPSHOTS
         count = round(one.time.duration / (seen.record.fields or inf)) + 1
         runs = runs_of(shown_engines(seen), seen, stored, suffix)
-        drawn = {f"{count} {FRAME}": count * timings.each(FRAME, 0.05)}
-        show_forecasts(runs, as_json, drawing=drawn)
+        costs = {f"{count} {FRAME}": count * timings.each(FRAME, 0.05)}
+        show_forecasts(runs, as_json, drawing=costs)
         return
-    frame = _frame(one, interval, scale, stored)
+    frame = _frame(one, interval, (scale, quantity), stored)
     count, began = len(frame.time), process_time()
     with terminal.progress("pictures") as advance:
 
@@ -98,22 +109,23 @@ def animate(
     if not as_json:
         _say(path, frame)
         return
-    shown = frame.simulated
-    facts = {"file": str(path), "engines": list(shown.found), "not_shown": shown.reasons}
+    drawn = frame.simulated
+    facts = {"file": str(path), "engines": list(drawn.found), "not_shown": drawn.reasons}
     terminal.print_json(facts | {"scale": frame.settings.scale})
 
 
 @app.command()
 def view(
     scene: SceneArgument,
-    changes: SetOption = [],
-    variant: OneVariantOption = "",
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write this .png, open no window.")
     ] = None,
     time: Annotated[
         float | None, typer.Option(metavar="T", help="s (default: middle of the scene).")
     ] = None,
+    shown: MapOption = None,
+    variant: OneVariantOption = "",
+    changes: SetOption = [],
     scale: ScaleOption = None,
     results: ResultsOption = None,
     fresh: FreshOption = False,
@@ -121,7 +133,7 @@ def view(
 ) -> None:
     """Show a scene by both engines, displaced and coloured by the wave.
 
-    Pillars are shown in three dimensions, rock masses in their plane, coloured by particle speed.
+    Pillars are shown in three dimensions, rock masses in their plane, on one colour scale.
     Opens a window of PyVista with a slider over time; with --out, or without a display or PyVista,
     writes an image of the instant nearest to T: of the scene's own snapshots, else of 201.
     """
@@ -133,11 +145,12 @@ def view(
     if not 0 < at <= end:
         allowed = f"must be greater than 0 and at most time.duration = {end:g} s"
         raise SceneError("--time", "", None, f"{allowed}, not {at:g}")
+    quantity = _quantity(one, shown)
     stored = ResultFolder(results_of(scene, results), fresh)
     if out is None and _has_display() and find_spec("pyvista") is not None:
         from jointwave.compare.figures.animation.window import open_window
 
-        frame = _frame(one, interval_of(one), scale, stored)
+        frame = _frame(one, interval_of(one), (scale, quantity), stored)
         open_window(frame, _nearest(frame, at))
         return
     from jointwave.compare.figures.export import write_drawing
@@ -147,21 +160,36 @@ def view(
     if path.suffix != ".png":
         raise SceneError("--out", str(path), None, "must end in .png")
     refuse_foreign(path, (b"\x89PNG",))
-    frame = _frame(one, interval_of(one), scale, stored)
+    frame = _frame(one, interval_of(one), (scale, quantity), stored)
     frame.show(_nearest(frame, at))
     write_drawing(path, frame.figure, one.title, {"savefig.dpi": "figure"})
     _say(path, frame)
 
 
-def _frame(scene: AnyScene, interval: float | None, scale: float | None, stored: Any) -> Any:
-    """Simulate a scene by both engines and return the frame of its instants, one per interval."""
+def _quantity(scene: AnyScene, name: str | None) -> Any:
+    """Return the quantity of `--map`, None without; raises SceneError if a scene has none such."""
+    from jointwave.compare.figures.animation.settings import quantities_of
+
+    known = quantities_of(scene)
+    if name is None:
+        return None
+    if name not in known:
+        raise SceneError("--map", "", None, f"must be one of {', '.join(known)}, not {name}")
+    return known[name]
+
+
+def _frame(scene: AnyScene, interval: float | None, view: tuple[Any, Any], stored: Any) -> Any:
+    """Simulate a scene by both engines and return the frame of its instants, one per interval.
+
+    view : scale of displacements and quantity of the colours, None: ours.
+    """
     from jointwave.compare.figures.animation.frame import Frame
     from jointwave.compare.figures.animation.settings import settings_for
     from jointwave.compare.figures.animation.snapshots import take
 
     with terminal.progress("both engines") as advance:
         simulated = take(scene, interval, advance, stored)
-    return Frame(simulated, settings_for(simulated.scene, simulated.found, scale))
+    return Frame(simulated, settings_for(simulated.scene, simulated.found, *view))
 
 
 def interval_of(scene: AnyScene, frames: int | None = None) -> float | None:
@@ -196,6 +224,7 @@ def _has_display() -> bool:
 
 def _say(path: Path, frame: Any) -> None:
     shown = frame.simulated
-    terminal.say(f"{path}: {' and '.join(shown.found)}, displacements × {frame.settings.scale:,g}")
+    engines = " and ".join(map(label_of, shown.found))
+    terminal.say(f"{path}: {engines}, displacements × {frame.settings.scale:,g}")
     for name, reason in shown.reasons.items():
-        terminal.say(f"{name} is not shown: {reason}")
+        terminal.say(f"{label_of(name)} is not shown: {reason}")

@@ -39,8 +39,9 @@ def effects(
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Measure the cost of every effect of a scene, and the misfit of the result without it.
+    """Measure what every effect of a scene costs and changes.
 
+    That is its time, and the misfit of the result without it.
     For a pillar, or a rock mass that rigid blocks can represent. Results are saved in DIR and not
     measured again.
     """
@@ -74,7 +75,10 @@ def plan(
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Find the cheapest engine, elements and step that meet a misfit, run from cheap to dear."""
+    """Find the cheapest engine, elements and step that meet a misfit.
+
+    They are run from cheap to dear; the last line is the command that runs the one that is found.
+    """
     scenes = load(scene, changes, variant or "", strict)
     from jointwave.compare.cli import plan_view
     from jointwave.compare.studies import plan as plans
@@ -83,33 +87,36 @@ def plan(
     for one in scenes:
         with terminal.progress(one.name or one.title) as advance:
             found.append(plans.plan(one, misfit, seconds, advance))
-    plan_view.show_plans(found, as_json)
+    plan_view.show_plans(found, scene, changes, as_json)
 
 
 @app.command()
 def study(
     name: Annotated[
-        str,
+        str | None,
         typer.Argument(
             help="A shipped study or a study's TOML file.", autocompletion=completion.studies
         ),
-    ],
+    ] = None,
     out: Annotated[Path, typer.Option(help="Folder for tables and points.")] = Path("studies"),
     workers: WorkersOption = CORES,
     dry: DryOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Run a study: a scene solved in many ways, each with its error and its cost, as one table
-    and its diagram.
+    """Run a study, accuracy against cost; without a name, list them.
 
+    A scene is solved in many ways, each with its error and its cost, as one table and its diagram.
     Finished points are saved in DIR/NAME/ and not run again. Under mpiexec the processes share
     the points; those of a timed study are run one at a time. The study `stability` runs both
     engines on hard cases, each with a criterion from theory; `oblique-joint` compares reflection
     and transmission of P and SV waves at one joint, over the angle, `parallel-joints` at several.
     """
     from jointwave.compare.cli.forecast_view import show_forecasts
-    from jointwave.compare.cli.study_view import run_and_show
+    from jointwave.compare.cli.study_view import run_and_show, show_studies
 
+    if name is None:
+        show_studies(as_json)
+        return
     folder = out / Path(name).stem
     work: Callable[[Any, Any], Any]
     runs: Callable[[], list[Any]]
@@ -162,10 +169,11 @@ def report(
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Write scenes with all figures, misfits and costs as one self-contained HTML page.
+    """Write scenes, their figures, misfits and costs as one HTML page.
 
-    Without a scene: the figures of Guo & Li (2002), the paper's claims, and all studies. Results
-    are read from and stored in out/SCENE, points of studies in DIR.
+    The page needs no other file. Without a scene: the figures of Guo & Li (2002), the paper's
+    claims, and all studies. Results are read from and stored in out/SCENE, points of studies in
+    DIR.
     """
     for one in scenes or []:
         load(one, [], None, strict)

@@ -22,6 +22,7 @@ from jointwave.compare.cli.options import (
     load,
     warn,
 )
+from jointwave.compare.engines import label_of
 from jointwave.compare.runs import jobs
 
 
@@ -47,8 +48,9 @@ def fit(
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Fit keys of a scene to measured waveforms by least squares, with 95 % intervals.
+    """Fit keys of a scene to measured waveforms by least squares.
 
+    Values come with 95 % intervals.
     --free names keys by their dotted path, joints.normal_stiffness or
     soft_layers.0.spacing_stiffness, optionally with start and bounds:
     KEY=START or KEY=LOW:START:HIGH. clock is a shift of the times of the files, s,
@@ -92,7 +94,7 @@ def fit(
         terminal.print_json(facts)
         return
     title = f"{one.title} {one.name}".strip()
-    terminal.say(f"{title}, fitted by {found.solver} in {found.trials} solutions", "bold")
+    terminal.say(f"{title}, fitted by {label_of(found.solver)} in {found.trials} solutions", "bold")
     worst = waveforms.loc[waveforms.after.idxmax()]
     where = f"; worst {worst['name']}, {worst.place}" if len(waveforms) > 1 else ""
     terminal.say(f"misfit {waveforms.before.max():.3%} before, {worst.after:.3%} after{where}")

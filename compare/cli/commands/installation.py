@@ -26,9 +26,9 @@ def new(
         bool, typer.Option("--rock-mass", help="Write a rock mass (a wave at one joint).")
     ] = False,
 ) -> None:
-    """Write a runnable scene template, NAME.toml, with every key explained.
+    """Write a scene to start from, NAME.toml, with every key explained.
 
-    Existing files are not overwritten.
+    It runs as it is. Existing files are not overwritten.
     """
     from jointwave.compare.cli.new import write_new
 
@@ -40,8 +40,9 @@ def new(
 
 @app.command()
 def doctor(as_json: JsonOption = False) -> None:
-    """Print what is installed and missing, and check both engines against exact solutions.
+    """Print what is installed, and check both engines.
 
+    They are checked against exact solutions.
     Exit code 0 if both engines pass, else 1; missing or broken parts are listed. The first run
     compiles kernels, which takes up to a minute.
     """

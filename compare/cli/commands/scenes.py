@@ -61,18 +61,18 @@ def run(
     model: ModelOption = None,
     changes: SetOption = [],
     variant: VariantOption = None,
-    swept: SweepOption = [],
-    members: EnsembleOption = 0,
     out: Annotated[
         Path | None, typer.Option(help="Folder for results (default: out/SCENE).")
     ] = None,
+    swept: SweepOption = [],
+    members: EnsembleOption = 0,
     every: Annotated[
         float,
         typer.Option(
             "--checkpoint-every",
             metavar="SECONDS",
             min=0.0,
-            help="Of wall time; 0: no checkpoints.",
+            help="From one checkpoint to the next; 0: none.",
         ),
     ] = 60.0,
     resume: Annotated[
@@ -84,10 +84,11 @@ def run(
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Simulate a scene and write each result as DIR/[variant/]ENGINE[-MODEL].nc.
+    """Simulate a scene and write its results as NetCDF files.
 
-    With record.fields also its snapshots, as a .pvd file for ParaView. Under mpiexec the processes
-    share each run of the continuum; everything else is done by the first of them.
+    Each is DIR/[variant/]ENGINE[-MODEL].nc. With record.fields also its snapshots, as a .pvd file
+    for ParaView. Under mpiexec the processes share each run of the continuum; everything else is
+    done by the first of them.
 
     Results that are there already are read; --fresh computes them anew. With --resume a killed run
     continues from its last checkpoint, with a bit-identical result. Ctrl-C saves the partial
@@ -141,14 +142,23 @@ def run(
 @app.command()
 def explain(
     scene: SceneArgument,
+    every: Annotated[
+        bool, typer.Option("--all", help="Also effects and solutions that it has not, and why.")
+    ] = False,
     changes: SetOption = [],
     variant: VariantOption = None,
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Print the effects of a scene, its critical steps, the exact solutions that apply, and the
-    reference; for a rock mass also its blocks."""
-    from jointwave.compare.cli.explain import explanation, show_explanation
+    """Print what a scene has, its time steps, and what can solve it.
+
+    Its rock and its blocks, the waves that enter, the effects that are active, the step of each
+    engine and what limits it, the solutions that apply with the options that select them, and the
+    reference of each engine. Nothing is run.
+    """
+    from jointwave.compare.cli.explain import explanation
+    from jointwave.compare.cli.explain_view import show_explanation
 
     for one in load(scene, changes, variant or "", strict):
-        (terminal.print_json if as_json else show_explanation)(explanation(one))
+        found = explanation(one)
+        terminal.print_json(found) if as_json else show_explanation(found, every)

@@ -35,6 +35,12 @@ from jointwave.compare.cli.options import (
 @app.command()
 def compare(
     scene: SceneArgument,
+    every: Annotated[
+        bool, typer.Option("--all", help="Also every misfit, and why solutions do not apply.")
+    ] = False,
+    reads: Annotated[
+        bool, typer.Option("--read", help="Also peak velocity, Arias intensity, spectra, speeds.")
+    ] = False,
     changes: SetOption = [],
     variant: VariantOption = None,
     out: Annotated[Path | None, typer.Option(help="Also write tables, curves and figure.")] = None,
@@ -52,19 +58,14 @@ def compare(
     fresh: FreshOption = False,
     dry: DryOption = False,
     strict: StrictOption = False,
-    every: Annotated[
-        bool, typer.Option("--all", help="Also every misfit, and why solutions do not apply.")
-    ] = False,
-    reads: Annotated[
-        bool, typer.Option("--read", help="Also peak velocity, Arias intensity, spectra, speeds.")
-    ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Solve a scene by every solver that applies, and print each engine's misfit from the finest.
+    """Solve a scene by all that applies: how far apart, and why.
 
-    One line per engine: its worst misfit, variant and receiver, its reference, its own numerical
-    error, the stepping time, and the verdict. --all, --json, --out and --with also run all other
-    solvers; --all shows every misfit of every pair, and data over model for external curves.
+    One line per engine: its worst misfit from the finest physics, with variant and receiver, its
+    reference, its own numerical error, the stepping time, and the verdict. --all, --json, --out and
+    --with also run all other solvers; --all shows every misfit of every pair, and data over model
+    for external curves.
 
     Results are read from and stored in the folder of --results, else of --out.
 

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from jointwave.cases.schema.scene import Scene
+from jointwave.compare.engines import label_of
 from jointwave.compare.figures.animation.bodies import (
     FRONT,
     OBLIQUE,
@@ -18,7 +19,7 @@ from jointwave.compare.figures.animation.bodies import (
     body_of,
     colours_of,
 )
-from jointwave.compare.figures.animation.settings import STRESS, ViewSettings
+from jointwave.compare.figures.animation.settings import PRINCIPAL, STRESS, ViewSettings
 from jointwave.compare.figures.animation.snapshots import SceneSnapshots
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.receivers import panels
@@ -56,7 +57,7 @@ class Frame:
                 self._add_bodies(axes, FRONT)
                 for ax in axes:
                     ax.set(anchor="N", xlabel="x (m)", ylabel="y (m)" * (ax is axes[0]))
-            axes, label = self.figure.axes, settings.quantity.label
+            axes, label = self.figure.axes, settings.quantity.label + self._beyond()
             self.figure.colorbar(self.colours, ax=axes, label=label, aspect=50, panchor=False)
             self.show(0)
             self.moving = self._moving()
@@ -95,17 +96,28 @@ class Frame:
     def _title(self) -> list[str]:
         """Return the lines of the title: the scene, how it is drawn, and what does not apply."""
         scene, caption = self.simulated.scene, self.settings.caption
-        if self.settings.quantity == STRESS and (scene.gravity or scene.prestress):
+        stress = self.settings.quantity in (STRESS, PRINCIPAL)
+        if stress and (scene.gravity or scene.prestress):
             caption += ", stress change from the static state"
-        missing = [f"{name} does not apply: {why}" for name, why in self.simulated.reasons.items()]
+        missing = [
+            f"{label_of(name)} does not apply: {why}"
+            for name, why in self.simulated.reasons.items()
+        ]
         title = ", ".join(part for part in (scene.title, scene.name) if part)
         return [line for words in (title, caption, *missing) for line in wrap(words, LETTERS)]
+
+    def _beyond(self) -> str:
+        """Return how much the colours do not resolve, of all instants, in words; "" if nothing."""
+        most = float(self.colours.get_clim()[1] or 1.0) * (1 + 1e-9)
+        values = np.concatenate([np.abs(body.values).ravel() for body in self.bodies.values()])
+        share = float((values > most).mean())
+        return f"; {100 * share:.2g} % is beyond" if share else ""
 
     def _add_bodies(self, axes: list[Axes], per_away: tuple[float, float]) -> None:
         """Draw each body into axes, below its name."""
         for ax, (name, body) in zip(axes, self.bodies.items(), strict=True):
             self.views[name] = BodyView(ax, body, self.colours, per_away)
-            ax.set_title(name, color=style(name).colour, fontweight="bold")
+            ax.set_title(label_of(name), color=style(name).colour, fontweight="bold")
         self.clock = axes[-1].set_title("", loc="right", fontsize=14)
 
     def _add_pillars(self) -> None:
@@ -132,8 +144,10 @@ class Frame:
             (self.profiles[name],) = ax.plot(along.columns, along.iloc[0], **style(name).of_line())
         for layer in soft_layers:
             ax.axvline(layer.y, color="#999999", linewidth=0.8, linestyle=":")
-        reach = 1.08 * float(self.colours.get_clim()[1] or 1.0)
-        ax.set(ylim=(-reach, reach), xlabel="y (m)" + "; dotted: soft layers" * bool(soft_layers))
+        reach = 1.08 * max(float(along.abs().max(axis=None)) for along in self.along.values())
+        reach = reach or 1.0
+        least = 0.0 if not self.settings.quantity.sign else -reach
+        ax.set(ylim=(least, reach), xlabel="y (m)" + "; dotted: soft layers" * bool(soft_layers))
         ax.set_ylabel(self.settings.quantity.name.replace(" (", "\n("))
 
     def _add_waveform(self, ax: Axes) -> None:

@@ -40,6 +40,9 @@ SPEED = Quantity("particle speed (m/s)")
 PEAK = Quantity("peak particle velocity (m/s)")
 PRINCIPAL = Quantity("larger principal stress (MPa)", 1e-6, "compression positive")
 SLIP = Quantity("slip of joints (mm)", 1e3)
+#: What the colours can show of a pillar, and of a rock mass.
+OF_PILLAR = {"stress": STRESS, "speed": SPEED, "across": VELOCITY}
+OF_ROCK_MASS = {"speed": SPEED, "stress": PRINCIPAL}
 
 
 class ViewSettings(NamedTuple):
@@ -62,19 +65,27 @@ class ViewSettings(NamedTuple):
         return f"displacements × {self.scale:,g}{thicker}"
 
 
+def quantities_of(scene: AnyScene) -> dict[str, Quantity]:
+    """Return what the colours can show of a scene, by name."""
+    return OF_PILLAR if isinstance(scene, Scene) else OF_ROCK_MASS
+
+
 def settings_for(
-    scene: AnyScene, found: dict[str, Snapshots], scale: float | None = None
+    scene: AnyScene,
+    found: dict[str, Snapshots],
+    scale: float | None = None,
+    quantity: Quantity | None = None,
 ) -> ViewSettings:
     """Return the view settings for snapshots by engine.
 
-    scale : of displacements, instead of ours. A pillar is seen so that most of its motion across
-    the axis is upwards, a rock mass in its plane.
+    scale, quantity : of displacements and of the colours, instead of ours. A pillar is seen so that
+    most of its motion across the axis is upwards, a rock mass in its plane.
     """
-    up, stretch, quantity = np.array([0.0, 1.0, 0.0]), stretch_of(scene), SPEED
+    up, stretch, ours = np.array([0.0, 1.0, 0.0]), stretch_of(scene), SPEED
     if isinstance(scene, Scene):
-        up, quantity = _upwards(found), _quantity(scene, found)
+        up, ours = _upwards(found), _quantity(scene, found)
     largest = min(_largest_scale(scene, s, stretch) for s in found.values())
-    return ViewSettings(up, scale or max(1.0, round_down(largest)), stretch, quantity)
+    return ViewSettings(up, scale or max(1.0, round_down(largest)), stretch, quantity or ours)
 
 
 def stretch_of(scene: AnyScene) -> float:

@@ -74,10 +74,10 @@ def with_snapshots(scene: AnyScene, interval: float) -> AnyScene:
 
 
 def _less_static(result: xr.Dataset, stress: np.ndarray | None) -> np.ndarray | None:
-    """Return the axial stress of the motion, as `compare.misfit.metrics.motion` does for
-    waveforms."""
+    """Return the stress of the motion, of a pillar as `compare.misfit.metrics.motion` does for
+    waveforms, of a rock mass less that at its start."""
     if stress is None:
         return None
-    if result.attrs.get("starts") == "at rest under gravity":
+    if stress.ndim > 2 or result.attrs.get("starts") == "at rest under gravity":
         return stress - stress[:1]
     return stress - result.attrs.get("prestress", 0.0)

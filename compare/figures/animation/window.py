@@ -3,6 +3,7 @@
 import numpy as np
 import pyvista
 
+from jointwave.compare.engines import label_of
 from jointwave.compare.figures.animation.bodies import EDGE
 from jointwave.compare.figures.animation.frame import Frame
 
@@ -35,7 +36,7 @@ def open_window(frame: Frame, i: int) -> None:
             scalar_bar_args={"title": frame.settings.quantity.label},
             lighting=False,  # colours as in the bar
         )
-    plotter.add_text(" above ".join(bodies), font_size=11)
+    plotter.add_text(" above ".join(map(label_of, bodies)), font_size=11)
     first, last = (float(1e3 * t) for t in time[[0, -1]])
     plotter.add_slider_widget(show, [first, last], value=float(1e3 * time[i]), title="time (ms)")
     plotter.view_vector(TOWARDS, viewup=(0.0, 0.0, 1.0))

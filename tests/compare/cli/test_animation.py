@@ -35,7 +35,7 @@ def test_animate_names_the_file_by_scene_and_variant(jointwave, tmp_path):
     options = ("--variant", "zeta 0.02", "--frames", 3, "--scale", 500)
     done = jointwave("animate", SCENE, *SHORT, *options)
     assert [p.name for p in tmp_path.iterdir()] == ["fig-03-zeta-0.02.mp4"]
-    assert done.out == "fig-03-zeta-0.02.mp4: dem and continuum-jointed, displacements × 500\n"
+    assert done.out == "fig-03-zeta-0.02.mp4: rigid blocks and jointed rock, displacements × 500\n"
 
 
 def test_animate_shows_one_engine_where_the_other_does_not_apply(jointwave, tmp_path):
@@ -44,7 +44,7 @@ def test_animate_shows_one_engine_where_the_other_does_not_apply(jointwave, tmp_
     (tmp_path / "own.toml").write_text(re.sub("(?m)^intact_.*", "", text))
     options = ("--variant", "no tension", "--frames", 3, "--out", "wave.gif")
     said = jointwave("animate", "own.toml", *SHORT, *options).out
-    assert "continuum-jointed is not shown: the jointed rock needs" in said
+    assert "jointed rock is not shown: the jointed rock needs" in said
     with Image.open("wave.gif") as file:
         assert file.n_frames == 3 and file.size == (1280, 720)
 
@@ -58,6 +58,8 @@ BAD = [
     (("animate", "no-such-scene"), "cannot be read"),
     (("animate", SCENE, "--variant", "none"), "variants.name"),
     (("view", SCENE, "--out", "wave.jpg"), "--out: wave.jpg: must end in .png"),
+    (("view", SCENE, "--map", "slip"), "--map: must be one of stress, speed, across, not slip"),
+    (("animate", "rock-mass/tunnel", "--map", "across"), "must be one of speed, stress, not"),
     (("view", SCENE, "--time", "0"), "--time: must be greater than 0 and at most"),
     (("view", SCENE, "--time", "9"), "time.duration = 0.12 s, not 9"),
     (("view", SCENE, "--time", "nan"), "--time: must be greater than 0 and at most"),
@@ -82,14 +84,14 @@ def test_a_foreign_file_is_not_replaced(jointwave, command, name, tmp_path):
 def test_view_without_a_display_writes_a_picture(jointwave, tmp_path):
     done = jointwave("view", SCENE, *SHORT, "--time", "0.008")
     assert done.err == ""
-    assert done.out.startswith("fig-03.png: dem and continuum-jointed, displacements × ")
+    assert done.out.startswith("fig-03.png: rigid blocks and jointed rock, displacements × ")
     with Image.open(tmp_path / "fig-03.png") as file:
         assert file.size == (1280, 720) and len(file.getcolors(1_000_000)) > 100
 
 
 def test_view_of_a_rock_mass_shows_its_speed(jointwave, tmp_path):
     short = ("--variant", "", "--set", "time.duration=0.01", "--out", "mass.png")
-    assert "mass.png: dem" in jointwave("view", "rock-mass/one-joint", *short).out
+    assert "mass.png: rigid blocks" in jointwave("view", "rock-mass/one-joint", *short).out
     with Image.open(tmp_path / "mass.png") as file:
         assert file.size == (1280, 720) and len(file.getcolors(1_000_000)) > 100
 

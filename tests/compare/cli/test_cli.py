@@ -289,6 +289,23 @@ def test_compare_writes_figure_curves_and_distances(jointwave, tmp_path):
     assert written == {"comparison", "comparison-misfits"}
 
 
+def test_help_begins_with_what_one_does_first(jointwave):
+    """First steps, then the commands in that order, each in one whole line."""
+    out = jointwave("--help").out
+    steps, _, commands = out.partition("\nCommands:\n")
+    assert "First steps:\n    jointwave new my-scene" in steps
+    names = [line.split()[0] for line in commands.splitlines()]
+    assert names[:2] == ["new", "list"] and names[-1] == "doctor"
+    assert "..." not in commands
+
+
+def test_study_without_a_name_lists_them(jointwave):
+    """With title and scene."""
+    facts = {one["study"]: one for one in json.loads(jointwave("study", "--json").out)}
+    assert facts["free-pillar"]["scene"] == SCENE and facts["stability"]["title"]
+    assert "Work and precision on the free pillar" in jointwave("study").out
+
+
 def test_help_and_version_go_to_standard_output(jointwave):
     """Every command has help, and no argument at all is a call for it."""
     assert jointwave("--version").out.startswith("jointwave 0.")

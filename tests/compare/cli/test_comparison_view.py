@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 from jointwave.compare.cli.comparison_view import show_comparisons
+from jointwave.compare.engines import label_of
 from jointwave.compare.misfit.alignment import AlignedCurve
 from jointwave.compare.misfit.pairs import Comparison, measure, measure_curves
 from jointwave.compare.report.verdict import engine_scores
@@ -46,12 +47,13 @@ def test_the_answer_names_the_worst_of_each_engine_and_the_verdict_of_the_page(c
     stand = engine_scores(found)
     assert lines[1].split()[0] == "engine" and len(lines) < 10
     for engine, line in zip(stand, lines[2:], strict=False):
-        assert line.startswith(engine) and stand[engine].verdict.word in line
+        assert line.startswith(label_of(engine)) and stand[engine].verdict.word in line
     dem = " ".join(lines[2].split())
     assert dem == (
-        "dem soft 8.00 stress at 20 m 8, ≤ 8 jointed-bar modelling error – △ differs 0.02"
+        "rigid blocks soft 8.00 stress at 20 m 8, ≤ 8 jointed bar, exact modelling error – "
+        "△ differs 0.02"
     )
-    assert "jointed-bar: deformable rock with every joint, exact" in lines[5]
+    assert "jointed bar, exact (deformable rock with every joint, exact)" in lines[5]
     assert lines[-1].endswith("--all; as JSON: --json") and "its reason" not in " ".join(lines)
 
 
@@ -61,7 +63,7 @@ def test_the_answer_names_what_is_not_checked_and_exceeds_its_bound(compared, ca
     show_comparisons(found, False, False)
     said = capsys.readouterr().out
     assert "exceeds the scene's bound: dem ~ continuum-jointed" in said
-    assert "not checked independently: continuum-jointed (v1)" in said
+    assert "not checked independently: jointed rock (v1)" in said
 
 
 @pytest.fixture
@@ -88,7 +90,7 @@ def test_curves_are_data_over_model(compared, curve, capsys):
     show_comparisons([one], False, False)
     said = capsys.readouterr().out
     ratio = f"{1.5 / 1.03:.4g}"
-    (line,) = (line for line in said.splitlines() if "gauge.csv ~ dem" in line)
+    (line,) = (line for line in said.splitlines() if "gauge.csv ~ rigid blocks  " in line)
     assert line.split()[-2:] == ["45.6", ratio]
     show_comparisons([one], True, False)
     said = capsys.readouterr().out

@@ -8,6 +8,8 @@ import sys
 
 import pytest
 
+from jointwave.compare.cli import terminal
+
 COLOUR = re.compile(r"\x1b\[[0-9;]*3[0-9][0-9;]*m")
 #: A point that would fail, which is said in red.
 RED = ("run", "guo-li-2002/fig-03", "--sweep", "joints.damping_ratio=-1,0.1", "--dry-run")
@@ -110,3 +112,14 @@ def test_colours_are_for_a_terminal_that_wants_them():
 def test_a_run_shows_its_progress_on_a_terminal(tmp_path):
     run = command("run", "guo-li-2002/fig-03", "--set", "time.duration=0.01", "--out", tmp_path)
     assert re.search(r"4 runs.*left", on_terminal(run))
+
+
+def test_a_table_that_is_too_wide_is_turned(capsys, monkeypatch):
+    """Where it has few rows: its columns become rows, and nothing of it is wrapped."""
+    monkeypatch.setattr(terminal, "PIPE", 30)
+    wide = ["engine", *(f"a number ({unit})" for unit in ("m", "s"))], [["rigid blocks", "1", "2"]]
+    terminal.show_table(*wide)
+    lines = [line.split("  ") for line in capsys.readouterr().out.splitlines()]
+    assert [line[0] for line in lines] == ["engine", "a number (m)", "a number (s)"]
+    terminal.show_table(wide[0], 5 * wide[1])
+    assert capsys.readouterr().out.startswith("engine        a number (m)  a number (s)")

@@ -5,6 +5,7 @@ import pytest
 from matplotlib.text import Text
 
 from jointwave.cases.material.calibrate import calibrate
+from jointwave.compare.engines import label_of
 from jointwave.compare.figures.animation.frame import Frame
 from jointwave.compare.figures.animation.settings import settings_for
 from jointwave.compare.figures.style import style
@@ -62,7 +63,7 @@ def test_the_picture_says_when_how_much_and_who(frame):
     said = words(frame)
     assert f"displacements × {frame.settings.scale:,g}" in said and "thickness × 2" not in said
     assert "axial stress (MPa), compression positive" in said and "t = 10.00 ms" in said
-    assert all(name in said for name in frame.bodies)
+    assert all(label_of(name) in said for name in frame.bodies)
 
 
 def test_nothing_lies_over_anything(frame, collisions):
