@@ -111,3 +111,9 @@ assert abs(sum(shares) - 1) < 0.01
 distance = jw.misfit(result, jw.simulate(scene, "lattice"))
 print(f"rigid blocks from their exact motion: {distance:.1e}")
 assert distance < 0.005
+
+# %% [markdown]
+# Both, and the continuum beside them:
+
+# %%
+result.jw.plot(jw.simulate(scene, "lattice"), jw.simulate(scene, "continuum-jointed"))

@@ -1,5 +1,6 @@
 """The shipped examples run as they stand, in a kernel and as plain Python, and keep their word."""
 
+import ast
 import os
 import re
 import subprocess
@@ -10,6 +11,7 @@ import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from scipy.stats import binom
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -44,9 +46,14 @@ def test_an_example_runs_asserts_and_draws(name, no_windows, monkeypatch):
     monkeypatch.setattr(plt, "show", show)
     space = {"__name__": "__main__"}
     for cell in code_of(name):
-        exec(compile(cell, f"{name}.py", "exec"), space)
+        drawn, tree = len(figures), ast.parse(cell)
+        last = tree.body.pop() if isinstance(tree.body[-1], ast.Expr) else ast.parse("None").body[0]
+        exec(compile(tree, f"{name}.py", "exec"), space)
+        if isinstance(found := eval(ast.unparse(last), space), Figure):
+            figures += found.axes  # a notebook shows it
     assert any("assert " in cell for cell in code_of(name))
     assert figures and all(ax.lines or ax.collections for ax in figures)
+    assert len(figures) > drawn  # it ends in a picture
 
 
 def test_an_example_runs_in_a_kernel_and_shows_what_it_makes(tmp_path):

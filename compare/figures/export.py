@@ -17,12 +17,20 @@ from jointwave.compare.runs.output import write, write_csv
 DIGITS = 6  # of the numbers behind a figure
 
 
+class ShownFigure(Figure):
+    """A figure that a notebook shows where a cell ends with it, like those of pyplot."""
+
+    def _repr_png_(self) -> bytes:
+        self.savefig(found := io.BytesIO(), format="png")
+        return found.getvalue()
+
+
 @contextmanager
 def blank(height: float, rc: dict[Any, Any] = RC) -> Iterator[Figure]:
     """Yield an empty figure, as wide as matplotlib's settings `rc` have it; height : inches."""
     with matplotlib.rc_context(rc):
         width = matplotlib.rcParams["figure.figsize"][0]
-        figure = Figure((width, height), layout="constrained")
+        figure = ShownFigure((width, height), layout="constrained")
         FigureCanvasAgg(figure)
         yield figure
 
