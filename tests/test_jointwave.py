@@ -120,6 +120,13 @@ def test_keys_are_fitted_and_numerics_planned():
     assert jw.plan(scene, misfit=0.05).misfit <= 0.05
 
 
+def test_figures_show_themselves_in_a_notebook():
+    """By the hook of IPython, also where pyplot is not imported."""
+    result = jw.simulate(TABLES)
+    for figure in (result.jw.plot(), jw.figure(jw.compare(TABLES))):
+        assert figure._repr_png_().startswith(b"\x89PNG")
+
+
 def test_readings_of_an_array_are_those_by_hand():
     """A bell: its peak, the square of its slope, its spectrum."""
     time, width = np.linspace(1.0, 3.0, 2001), 0.05

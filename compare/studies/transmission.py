@@ -40,14 +40,7 @@ from jointwave.compare.studies.joint_waves import (
 
 EXACT = "exact"
 NONE = "has no transmission by angle"
-#: Variables of the table, with what they are.
-VARIABLES = {
-    "R_p": "reflected P wave over the incident one",
-    "R_s": "reflected S wave over the incident one",
-    "T_p": "transmitted P wave over the incident one",
-    "T_s": "transmitted S wave over the incident one",
-    "residual": "part of the motion that plane waves do not explain",
-}
+WAVES = {"R_p": "reflected P", "R_s": "reflected S", "T_p": "transmitted P", "T_s": "transmitted S"}
 
 
 def transmission(
@@ -100,7 +93,9 @@ def transmission(
         if progress:
             progress((k + 1) / len(points))
     found = np.reshape(np.transpose(rows), (5, len(names), len(degrees)))
-    named = {name: (x, VARIABLES[name], "1") for name, x in zip(VARIABLES, found, strict=True)}
+    said = {name: f"{words} wave over the incident one" for name, words in WAVES.items()}
+    said |= {"residual": "part of the motion that plane waves do not explain"}
+    named = {name: (x, said[name], "1") for name, x in zip(said, found, strict=True)}
     angle = variables("angle", {"angle": (degrees, "angle from the joints' normal", "degrees")})
     about = {"incidence": incidence, "frequency": 1 / period, "scene": scene.title}
     return xr.Dataset(variables(("solver", "angle"), named), {"solver": names, **angle}, about)
@@ -155,9 +150,9 @@ def _of_pillar(scene: Scene, period: float, solver: str, angle: float) -> list[f
     if not (answer := holds(trial, ("soft layers", "damped joints"))):
         raise SceneError(scene.where, "", None, f"{NONE}: {answer.reason}")
     if solver == EXACT:
-        eta = np.zeros(len(p.joint_y)) if p.joint_time_constant is None else p.joint_time_constant
+        eta = 0.0 if p.joint_time_constant is None else p.joint_time_constant[at]
         stiffness = 1 / p.excess_compliance[at]
-        laws = [Joint(K, K, K * t) for K, t in zip(stiffness, eta[at], strict=True)]
+        laws = [Joint(K, K, c) for K, c in zip(stiffness, stiffness * eta, strict=True)]
         rock, spacings = ElasticRock(p.density, p.bar_speed, p.shear_speed), np.diff(p.joint_y[at])
         found = parallel_joints.coefficients("P", 0.0, 2 * pi / period, rock, laws, spacings)
         return [*np.abs(found).tolist(), nan]
