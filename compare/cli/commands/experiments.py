@@ -26,6 +26,8 @@ from jointwave.compare.cli.options import (
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.scenes import shipped
 
+DIAGRAM = {"a diagram": 4.0}  # s, with what is imported for it
+
 
 @app.command()
 def effects(
@@ -52,7 +54,7 @@ def effects(
 
     wanted = [Variant(scene, one) for one in load(scene, changes, variant or "", strict)]
     if dry:
-        show_forecasts(planned(wanted, out), as_json)
+        show_forecasts(planned(wanted, out), as_json, drawing=DIAGRAM)
         return
     run_and_show(
         wanted[0].scene.title,
@@ -144,7 +146,7 @@ def study(
         runs = partial(planned_points, asked, folder)
 
     if dry:
-        show_forecasts(runs(), as_json)
+        show_forecasts(runs(), as_json, drawing=DIAGRAM)
         return
     run_and_show(title, folder, workers, work, as_json)
 
