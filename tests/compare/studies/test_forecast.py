@@ -166,7 +166,7 @@ def test_nothing_is_run_or_written(dry):
     said = dry("run", SCENE, "--engine", "dem", "--engine", "continuum").out
     assert "12 would run" in said and "7,200" in said and "100 blocks" in said
     said = dry("compare", SCENE, "--variant", "").out
-    assert "8 would run" in said and "lattice" in said
+    assert "8 would run" in said and "rigid blocks, exact" in said
 
 
 def test_every_point_of_a_sweep_is_told_and_which_would_fail(dry):
