@@ -160,7 +160,7 @@ def test_generated_parts_are_known(tools):
         assert "<!-- generated" not in hooks.generated(text)
 
 
-@pytest.mark.parametrize("name", ["commands.md", "scene.md"])
+@pytest.mark.parametrize("name", ["commands.md", "python.md", "scene.md"])
 def test_reference_is_written_out(name, tools):
     """Who reads the file itself reads what is generated; `make docs` writes it."""
     text = (DOCS / "reference" / name).read_text(encoding="utf-8")

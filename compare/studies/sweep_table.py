@@ -6,6 +6,7 @@ from typing import Any
 import pandas as pd
 
 from jointwave.cases.errors import SceneError
+from jointwave.compare.engines import in_words
 from jointwave.compare.figures.units import UNITS
 from jointwave.compare.misfit.metrics import Distance
 from jointwave.compare.misfit.places import Place
@@ -22,15 +23,7 @@ NUMBERS = {
 }
 
 #: Their headings in a table, where the name alone does not say it.
-HEADINGS = {
-    "time_of_peak": "time of peak (s)",
-    "seconds": "stepping (s)",
-    "energy_residual": "energy residual (of the work)",
-    "misfit": "misfit (ratio)",
-    "delay": "delay (s)",
-    "peak_ratio": "peak ratio",
-    "period_ratio": "period ratio",
-}
+HEADINGS = {"time_of_peak": "time of peak (s)", "seconds": "stepping (s)", "delay": "delay (s)"}
 
 
 def summarise(asked: Sweep, rows: pd.DataFrame) -> Summary:
@@ -78,7 +71,7 @@ def _records(rows: pd.DataFrame) -> Any:
 def _display(rows: pd.DataFrame, by: str, keys: list[str], numbers: list[str]) -> pd.DataFrame:
     """Return rows as the table of a summary: solvers, then points and receivers."""
     records = rows.to_dict("records")
-    labels = {"": [": ".join(filter(None, [row["variant"], row[by]])) for row in records]}
+    labels = {"": [": ".join(filter(None, [row["variant"], in_words(row[by])])) for row in records]}
     if keys:
         labels[", ".join(keys)] = [", ".join(str(row[key]) for key in keys) for row in records]
     labels["of"] = [_receiver(row) for row in records]
@@ -89,4 +82,5 @@ def _display(rows: pd.DataFrame, by: str, keys: list[str], numbers: list[str]) -
 def _receiver(row: dict[str, Any]) -> str:
     at = tuple(row[name] for name in ("x", "y") if name in row)
     name = row["quantity"]
-    return f"{Place(name, '', at).heading} ({UNITS[name]})" if name in UNITS else ""
+    unit = f" ({UNITS[name]})" if "peak" in row and name else ""
+    return Place(name, "", at).heading + unit if name else ""

@@ -39,7 +39,7 @@ def _definition(root: Path, module: str, name: str) -> Documented:
 
 def _entry(module: str, node: Documented) -> str:
     name = f"{module}.{node.name}"
-    parts = [f"### `{name}` {{ #{name} }}", _signature(node)]
+    parts = [f'<a id="{name}"></a>', f"### `{name}`", _signature(node)]
     parts.append(as_markdown(ast.get_docstring(node) or ""))
     return "\n\n".join(part for part in parts if part)
 

@@ -96,6 +96,16 @@ def test_view_of_a_rock_mass_shows_its_speed(jointwave, tmp_path):
         assert file.size == (1280, 720) and len(file.getcolors(1_000_000)) > 100
 
 
+def test_view_shows_the_quantity_that_is_asked_for(jointwave, tmp_path):
+    """Of the results that the first picture has left."""
+    for quantity in ("stress", "speed"):
+        shown = ("--map", quantity, "--out", f"{quantity}.png")
+        said = jointwave("view", SCENE, *SHORT, *shown)
+        assert said.out.startswith(f"{quantity}.png: rigid blocks and jointed rock")
+    first, other = (Image.open(tmp_path / f"{name}.png") for name in ("stress", "speed"))
+    assert first.getcolors(1_000_000) != other.getcolors(1_000_000)
+
+
 def test_help_draws_nothing():
     """Neither figures nor engines are imported for a command's help."""
     script = (

@@ -80,7 +80,8 @@ def test_an_ensemble_resumes(ensemble, command):
 def test_misfits_and_waveforms_of_a_comparison(command, tmp_path):
     short = ["--set", "pillar.length=10.0", "--set", "record.stress=[5.0]", *KEYS[:2]]
     asked = ["compare", SCENE, "--variant", "", *short, "--no-spectral", "--ensemble", "3"]
-    assert "dem ~ lattice" in command(*asked, "--workers", 1, "--out", tmp_path).out
+    said = command(*asked, "--workers", 1, "--out", tmp_path).out
+    assert "rigid blocks ~ rigid blocks, exact" in said
     table = pd.read_csv(tmp_path / "sweep.csv")
     rows = pd.read_csv(tmp_path / "ensemble.csv")
     pair = {"one": "dem", "other": "lattice", "quantity": "stress"}

@@ -88,7 +88,7 @@ def test_what_is_done_is_not_run_again(swept, command):
 def test_a_comparison_is_swept(command, tmp_path):
     """Misfits of every pair over the key, and the figure of each point."""
     done = command("compare", SCENE, "--sweep", "ends.start=free,quiet", *PAIRS, "--out", "out")
-    assert "dem ~ lattice" in done.out and "stress at y = 4 m" in done.out
+    assert "rigid blocks ~ rigid blocks, exact" in done.out and "stress at y = 4 m" in done.out
     rows = pd.read_csv(tmp_path / "out" / "sweep.csv")
     found = rows[(rows.pair == "dem ~ lattice") & (rows.quantity == "stress") & (rows.y == 4.0)]
     assert set(found["ends.start"]) == {"free", "quiet"}
@@ -108,7 +108,9 @@ def test_the_worst_waveform_of_each_pair_is_shown():
     ]
     asked = Sweep("scene", [Case({"key": 3}, None, None)], None)
     found = summarise(asked, pd.DataFrame(rows))
-    assert found.table.index.tolist() == [("dem ~ lattice", "3", "stress 2 at [1, 2] m")]
+    assert found.table.index.tolist() == [
+        ("rigid blocks ~ rigid blocks, exact", "3", "stress 2 at [1, 2] m")
+    ]
     assert found.table.misfit.item() == 0.02 and "worst" in found.legend
     assert len(found.facts["rows"]) == 3
 
