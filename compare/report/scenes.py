@@ -21,8 +21,8 @@ from jointwave.compare.figures.tables import distance_frame, reading_frame
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import applicable
 from jointwave.compare.report import tables
-from jointwave.compare.report.claims.figures import claims_of
 from jointwave.compare.report.claims.claim import Claim
+from jointwave.compare.report.claims.figures import claims_of
 from jointwave.compare.report.claims.pillar import mostly_dispersion
 from jointwave.compare.report.verdict import EngineScore, engine_scores
 from jointwave.compare.runs import timings
