@@ -15,9 +15,14 @@ from jointwave.results.dataset import scene_hash
 
 Signature = dict[str, str]
 PROCESSES = "number of processes"
-#: Keys of [numerics.dem] that decide nothing but its own steps, and the one that decides no number.
-OF_STEPS = {"step_fraction", "scheme", "allow_unstable", "static_tolerance"}
-OF_TIME = {"threads"}
+#: Keys of [numerics.dem] that decide nothing but its own steps, or no number at all.
+DEM_STEPS = {"step_fraction", "scheme", "allow_unstable", "static_tolerance", "threads"}
+#: Numerics that do not decide a result, by engine; of an exact solution neither engine's.
+INDIFFERENT = {
+    "dem": {"dem": {"threads"}, "continuum": True},
+    "continuum": {"dem": DEM_STEPS},
+    "exact": {"dem": DEM_STEPS, "continuum": True},
+}
 
 
 def signature(scene: AnyScene, name: str, processes: int) -> Signature:
@@ -53,11 +58,8 @@ def program() -> str:
 def _scene(scene: AnyScene, name: str) -> str:
     """Return a hash of what decides a solver's result of a scene, with the warnings that it bears
     and its mesh file; the numerics of another engine do not, nor the bounds of [expect]."""
-    engine = solver(name).engine
-    numerics: dict = {"dem": OF_TIME if engine == "dem" else OF_TIME | OF_STEPS}
-    if engine != "continuum":
-        numerics["continuum"] = True
-    text = scene.model_dump_json(exclude={"expect": True, "numerics": numerics})
+    left_out = {"expect": True, "numerics": INDIFFERENT[solver(name).engine]}
+    text = scene.model_dump_json(exclude=left_out)
     found = scene_hash(scene, text + json.dumps(warnings(scene)))
     holds_it = scene.numerics.continuum if isinstance(scene, Scene) else scene.domain
     mesh = holds_it.mesh_path
