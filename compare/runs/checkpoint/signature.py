@@ -5,6 +5,7 @@ import json
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 from jointwave import cases
 from jointwave.cases.scene_type import AnyScene
@@ -58,7 +59,7 @@ def program() -> str:
 def _scene(scene: AnyScene, name: str) -> str:
     """Return a hash of what decides a solver's result of a scene, with the warnings that it bears
     and its mesh file; the numerics of another engine do not, nor the bounds of [expect]."""
-    left_out = {"expect": True, "numerics": INDIFFERENT[solver(name).engine]}
+    left_out: dict[str, Any] = {"expect": True, "numerics": INDIFFERENT[solver(name).engine]}
     text = scene.model_dump_json(exclude=left_out)
     found = scene_hash(scene, text + json.dumps(warnings(scene)))
     holds_it = scene.numerics.continuum if isinstance(scene, Scene) else scene.domain
