@@ -441,4 +441,4 @@ def test_command_reads_what_run_wrote(tmp_path, jointwave):
     assert {"dem", "continuum-jointed", "jointed-bar"} < rows.keys()
     (curve,) = facts["curves"]
     assert curve["samples"] == 401 and curve["moved by (s)"] == curve["outside"] == 0
-    assert "exact-lattice.nc ~ dem" in said
+    assert "exact-lattice.nc ~ rigid blocks " in said
