@@ -245,7 +245,7 @@ def test_progress_ends_whole(report, fractions):
 
 def test_summary_has_a_column_a_figure_and_a_row_a_pair(report):
     summary = report.summary.droplevel(0)
-    assert list(summary) == [f"fig. {number}" for number in range(2, 11)]
+    assert list(summary) == [*(f"fig. {number}" for number in range(2, 11)), "one-joint"]
     assert float(summary.loc["dem ~ lattice", "fig. 3"]) < 0.2  # in %, as the default step promises
 
 
