@@ -1,1 +1,1 @@
-"""What Guo & Li (2002) claim, by the figures of the paper."""
+"""Claims of Guo & Li (2002), by the figures of their paper."""
