@@ -6,6 +6,7 @@ import pytest
 from jointwave import dem
 from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.material.calibrate import calibrate
+from tests.dem.axial.test_relaxation import RELAXING, Q
 
 SEGMENTS = [
     {"y": [2.0, 4.0], "density": 5000.0, "block": 0.25},
@@ -85,26 +86,6 @@ SCENES = {f"chain, {name}": ("pillar", 12.0, changes) for name, changes in CHAIN
 SCENES |= {f"4th order, {n}": ("pillar", 12.0, FOURTH | one) for n, one in FOURTH_ORDER.items()}
 SCENES |= {f"row, {name}": ("row", 4.0, changes) for name, changes in ROWS.items()}
 #: Of rock with a quality factor the step is that of its joints before they relax: a bound.
-Q = {"rock__quality_factor": 10.0, "rock__reference_frequency": 100.0}
-DAMPED = {"joints__damping_ratio": 0.02}
-LAYERED = [
-    {"y": [5.0, 10.0], "intact_modulus": 2e10, "density": 2600.0},
-    {"y": [30.0, 35.0], "joints": False, "intact_modulus": 2e11},
-]
-RELAXING = {
-    "rock alone": {},
-    "joints damped apart": DAMPED,
-    "mass damping, matched ends": {
-        "damping__mass_proportional": 50.0,
-        "ends": {"start": "matched", "end": "quiet"},
-    },
-    "a layer and segments": {
-        **DAMPED,
-        "soft_layers": [{"y": 20.0, "spacing_stiffness": 4.375e8}],
-        "segments": LAYERED,
-        "ends__end": "matched",
-    },
-}
 BOUNDED = SCENES | {f"relaxing, {n}": ("pillar", 50.0, Q | one) for n, one in RELAXING.items()}
 STEPS, EVERY = 100_000, 250
 

@@ -20,7 +20,7 @@ from tests.cases.material.test_constant_q import roots
 Q = {"rock__quality_factor": 10.0, "rock__reference_frequency": 100.0}
 DAMPED = {"joints__damping_ratio": 0.02}
 STILL = {"load": {"shape": "step", "amplitude": 0.0}}
-PARTS = {
+RELAXING = {
     "rock alone": {},
     "joints damped apart": DAMPED,
     "mass damping, matched ends": {
@@ -65,7 +65,7 @@ def test_mode_rings_and_decays_as_the_root_of_leapfrog_says(pillar, number, damp
     assert np.abs(state.u - mode * (z**steps).real).max() < 1e-9
 
 
-@pytest.mark.parametrize("changes", PARTS.values(), ids=PARTS)
+@pytest.mark.parametrize("changes", RELAXING.values(), ids=RELAXING)
 def test_ledger_closes_and_mechanisms_only_lose(pillar, changes):
     """What the dashpots take is booked from their own springs, and closes to round-off."""
     result = dem.simulate(pillar(**Q, **changes))
