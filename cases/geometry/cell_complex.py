@@ -1,0 +1,242 @@
+"""A cell complex: vertices, edges, faces and cells that fit together exactly, in any dimension.
+
+A k-cell is the list of the (k-1)-cells that bound it. Each exists once, for all cells that it
+bounds: whatever is cut, removed or joined, volumes add up and an inner facet belongs to two cells.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from jointwave.cases.geometry.relations import composed, distinct, ordered
+
+OUTSIDE = -1  #: in place of a cell: beyond the domain, or in an opening
+NO_SET = -1  #: in place of a joint set: the boundary, or a cut through intact rock
+PARALLEL = 1e-12  #: sine of the angle between planes below which they have one normal
+
+
+class GeometryError(ValueError):
+    """A domain that is not cut into convex blocks: where, and the cause.
+
+    key : of what causes it, in the scene.
+    """
+
+    def __init__(self, at: np.ndarray | None, cause: str, key: str = "domain") -> None:
+        place = "" if at is None else ", near [{}]".format(", ".join(f"{x:.6g}" for x in at))
+        self.at, self.cause, self.key = at, cause, key
+        super().__init__(f"{cause}{place}")
+
+
+class Sliver(GeometryError):
+    """A block too thin or too pointed to be passed on."""
+
+
+class NonConvex(GeometryError):
+    """A block that is not convex, at an opening or a corner of the outline."""
+
+
+class Halves(NamedTuple):
+    """Facets, once for each cell that they bound: int arrays [h].
+
+    facet, cell : indices. across : the cell on the other side, or OUTSIDE. outward : float array
+    [h, d], unit normal out of the cell.
+    """
+
+    facet: np.ndarray
+    cell: np.ndarray
+    across: np.ndarray
+    outward: np.ndarray
+
+
+@dataclass(frozen=True)
+class Complex:
+    """A domain of d dimensions in convex cells. Facets, of d - 1 dimensions, know their planes.
+
+    Attributes
+    ----------
+    vertices : float array [v, d], m.
+    bounds : for k = 1 to d - 1 the pairs of a k-cell and a (k-1)-cell that bounds it, int arrays
+        [m, 2] sorted by the k-cell: the ends of edges, then the edges of faces.
+    sides : int array [f, 2], the cells that the normal of a facet points out of and into, or
+        OUTSIDE.
+    plane : int array [f], the direction of a facet in `normals`. Facets of one cell and direction
+        lie in one plane on each side of the cell, since cells are convex.
+    joint_set : int array [f], the set that a facet is a joint of, or NO_SET.
+    side : int array [f], of a facet with OUTSIDE: 0 for the outer boundary, 1 + k for opening k.
+    normals : float array [l, d], unit vectors, no two of them parallel.
+    region : int array [count], the region of rock that holds each cell, or -1.
+    count : cells are 0 to count - 1; some may have been removed.
+    """
+
+    vertices: np.ndarray
+    bounds: tuple[np.ndarray, ...]
+    sides: np.ndarray
+    plane: np.ndarray
+    joint_set: np.ndarray
+    side: np.ndarray
+    normals: np.ndarray
+    region: np.ndarray
+    count: int
+
+    @property
+    def dim(self) -> int:
+        """Number of dimensions."""
+        return self.vertices.shape[1]
+
+    def numbers(self) -> list[int]:
+        """Return how many k-cells there are, for k = 0 to d."""
+        edges = [len(self.bounds[0]) // 2] if self.dim == 3 else []
+        vertices = [len(self.vertices)] if self.dim > 1 else []
+        return [*vertices, *edges, len(self.sides), self.count]
+
+    @property
+    def inner(self) -> np.ndarray:
+        """Which facets lie between two cells, bool array [f]."""
+        return (self.sides != OUTSIDE).all(axis=1)
+
+    def halves(self, chosen: np.ndarray | slice = np.s_[:]) -> Halves:
+        """Return the facets, or those that are chosen, once for each of their cells."""
+        number = np.arange(len(self.sides))[chosen]
+        facet, into = np.tile(number, 2), np.repeat([0, 1], len(number))
+        held = self.sides[facet, into] != OUTSIDE
+        facet, into = facet[held], into[held]
+        outward = self.normals[self.plane[facet]] * (1 - 2 * into)[:, None]
+        return Halves(facet, self.sides[facet, into], self.sides[facet, 1 - into], outward)
+
+    def beside(self, cells: np.ndarray) -> Halves:
+        """Return the halves of the facets of some cells (bool array [count]), these cells' only."""
+        near = np.append(cells, False)[self.sides].any(axis=1)
+        half = self.halves(near)
+        return Halves(*(array[cells[half.cell]] for array in half))
+
+    def vertices_of(self, pairs: np.ndarray) -> np.ndarray:
+        """Return the pairs (x, vertex) of pairs (x, facet), int arrays [m, 2], in order."""
+        for bound in reversed(self.bounds):
+            pairs = distinct(composed(pairs, bound)[0])
+        return distinct(pairs)
+
+    def corners(self, half: Halves) -> np.ndarray:
+        """Return the pairs (cell, vertex) of halves, int array [m, 2], sorted, each once."""
+        return self.vertices_of(np.stack([half.cell, half.facet], axis=1))
+
+    def centres(self) -> np.ndarray:
+        """Return the mean of each cell's vertices [count, d], which lies inside; nan of none."""
+        cell, vertex = self.corners(self.halves()).T
+        with np.errstate(invalid="ignore"):
+            return (
+                np.stack(
+                    [
+                        np.bincount(cell, weights=x, minlength=self.count)
+                        for x in self.vertices[vertex].T
+                    ],
+                    axis=1,
+                )
+                / np.bincount(cell, minlength=self.count)[:, None]
+            )
+
+    def removed(self, cells: np.ndarray, side: int) -> Complex:
+        """Return the complex without some cells (bool array [count]), whose facets to other cells
+        become the boundary `side`."""
+        was = np.append(cells, False)[self.sides]  # the last stands for OUTSIDE
+        return replace(
+            self,
+            sides=np.where(was, OUTSIDE, self.sides),
+            side=np.where(was.any(axis=1), side, self.side),
+        )._without_inner()
+
+    def joined(self, root: np.ndarray) -> Complex:
+        """Return the complex with its cells joined to others: root, int array [count]."""
+        return replace(self, sides=np.append(root, OUTSIDE)[self.sides])._without_inner()
+
+    def _without_inner(self) -> Complex:
+        """Return the complex without facets that have the same on both sides."""
+        held = self.sides[:, 0] != self.sides[:, 1]
+        bounds = self.bounds
+        if bounds:
+            number, last = np.cumsum(held) - 1, bounds[-1][held[bounds[-1][:, 0]]]
+            last = np.stack([number[last[:, 0]], last[:, 1]], axis=1)
+            bounds = (*bounds[:-1], last)
+        own = {key: getattr(self, key)[held] for key in ("sides", "plane", "joint_set", "side")}
+        return replace(self, bounds=bounds, **own)
+
+    def with_normal(self, normal: np.ndarray) -> tuple[np.ndarray, int, bool]:
+        """Return `normals` with one more where none is parallel to it, its index, and whether the
+        one that is there has the opposite sense."""
+        cosine = self.normals @ normal
+        away = np.linalg.norm(normal - cosine[:, None] * self.normals, axis=1)
+        if (away <= PARALLEL).any():
+            index = int(np.argmin(away))
+            return self.normals, index, bool(cosine[index] < 0)
+        return np.concatenate([self.normals, normal[None]]), len(self.normals), False
+
+
+def box(low: np.ndarray, high: np.ndarray) -> Complex:
+    """Return a box in any dimension as one cell; low, high : its corners, float arrays [d], m."""
+    dim = len(low)
+    ends = np.array([low, high], dtype=float)
+    cells = [list(product((0, 1, 2), repeat=dim))]  # 2: from the low to the high end of an axis
+    of_dim = [[one for one in cells[0] if one.count(2) == k] for k in range(dim + 1)]
+    place = [{one: i for i, one in enumerate(ones)} for ones in of_dim]
+    bounds = [
+        np.array(
+            [
+                (i, place[k - 1][(*one[:axis], end, *one[axis + 1 :])])
+                for i, one in enumerate(of_dim[k])
+                for axis in range(dim)
+                if one[axis] == 2
+                for end in (0, 1)
+            ]
+        )
+        for k in range(1, dim)
+    ]
+    axes = [next(axis for axis in range(dim) if one[axis] != 2) for one in of_dim[dim - 1]]
+    high_end = np.array([one[axis] == 1 for one, axis in zip(of_dim[dim - 1], axes, strict=True)])
+    return _one_cell(
+        np.array([[ends[one[axis], axis] for axis in range(dim)] for one in of_dim[0]]),
+        tuple(bounds),
+        np.array(axes),
+        high_end,
+        np.eye(dim),
+    )
+
+
+def polygon(corners: np.ndarray) -> Complex:
+    """Return a convex polygon (float array [n, 2], m, counter-clockwise) as one cell."""
+    n = len(corners)
+    at, along = np.arange(n), np.roll(corners, -1, axis=0) - corners
+    outward = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.hypot(*along.T)[:, None]
+    bounds = np.stack([np.repeat(at, 2), np.stack([at, np.roll(at, -1)], axis=1).ravel()], axis=1)
+    found = _one_cell(corners, (bounds,), at, np.ones(n, bool), outward[:0])
+    for k, normal in enumerate(outward):
+        normals, plane, turned = found.with_normal(normal)
+        found.plane[k] = plane
+        found.sides[k] = [OUTSIDE, 0] if turned else [0, OUTSIDE]
+        found = replace(found, normals=normals)
+    return found
+
+
+def _one_cell(
+    vertices: np.ndarray,
+    bounds: tuple[np.ndarray, ...],
+    plane: np.ndarray,
+    out: np.ndarray,
+    normals: np.ndarray,
+) -> Complex:
+    """Return one cell; out : whether the normals of its facets point out of it, bool array [f]."""
+    sides = np.where(out[:, None], [[0, OUTSIDE]], [[OUTSIDE, 0]])
+    none = np.full(len(out), NO_SET)
+    return Complex(
+        vertices=vertices,
+        bounds=tuple(ordered(one) for one in bounds),
+        sides=sides,
+        plane=plane.copy(),
+        joint_set=none,
+        side=np.zeros(len(out), np.int64),
+        normals=normals,
+        region=np.full(1, -1),
+        count=1,
+    )

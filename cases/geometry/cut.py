@@ -1,0 +1,295 @@
+"""Cutting the convex cells of a complex by parallel planes, all cells and planes together.
+
+Vertices are classified by the planes that they lie on or between. Then every edge, every face and
+every cell is split, dimension by dimension, by the planes of the cells that it belongs to; each
+part lies in one slab between planes. What a split k-cell gains at a plane is one new (k-1)-cell,
+bounded by the (k-2)-cells of its own that lie in that plane, and shared by the two slabs beside it.
+So a facet that one of its two cells is cut at is split for the other as well.
+"""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from jointwave.cases.geometry.cell_complex import NO_SET, OUTSIDE, Complex, Sliver
+from jointwave.cases.geometry.relations import Lookup, composed, distinct, ranges
+
+GRAZING = "joints meet at a grazing angle"
+
+
+@dataclass(frozen=True)
+class Planes:
+    """Families of parallel planes: one family for each group of cells.
+
+    The place of a plane is its distance from the origin along the normal. A vertex has the code
+    2 j + 1 on plane j, and 2 j between planes j - 1 and j; those of other cells have the range of
+    their vertices' codes.
+
+    Attributes
+    ----------
+    normal : float array [d], unit vector.
+    family : int array [cells], of each cell, or -1 for one that is not cut.
+    places : float array [p], m, of all planes, increasing, further apart than the tolerance.
+    held : which family has which planes, int pairs (family, plane), sorted.
+    base : int array [families], signed number of a family's first plane.
+    joint_set : index of the set that the planes are joints of, or NO_SET.
+    """
+
+    normal: np.ndarray
+    family: np.ndarray
+    places: np.ndarray
+    held: np.ndarray
+    base: np.ndarray
+    joint_set: int
+
+    @classmethod
+    def of_families(
+        cls,
+        normal: np.ndarray,
+        family: np.ndarray,
+        places: list[np.ndarray] | np.ndarray,
+        first: np.ndarray,
+        base: np.ndarray,
+        joint_set: int,
+        tolerance: float,
+    ) -> "Planes":
+        """Return planes by the places of each family, increasing, one family after the other;
+        first : int array [families + 1], of each family's in `places`."""
+        order = np.argsort(places, kind="stable")
+        new = np.diff(places[order], prepend=-np.inf) > tolerance
+        number = np.empty(len(places), np.int64)
+        number[order] = np.cumsum(new) - 1
+        of = np.repeat(np.arange(len(first) - 1), np.diff(first))
+        held = np.stack([of, number], axis=1)
+        return cls(normal, family, places[order][new], held, base, joint_set)
+
+    def codes(self, s: np.ndarray, tolerance: float) -> np.ndarray:
+        """Return the codes of places s, float array [n], m."""
+        at = np.searchsorted(self.places, s - tolerance)
+        near = np.append(self.places, np.inf)[at] <= s + tolerance
+        return 2 * at + near
+
+
+def one_plane(normal: np.ndarray, through: np.ndarray, cells: np.ndarray) -> Planes:
+    """Return a plane through a point that cuts some cells (bool array [cells]), of no set."""
+    return Planes(
+        normal=normal,
+        family=np.where(cells, 0, -1),
+        places=np.array([through @ normal]),
+        held=np.zeros((1, 2), np.int64),
+        base=np.zeros(1, np.int64),
+        joint_set=NO_SET,
+    )
+
+
+class Cut(NamedTuple):
+    """A complex after a cut; of each of its cells the one that it was part of, and the signed
+    number of the plane below it (int arrays [count])."""
+
+    body: Complex
+    parent: np.ndarray
+    number: np.ndarray
+
+
+def cut(body: Complex, planes: Planes, tolerance: float) -> Cut:
+    """Return a complex with its cells cut by their planes.
+
+    Vertices within the tolerance (m) of a plane are on it. A cell's first slab keeps its index, the
+    others come after all cells that there were. Raises Sliver where a plane meets a cell within the
+    tolerance at more than an outline.
+    """
+    work = _Work(body, planes, tolerance)
+    for k in range(1, body.dim + 1):
+        work.split(k)
+    return work.finished()
+
+
+class _Work:
+    """A complex while it is cut. Lists have one entry for each dimension k of cells, 0 to d.
+
+    number : of k-cells. rows : int arrays [m, 2], k-cells with a (k-1)-cell that bounds each,
+    sorted. codes : least and largest code of the vertices of each k-cell, int arrays [n, 2]; of
+    those that are not cut the least is the larger. crossed : pairs (k-cell, plane) at which k-cells
+    are split, sorted. parts : pairs (k-cell, part), those above these planes. vertices : float
+    arrays [n, d], m. into : of the rows of cells, 1 where the facet's normal points into the cell.
+    """
+
+    def __init__(self, body: Complex, planes: Planes, tolerance: float) -> None:
+        self.body, self.planes, dim = body, planes, body.dim
+        half = body.halves(np.append(planes.family >= 0, False)[body.sides].any(axis=1))
+        order = np.argsort(half.cell, kind="stable")
+        top = np.stack([half.cell, half.facet], axis=1)[order]
+        self.into = (body.sides[top[:, 1], 1] == top[:, 0]).astype(np.int64)
+        self.rows = [np.empty((0, 2), np.int64), *body.bounds, top]
+        self.number = body.numbers()
+        self.vertices = [body.vertices]
+        code = planes.codes(body.vertices @ planes.normal, tolerance)
+        self.codes = [np.stack([code, code], axis=1)]
+        for k in range(1, dim + 1):
+            self.codes.append(_span(self.rows[k], self.codes[k - 1], self.number[k]))
+        self.codes[dim][planes.family < 0] = [1, 0]
+        self.held = Lookup(planes.held, len(planes.places) + 1)
+        none = np.empty((0, 2), np.int64)
+        self.crossed, self.parts = [none] * dim + [self._crossed_cells()], [none] * (dim + 1)
+        for k in range(dim, 1, -1):
+            self.crossed[k - 1] = self._crossed_below(k)
+
+    def _crossed_cells(self) -> np.ndarray:
+        """Return the pairs (cell, plane) of planes of a cell's family between its vertices."""
+        cell = np.flatnonzero(self.planes.family >= 0)
+        family, (low, high) = self.planes.family[cell], self.codes[-1][cell].T
+        first, after = self.held.index(family, (low + 1) // 2), self.held.index(family, high // 2)
+        at, which = ranges(first, after)
+        return np.stack([cell[which], self.planes.held[at, 1]], axis=1)
+
+    def _crossed_below(self, k: int) -> np.ndarray:
+        """Return the pairs ((k-1)-cell, plane) that split k-cells share with what bounds them."""
+        split = np.zeros(self.number[k], bool)
+        split[self.crossed[k][:, 0]] = True
+        rows = self.rows[k][split[self.rows[k][:, 0]]]
+        found = composed(rows[:, ::-1], self.crossed[k])[0]
+        low, high = self.codes[k - 1][found[:, 0]].T
+        code = 2 * found[:, 1] + 1
+        return distinct(found[(low < code) & (code < high)])
+
+    def split(self, k: int) -> None:
+        """Split the k-cells, whose (k-1)-cells are split already, and add what they gain."""
+        cross = Lookup(self.crossed[k], len(self.planes.places) + 1)
+        (cell, plane), first = self.crossed[k].T, self.number[k]
+        self._replace_split(k)
+        gained = self.number[k - 1] + np.arange(len(cell))
+        above = first + np.arange(len(cell))
+        begins = np.diff(cell, prepend=-1) > 0
+        below = np.where(begins, cell, above - 1)
+        self._bound_gained(k, cross)
+        rows = self.rows[k]
+        mine = np.isin(rows[:, 0], cell[begins])
+        owner, part = rows[mine].T
+        low, high = self.codes[k - 1][part].T
+        flat = (low == high) & (low % 2 == 1) & cross.holds(owner, low // 2)
+        if k > 1 and flat.any():
+            raise self._grazing(k - 1, part[np.argmax(flat)])
+        slab = cross.below(owner, (low + 1) // 2)
+        rows[mine, 0] = np.where(slab == 0, owner, first + cross.index(owner, 0 * owner) + slab - 1)
+        new = np.concatenate([np.stack([below, gained], axis=1), np.stack([above, gained], axis=1)])
+        rows = np.concatenate([rows, new])
+        order = np.argsort(rows[:, 0], kind="stable")
+        self.rows[k] = rows[order]
+        if k == self.body.dim:
+            self.into = np.append(self.into, np.repeat([0, 1], len(cell)))[order]
+        code = 2 * plane + 1
+        ends = np.append(code[1:], 0)
+        last = np.append(begins[1:], True)[: len(cell)]
+        ends[last] = self.codes[k][cell[last], 1]
+        self.codes[k][cell[begins], 1] = code[begins]
+        self.codes[k] = np.concatenate([self.codes[k], np.stack([code, ends], axis=1)])
+        self.codes[k - 1] = np.concatenate([self.codes[k - 1], np.stack([code, code], axis=1)])
+        self.parts[k] = np.stack([cell, above], axis=1)
+        self.number[k] += len(cell)
+        self.number[k - 1] += len(cell)
+
+    def _replace_split(self, k: int) -> None:
+        """Add the parts of split (k-1)-cells to the rows of the k-cells that they bound."""
+        mine = np.isin(self.rows[k][:, 1], self.parts[k - 1][:, 0])
+        more, which = composed(self.rows[k][mine], self.parts[k - 1])
+        self.rows[k] = np.concatenate([self.rows[k], more])
+        if k == self.body.dim:
+            self.into = np.append(self.into, self.into[np.flatnonzero(mine)[which]])
+
+    def _bound_gained(self, k: int, cross: Lookup) -> None:
+        """Bound the (k-1)-cells that k-cells gain: by vertices' places, or by (k-2)-cells of their
+        own in the planes."""
+        cell, plane = cross.pairs.T
+        if k == 1:
+            at = np.searchsorted(self.rows[1][:, 0], cell)
+            one, other = self.rows[1][at, 1], self.rows[1][at + 1, 1]
+            x = np.concatenate(self.vertices)
+            s = x @ self.planes.normal
+            t = (self.planes.places[plane] - s[one]) / (s[other] - s[one])
+            self.vertices.append(x[one] + t[:, None] * (x[other] - x[one]))
+            return
+        rows = self.rows[k][np.isin(self.rows[k][:, 0], cell)]
+        found = composed(rows, self.rows[k - 1])[0]
+        low, high = self.codes[k - 2][found[:, 1]].T
+        found, low = found[(low == high) & (low % 2 == 1)], low[(low == high) & (low % 2 == 1)]
+        inside = cross.holds(found[:, 0], low // 2)
+        which = cross.index(found[inside, 0], low[inside] // 2)
+        bound = distinct(np.stack([which, found[inside, 1]], axis=1))
+        self._check_closed(k, bound, len(cell))
+        bound[:, 0] += self.number[k - 1]
+        self.rows[k - 1] = np.concatenate([self.rows[k - 1], bound])
+
+    def _check_closed(self, k: int, bound: np.ndarray, number: int) -> None:
+        """Raise Sliver unless sections have two ends, or edges that meet two by two."""
+        ends, times = bound, np.bincount(bound[:, 0], minlength=number)
+        wrong = np.flatnonzero(times != 2 if k == 2 else times < 3)
+        if not len(wrong) and k == 3:
+            ends = composed(bound, self.rows[1])[0]
+            keys, count = np.unique(ends, axis=0, return_counts=True)
+            wrong = keys[count != 2, 0]
+        if len(wrong):
+            raise self._grazing(k, self.crossed[k][wrong[0], 0])
+
+    def _grazing(self, k: int, cell: int) -> Sliver:
+        """Return the error at the first vertex of a k-cell."""
+        for level in range(k, 0, -1):
+            cell = self.rows[level][np.searchsorted(self.rows[level][:, 0], cell), 1]
+        return Sliver(np.concatenate(self.vertices)[cell], GRAZING)
+
+    def finished(self) -> Cut:
+        """Return the complex that is left."""
+        body, planes, dim = self.body, self.planes, self.body.dim
+        normals, plane, turned = body.with_normal(planes.normal)
+        split = self.parts[dim - 1][:, 0]
+        gained = self.number[dim - 1] - len(body.sides) - len(split)
+        cells, facets = self.rows[dim].T
+        sides = np.full((self.number[dim - 1], 2), OUTSIDE)
+        sides[: len(body.sides)] = body.sides
+        new = facets >= len(body.sides) + len(split)
+        sides[facets, np.where(new & turned, 1 - self.into, self.into)] = cells
+
+        def of_facets(array: np.ndarray, value: int) -> np.ndarray:
+            return np.concatenate([array, array[split], np.full(gained, value)])
+
+        parent = np.append(np.arange(body.count), self.parts[dim][:, 0])
+        found = Complex(
+            vertices=np.concatenate(self.vertices),
+            bounds=tuple(self.rows[1:dim]),
+            sides=sides,
+            plane=of_facets(body.plane, plane),
+            joint_set=of_facets(body.joint_set, planes.joint_set),
+            side=of_facets(body.side, 0),
+            normals=normals,
+            region=body.region[parent],
+            count=self.number[dim],
+        )
+        family, low = planes.family[parent], self.codes[dim][:, 0]
+        number = np.full(found.count, -1)
+        mine = np.flatnonzero(family >= 0)
+        slab = self.held.below(family[mine], (low[mine] + 1) // 2)
+        number[mine] = planes.base[family[mine]] + slab - 1
+        return Cut(self._with_joints(found, parent), parent, number)
+
+    def _with_joints(self, found: Complex, parent: np.ndarray) -> Complex:
+        """Return a complex whose facets on a plane of their cells' own are joints of these planes,
+        where they were none."""
+        low, high = self.codes[self.body.dim - 1].T
+        on = np.flatnonzero((low == high) & (low % 2 == 1) & (found.joint_set == NO_SET))
+        owner = found.sides[on]
+        family = np.append(self.planes.family[parent], -1)[owner]
+        here = np.stack([self.held.holds(one, low[on] // 2) & (one >= 0) for one in family.T])
+        joint_set = found.joint_set.copy()
+        joint_set[on[here.any(axis=0)]] = self.planes.joint_set
+        return replace(found, joint_set=joint_set)
+
+
+def _span(rows: np.ndarray, codes: np.ndarray, number: int) -> np.ndarray:
+    """Return the least and the largest code of what bounds each of a number of cells."""
+    found = np.tile(np.array([1, 0]), (number, 1))
+    if len(rows):
+        begins = np.flatnonzero(np.diff(rows[:, 0], prepend=-1))
+        below = codes[rows[:, 1]]
+        found[rows[begins, 0], 0] = np.minimum.reduceat(below[:, 0], begins)
+        found[rows[begins, 0], 1] = np.maximum.reduceat(below[:, 1], begins)
+    return found

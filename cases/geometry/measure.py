@@ -1,0 +1,214 @@
+"""Volume, centroid and second moments of cells, and pieces of their surfaces, in any dimension.
+
+Cells and facets are fans of simplices about the mean of their vertices. A simplex of k dimensions,
+corners v, has the second moment V / ((k + 1) (k + 2)) (sum v v + sum v sum v) about the origin.
+"""
+
+from math import factorial
+from typing import NamedTuple
+
+import numpy as np
+
+from jointwave.cases.geometry.cell_complex import Complex, Halves
+from jointwave.cases.geometry.relations import composed, distinct
+
+
+class Moments(NamedTuple):
+    """Volume or area [n], m^k; centroid [n, d], m; second moment about the centroid [n, d, d],
+    m^(k + 2), the integrals of x_i x_j."""
+
+    size: np.ndarray
+    centroid: np.ndarray
+    second: np.ndarray
+
+
+def mean_vertices(x: np.ndarray, pairs: np.ndarray, number: int) -> np.ndarray:
+    """Return the mean of the vertices x [v, d] of a number of things; nan of one without any.
+
+    pairs : int array [m, 2] of a thing and a vertex of it.
+    """
+    times = np.bincount(pairs[:, 0], minlength=number)[:, None]
+    with np.errstate(invalid="ignore"):
+        return (
+            np.stack(
+                [np.bincount(pairs[:, 0], weights=w, minlength=number) for w in x[pairs[:, 1]].T],
+                axis=1,
+            )
+            / times
+        )
+
+
+def facet_simplices(body: Complex) -> tuple[np.ndarray, np.ndarray]:
+    """Return simplices that make up the facets, float array [m, d, d], and the facet of each [m],
+    in order."""
+    if body.dim == 1:
+        return body.vertices[:, None], np.arange(len(body.vertices))
+    ends = body.vertices[body.bounds[0][:, 1].reshape(-1, 2)]
+    if body.dim == 2:
+        return ends, np.arange(len(ends))
+    number = np.arange(len(body.sides))
+    middle = mean_vertices(
+        body.vertices, body.vertices_of(np.stack([number, number], axis=1)), len(number)
+    )
+    facet, edge = body.bounds[-1].T
+    return np.concatenate([ends[edge], middle[facet][:, None]], axis=1), facet
+
+
+def cell_moments(body: Complex) -> Moments:
+    """Return the moments of all cells."""
+    simplices, facet = facet_simplices(body)
+    half = body.halves()
+    number = np.stack([facet, np.arange(len(facet))], axis=1)
+    cell, part = composed(np.stack([half.cell, half.facet], axis=1), number)[0].T
+    centre = body.centres()
+    x = np.concatenate([simplices[part], centre[cell][:, None]], axis=1)
+    return _total(x, cell, centre)
+
+
+def facet_moments(body: Complex, facets: np.ndarray, group: np.ndarray, number: int) -> Moments:
+    """Return the moments of each of a number of groups of facets (int arrays [m]) in one plane."""
+    simplices, facet = facet_simplices(body)
+    table = np.stack([facet, np.arange(len(facet))], axis=1)
+    which, part = composed(np.stack([group, facets], axis=1), table)[0].T
+    first = np.full(number, -1)
+    first[which[::-1]] = part[::-1]
+    return _total(simplices[part], which, simplices[first][:, 0])
+
+
+def _total(x: np.ndarray, owner: np.ndarray, about: np.ndarray) -> Moments:
+    """Return the moments of things made of simplices x [m, k + 1, d] with their owners [m]; about :
+    a point of each thing [n, d], m."""
+    k, number = x.shape[1] - 1, len(about)
+    x = x - about[owner][:, None]
+    size = _sizes(x[:, 1:] - x[:, :1])
+    total = x.sum(axis=1)
+    second = (x[:, :, :, None] * x[:, :, None]).sum(axis=1) + total[:, :, None] * total[:, None]
+    second *= (size / ((k + 1) * (k + 2)))[:, None, None]
+
+    def summed(values: np.ndarray) -> np.ndarray:
+        flat = values.reshape(len(values), -1).T
+        sums = [np.bincount(owner, weights=one, minlength=number) for one in flat]
+        return np.stack(sums, axis=1).reshape(number, *values.shape[1:])
+
+    whole = summed(size)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        centre = summed(size[:, None] * total / (k + 1)) / whole[:, None]
+    inner = summed(second) - whole[:, None, None] * centre[:, :, None] * centre[:, None]
+    return Moments(whole, about + centre, inner)
+
+
+def _sizes(edges: np.ndarray) -> np.ndarray:
+    """Return the length, area or volume of simplices with these edges [m, k, d] from a corner."""
+    _, k, dim = edges.shape
+    if k == dim:
+        return np.abs(np.linalg.det(edges)) / factorial(k)
+    if k == 2:
+        return np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1) / 2
+    return np.linalg.norm(edges[:, 0], axis=1) if k else np.ones(len(edges))
+
+
+class Outlines(NamedTuple):
+    """Convex pieces of planes by their corners, one piece after the other, around the normal.
+
+    corners : float array [k, d], m. first : int array [n + 1], the first corner of each piece. In
+    the plane a piece runs from one end to the other with what the normal points out of to its left.
+    """
+
+    corners: np.ndarray
+    first: np.ndarray
+
+
+def outlines(
+    body: Complex,
+    facets: np.ndarray,
+    group: np.ndarray,
+    normal: np.ndarray,
+    tolerance: float,
+) -> Outlines:
+    """Return the outlines of groups of facets, each in one plane and together convex.
+
+    facets, group : int arrays [m], groups in order; normal : float array [n, d], of each group.
+    """
+    pairs = np.stack([group, facets], axis=1)
+    if body.dim > 1:
+        pairs, times = np.unique(composed(pairs, body.bounds[-1])[0], axis=0, return_counts=True)
+        pairs = pairs[times == 1]
+        for bound in reversed(body.bounds[:-1]):
+            pairs = distinct(composed(pairs, bound)[0])
+    number = len(normal)
+    x, of = body.vertices[pairs[:, 1]], pairs[:, 0]
+    if body.dim == 2:
+        along = np.stack([-normal[:, 1], normal[:, 0]], axis=1)[of]
+        order = np.lexsort([(x * along).sum(axis=1), of])
+    elif body.dim == 3:
+        one, other = frames(normal)
+        away = x - mean_vertices(body.vertices, pairs, number)[of]
+        u, v = (away * one[of]).sum(axis=1), (away * other[of]).sum(axis=1)
+        order = np.lexsort([np.arctan2(v, u), of])
+    else:
+        order = np.arange(len(x))
+    x, of = x[order], of[order]
+    first = np.searchsorted(of, np.arange(number + 1))
+    if body.dim == 3:
+        return without_straight(x, first, tolerance)
+    return Outlines(x, first)
+
+
+def without_straight(x: np.ndarray, first: np.ndarray, tolerance: float) -> Outlines:
+    """Return closed outlines without corners within the tolerance (m) of the line between those
+    beside them."""
+    size = np.diff(first)
+    of, at = np.repeat(np.arange(len(size)), size), np.arange(len(x))
+    before = first[of] + (at - first[of] - 1) % size[of]
+    after = first[of] + (at - first[of] + 1) % size[of]
+    chord = x[after] - x[before]
+    along = chord / np.maximum(np.linalg.norm(chord, axis=1), tolerance)[:, None]
+    out = x - x[before]
+    away = np.linalg.norm(out - (out * along).sum(axis=1)[:, None] * along, axis=1)
+    kept = away > tolerance
+    count = np.bincount(of[kept], minlength=len(size))
+    return Outlines(x[kept], np.append(0, np.cumsum(count)))
+
+
+def frames(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return two unit vectors [n, 3] that make right-handed frames with normals [n, 3]: the first
+    is horizontal, along the strike, or east in a horizontal plane."""
+    strike = np.stack([-normal[:, 1], normal[:, 0], np.zeros(len(normal))], axis=1)
+    length = np.linalg.norm(strike, axis=1)[:, None]
+    one = np.where(length > 1e-12, strike / np.maximum(length, 1e-12), [[1.0, 0.0, 0.0]])
+    return one, np.cross(normal, one)
+
+
+def widths(body: Complex, half: Halves) -> np.ndarray:
+    """Return the least width of each cell [count], m: over its facets, the distance of the vertex
+    that is farthest inwards; infinite of a cell without facets."""
+    corners = body.corners(half)
+    first = np.searchsorted(corners[:, 0], np.arange(body.count + 1))
+    number = np.diff(first)[half.cell]
+    which = np.repeat(np.arange(len(number)), number)
+    at = np.arange(len(which)) - np.repeat(np.cumsum(number) - number, number)
+    x = body.vertices[corners[first[half.cell][which] + at, 1]]
+    on = body.vertices_of(np.stack([np.arange(len(half.facet)), half.facet], axis=1))
+    origin = body.vertices[on[np.searchsorted(on[:, 0], np.arange(len(half.facet))), 1]]
+    depth = ((origin[which] - x) * half.outward[which]).sum(axis=1)
+    deepest = np.maximum.reduceat(depth, np.cumsum(number) - number)
+    found = np.full(body.count, np.inf)
+    np.minimum.at(found, half.cell, deepest)
+    return found
+
+
+def least_angles(body: Complex, half: Halves) -> np.ndarray:
+    """Return the least interior angle between facets of each cell [count], degrees; 180 without
+    any."""
+    found = np.full(body.count, 180.0)
+    if body.dim == 1:
+        return found
+    rows, which = composed(np.stack([half.cell, half.facet], axis=1), body.bounds[-1])
+    order = np.lexsort([rows[:, 1], rows[:, 0]])
+    rows, which = rows[order], which[order]
+    pair = np.flatnonzero((np.diff(rows, axis=0) == 0).all(axis=1))
+    one, other = half.outward[which[pair]], half.outward[which[pair + 1]]
+    sine = np.linalg.norm(one - other, axis=1), np.linalg.norm(one + other, axis=1)
+    angle = 180.0 - np.degrees(2 * np.arctan2(*sine))
+    np.minimum.at(found, rows[pair, 0], angle)
+    return found

@@ -1,0 +1,53 @@
+"""Relations between numbered things: int arrays [m, 2] of pairs, sorted by the first of them."""
+
+import numpy as np
+
+
+def ranges(first: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the numbers of ranges from `first` to before `after`, one range after the other, and
+    the range that each belongs to."""
+    number = np.maximum(after - first, 0)
+    which = np.repeat(np.arange(len(number)), number)
+    return np.arange(len(which)) + (first - np.cumsum(number) + number)[which], which
+
+
+def composed(one: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the pairs (x, z) of all (x, y) of one relation and (y, z) of another, repeated where
+    they have several y; and the row of the first relation that each comes from."""
+    low, high = (np.searchsorted(other[:, 0], one[:, 1], side=side) for side in ("left", "right"))
+    at, which = ranges(low, high)
+    return np.stack([one[which, 0], other[at, 1]], axis=1), which
+
+
+def distinct(pairs: np.ndarray) -> np.ndarray:
+    """Return pairs in order, each once."""
+    if not len(pairs):
+        return pairs
+    width = pairs[:, 1].max() + 1
+    return np.stack(np.divmod(np.unique(pairs[:, 0] * width + pairs[:, 1]), width), axis=1)
+
+
+def ordered(pairs: np.ndarray) -> np.ndarray:
+    """Return pairs sorted by the first of them."""
+    return pairs[np.argsort(pairs[:, 0], kind="stable")]
+
+
+class Lookup:
+    """Sorted distinct pairs, to find one or to count those of x with a y below some number."""
+
+    def __init__(self, pairs: np.ndarray, width: int) -> None:
+        self.pairs, self.width = pairs, width
+        self.keys = pairs[:, 0] * width + pairs[:, 1]
+
+    def index(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Return the number of pairs before (x, y), which is the place of that pair."""
+        return np.searchsorted(self.keys, x * self.width + y)
+
+    def below(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Return how many pairs of x there are with a second number less than y."""
+        return self.index(x, y) - self.index(x, np.zeros_like(y))
+
+    def holds(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Return whether pairs are among them, bool array."""
+        at = self.index(x, y)
+        return np.append(self.keys, -1)[at] == x * self.width + y
