@@ -123,20 +123,33 @@ class Complex:
         """Return the pairs (cell, vertex) of halves, int array [m, 2], sorted, each once."""
         return self.vertices_of(np.stack([half.cell, half.facet], axis=1))
 
-    def centres(self) -> np.ndarray:
+    def centres(self, half: Halves | None = None) -> np.ndarray:
         """Return the mean of each cell's vertices [count, d], which lies inside; nan of none."""
-        cell, vertex = self.corners(self.halves()).T
+        return self.means(self.corners(half or self.halves()), self.count)
+
+    def means(self, pairs: np.ndarray, number: int) -> np.ndarray:
+        """Return the mean of the vertices of things [number, d]; nan of one without.
+
+        pairs : int array [m, 2] of a thing and a vertex of it.
+        """
+        owner, x = pairs[:, 0], self.vertices[pairs[:, 1]]
+        sums = [np.bincount(owner, weights=one, minlength=number) for one in x.T]
         with np.errstate(invalid="ignore"):
-            return (
-                np.stack(
-                    [
-                        np.bincount(cell, weights=x, minlength=self.count)
-                        for x in self.vertices[vertex].T
-                    ],
-                    axis=1,
-                )
-                / np.bincount(cell, minlength=self.count)[:, None]
-            )
+            return np.stack(sums, axis=1) / np.bincount(owner, minlength=number)[:, None]
+
+    def origins(self, half: Halves) -> np.ndarray:
+        """Return a vertex of the facet of each half [h, d], m."""
+        number = np.arange(len(half.facet))
+        pairs = self.vertices_of(np.stack([number, half.facet], axis=1))
+        return self.vertices[pairs[np.searchsorted(pairs[:, 0], number), 1]]
+
+    def depths(self, point: np.ndarray) -> np.ndarray:
+        """Return how deep a point [d] lies in each cell [count], m; negative outside of it, and
+        infinitely so of a cell that is not there."""
+        half, depth = self.halves(), np.full(self.count, np.inf)
+        inward = ((self.origins(half) - point) * half.outward).sum(axis=1)
+        np.minimum.at(depth, half.cell, inward)
+        return np.where(np.isinf(depth), -np.inf, depth)
 
     def removed(self, cells: np.ndarray, side: int) -> Complex:
         """Return the complex without some cells (bool array [count]), whose facets to other cells

@@ -179,8 +179,8 @@ class _Work:
         if k == self.body.dim:
             self.into = np.append(self.into, np.repeat([0, 1], len(cell)))[order]
         code = 2 * plane + 1
-        ends = np.append(code[1:], 0)
-        last = np.append(begins[1:], True)[: len(cell)]
+        ends, last = np.append(code[1:], 0), np.append(begins[1:], True)
+        ends, last = ends[: len(cell)], last[: len(cell)]
         ends[last] = self.codes[k][cell[last], 1]
         self.codes[k][cell[begins], 1] = code[begins]
         self.codes[k] = np.concatenate([self.codes[k], np.stack([code, ends], axis=1)])

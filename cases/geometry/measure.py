@@ -22,22 +22,6 @@ class Moments(NamedTuple):
     second: np.ndarray
 
 
-def mean_vertices(x: np.ndarray, pairs: np.ndarray, number: int) -> np.ndarray:
-    """Return the mean of the vertices x [v, d] of a number of things; nan of one without any.
-
-    pairs : int array [m, 2] of a thing and a vertex of it.
-    """
-    times = np.bincount(pairs[:, 0], minlength=number)[:, None]
-    with np.errstate(invalid="ignore"):
-        return (
-            np.stack(
-                [np.bincount(pairs[:, 0], weights=w, minlength=number) for w in x[pairs[:, 1]].T],
-                axis=1,
-            )
-            / times
-        )
-
-
 def facet_simplices(body: Complex) -> tuple[np.ndarray, np.ndarray]:
     """Return simplices that make up the facets, float array [m, d, d], and the facet of each [m],
     in order."""
@@ -47,20 +31,18 @@ def facet_simplices(body: Complex) -> tuple[np.ndarray, np.ndarray]:
     if body.dim == 2:
         return ends, np.arange(len(ends))
     number = np.arange(len(body.sides))
-    middle = mean_vertices(
-        body.vertices, body.vertices_of(np.stack([number, number], axis=1)), len(number)
-    )
+    middle = body.means(body.vertices_of(np.stack([number, number], axis=1)), len(number))
     facet, edge = body.bounds[-1].T
     return np.concatenate([ends[edge], middle[facet][:, None]], axis=1), facet
 
 
-def cell_moments(body: Complex) -> Moments:
-    """Return the moments of all cells."""
+def cell_moments(body: Complex, half: Halves | None = None) -> Moments:
+    """Return the moments of all cells, or of those whose halves are given; volume 0 of others."""
     simplices, facet = facet_simplices(body)
-    half = body.halves()
+    half = half or body.halves()
     number = np.stack([facet, np.arange(len(facet))], axis=1)
     cell, part = composed(np.stack([half.cell, half.facet], axis=1), number)[0].T
-    centre = body.centres()
+    centre = body.centres(half)
     x = np.concatenate([simplices[part], centre[cell][:, None]], axis=1)
     return _total(x, cell, centre)
 
@@ -142,7 +124,7 @@ def outlines(
         order = np.lexsort([(x * along).sum(axis=1), of])
     elif body.dim == 3:
         one, other = frames(normal)
-        away = x - mean_vertices(body.vertices, pairs, number)[of]
+        away = x - body.means(pairs, number)[of]
         u, v = (away * one[of]).sum(axis=1), (away * other[of]).sum(axis=1)
         order = np.lexsort([np.arctan2(v, u), of])
     else:
@@ -188,9 +170,7 @@ def widths(body: Complex, half: Halves) -> np.ndarray:
     which = np.repeat(np.arange(len(number)), number)
     at = np.arange(len(which)) - np.repeat(np.cumsum(number) - number, number)
     x = body.vertices[corners[first[half.cell][which] + at, 1]]
-    on = body.vertices_of(np.stack([np.arange(len(half.facet)), half.facet], axis=1))
-    origin = body.vertices[on[np.searchsorted(on[:, 0], np.arange(len(half.facet))), 1]]
-    depth = ((origin[which] - x) * half.outward[which]).sum(axis=1)
+    depth = ((body.origins(half)[which] - x) * half.outward[which]).sum(axis=1)
     deepest = np.maximum.reduceat(depth, np.cumsum(number) - number)
     found = np.full(body.count, np.inf)
     np.minimum.at(found, half.cell, deepest)

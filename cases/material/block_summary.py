@@ -5,13 +5,13 @@ from typing import Any
 import numpy as np
 
 from jointwave.cases.errors import SceneError
+from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.regions import rocks_of
 from jointwave.cases.partition.scene import partition_bytes, partition_of
-from jointwave.cases.partition.subdivision import NO_SET
 from jointwave.cases.schema.region import REST
 from jointwave.cases.schema.rock_mass import RockMass
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.partition.blocks import Contacts, Partition
-from jointwave.cases.partition.subdivision import NO_SET
 from jointwave.cases.schema.joint_set import JointSet
 
 #: Rule and number of points of a cut through intact rock.

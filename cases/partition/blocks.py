@@ -1,8 +1,11 @@
-"""Blocks, contacts and boundary edges as plain arrays, the input of engines."""
+"""Blocks, contacts and boundary edges in the plane as plain arrays, the input of engines."""
 
 from dataclasses import dataclass
 
 import numpy as np
+
+from jointwave.cases.geometry.blocks import Blocks, Facets
+from jointwave.cases.geometry.relations import composed
 
 
 @dataclass(frozen=True)
@@ -97,6 +100,11 @@ class Partition:
         """Second moment of area about the centroid across the plane [n], m4."""
         return self.second_moment[:, 0] + self.second_moment[:, 1]
 
+    @property
+    def owner(self) -> np.ndarray:
+        """The block of each corner, int array [k]."""
+        return np.repeat(np.arange(self.count), np.diff(self.first))
+
     def corners_of(self, block: int) -> np.ndarray:
         """Return the corners of one block [k, 2], m, counter-clockwise."""
         return self.corners[self.first[block] : self.first[block + 1]]
@@ -106,3 +114,59 @@ class Partition:
         """Bytes that the arrays take."""
         tables = (vars(self), vars(self.contacts), vars(self.boundary))
         return sum(x.nbytes for table in tables for x in table.values() if hasattr(x, "nbytes"))
+
+
+def plane_contacts(facets: Facets) -> Contacts:
+    """Return contacts in the plane, with their ends."""
+    ends = facets.outlines.corners.reshape(-1, 2, 2)
+    return Contacts(
+        blocks=facets.blocks,
+        start=ends[:, 0],
+        end=ends[:, 1],
+        normal=facets.normal,
+        length=facets.area,
+        joint_set=facets.joint_set,
+    )
+
+
+def plane_partition(
+    blocks: Blocks, sides: tuple[str, ...], joint_sets: tuple[str, ...]
+) -> Partition:
+    """Return the arrays of blocks in the plane; the side of a boundary edge is that of its facet."""
+    corners, first = _rings(blocks)
+    outer, second = blocks.boundary, blocks.second_moment
+    ends = outer.outlines.corners.reshape(-1, 2, 2)
+    return Partition(
+        corners=corners,
+        first=first,
+        area=blocks.volume,
+        centroid=blocks.centroid,
+        second_moment=np.stack([second[:, 0, 0], second[:, 1, 1], second[:, 0, 1]], axis=1),
+        region=blocks.body.region,
+        contacts=plane_contacts(blocks.contacts),
+        boundary=BoundaryEdges(
+            block=outer.blocks[:, 0],
+            start=ends[:, 0],
+            end=ends[:, 1],
+            normal=outer.normal,
+            length=outer.area,
+            side=outer.side,
+            joint_set=outer.joint_set,
+        ),
+        sides=sides,
+        joint_sets=joint_sets,
+    )
+
+
+def _rings(blocks: Blocks) -> tuple[np.ndarray, np.ndarray]:
+    """Return the corners of all blocks in the plane, counter-clockwise, m, and the first corner of
+    each: vertices at which two facets of a block meet that do not lie in one plane."""
+    body, half = blocks.body, blocks.body.halves()
+    rows, which = composed(np.stack([half.cell, half.facet], axis=1), body.bounds[0])
+    order = np.lexsort([rows[:, 1], rows[:, 0]])
+    plane = body.plane[half.facet[which[order]]]
+    cell, vertex = rows[order[::2]][plane[::2] != plane[1::2]].T
+    x = body.vertices[vertex]
+    away = x - blocks.centroid[cell]
+    order = np.lexsort([np.arctan2(away[:, 1], away[:, 0]), cell])
+    return x[order], np.searchsorted(cell, np.arange(blocks.count + 1))

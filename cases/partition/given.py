@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from jointwave.cases.geometry.cell_complex import NO_SET, OUTSIDE, PARALLEL, Complex
 from jointwave.cases.gmsh_file import MeshError, read_tagged
-from jointwave.cases.partition.subdivision import NO_SET, OUTSIDE, Subdivision
 
 PREFIX = "joint"
 SAME = 1e-9  # of the mesh: vertices that are one
@@ -160,23 +160,29 @@ def _loops(points: np.ndarray, ends: np.ndarray, cells: np.ndarray) -> list[np.n
     return [found[k] for k in order]
 
 
-def subdivision_of(rock: GivenRock, names: list[str]) -> Subdivision:
-    """Return the cells of a file as a subdivision; names : of the joint sets, in their order."""
+def complex_of(rock: GivenRock, names: list[str]) -> Complex:
+    """Return the cells of a file as a complex; names : of the joint sets, in their order."""
     along = rock.points[rock.ends[:, 1]] - rock.points[rock.ends[:, 0]]
     joint_set, side = np.full(len(along), NO_SET), np.zeros(len(along), dtype=np.int64)
     for k, name in enumerate(names):
         joint_set[rock.joints.get(name.lower(), [])] = k
     for k, loop in enumerate(rock.loops):
         side[loop] = k
-    return Subdivision(
-        points=rock.points,
-        ends=rock.ends,
-        cells=rock.cells,
-        line=np.arange(len(along)),
-        side=side,
-        along=np.full(len(along), NO_SET),
-        directions=along / np.hypot(*along.T)[:, None],
+    right = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.hypot(*along.T)[:, None]
+    turned = (right[:, 0] < -PARALLEL) | ((np.abs(right[:, 0]) <= PARALLEL) & (right[:, 1] < 0))
+    normals = np.where(turned[:, None], -right, right)
+    _, first, plane = np.unique(
+        np.rint(normals / PARALLEL), axis=0, return_index=True, return_inverse=True
+    )
+    edge = np.repeat(np.arange(len(along)), 2)
+    return Complex(
+        vertices=rock.points,
+        bounds=(np.stack([edge, rock.ends.ravel()], axis=1),),
+        sides=np.where(turned[:, None], rock.cells[:, ::-1], rock.cells),
+        plane=plane.reshape(-1),
         joint_set=joint_set,
+        side=side,
+        normals=normals[first],
         region=np.full(rock.number, -1),
         count=rock.number,
     )

@@ -17,8 +17,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from jointwave.cases.errors import SceneError
+from jointwave.cases.geometry.solids import corners_of
 from jointwave.cases.partition.joints import direction_of
-from jointwave.cases.partition.outline import SIDES, Outline, corners_of, outline_of
+from jointwave.cases.partition.outline import SIDES, Outline, outline_of
 from jointwave.cases.partition.regions import on_boundary, shapes, within
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.region import REST

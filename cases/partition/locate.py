@@ -5,10 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 import shapely
 
+from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.outline import TOLERANCE
-from jointwave.cases.partition.polygons import owner
-from jointwave.cases.partition.subdivision import OUTSIDE
 
 
 def block_at(partition: Partition, points: np.ndarray) -> np.ndarray:
@@ -20,7 +19,7 @@ def block_at(partition: Partition, points: np.ndarray) -> np.ndarray:
 def blocks_at(partition: Partition, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return (point, block) int arrays of every block that each point (float array [m, 2], m) lies
     in or, within 1e-9 of the partition's size, on the edge of."""
-    corners, first, whose = partition.corners, partition.first, owner(partition.first)
+    corners, first, whose = partition.corners, partition.first, partition.owner
     # Each ring has its first corner at its end again.
     closed = np.insert(corners, first[1:], corners[first[:-1]], 0)
     owners = np.insert(whose, first[1:], np.arange(partition.count))

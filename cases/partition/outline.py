@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from jointwave.cases.partition.subdivision import PartitionError
+from jointwave.cases.geometry.cell_complex import GeometryError
+from jointwave.cases.geometry.solids import corners_of
 from jointwave.cases.schema.domain import Domain
 
 SIDES = ("left", "right", "bottom", "top", "outline")
@@ -76,7 +77,7 @@ class Outline:
 
 
 def outline_of(domain: Domain) -> Outline:
-    """Return the shape of a domain; raises PartitionError if it is invalid."""
+    """Return the shape of a domain; raises GeometryError if it is invalid."""
     whole = _polygon(domain.corners, "domain.outline")
     openings = [
         _polygon(opening, f"domain.openings[{k}]") for k, opening in enumerate(domain.holes)
@@ -104,7 +105,7 @@ def _polygon(corners: list[list[float]], key: str) -> shapely.Polygon:
     polygon = shapely.Polygon(corners) if len(corners) > 2 else shapely.Polygon()
     if not polygon.is_valid or not polygon.area > 0:
         why = "it has no area" if polygon.is_valid else shapely.is_valid_reason(polygon)
-        raise PartitionError(None, f"must be a polygon that does not cross itself ({why})", key)
+        raise GeometryError(None, f"must be a polygon that does not cross itself ({why})", key)
     return polygon
 
 
@@ -112,25 +113,14 @@ def _check_openings(whole: shapely.Polygon, openings: list[shapely.Polygon]) -> 
     for k, opening in enumerate(openings):
         key, at = f"domain.openings[{k}]", np.array(opening.centroid.coords[0])
         if not whole.covers(opening):
-            raise PartitionError(at, "must lie in the domain", key)
+            raise GeometryError(at, "must lie in the domain", key)
         if opening.equals(whole):
-            raise PartitionError(at, "must leave rock", key)
+            raise GeometryError(at, "must leave rock", key)
         for i, other in enumerate(openings[:k]):
             if opening.intersection(other).area > TOLERANCE * opening.area:
-                raise PartitionError(at, f"must not overlap openings[{i}]", key)
+                raise GeometryError(at, f"must not overlap openings[{i}]", key)
 
 
 def _parts(shape: shapely.Geometry) -> list[shapely.Polygon]:
     parts = getattr(shape, "geoms", [shape])
     return [part for part in parts if isinstance(part, shapely.Polygon) and part.area > 0]
-
-
-def corners_of(polygon: shapely.Geometry) -> np.ndarray:
-    """Return the corners of a polygon counter-clockwise from the leftmost, and of these the lowest,
-    one: in whichever order they are given. Those that turn nowhere are left out."""
-    points = shapely.get_coordinates(shapely.geometry.polygon.orient(polygon).exterior)[:-1]
-    before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
-    turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    flat = np.abs(turn) <= TOLERANCE * np.hypot(*before.T) * np.hypot(*after.T)
-    kept = points[~flat]
-    return np.roll(kept, -np.lexsort([kept[:, 1], kept[:, 0]])[0], axis=0)

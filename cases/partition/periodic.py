@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError
 from jointwave.cases.partition.blocks import BoundaryEdges, Contacts, Partition
-from jointwave.cases.partition.subdivision import NO_SET, PartitionError
 
 if TYPE_CHECKING:
     from jointwave.cases.schema.rock_mass import RockMass
@@ -26,7 +26,7 @@ class Across(NamedTuple):
 
 
 def across_periodic(scene: RockMass, partition: Partition) -> list[Across]:
-    """Return the contacts across the periodic sides of a scene; raises PartitionError where they do
+    """Return the contacts across the periodic sides of a scene; raises GeometryError where they do
     not fit each other."""
     size = np.ptp(partition.corners, axis=0)
     return [
@@ -46,7 +46,7 @@ def periodic_contacts(partition: Partition, side: str) -> Contacts:
     """Return the contacts across the left or the bottom, with the blocks beyond it moved by the
     domain's extent: block i at the right or the top, block j at the left or the bottom.
 
-    Ends and normals are those at block i, in no order of i and j. Raises PartitionError where rock
+    Ends and normals are those at block i, in no order of i and j. Raises GeometryError where rock
     faces no rock, a joint runs along one of the sides only, or ends at one of them only.
     """
     other, axis = PAIRS[side]
@@ -60,7 +60,7 @@ def periodic_contacts(partition: Partition, side: str) -> Contacts:
     wrong = joint & (sets == NO_SET)
     if wrong.any():
         cause = "is periodic, but no joint of one set runs along both sides"
-        raise PartitionError(start[np.argmax(wrong)], cause, f"boundaries.{side}")
+        raise GeometryError(start[np.argmax(wrong)], cause, f"boundaries.{side}")
     _check_ends(partition, side, (low, high), joint)
     return Contacts(
         blocks=np.stack([here.block[i], there.block[j]], axis=1),
@@ -75,7 +75,7 @@ def periodic_contacts(partition: Partition, side: str) -> Contacts:
 def _check_ends(
     partition: Partition, side: str, spans: tuple[np.ndarray, np.ndarray], joint: np.ndarray
 ) -> None:
-    """Raise PartitionError where a joint ends at one of two periodic sides only.
+    """Raise GeometryError where a joint ends at one of two periodic sides only.
 
     spans : from where to where along the sides the contacts across them reach, m; joint : which of
     them are joints [contacts], beside which the rock of either side may end as it likes.
@@ -99,7 +99,7 @@ def _check_ends(
                     f"is periodic, but a joint of {partition.joint_sets[k]!r} ends there and not "
                     f"at the same place on the {name}"
                 )
-                raise PartitionError(at, cause, f"boundaries.{side}")
+                raise GeometryError(at, cause, f"boundaries.{side}")
 
 
 def _is_joint(partition: Partition, sets: np.ndarray) -> np.ndarray:
@@ -129,7 +129,7 @@ def _overlaps(
     lows = [np.minimum(x.start[:, axis], x.end[:, axis]) for x in (here, there)]
     ends = [np.maximum(x.start[:, axis], x.end[:, axis]) for x in (here, there)]
     if not all(map(len, lows)):
-        raise PartitionError(None, "is periodic, but the domain has no such side", "boundaries")
+        raise GeometryError(None, "is periodic, but the domain has no such side", "boundaries")
     places = np.unique(np.concatenate([*lows, *ends]))
     wide = np.diff(places) > _least(partition)
     low, high = places[:-1][wide], places[1:][wide]
@@ -143,5 +143,5 @@ def _overlaps(
         at[axis] = middle[k]
         name = side if one[k] else PAIRS[side][0]
         cause = f"is periodic, but rock there faces none on the {name}"
-        raise PartitionError(at, cause, f"boundaries.{side}")
+        raise GeometryError(at, cause, f"boundaries.{side}")
     return low[both], high[both], found[0][both], found[1][both]

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
+from jointwave.cases.geometry.solids import ROCK, HalfSpace, Solid, corners_of, polygon_solid
 from jointwave.cases.partition.joints import direction_of
-from jointwave.cases.partition.lines import one_line
-from jointwave.cases.partition.openings import passed_by
-from jointwave.cases.partition.outline import corners_of
-from jointwave.cases.partition.split import split
-from jointwave.cases.partition.subdivision import Subdivision
 from jointwave.cases.schema.region import REST
 
 if TYPE_CHECKING:
@@ -25,7 +20,6 @@ if TYPE_CHECKING:
     from jointwave.cases.schema.region import Region
     from jointwave.cases.schema.rock_mass import RockMass
 
-ROCK = -1  #: in place of a region: rock outside all regions
 FAR = 4.0  #: sizes of a domain: beyond all of it
 
 
@@ -33,19 +27,9 @@ def region_at(regions: Sequence[Region], places: np.ndarray) -> np.ndarray:
     """Return the region that contains each place (float array [n, 2], m), or ROCK: the last of
     those whose line it lies above, or whose outline it lies in."""
     found = np.full(len(places), ROCK)
-    for k, one in enumerate(regions):
-        if one.outline is not None:
-            found[shapely.contains_xy(shapely.Polygon(one.outline), places)] = k
-        else:
-            found[_above(one, places) > 0] = k
+    for k, one in enumerate(bounded(regions)):
+        found[one.contains(places)] = k
     return found
-
-
-def _above(one: Region, places: np.ndarray) -> np.ndarray:
-    """Return the heights of places [n, 2] (m) above the line of a region [n], m."""
-    assert one.through is not None
-    x, y = direction_of(one.dip)
-    return (places - np.array(one.through)) @ [-y, x]
 
 
 def on_boundary(regions: Sequence[Region], places: np.ndarray, tolerance: float) -> np.ndarray:
@@ -56,7 +40,9 @@ def on_boundary(regions: Sequence[Region], places: np.ndarray, tolerance: float)
             ring = shapely.Polygon(one.outline).exterior
             found |= shapely.dwithin(ring, shapely.points(places), tolerance)
         else:
-            found |= np.abs(_above(one, places)) <= tolerance
+            (half,) = bounded([one])
+            assert isinstance(half, HalfSpace)
+            found |= np.abs(half.heights(places)) <= tolerance
     return found
 
 
@@ -93,29 +79,16 @@ def strata(regions: Sequence[Region]) -> list[Region]:
     return [one for one in regions if one.outline is None]
 
 
-def cut_into_regions(sub: Subdivision, regions: Sequence[Region], tolerance: float) -> Subdivision:
-    """Return a subdivision cut along the boundaries of regions, each cell with its region.
-
-    An outline is cut along the lines of its faces, so that cells stay convex; what they cut of the
-    rock around it is joined again by `openings.taken_out`.
-    """
-    for k in reversed(range(len(regions))):
-        one = regions[k]
+def bounded(regions: Sequence[Region]) -> list[Solid | HalfSpace]:
+    """Return what bounds each region."""
+    found: list[Solid | HalfSpace] = []
+    for one in regions:
         if one.outline is not None:
-            corners = corners_of(shapely.Polygon(one.outline))
-            for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-                free = sub.region == ROCK
-                passed = free & passed_by(sub, sub.halves(), start, end, tolerance)
-                line = one_line((end - start) / np.hypot(*(end - start)), start, passed)
-                sub = split(sub, line, tolerance).subdivision
-            inside = shapely.contains_xy(shapely.Polygon(corners), sub.centres())
+            found.append(polygon_solid(corners_of(shapely.Polygon(one.outline))))
         else:
-            assert one.through is not None
-            line = one_line(direction_of(one.dip), np.array(one.through), sub.region == ROCK)
-            sub = split(sub, line, tolerance).subdivision
-            inside = _above(one, sub.centres()) > 0
-        sub = replace(sub, region=np.where(inside & (sub.region == ROCK), k, sub.region))
-    return sub
+            x, y = direction_of(one.dip)
+            found.append(HalfSpace(np.array([-y, x]), np.array(one.through)))
+    return found
 
 
 def shapes(regions: Sequence[Region], outline: Outline) -> list[shapely.Geometry]:

@@ -7,17 +7,22 @@ from itertools import combinations
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.partition import assemble
-from jointwave.cases.partition.blocks import BoundaryEdges, Partition
-from jointwave.cases.partition.given import subdivision_of
-from jointwave.cases.partition.joints import cut_by_sets, direction_of
-from jointwave.cases.partition.openings import check_convex, taken_out
+from jointwave.cases.geometry.blocks import Facets, blocks_of
+from jointwave.cases.geometry.cell_complex import Complex, GeometryError, Sliver, polygon
+from jointwave.cases.geometry.sets import cut_by_sets
+from jointwave.cases.geometry.slivers import Limits, without_slivers
+from jointwave.cases.geometry.solids import (
+    check_convex,
+    cut_into_regions,
+    polygon_solid,
+    taken_out,
+)
+from jointwave.cases.partition.blocks import Partition, plane_partition
+from jointwave.cases.partition.given import complex_of
+from jointwave.cases.partition.joints import direction_of, plane_sets
 from jointwave.cases.partition.outline import SIDES, Outline, outline_of
 from jointwave.cases.partition.periodic import across_periodic
-from jointwave.cases.partition.polygons import moments
-from jointwave.cases.partition.regions import cut_into_regions
-from jointwave.cases.partition.slivers import without_slivers
-from jointwave.cases.partition.subdivision import PartitionError, Sliver, Subdivision
+from jointwave.cases.partition.regions import bounded
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.region import Region
@@ -44,23 +49,36 @@ def cut(
 
     further : sets of cuts, of which some or all may be where joints are.
 
-    Raises PartitionError, with place and cause, where a joint set cuts nothing, a block is not
+    Raises GeometryError, with place and cause, where a joint set cuts nothing, a block is not
     convex or a sliver is left.
     """
     outline = outline_of(domain)
+    body = _body(domain, outline, sets, further, regions)
+    found = blocks_of(body, outline.tolerance)
+    found = replace(found, boundary=_named(found.boundary, outline))
+    sides = (*SIDES, *(f"opening {k}" for k in range(len(domain.holes))))
+    return plane_partition(found, sides, tuple(one.name for one in sets))
+
+
+def _body(
+    domain: Domain,
+    outline: Outline,
+    sets: Sequence[JointSet],
+    further: Sequence[JointSet],
+    regions: Sequence[Region],
+) -> Complex:
+    """Return a domain in cells."""
     if domain.given is not None:
-        sub = subdivision_of(domain.given, [one.name for one in sets])
-        found = assemble.ordered(sub, assemble.rings(sub))
-        return _partition(*found, outline, sets, len(domain.holes))
-    whole = Subdivision.of_polygon(outline.hull)
-    whole = cut_into_regions(whole, regions, outline.tolerance)
-    sub = cut_by_sets(whole, [*sets, *further], outline.tolerance, len(sets), regions)
-    sub = taken_out(sub, outline.taken, outline.tolerance)
+        return complex_of(domain.given, [one.name for one in sets])
+    body = cut_into_regions(polygon(outline.hull), bounded(regions), outline.tolerance)
+    planes = plane_sets([*sets, *further], regions)
+    body = cut_by_sets(body, planes, outline.tolerance, len(sets))
+    solids = [(polygon_solid(corners), side) for corners, side in outline.taken]
+    body = taken_out(body, solids, outline.tolerance)
     if domain.non_convex == "refuse":
-        check_convex(sub, outline.taken)
+        check_convex(body, solids)
     kept = len(sets) if further else None
-    sub, rings = _without_slivers(sub, domain, [*sets, *further], kept, outline.tolerance)
-    return _partition(*assemble.ordered(sub, rings), outline, sets, len(domain.holes))
+    return _without_slivers(body, domain, [*sets, *further], kept, outline.tolerance)
 
 
 def least_width(domain: Domain, sets: Sequence[JointSet], thin: float = THIN) -> float:
@@ -73,51 +91,29 @@ def least_width(domain: Domain, sets: Sequence[JointSet], thin: float = THIN) ->
 
 
 def _without_slivers(
-    sub: Subdivision, domain: Domain, sets: Sequence[JointSet], kept: int | None, tolerance: float
-) -> tuple[Subdivision, assemble.Rings]:
-    """Return a subdivision without slivers, and its outlines; of a lattice without thin blocks at
-    its sides, as far as they can be joined to others: they would decide the step.
+    body: Complex, domain: Domain, sets: Sequence[JointSet], kept: int | None, tolerance: float
+) -> Complex:
+    """Return a complex without slivers; of a lattice without thin blocks at its sides, as far as
+    they can be joined to others: they would decide the step.
 
     kept : how many of the sets, the first ones, are the joints of a lattice; None without one.
     """
     for thin in LATTICE if kept is not None and domain.least_width is None else (THIN,):
-        limits = (least_width(domain, sets, thin), domain.least_angle)
+        limits = Limits(least_width(domain, sets, thin), domain.least_angle)
         try:
-            return without_slivers(sub, limits, domain.slivers == "merge", tolerance, kept or 0)
+            return without_slivers(body, limits, domain.slivers == "merge", tolerance, kept or 0)
         except Sliver:
             if thin == THIN:
                 raise
     raise AssertionError
 
 
-def _partition(
-    sub: Subdivision,
-    rings: assemble.Rings,
-    outline: Outline,
-    sets: Sequence[JointSet],
-    openings: int,
-) -> Partition:
-    m = moments(rings.corners, rings.first)
-    return Partition(
-        corners=rings.corners,
-        first=rings.first,
-        area=m.area,
-        centroid=m.centroid,
-        second_moment=m.second,
-        region=sub.region,
-        contacts=assemble.contacts(sub),
-        boundary=_named(assemble.boundary(sub), outline),
-        sides=(*SIDES, *(f"opening {k}" for k in range(openings))),
-        joint_sets=tuple(one.name for one in sets),
-    )
-
-
-def _named(edges: BoundaryEdges, outline: Outline) -> BoundaryEdges:
+def _named(facets: Facets, outline: Outline) -> Facets:
     """Return boundary edges with the outer ones told apart: those along the left, right, bottom and
     top of the domain, and others."""
-    outer = outline.sides_of(edges.start, edges.end)
-    side = np.where(edges.side == 0, outer, len(SIDES) - 1 + edges.side)
-    return replace(edges, side=side)
+    ends = facets.outlines.corners.reshape(-1, 2, 2)
+    outer = outline.sides_of(ends[:, 0], ends[:, 1])
+    return replace(facets, side=np.where(facets.side == 0, outer, len(SIDES) - 1 + facets.side))
 
 
 def partition_of(scene: RockMass, further: Sequence[JointSet] = ()) -> Partition:
@@ -134,7 +130,7 @@ def partition_of(scene: RockMass, further: Sequence[JointSet] = ()) -> Partition
         found = cut(scene.domain, scene.joint_sets, further, scene.regions)
         across_periodic(scene, found)  # whether its sides fit each other
         return found
-    except PartitionError as error:
+    except GeometryError as error:
         raise SceneError(scene.where, error.key, None, str(error)) from None
 
 

@@ -34,7 +34,8 @@ class JointSet(Joints):
 
 def check_sets(scene: RockMass) -> None:
     """Raise the first contradiction of the joint sets."""
-    from jointwave.cases.partition.joints import in_order
+    from jointwave.cases.geometry.sets import in_order
+    from jointwave.cases.partition.joints import plane_sets
 
     sets = scene.joint_sets
     for i, one in enumerate(sets):
@@ -43,7 +44,7 @@ def check_sets(scene: RockMass) -> None:
         (_check_places if scene.domain.mesh is None else _check_in_mesh)(table, one)
         _check_law(table, one, scene)
     try:
-        in_order(sets)
+        in_order(plane_sets([one.model_copy(update={"regions": []}) for one in sets]))
     except ValueError as error:
         raise contradiction("joint_sets", None, str(error)) from None
 

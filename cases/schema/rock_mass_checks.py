@@ -80,32 +80,31 @@ def _check_mesh(scene: RockMass, outline: Outline) -> None:
 
 
 def _outline(scene: RockMass) -> Outline:
+    from jointwave.cases.geometry.cell_complex import GeometryError
     from jointwave.cases.partition.outline import outline_of
-    from jointwave.cases.partition.subdivision import PartitionError
 
     try:
         return outline_of(scene.domain)
-    except PartitionError as error:
+    except GeometryError as error:
         raise contradiction(error.key, None, str(error)) from None
 
 
 def _check_cuts(scene: RockMass, outline: Outline) -> None:
     """Refuse joints that miss the domain. Those of spacings that fit into it do not, and sets that
     end at others are known when they are cut."""
-    from jointwave.cases.partition.joints import cut_by_sets, direction_of, widest
-    from jointwave.cases.partition.regions import cut_into_regions
-    from jointwave.cases.partition.subdivision import PartitionError, Subdivision
+    from jointwave.cases.geometry.cell_complex import GeometryError, polygon
+    from jointwave.cases.geometry.sets import cut_by_sets
+    from jointwave.cases.geometry.solids import cut_into_regions
+    from jointwave.cases.partition.joints import plane_sets
+    from jointwave.cases.partition.regions import bounded
 
-    whole = Subdivision.of_polygon(outline.hull)
-    whole = cut_into_regions(whole, scene.regions, outline.tolerance)
-    for i, one in enumerate(scene.joint_sets):
-        x, y = direction_of(one.dip)
-        extent = float(np.ptp(outline.hull @ np.array([-y, x])))
-        if one.ends_at or widest(one) < extent:
+    whole = cut_into_regions(polygon(outline.hull), bounded(scene.regions), outline.tolerance)
+    for i, one in enumerate(plane_sets(scene.joint_sets, scene.regions)):
+        if one.ends_at or one.widest < float(np.ptp(outline.hull @ one.normal)):
             continue
         try:
-            cut_by_sets(whole, [one], outline.tolerance, regions=scene.regions)
-        except PartitionError as error:
+            cut_by_sets(whole, [one], outline.tolerance)
+        except GeometryError as error:
             key = error.key.replace("[0]", f"[{i}]")
             raise contradiction(key, None, str(error)) from None
 

@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.periodic import Across, of_all
-from jointwave.cases.partition.subdivision import NO_SET
 from jointwave.continuum.mesh.blocks import BlockEdges, cells_along, has_four_corners, meshed_blocks
 from jointwave.continuum.mesh.cells import FACETS
 from jointwave.continuum.mesh.copies import moved_alike, parts_of_pieces

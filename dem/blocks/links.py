@@ -6,13 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.material.elastic import shear_modulus
 from jointwave.cases.material.rigid_blocks import welds
 from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus
 from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.periodic import across_periodic, of_all
 from jointwave.cases.partition.regions import ROCK, rocks_of
-from jointwave.cases.partition.subdivision import NO_SET
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 

@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.partition.blocks import Partition
-from jointwave.cases.partition.polygons import owner
 from jointwave.dem.blocks.leapfrog import march, samples_for
 from jointwave.dem.blocks.model import PlaneState
 from jointwave.dem.blocks.receivers import BlockReceivers
@@ -72,7 +71,7 @@ def _everywhere(system: PlaneSystem) -> BlockReceivers:
 def triangles(partition: Partition) -> tuple[np.ndarray, np.ndarray]:
     """Return triangles between the first corner of each block and each of its sides that are not
     at it [cells, 3], and the block of each [cells]."""
-    first, whose = partition.first, owner(partition.first)
+    first, whose = partition.first, partition.owner
     corner = np.arange(len(whose))
     inner = (corner > first[whose]) & (corner < first[whose + 1] - 1)
     at = corner[inner]
@@ -81,7 +80,7 @@ def triangles(partition: Partition) -> tuple[np.ndarray, np.ndarray]:
 
 def corner_motion(partition: Partition, motion: np.ndarray) -> np.ndarray:
     """Return the motion of all corners [..., k, 2] of that of the blocks [..., N, 3]."""
-    whose = owner(partition.first)
+    whose = partition.owner
     arm = partition.corners - partition.centroid[whose]
     own = motion[..., whose, :]
     return own[..., :2] + own[..., 2:] * np.stack([-arm[:, 1], arm[:, 0]], axis=1)

@@ -11,6 +11,7 @@ that are quiet, free or periodic, and up to MOST_BLOCKS blocks.
 import numpy as np
 import xarray as xr
 
+from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.incident import tractions
 from jointwave.cases.material.contact_points import contact_points
 from jointwave.cases.material.quiet_sides import impedances
@@ -21,7 +22,6 @@ from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.locate import sides_at
 from jointwave.cases.partition.periodic import across_periodic
 from jointwave.cases.partition.scene import block_count, partition_of
-from jointwave.cases.partition.subdivision import NO_SET
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.rock_mass import RockMass

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.incident import PlaneWave, plane_wave
 from jointwave.cases.material.dashpots import set_time_constants
 from jointwave.cases.material.rock import ElasticRock, elastic_rock
@@ -17,7 +18,6 @@ from jointwave.cases.partition.joints import direction_of
 from jointwave.cases.partition.outline import TOLERANCE, outline_of
 from jointwave.cases.partition.regions import rocks_of, strata
 from jointwave.cases.partition.scene import partition_of
-from jointwave.cases.partition.subdivision import NO_SET
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import Wave
 from jointwave.compare.exact.plane import parallel_joints

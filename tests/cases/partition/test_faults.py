@@ -5,9 +5,9 @@ import re
 import pytest
 
 from jointwave.cases.errors import SceneError
+from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError, NonConvex, Sliver
 from jointwave.cases.partition.periodic import periodic_contacts
 from jointwave.cases.partition.scene import block_count, cut, partition_bytes, partition_of
-from jointwave.cases.partition.subdivision import NO_SET, NonConvex, PartitionError, Sliver
 from jointwave.cases.read import load_variant
 
 SCENE = """\
@@ -86,7 +86,7 @@ def test_one_joint_on_the_joint_that_it_ends_at(scene, joints):
     sets = [joints("rows", 0.0, spacing=1.0)]
     one = joints("one", 60.0, through=[5.0, 2.0], ends_at=["rows"])
     with pytest.raises(
-        PartitionError, match=re.escape("must not lie on a joint of rows, near [5, 2]")
+        GeometryError, match=re.escape("must not lie on a joint of rows, near [5, 2]")
     ):
         cut(Domain(size=[10.0, 6.0]), [*sets, one])
 
@@ -184,7 +184,7 @@ def test_periodic_sides_need_the_same_joint_on_both(rectangle, joints):
     assert (across.normal == [1.0, 0.0]).all() and (across.start[:, 0] == 10.0).all()
     assert (across.end[:, 1] > across.start[:, 1]).all()
     assert len(periodic_contacts(found, "bottom")) == 5
-    with pytest.raises(PartitionError, match="no joint of one set runs along both sides"):
+    with pytest.raises(GeometryError, match="no joint of one set runs along both sides"):
         periodic_contacts(cut(rectangle(9.0, 6.0), [rows, columns]), "left")
 
 
@@ -208,12 +208,12 @@ def test_a_periodic_scene_needs_faces_that_match(scene, rectangle, joints):
     met = cut(rectangle(10.0, 12.0), [joints("steep", 45.0, spacing=0.5**0.5, through=[0.0, 0.5])])
     assert len(periodic_contacts(met, "left")) == 13
     missed = joints("steep", 45.0, spacing=8**0.5, through=[0.0, 1.0])
-    with pytest.raises(PartitionError, match=r"a joint of 'steep' ends there .* near \[0, 1\]"):
+    with pytest.raises(GeometryError, match=r"a joint of 'steep' ends there .* near \[0, 1\]"):
         periodic_contacts(cut(rectangle(10.0, 12.0), [missed]), "left")
     hole = [[0.0, 2.0], [2.0, 2.0], [2.0, 4.0], [0.0, 4.0]]
     flat = joints("rows", 0.0, spacing=2.0)
     open_at_left = cut(rectangle(10.0, 6.0, openings=[hole], non_convex="cut"), [flat])
-    with pytest.raises(PartitionError, match=r"faces none on the left, near \[10, 3\]"):
+    with pytest.raises(GeometryError, match=r"faces none on the left, near \[10, 3\]"):
         periodic_contacts(open_at_left, "left")
 
 
@@ -255,4 +255,4 @@ def test_the_estimate_bounds_the_memory_that_is_taken(rectangle, joints, scene):
 
 
 def test_faults_are_told_apart():
-    assert issubclass(Sliver, PartitionError) and issubclass(NonConvex, PartitionError)
+    assert issubclass(Sliver, GeometryError) and issubclass(NonConvex, GeometryError)

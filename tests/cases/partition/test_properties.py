@@ -6,12 +6,12 @@ import shapely
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
+from jointwave.cases.geometry.cell_complex import GeometryError, Sliver
 from jointwave.cases.partition.joints import _scattered, direction_of
 from jointwave.cases.partition.locate import block_at, contact_at
 from jointwave.cases.partition.outline import outline_of
 from jointwave.cases.partition.polygons import following, least_angles, owner, widths
 from jointwave.cases.partition.scene import cut, least_width
-from jointwave.cases.partition.subdivision import PartitionError, Sliver
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
 
@@ -59,7 +59,7 @@ def partition(domain, sets):
     """A partition; a refusal must say where in the domain, and is no example."""
     try:
         return cut(domain, sets)
-    except PartitionError as error:
+    except GeometryError as error:
         assert error.cause and error.key.startswith(("domain", "joint_sets"))
         if error.key.startswith("domain"):
             assert shapely.Point(error.at).distance(shape_of(domain)) < 1e-6
@@ -291,7 +291,7 @@ def test_slivers_are_refused_with_place_and_cause(sets):
     except Sliver as error:
         assert outline_of(domain).holds(error.at.tolist())
         assert "grazing" in error.cause or "domain.least_width" in error.cause
-    except PartitionError as error:
+    except GeometryError as error:
         assert error.key.startswith("joint_sets")
     else:
         assert widths(found.corners, found.first).min() >= 0.2

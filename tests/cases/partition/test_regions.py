@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError
 from jointwave.cases.partition.regions import ROCK, region_at
 from jointwave.cases.partition.scene import cut
-from jointwave.cases.partition.subdivision import NO_SET, PartitionError
 from jointwave.cases.schema.region import Region
 
 
@@ -106,7 +106,7 @@ def test_an_outline_holds_its_own_area(rectangle, joints, corners):
 def test_rock_around_an_outline_is_refused_or_cut_as_around_an_opening(rectangle):
     """Rock around a lens is no convex block; cut along its five faces it makes five."""
     lens = [Region(name="lens", outline=LENS)]
-    with pytest.raises(PartitionError, match="not convex at an opening, a region or a corner"):
+    with pytest.raises(GeometryError, match="not convex at an opening, a region or a corner"):
         cut(rectangle(10.0, 10.0), [], (), lens)
     found = cut(rectangle(10.0, 10.0, non_convex="cut"), [], (), lens)
     assert sorted(found.region) == [ROCK] * 5 + [0]

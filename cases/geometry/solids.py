@@ -1,0 +1,216 @@
+"""Solids that cut a complex along their faces: openings, regions of rock, bays of an outline.
+
+In the plane a solid is a polygon, in space the prism of a polygon; a box is the prism of a
+rectangle. Cells are cut along the planes of the faces that pass through them, so that they stay
+convex, and pieces of one cell are joined again as far as they make a convex one.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+
+from jointwave.cases.geometry.cell_complex import NO_SET, Complex, NonConvex
+from jointwave.cases.geometry.cut import cut, one_plane
+from jointwave.cases.geometry.pieces import Joiner, clipped, pieces_of
+
+STRAIGHT = 1e-9  #: sine of the angle below which a corner of a polygon turns nowhere
+ROCK = -1  #: in place of a region: rock outside all regions
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A polygon in the plane, or the prism of one in space.
+
+    Attributes
+    ----------
+    corners : float array [k, 2], m, counter-clockwise in the base's own axes.
+    axes : float array [d, d], unit vectors: the two of the base, and in space that along the prism.
+    span : from where to where the prism reaches along its axis, m; not used in the plane.
+    """
+
+    corners: np.ndarray
+    axes: np.ndarray
+    span: tuple[float, float] = (0.0, 0.0)
+
+    def faces(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Return the corners [n, d], m, and the outward normal [d] of faces; of ends that are not
+        convex their convex hull."""
+        start, end = self.corners, np.roll(self.corners, -1, axis=0)
+        out = np.stack([end[:, 1] - start[:, 1], start[:, 0] - end[:, 0]], axis=1)
+        out = out / np.hypot(*out.T)[:, None] @ self.axes[:2]
+        edges = np.stack([start, end], axis=1) @ self.axes[:2]
+        if len(self.axes) == 2:
+            return list(zip(edges, out, strict=True))
+        low, high = np.outer(self.span, self.axes[2])
+        sides = [np.concatenate([edge + low, edge[::-1] + high]) for edge in edges]
+        hull = corners_of(shapely.Polygon(self.corners).convex_hull) @ self.axes[:2]
+        ends = [(hull[::-1] + low, -self.axes[2]), (hull + high, self.axes[2])]
+        return [*zip(sides, out, strict=True), *ends]
+
+    def contains(self, points: np.ndarray) -> np.ndarray:
+        """Return which points [n, d] lie inside, bool array."""
+        own = points @ self.axes.T
+        inside = shapely.contains_xy(shapely.Polygon(self.corners), own[:, :2])
+        if len(self.axes) == 3:
+            inside &= (own[:, 2] > self.span[0]) & (own[:, 2] < self.span[1])
+        return inside
+
+
+def polygon_solid(corners: np.ndarray) -> Solid:
+    """Return a polygon in the plane, float array [k, 2], m, counter-clockwise."""
+    return Solid(corners, np.eye(2))
+
+
+def prism(corners: np.ndarray, axis: int, span: tuple[float, float]) -> Solid:
+    """Return the prism of a polygon along the axis 0, 1 or 2 in space.
+
+    corners : float array [k, 2], m, of the coordinates along the two other axes, in cyclic order
+    (y and z along x, z and x along y, x and y along z). span : m, along the axis.
+    """
+    own = corners_of(shapely.Polygon(corners))
+    return Solid(own, np.eye(3)[[(axis + 1) % 3, (axis + 2) % 3, axis]], span)
+
+
+def corners_of(polygon: shapely.Geometry) -> np.ndarray:
+    """Return the corners [n, 2] of a polygon counter-clockwise from the leftmost, and of these the
+    lowest, one: in whichever order they are given. Those that turn nowhere are left out."""
+    points = shapely.get_coordinates(shapely.geometry.polygon.orient(polygon).exterior)[:-1]
+    before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
+    turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    flat = np.abs(turn) <= STRAIGHT * np.hypot(*before.T) * np.hypot(*after.T)
+    kept = points[~flat]
+    return np.roll(kept, -np.lexsort([kept[:, 1], kept[:, 0]])[0], axis=0)
+
+
+@dataclass(frozen=True)
+class HalfSpace:
+    """What lies on the side of a plane that its normal [d] points to; through : a point of it."""
+
+    normal: np.ndarray
+    through: np.ndarray
+
+    def heights(self, points: np.ndarray) -> np.ndarray:
+        """Return the heights of points [n, d] above the plane [n], m."""
+        return (points - self.through) @ self.normal
+
+    def contains(self, points: np.ndarray) -> np.ndarray:
+        """Return which points [n, d] lie above, bool array."""
+        return self.heights(points) > 0
+
+
+def cut_into_regions(
+    body: Complex, regions: Sequence[Solid | HalfSpace], tolerance: float
+) -> Complex:
+    """Return a complex cut along the boundaries of regions, each cell with its region: the last one
+    that contains it. What the faces of a solid cut of the rock around it `taken_out` joins again.
+    """
+    for k in reversed(range(len(regions))):
+        one = regions[k]
+        if isinstance(one, Solid):
+            for face, normal in one.faces():
+                passed = _passed(body, body.region == ROCK, face, normal, tolerance)
+                body = cut(body, one_plane(normal, face[0], passed), tolerance).body
+        else:
+            plane = one_plane(one.normal, one.through, body.region == ROCK)
+            body = cut(body, plane, tolerance).body
+        inside = one.contains(body.centres()) & (body.region == ROCK)
+        body = replace(body, region=np.where(inside, k, body.region))
+    return body
+
+
+def taken_out(body: Complex, solids: Sequence[tuple[Solid, int]], tolerance: float) -> Complex:
+    """Return a complex less some solids, each with the side that its faces become, its blocks cut
+    in convex parts along these faces."""
+    whole = np.arange(body.count)  # the block that a cell is a part of
+    for solid, side in solids:
+        near = _near(body, np.concatenate([face for face, _ in solid.faces()]), tolerance)
+        for face, normal in solid.faces():
+            passed = _passed(body, near, face, normal, tolerance)
+            split = near & np.isin(whole, whole[passed])  # all of the block, to choose its pieces
+            found = cut(body, one_plane(normal, face[0], split), tolerance)
+            body, near, whole = found.body, near[found.parent], whole[found.parent]
+        gone = np.zeros(body.count, bool)
+        at = np.flatnonzero(near)
+        gone[at] = solid.contains(body.centres(body.beside(near))[at])
+        body = body.removed(gone, side)
+    return _rejoined(body, tolerance)
+
+
+def check_convex(body: Complex, solids: Sequence[tuple[Solid, int]]) -> None:
+    """Raise NonConvex if a block had to be cut through intact rock beside an opening."""
+    cuts = np.flatnonzero(_through_rock(body))
+    if not len(cuts):
+        return
+    at = body.vertices[body.vertices_of(np.array([[0, cuts[0]]]))[:, 1]]
+    if solids:
+        corners = np.concatenate([face for solid, _ in solids for face, _ in solid.faces()])
+        away = np.linalg.norm(at[:, None] - corners, axis=2).min(axis=0)
+        at = corners[[np.argmin(away)]]
+    raise NonConvex(
+        at.mean(axis=0),
+        "a block is not convex at an opening, a region or a corner of the outline; "
+        'set domain.non_convex = "cut" to cut it into convex parts',
+    )
+
+
+def _near(body: Complex, corners: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return which cells' bounding boxes meet that of some points [n, d], bool array [count]."""
+    cell, vertex = body.corners(body.halves()).T
+    near = np.zeros(body.count, bool)
+    begins = np.flatnonzero(np.diff(cell, prepend=-1))
+    x = body.vertices[vertex]
+    low, high = (f.reduceat(x, begins, axis=0) for f in (np.minimum, np.maximum))
+    meets = (low <= corners.max(axis=0) + tolerance) & (high >= corners.min(axis=0) - tolerance)
+    near[cell[begins]] = meets.all(axis=1)
+    return near
+
+
+def _passed(
+    body: Complex, cells: np.ndarray, face: np.ndarray, normal: np.ndarray, tolerance: float
+) -> np.ndarray:
+    """Return which of some cells (bool array [count]) a convex face, float array [n, d], passes
+    through, deeper than the tolerance."""
+    half, found = body.beside(cells), np.zeros(body.count, bool)
+    s = (body.vertices - face[0]) @ normal
+    cell, vertex = body.corners(half).T
+    low, high = np.full(body.count, np.inf), np.full(body.count, -np.inf)
+    np.minimum.at(low, cell, s[vertex])
+    np.maximum.at(high, cell, s[vertex])
+    crossed = (low < -tolerance) & (high > tolerance) & _near(body, face, tolerance)
+    mine = np.flatnonzero(crossed[half.cell])
+    if not len(mine):
+        return found
+    mine = mine[np.argsort(half.cell[mine], kind="stable")]
+    place = (body.origins(half) * half.outward).sum(axis=1)
+    for own in np.split(mine, np.flatnonzero(np.diff(half.cell[mine])) + 1):
+        part = face
+        for k in own:
+            if len(part):
+                part = clipped(part, place[k] - tolerance - part @ half.outward[k])
+        if len(part) and np.ptp(part, axis=0).max() > tolerance:
+            found[half.cell[own[0]]] = True
+    return found
+
+
+def _through_rock(body: Complex) -> np.ndarray:
+    """Return which facets are cuts through rock of one region, bool array [f]."""
+    one, other = body.region[body.sides].T
+    return (body.joint_set == NO_SET) & body.inner & (one == other)
+
+
+def _rejoined(body: Complex, tolerance: float) -> Complex:
+    """Return a complex with pieces of a block of one rock joined as far as they stay convex."""
+    cuts = _through_rock(body)
+    if not cuts.any():
+        return body
+    held = np.append(np.zeros(body.count, bool), False)
+    held[body.sides[cuts].ravel()] = True
+    pieces, beside = pieces_of(body, held[:-1])
+    across = {tuple(pair) for pair in body.sides[cuts].tolist()}
+    for cell, others in beside.items():
+        for other in list(others):
+            if (cell, other) not in across and (other, cell) not in across:
+                del others[other]
+    return body.joined(Joiner(pieces, beside, tolerance).joined(body.count))
