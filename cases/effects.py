@@ -84,10 +84,11 @@ def _of_joints(scene: Scene, p: Properties) -> Iterator[Effect]:
     yield called_for("segments", other, "no [[segments]]")
     yield called_for("scatter", random and f"seed {random.seed}", "no [scatter]")
     no_tension, differ = int((~p.tension).sum()), len(p.soft)
+    layers = differ and f"{differ} soft layer{'s' * (differ > 1)}"
     whose = no_tension and f"{no_tension} of {len(p.tension)} joints"
     yield called_for("no tension", whose, carries(p.friction is not None))
     alike = "all joints are equal: scalars, no arrays" if p.is_uniform else "no soft layers"
-    yield called_for("joints that differ", differ and f"{differ} soft layers", alike)
+    yield called_for("joints that differ", layers, alike)
 
 
 def _of_ends(scene: Scene, kind: str) -> Effect:

@@ -60,7 +60,7 @@ def _of_sets(name: str, found: list[JointSet], why: str, why_not: str) -> Effect
 
 def _of_sides(scene: RockMass, kind: str) -> Effect:
     sides = [f"boundaries.{side}" for side in scene.boundaries.sides(kind)]
-    return called_for(f"{kind} sides", " and ".join(sides), f"no side is {kind}")
+    return called_for(f"{kind} sides", ", ".join(sides), f"no side is {kind}")
 
 
 def _of_forces(scene: RockMass) -> Iterator[Effect]:
@@ -70,6 +70,6 @@ def _of_forces(scene: RockMass) -> Iterator[Effect]:
     words = words and words + scene.excavated * ", openings excavated"
     yield called_for("prestress", words, "no [prestress]")
     waves, pushed = len(scene.waves), len(scene.pushes)
-    yield called_for("incident waves", waves and f"{waves} of [[waves]]", "no [[waves]]")
-    yield called_for("loads", pushed and f"{pushed} of [[loads]]", "no [[loads]]")
+    yield called_for("incident waves", waves and f"{waves} in [[waves]]", "no [[waves]]")
+    yield called_for("loads", pushed and f"{pushed} in [[loads]]", "no [[loads]]")
     yield called_for("shaken base", scene.bases and "a load of kind 'base'", "no base is shaken")

@@ -85,7 +85,7 @@ class Rayleigh(Table):
 class Damping(Table):
     """Damping in addition to the dashpots of the joints."""
 
-    mass_proportional: NonNegative | None = None  #: alpha, 1/s: a force -alpha m v on every block
+    mass_proportional: NonNegative | None = None  #: 1/s, alpha: a force -alpha m v on every block
     rayleigh: Rayleigh | None = None  #: alpha as above, beta the time constant of rock and joints
     local: Annotated[float, Field(ge=0, lt=1)] | None = None  #: Cundall's factor, for static states
 

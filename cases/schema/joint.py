@@ -154,7 +154,7 @@ class SoftLayer(JointLaw):
     """One joint with a law of its own; absent keys are taken from [joints]."""
 
     y: Positive  #: m, on a joint
-    spacing_stiffness: Positive | None = None  #: S K_n, Pa; absent: as stiff as the other joints
+    spacing_stiffness: Positive | None = None  #: Pa, S K_n; absent: as stiff as the other joints
     thickness: Positive | None = None  #: m
 
     @model_validator(mode="before")

@@ -21,7 +21,7 @@ UNITS = {
 }
 LABELS = {key: f"{key} ({unit})" for unit, keys in UNITS.items() for key in keys.split()} | {
     "bytes": "memory of the blocks (bytes)",
-    "bytes_at_most": "at most, while they are cut (bytes)",
+    "bytes_at_most": "memory while they are cut, at most (bytes)",
     "boundary": "contacts with the boundary",
     "largest": "largest block",
     "poisson": "Poisson's ratio",
@@ -73,8 +73,8 @@ def show_explanation(found: dict[str, Any], every: bool) -> None:
         say(f"{label_of(name)} cannot run: {why}", "red")
     _show("solutions do not apply", solutions, "applies", every)
     for name, reference in found["references"].items():
-        by = f"{label_of(reference['name'])}: " * bool(reference["name"])
-        say(f"reference of {label_of(name)}: {by}{reference['reason']}")
+        by, why = label_of(reference["name"]), reference["reason"]
+        say(f"reference of {label_of(name)}: {f'{by} ({why})' if by else why}")
 
 
 def _show(rest: str, rows: list[dict[str, Any]], key: str, every: bool) -> None:

@@ -4,14 +4,19 @@ from itertools import pairwise
 
 import pandas as pd
 
-from jointwave.compare.cli.terminal import show_table
+from jointwave.compare.cli.terminal import LONGEST, say, show_table
 from jointwave.compare.engines import in_words
 from jointwave.compare.text import table_cell
 
 
 def show_frame(table: pd.DataFrame) -> None:
     """Print a table, if it has rows; what labels them comes first, an outermost label once;
-    solutions and pairs of them are in words."""
+    solutions and pairs of them are in words. Long labels stand above the rows that have them."""
+    if table.index.nlevels > 1 and max(map(len, map(str, table.index.unique(0)))) > LONGEST:
+        for heading, rows in table.groupby(level=0, sort=False):
+            say(str(heading))
+            show_frame(rows.droplevel(0))
+        return
     named = table if isinstance(table.index, pd.RangeIndex) else table.reset_index()
     columns = [*map(in_words, named.columns)]
     cells = (map(table_cell, row, columns) for row in named.itertuples(False, None))

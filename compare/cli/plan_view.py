@@ -25,14 +25,15 @@ def show_plans(found: list[Plan], path: str, changes: list[str], as_json: bool) 
 
 def _show(one: Plan, path: str, changes: list[str]) -> None:
     say(", ".join(filter(None, [one.scene.title, one.scene.name])))
-    say(f"modelling error: from {_named(one.finest)} ({one.reason})")
+    why = "" if one.finest.settings else f" ({one.reason})"
+    say(f"modelling error: against {_named(one.finest)}{why}")
     best, asked = one.chosen, percent(one.asked)
     if best is None:
         for reason in dict.fromkeys(one.skipped.values()):
             say(f"skipped: {reason}")
-        say(f"{asked} %: missed, no engine's model is near enough to the finest physics in time")
+        say(f"{asked} % is not met: no engine's model is near enough to the finest physics in time")
         return
-    say(f"numerical error: from {_named(best.reference)}, the engine's own model")
+    say(f"numerical error: against {_named(best.reference)}, the engine's own model")
     errors = [percent(x) for x in (best.numerical, best.modelling, best.misfit, one.misfit)]
     columns = ["numerical", "modelling", "sum", "sum with smaller steps"]
     columns = ["engine", *(f"{name} (%)" for name in columns), "stepping (s)"]
@@ -41,17 +42,17 @@ def _show(one: Plan, path: str, changes: list[str]) -> None:
     chosen += options_of(best.elements.name)
     chosen += [part for text in [*changes, *best.options] for part in ("--set", text)]
     say(shlex.join(chosen))
-    met = "met by the sum" if one.is_met else "missed, this is the nearest"
-    say(f"{asked} %: {met}, after {len(one.runs)} runs and {one.planning:.2g} s of planning")
+    met = "the sum of errors meets" if one.is_met else "the nearest run, whose sum misses,"
+    say(f"{met} {asked} %; planning took {len(one.runs)} runs and {one.planning:.2g} s")
 
 
 def _named(reference: Reference) -> str:
     """Describe the reference of errors, its accuracy, and its time limit."""
     words = label_of(reference.name) + f" at {reference.settings}" * bool(reference.settings)
     if reference.error:
-        words += f", known to {percent(reference.error)} %"
+        words += f", accurate to {percent(reference.error)} %"
     until = reference.result.attrs.get("known_until")
-    return words if until is None else f"{words}, known until {float(until):.3g} s"
+    return words if until is None else f"{words}, valid until {float(until):.3g} s"
 
 
 def _facts(one: Plan) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from math import inf
+from textwrap import fill
 from time import monotonic
 from typing import Any
 
@@ -79,6 +80,12 @@ def _lines(label: str, every: float) -> Callable[[float], None]:
 def say(text: str, style: str = "") -> None:
     """Print a line of text, or several."""
     _console().print("\n".join(map(printable, text.split("\n"))), style=style)
+
+
+def say_wrapped(text: str, indent: str) -> None:
+    """Print a text in lines no longer than the terminal's, all but the first indented."""
+    width = _console().width
+    say(fill(text, width, subsequent_indent=indent, break_on_hyphens=False))
 
 
 def say_warnings(lines: Iterable[str]) -> None:

@@ -45,7 +45,7 @@ class Panel(NamedTuple):
     @property
     def heading(self) -> str:
         """The place and the variant in words."""
-        return f"{self.place.heading}, {self.variant}"
+        return f"{self.place.heading}, {self.variant}".removesuffix(", ")
 
     @property
     def unit(self) -> str:
@@ -54,7 +54,8 @@ class Panel(NamedTuple):
 
     def column(self, name: str, per: str = "") -> str:
         """Return the header of a curve in a table; per : what its unit is divided by."""
-        return f"{name} | {self.place.heading} | {self.variant} ({self.unit}{per})"
+        curve = " | ".join(filter(None, (name, self.place.heading, self.variant)))
+        return f"{curve} ({self.unit}{per})"
 
     @property
     def at_rest(self) -> float:
@@ -82,8 +83,9 @@ def panels(comparisons: list[Comparison]) -> list[list[Panel]]:
     At each receiver there is one for every component that is not faint compared with the largest:
     of stress and shear, of velocity, of rotation if nothing is displaced, of traction at joints.
     """
-    named = zip(comparisons, variant_names(comparisons), strict=True)
-    return [[*_panels(comparison, name)] for comparison, name in named]
+    is_alone = len(comparisons) == 1  # it needs no name but its own
+    names = [comparisons[0].scene.name] if is_alone else variant_names(comparisons)
+    return [[*_panels(one, name)] for one, name in zip(comparisons, names, strict=True)]
 
 
 def in_rows(comparisons: list[Comparison], across: int = 2) -> list[list[Panel]]:

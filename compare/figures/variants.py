@@ -8,7 +8,8 @@ from jointwave.compare.misfit.pairs import Comparison
 
 
 def variant_names(comparisons: list[Comparison]) -> list[str]:
-    """Return the variants' names; the base scene is named by the keys that its variants change."""
+    """Return the variants' names; the base scene is named by what its variants change, where that
+    has words; alone it is the "base scene"."""
     base, *variants = (comparison.scene for comparison in comparisons)
     names = [base.name or _base_name(base, variants), *(variant.name for variant in variants)]
     return [name.replace("zeta ", "ζ = ") for name in names]
@@ -19,7 +20,7 @@ def _base_name(base: AnyScene, variants: list[AnyScene]) -> str:
         return "base scene"
     words, others = _words(base), [_words(variant) for variant in variants]
     changed = [word for key, word in words.items() if any(one[key] != word for one in others)]
-    return ", ".join(changed) or ("base scene" if variants else words["damping"])
+    return ", ".join(changed) or "base scene"
 
 
 def _words(scene: Any) -> dict[str, str]:

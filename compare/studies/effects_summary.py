@@ -41,12 +41,12 @@ def table(found: pd.DataFrame) -> pd.DataFrame:
     rows: dict[tuple[str, str], dict[str, Any]] = {}
     for _, some in found.assign(label=_labels(found)).groupby(["label", "engine"], sort=False):
         one = next(some.itertuples())
-        heading = f"{numbers[one.label]}. {one.title} ({one.label}): {one.own:.2g} ns a "
+        heading = f"{numbers[one.label]}. {one.title} ({one.label}): {one.own:.3g} ns per "
         if one.engine == BLOCKS:
-            full = f"{percent(one.own / one.everything)} % of {one.everything:.2g} ns"
-            heading += f"block-step, {full} with everything on"
+            full = f"{percent(one.own / one.everything)} % of {one.everything:.3g} ns"
+            heading += f"block and step, {full} with every effect"
         else:
-            heading += "freedom-step of jointed rock"
+            heading += "degree of freedom and step of jointed rock"
         for e in some.sort_values(["reason", "ns"], ascending=[True, False]).itertuples():
             rows[heading, e.effect] = {
                 "misfit without, %": 100 * e.misfit,
@@ -61,7 +61,9 @@ def table(found: pd.DataFrame) -> pd.DataFrame:
 
 def _resolved(value: float, noise: float) -> float | str:
     """Return a number; in place of one that does not exceed the noise of timings, that."""
-    return value if abs(value) > noise or not isfinite(value) else f"within ±{noise:.1g}"
+    return (
+        value if abs(value) > noise or not isfinite(value) else f"within ±{float(f'{noise:.1g}'):g}"
+    )
 
 
 def sentences(found: pd.DataFrame) -> list[str]:
@@ -71,8 +73,8 @@ def sentences(found: pd.DataFrame) -> list[str]:
     sets = (blocks.own / blocks.everything).groupby(blocks.label).first().sort_values()
     ends = dict.fromkeys(f"{percent(sets.iloc[i])} % ({sets.index[i]})" for i in (0, -1))
     said = [
-        "With the effects that a scene needs, its block-step costs "
-        f"{' to '.join(ends)} of one with everything on."
+        f"With only the effects of the scene a step of a block costs {' to '.join(ends)} of a step "
+        "with every effect."
     ]
     idle = blocks[(blocks.ns.abs() > blocks.noise) & (blocks.misfit == 0)]
     if len(idle):

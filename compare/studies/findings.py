@@ -121,7 +121,7 @@ def sentences(study: Study, table: pd.DataFrame) -> list[str]:
     if failed := int((table["state"] == "failed").sum()):
         found.append(f"{failed} of {len(table)} points failed; they are listed in the table.")
     return found + [
-        f"{one.curve}: order {one.measured:.2f} with {one.key}, in theory {one.theory:g}."
+        f"{one.curve}: measured order {one.measured:.2f} in {one.key}, theory {one.theory:g}."
         for one in orders(study, table)
     ]
 

@@ -38,8 +38,8 @@ DIED = "its process ended early, possibly for lack of memory"
 
 
 def reason_of(error: Exception) -> str:
-    """Return why something could not be run, without the place in the scene."""
-    return getattr(error, "allowed", str(error))
+    """Return why something could not be run: the key and what is allowed, without the file."""
+    return f"{error.key} {error.allowed}".strip() if isinstance(error, SceneError) else str(error)
 
 
 def key(*about: Any) -> str:

@@ -37,8 +37,9 @@ ERRORS = {
 COSTS = {"seconds": "seconds of stepping", "work": "degrees of freedom x force evaluations"}
 MARKERS = "os^vDPX*<>hpd8H"
 LEGEND = (
-    "Sum: numerical and modelling error with what their references are not known to; it counts. "
-    f"Measured: from the finest physics; {CANCELS} where errors cancel, or a finer point is worse."
+    "Points are ranked by the sum: numerical error, modelling error, and the possible errors of "
+    "the references. Measured is the misfit from the finest physics; it does not count where "
+    f"errors cancel or a finer point is worse ({CANCELS})."
 )
 #: Columns of the table, with those of `PointRow` and their factors.
 COLUMNS = {
@@ -47,12 +48,12 @@ COLUMNS = {
     "sum, %": ("total", 100),
     "measured, %": ("measured", 100),
     "steps": ("steps", 1),
-    "work": ("work", 1),
-    "kB": ("bytes", 1e-3),
+    "dof x evaluations": ("work", 1),
+    "memory, kB": ("bytes", 1e-3),
     "set-up, s": ("setup", 1),
     "compiling, s": ("compile", 1),
     "stepping, s": ("seconds", 1),
-    "±": ("spread", 1),
+    "±, s": ("spread", 1),
 }
 
 
@@ -125,6 +126,7 @@ def shown(table: pd.DataFrame) -> pd.DataFrame:
     errors = [head for head in COLUMNS if "%" in head]
     found[errors] = found[errors].map("{:.3g}".format).replace("nan", "")
     found["measured, %"] += table["cancels"].map({True: f" {CANCELS}", False: ""})
+    found = found.loc[:, (found.notna() & (found != "")).any()]
     return found.set_index(pd.MultiIndex.from_arrays([table["curve"], labels], names=["", "point"]))
 
 

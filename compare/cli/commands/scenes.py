@@ -50,8 +50,11 @@ def list_scenes(as_json: JsonOption = False) -> None:
     ]
     if as_json:
         terminal.print_json(facts)
-    else:
-        terminal.show_facts({"scenes": facts})
+        return
+    for one in facts:
+        terminal.say_wrapped(f"{one['scene']}: {one['title']}", " " * 4)
+        if one["variants"]:
+            terminal.say_wrapped(f"    variants: {'; '.join(one['variants'])}", " " * 6)
 
 
 @app.command()

@@ -147,7 +147,8 @@ class Frame:
         reach = 1.08 * max(float(along.abs().max(axis=None)) for along in self.along.values())
         reach = reach or 1.0
         least = 0.0 if not self.settings.quantity.sign else -reach
-        ax.set(ylim=(least, reach), xlabel="y (m)" + "; dotted: soft layers" * bool(soft_layers))
+        dotted = f"; dotted: soft layer{'s' * (len(soft_layers) > 1)}" * bool(soft_layers)
+        ax.set(ylim=(least, reach), xlabel=f"y (m){dotted}")
         ax.set_ylabel(self.settings.quantity.name.replace(" (", "\n("))
 
     def _add_waveform(self, ax: Axes) -> None:

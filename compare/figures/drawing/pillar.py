@@ -49,10 +49,10 @@ def sketch_of(scene: Scene) -> Sketch:
         *receivers("point: velocity", [(y, 0.0) for y in scene.record.velocity], "o"),
         *_load(scene, half, unit),
     ]
-    corner = np.array([pillar.length, half + unit[1]])
+    corner = np.array([pillar.length, half + 0.7 * unit[1]])
     if scene.gravity is not None:
         down = np.array(scene.gravity.direction)[[1, 0]]
-        shapes += gravity(corner, down, 0.6 * unit, scene.gravity.acceleration)
+        shapes += gravity(corner + 0.3 * unit * down, down, 0.6 * unit, scene.gravity.acceleration)
     if scene.prestress is not None and scene.prestress.normal:
         words = f"prestress {_number(scene.prestress.normal, 'Pa')}"
         shapes.append(note(corner * [0.5, 1.0], words, "center"))
@@ -61,7 +61,7 @@ def sketch_of(scene: Scene) -> Sketch:
     size = (
         f": {scene.block_count:,} blocks {blocks}{average}, {pillar.side:g} m × {pillar.side:g} m"
     )
-    over = 1.4 if any(isinstance(one, Text) and one.get_text() for one in shapes) else 0.6
+    over = 1.1 if any(isinstance(one, Text) and one.get_text() for one in shapes) else 0.4
     return Sketch(
         shapes,
         np.array([-beside, -half - 0.5 * unit[1]]),
@@ -126,7 +126,7 @@ def _load(scene: Scene, half: float, unit: np.ndarray) -> list[Artist]:
         words.append(f"at z = {load.at[1]:g} m")
     if not load.amplitude:
         return []
-    shapes = [note(unit * [-0.3, 1.0] + [0.0, half], ", ".join(words), "left")] if words else []
+    shapes = [note(unit * [-0.3, 0.7] + [0.0, half], ", ".join(words), "left")] if words else []
     if in_plane and load.arm is None and scene.shakes_base:
         shapes.append(shaking(unit * [-0.7, 0.0], direction, unit))
     elif in_plane and load.arm is None:

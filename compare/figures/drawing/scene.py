@@ -25,7 +25,7 @@ TITLE = "The scene"
 CAPTION = (
     "Drawn from the scene file; blue marks: receivers, red: loads and waves, as over time beside."
 )
-PULSE, LOW, FOOT, TALLEST = 1.3, 0.75, 0.7, 3.6  # inches: pulse, lowest drawing, below, tallest
+PULSE, LOW, FOOT, TALLEST = 1.3, 0.75, 0.55, 3.6  # inches: pulse, lowest drawing, below, tallest
 ENTRIES, LINE = 6, 0.25  # of the legend in a line, and inches of one
 SAMPLES = 400
 UNITS = {
@@ -71,13 +71,14 @@ def _figure(scenes: dict[str, AnyScene], sketches: list[Sketch]) -> Figure:
     """Draw pillars one below the other, rock masses in pairs, each with its pulse beside it."""
     one = isinstance(next(iter(scenes.values())), Scene) or len(scenes) == 1
     pairs = 1 if one else 2
-    rows, width = -(-len(scenes) // pairs), WIDTH / pairs - PULSE - 0.9
-    ratio = max(sketch.ratio for sketch in sketches)
-    height = max(min(TALLEST, ratio * width), LOW) + FOOT
-    height += LINE * max(sketch.size.count("\n") for sketch in sketches)
-    with blank(rows * height + 2 * LINE) as figure:
-        widths = [width, PULSE] * pairs
-        axes = figure.subplots(rows, 2 * pairs, squeeze=False, width_ratios=widths).reshape(-1, 2)
+    rows = [sketches[k : k + pairs] for k in range(0, len(sketches), pairs)]
+    width = WIDTH / pairs - PULSE - 0.9
+    ratios = (max(sketch.ratio for sketch in row) for row in rows)
+    heights = [max(min(TALLEST, ratio * width), LOW) for ratio in ratios]
+    foot = FOOT + LINE * (len(scenes) > 1) + LINE * max(s.size.count("\n") for s in sketches)
+    with blank(sum(heights) + len(rows) * foot + LINE) as figure:
+        shape: dict[str, Any] = {"width_ratios": [width, PULSE] * pairs, "height_ratios": heights}
+        axes = figure.subplots(len(rows), 2 * pairs, squeeze=False, **shape).reshape(-1, 2)
         handles: dict[str, Any] = {}
         for k, ((ax, beside), sketch) in enumerate(zip(axes, sketches, strict=False)):
             words, scene = list(scenes.items())[k]
@@ -85,7 +86,7 @@ def _figure(scenes: dict[str, AnyScene], sketches: list[Sketch]) -> Figure:
             if len(scenes) > 1:
                 ax.set_title(f"({chr(97 + k)})  {words}")
             if isinstance(scene, Scene):
-                ax.set_yticks([])
+                ax.set(yticks=[], ylabel=sketch.axes[1])
                 ax.spines["left"].set_visible(False)
             handles |= {artist.get_label(): artist for artist in ax.get_legend_handles_labels()[0]}
             _draw_pulse(beside, scene)

@@ -67,7 +67,7 @@ def test_the_table_is_printed_and_is_in_the_json(compared, capsys):
     show_comparisons([compared], False, False, reads=True)
     lines = capsys.readouterr().out.splitlines()
     last = " ".join(lines[-1].split())
-    assert last.startswith("undamped homogenised bar, images 30 m 0.5 ")
+    assert last.startswith("base scene homogenised bar, images 30 m 0.5 ")
     assert all(name in "\n".join(lines) for name in READINGS)
     show_comparisons([compared], False, True, reads=True)
     (facts,) = json.loads(capsys.readouterr().out)

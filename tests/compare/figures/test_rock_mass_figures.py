@@ -46,10 +46,10 @@ def test_all_pictures_are_made(solved):
     figures = figures_of("mass", found, [{}])
     assert [one.name for one in figures] == ["mass-scene", "mass-waveforms", "mass-spectra"]
     waveforms, spectra = figures[1].table, figures[2].table
-    assert "oblique-joint | traction s at [10, 10] m | base scene (Pa)" in waveforms
+    assert "oblique-joint | traction s at [10, 10] m (Pa)" in waveforms
     assert "Dotted: 1/T of the load 200 Hz" in figures[2].caption and len(spectra) > 10
     table = curve_table(found)
-    column = "oblique-joint | velocity y at [10, 5] m | base scene (m/s)"
+    column = "oblique-joint | velocity y at [10, 5] m (m/s)"
     expected = found[0].results["oblique-joint"].velocity.values[0, :, 1]
     assert table[column].to_numpy() == pytest.approx(expected)
 

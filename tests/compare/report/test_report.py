@@ -235,7 +235,7 @@ def test_page_shows_what_every_effect_costs_and_is_worth(text):
     for case in reported():
         assert case.name in found
         assert all(effect in found for effect in active_effects(case.scene))
-    assert "jointwave effects" in found and "with everything on" in found
+    assert "jointwave effects" in found and "with every effect" in found
 
 
 def test_progress_ends_whole(report, fractions):

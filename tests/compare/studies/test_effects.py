@@ -112,7 +112,9 @@ def test_the_table_has_the_most_expensive_first_and_says_why_an_effect_stays():
     assert found.iloc[1, 1:3].tolist() == ["within ±5", "within ±0.2"]
     assert found.iloc[2].tolist() == [5.0, 50.0, 2.0, 4.0, ""]
     assert found.iloc[3, -1] == SUBJECT and found.iloc[3, :-1].isna().all()
-    assert found.index[4][0] == "2. Two (set/two, hard): 4 ns a freedom-step of jointed rock"
+    assert found.index[4][0] == (
+        "2. Two (set/two, hard): 4 ns per degree of freedom and step of jointed rock"
+    )
 
 
 def test_the_diagram_has_a_point_for_every_effect_that_can_be_left_out():
