@@ -68,7 +68,7 @@ def _total(x: np.ndarray, owner: np.ndarray, about: np.ndarray) -> Moments:
     second *= (size / ((k + 1) * (k + 2)))[:, None, None]
 
     def summed(values: np.ndarray) -> np.ndarray:
-        flat = values.reshape(len(values), -1).T
+        flat = values.reshape(len(values), int(np.prod(values.shape[1:]))).T
         sums = [np.bincount(owner, weights=one, minlength=number) for one in flat]
         return np.stack(sums, axis=1).reshape(number, *values.shape[1:])
 

@@ -132,7 +132,7 @@ def plane_contacts(facets: Facets) -> Contacts:
 def plane_partition(
     blocks: Blocks, sides: tuple[str, ...], joint_sets: tuple[str, ...]
 ) -> Partition:
-    """Return the arrays of blocks in the plane; the side of a boundary edge is that of its facet."""
+    """Return the arrays of blocks in the plane; boundary edges have the sides of their facets."""
     corners, first = _rings(blocks)
     outer, second = blocks.boundary, blocks.second_moment
     ends = outer.outlines.corners.reshape(-1, 2, 2)

@@ -8,9 +8,9 @@ import pytest
 from jointwave.cases.errors import SceneError
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.locate import contact_at
-from jointwave.cases.partition.polygons import widths
 from jointwave.cases.partition.scene import partition_of
 from jointwave.cases.validate import validated
+from tests.cases.partition.polygons import widths
 
 LAW = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 

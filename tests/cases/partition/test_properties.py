@@ -7,13 +7,14 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from jointwave.cases.geometry.cell_complex import GeometryError, Sliver
-from jointwave.cases.partition.joints import _scattered, direction_of
+from jointwave.cases.geometry.sets import _scattered
+from jointwave.cases.partition.joints import direction_of, plane_sets
 from jointwave.cases.partition.locate import block_at, contact_at
 from jointwave.cases.partition.outline import outline_of
-from jointwave.cases.partition.polygons import following, least_angles, owner, widths
 from jointwave.cases.partition.scene import cut, least_width
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
+from tests.cases.partition.polygons import following, least_angles, owner, widths
 
 LAW = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 HEXAGON = [[0.0, 1.0], [4.0, 0.0], [9.0, 0.5], [10.0, 4.0], [6.0, 7.0], [1.0, 5.0]]
@@ -266,7 +267,7 @@ def test_blocks_are_those_of_polygonize(sets):
         along, at = direction_of(one.dip), np.array(one.through)
         places = [0.0] if one.spacing is None else np.arange(-40, 41) * one.spacing
         if one.scatter:
-            places = _scattered(one, np.array([0]), 0.0, -20.0, 20.0)[0]
+            places = _scattered(plane_sets([one])[0], np.array([0]), 0.0, -20.0, 20.0)[0]
         across = np.array([-along[1], along[0]])
         lines += [
             shapely.LineString([at + s * across - 40 * along, at + s * across + 40 * along])

@@ -1,0 +1,42 @@
+"""Widths and angles of many convex polygons, independent of how these are cut.
+
+Polygons are given by their corners [k, 2], counter-clockwise, and the first corner of each [n + 1].
+"""
+
+import numpy as np
+
+
+def following(first: np.ndarray) -> np.ndarray:
+    """Return the index of the corner that comes after each [k]."""
+    after = np.arange(1, first[-1] + 1)
+    after[first[1:] - 1] = first[:-1]
+    return after
+
+
+def owner(first: np.ndarray) -> np.ndarray:
+    """Return the polygon of each corner [k]."""
+    return np.repeat(np.arange(len(first) - 1), np.diff(first))
+
+
+def widths(corners: np.ndarray, first: np.ndarray) -> np.ndarray:
+    """Return the least width of each convex polygon [n], m: over its sides, the distance of the
+    corner that is farthest from it."""
+    whose, after, number = owner(first), following(first), np.diff(first)
+    along = corners[after] - corners
+    along /= np.hypot(*along.T)[:, None]
+    farthest = np.zeros(len(corners))
+    for step in range(1, int(number.max())):
+        other = first[whose] + (np.arange(len(corners)) - first[whose] + step) % number[whose]
+        away = corners[other] - corners
+        np.maximum(farthest, along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0], out=farthest)
+    return np.minimum.reduceat(farthest, first[:-1])
+
+
+def least_angles(corners: np.ndarray, first: np.ndarray) -> np.ndarray:
+    """Return the least interior angle of each convex polygon [n], degrees."""
+    after = following(first)
+    out = corners[after] - corners
+    back = np.empty_like(out)
+    back[after] = -out
+    angle = np.arctan2(out[:, 0] * back[:, 1] - out[:, 1] * back[:, 0], (out * back).sum(axis=1))
+    return np.degrees(np.minimum.reduceat(angle, first[:-1]))
