@@ -99,6 +99,20 @@ class Outlines(NamedTuple):
     corners: np.ndarray
     first: np.ndarray
 
+    def of(self, k: int) -> np.ndarray:
+        """Return the corners of one piece [n, d], m."""
+        return self.corners[self.first[k] : self.first[k + 1]]
+
+
+def outline_moments(pieces: Outlines) -> Moments:
+    """Return the moments of pieces by fans of simplices from the first corner of each."""
+    x, first = pieces
+    size, dim = np.diff(first), x.shape[1]
+    owner = np.repeat(np.arange(len(size)), np.maximum(size - (dim - 1), 0))
+    at = np.arange(len(owner)) - np.searchsorted(owner, owner)
+    corners = [x[first[:-1][owner] + (at + k if k else 0)] for k in range(dim)]
+    return _total(np.stack(corners, axis=1), owner, x[first[:-1]])
+
 
 def outlines(
     body: Complex,

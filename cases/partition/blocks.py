@@ -77,6 +77,7 @@ class Partition:
     contacts : between blocks. boundary : edges on the boundary.
     sides : names of the sides: left, right, bottom, top, outline, "opening 0", ...
     joint_sets : names of the joint sets, in the order of the scene.
+    blocks : what all this is made of.
     """
 
     corners: np.ndarray
@@ -89,6 +90,7 @@ class Partition:
     boundary: BoundaryEdges
     sides: tuple[str, ...]
     joint_sets: tuple[str, ...]
+    blocks: Blocks
 
     @property
     def count(self) -> int:
@@ -155,6 +157,7 @@ def plane_partition(
         ),
         sides=sides,
         joint_sets=joint_sets,
+        blocks=blocks,
     )
 
 
