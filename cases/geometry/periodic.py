@@ -128,21 +128,20 @@ def _check_ends(
     """
     x = blocks.body.vertices[:, axis]
     traces = [_traces(blocks, axis, place, len(names), least) for place in (x.min(), x.max())]
-    inner = shapely.buffer(shapely.box(*shapely.total_bounds(rock)), -least) if len(rock) else None
+    if not len(rock):
+        return
+    inner = shapely.buffer(shapely.box(*shapely.total_bounds(rock)), -least)
     for one, beyond, name in ((0, 1, sides[1]), (1, 0, sides[0])):
         for k, trace, at in traces[one]:
             middle = shapely.centroid(trace)
-            amid = inner is not None and shapely.dwithin(rock, middle, least).any()
+            amid = inner.contains(middle) and shapely.dwithin(rock, middle, least).any()
             partners = [other for own, other, _ in traces[beyond] if own == k]
-            if (
-                amid
-                and inner.contains(middle)
-                and not shapely.dwithin(partners, middle, least).any()
-            ):
-                cause = f"is periodic, but a joint of {names[k]!r} ends there and not at the "
-                raise GeometryError(
-                    at, f"{cause}same place on the {name}", f"boundaries.{sides[0]}"
+            if amid and not shapely.dwithin(partners, middle, least).any():
+                cause = (
+                    f"is periodic, but a joint of {names[k]!r} ends there and not at the same "
+                    f"place on the {name}"
                 )
+                raise GeometryError(at, cause, f"boundaries.{sides[0]}")
 
 
 def _traces(
