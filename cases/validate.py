@@ -1,13 +1,14 @@
 """Validation of a scene's tables by its model; a mistake is one line."""
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
+from jointwave.cases.checks.scene import checked
 from jointwave.cases.errors import SceneError, all_of, nearest
+from jointwave.cases.joints_at_places import spelled_out
 from jointwave.cases.schema.scene import Scene
 
 PLACE = re.compile(r"\.\d+(?=\.)")  # in a list of tables, as in `waves.0.file`
@@ -44,13 +45,13 @@ def validated(table: dict[str, Any], path: Path, given: frozenset[str]) -> Any:
     """
     asked = {PLACE.sub("", key) for key in given}
     where = f"{path} [{table['name']}]" if table.get("name") else str(path)
-    model = _model_of(table, where)
+    model, context = _model_of(table, where), {"folder": path.parent, "asked": asked}
     try:
-        scene = model.model_validate(table, context={"folder": path.parent, "asked": asked})
+        scene = model.model_validate(spelled_out(table, where, context), context=context)
     except ValidationError as error:
-        raise all_of(_scene_errors(where, error, model)) from None
+        raise all_of(_error(where, one, model) for one in error.errors()) from None
     scene._where = where
-    return scene
+    return checked(scene)
 
 
 def _model_of(table: dict[str, Any], where: str) -> Any:
@@ -63,15 +64,8 @@ def _model_of(table: dict[str, Any], where: str) -> Any:
     return RockMass
 
 
-def _scene_errors(where: str, error: ValidationError, model: Any) -> Iterator[SceneError]:
-    for one in error.errors():
-        several = one.get("ctx", {}).get("several")  # contradictions found by one check of many
-        for context in several or [one.get("ctx", {})]:
-            yield _scene_error(where, one, context, model)
-
-
-def _scene_error(where: str, first: Any, context: dict[str, Any], model: Any) -> SceneError:
-    kind, value = first["type"], first["input"]
+def _error(where: str, first: Any, model: Any) -> SceneError:
+    kind, value, context = first["type"], first["input"], first.get("ctx", {})
     table = _dotted(first["loc"])
     key, allowed = table, ALLOWED.get(kind, first["msg"]).format(**context)
     if kind == "contradiction":

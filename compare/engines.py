@@ -8,8 +8,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from jointwave.cases.errors import SceneError
+from jointwave.cases.run_memory import refuse_beyond_memory, waveform_bytes
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.size import refuse_beyond_memory, waveform_bytes
 from jointwave.compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.solvers.record import Answer, Solver

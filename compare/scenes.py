@@ -45,8 +45,8 @@ def load(scene: AnySource, variant: str = "", changes: dict[str, Any] | None = N
     """Return a scene, immutable and validated. All functions that take a scene take what this does.
 
     scene : a file, a shipped scene ("guo-li-2002/fig-03"), its tables as a dictionary, or a scene,
-    which is returned as it is. variant : its name; empty: the scene as it stands. changes : of keys
-    by their dotted path, {"joints.damping_ratio": 0.02}.
+    which is checked and returned. variant : its name; empty: the scene as it stands. changes : of
+    keys by their dotted path, {"joints.damping_ratio": 0.02}.
 
     Raises jointwave.SceneError, a line a mistake with file, key, value and what is allowed.
     """
@@ -60,7 +60,9 @@ def load(scene: AnySource, variant: str = "", changes: dict[str, Any] | None = N
     if variant or changes:
         allowed = "are of a file, a shipped scene or tables, not of a loaded scene"
         raise SceneError(scene.where, "variant and changes", None, allowed)
-    return scene
+    from jointwave.cases.checks.scene import checked  # with numpy, which no completion needs
+
+    return checked(scene)
 
 
 def properties(scene: AnySource) -> "Properties":

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags, identity, kron
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.calibrate import Properties, calibrate, mechanisms_of
-from jointwave.cases.material.constant_q import Mechanisms
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.material.constant_q import Mechanisms, mechanisms_of
 from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene

@@ -1,10 +1,15 @@
 """Memory of runs of deformable rock, estimated before any of it is allocated."""
 
+from jointwave.cases.run_memory import (
+    load_bytes,
+    refuse_beyond_memory,
+    snapshot_bytes,
+    waveform_bytes,
+)
 from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
-from jointwave.cases.size import load_bytes, refuse_beyond_memory, snapshot_bytes, waveform_bytes
 from jointwave.continuum.space.kinematics import Kinematics
 
 #: Bytes a freedom, and for each entry of its row of the stiffness: the operators as they are made.

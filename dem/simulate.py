@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from jointwave.cases.effects import is_spatial
+from jointwave.cases.effects import beyond_blocks, is_spatial
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.constant_q import beyond_blocks
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
 from jointwave.dem.axial.simulate import simulate as along_axis

@@ -1,8 +1,13 @@
 """Memory of runs of rigid blocks, estimated before any of it is allocated."""
 
+from jointwave.cases.run_memory import (
+    load_bytes,
+    refuse_beyond_memory,
+    snapshot_bytes,
+    waveform_bytes,
+)
 from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.scene import Scene
-from jointwave.cases.size import load_bytes, refuse_beyond_memory, snapshot_bytes, waveform_bytes
 
 #: Bytes per block, with the model and the history of its joint.
 AXIAL, SPATIAL = 80, 200

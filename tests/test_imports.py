@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 from functools import cache
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -107,6 +108,17 @@ def test_functions_have_few_arguments():
                 if len(given.posonlyargs + given.args + given.kwonlyargs) > MOST_ARGUMENTS:
                     found.add((file, node.name))
     assert found == LONG_KERNELS
+
+
+def test_no_module_imports_one_that_imports_it():
+    """Nor inside functions, nor for type checkers."""
+    modules = {file: f"jointwave.{file[:-3]}".replace("/", ".") for file in FILES}
+    modules = {file: name.removesuffix(".__init__") for file, name in modules.items()}
+    graph = {}
+    for file, own in modules.items():
+        names = {part for name, _ in imported(file) for part in (name, name.rpartition(".")[0])}
+        graph[own] = names & {*modules.values()} - {own}
+    TopologicalSorter(graph).prepare()  # raises CycleError
 
 
 def test_imports_follow_the_layers(tmp_path):

@@ -144,6 +144,23 @@ def test_readings_of_an_array_are_those_by_hand():
     assert found.units == "m/s/Hz" and jw.ppv(record).units == jw.arias(record).units == "m/s"
 
 
+@pytest.mark.parametrize("use", [jw.simulate, jw.compare, jw.properties])
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"record": {"stress": [6.0]}}, "record.stress = 6.0: must lie between 0 and 5 m"),
+        (
+            {"pillar": TABLES["pillar"] | {"joints": [2.0]}},
+            r"pillar.joints = \[2.0\]: is for files",
+        ),
+    ],
+)
+def test_a_scene_made_in_python_is_checked_where_it_is_used(use, wrong, said):
+    tables = {key: value for key, value in TABLES.items() if key != "variants"}
+    with pytest.raises(cases.SceneError, match=f"^made of tables: {said}"):
+        use(cases.Scene.model_validate(tables | wrong))
+
+
 def test_names_that_are_not_there_are_no_attributes():
     assert jw.Scene is cases.Scene and jw.UnstableError is cases.UnstableError
     with pytest.raises(AttributeError, match="module 'jointwave' has no attribute 'solve'"):

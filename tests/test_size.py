@@ -16,7 +16,8 @@ from jointwave import cases
 from jointwave.cases.errors import SceneError
 from jointwave.cases.gmsh_file import read_tagged
 from jointwave.cases.records import read_columns, read_history
-from jointwave.cases.size import LIMIT, memory, refuse_beyond_memory, waveform_bytes
+from jointwave.cases.run_memory import refuse_beyond_memory, waveform_bytes
+from jointwave.cases.size import LIMIT, memory
 from jointwave.compare.engines import solve
 from jointwave.compare.exact.bar import images
 from jointwave.compare.misfit.external_netcdf import read_netcdf

@@ -20,7 +20,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.effects import is_spatial
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
@@ -49,29 +48,12 @@ class Mechanisms(NamedTuple):
         return self.unrelaxed * (1 - parts.sum(axis=-1))
 
 
-def beyond_blocks(scene: AnyScene) -> str:
-    """Return why rigid blocks do not simulate a scene with a quality factor, "" if they do: rock
-    in series with a joint is one spring that relaxes where the joint is linear."""
-    if not isinstance(scene, Scene):
-        return "rigid blocks of a rock mass have no intact rock for a quality_factor"
-    if is_spatial(scene):
-        return "rigid blocks support a quality_factor in axial motion only"
-    p = calibrate(scene)
-    others = scene.gravity, scene.prestress, p.local_damping
-    bends = not p.tension.all() or bool(p.strengths(shears=False))
-    if bends or any(one is not None for one in others):
-        return (
-            "rigid blocks support a quality_factor with linear joints only, without gravity, "
-            "prestress or local damping"
-        )
-    return ""
-
-
-def mechanisms(scene: AnyScene, model: str) -> Mechanisms:
+def mechanisms_of(scene: AnyScene, model: str) -> Mechanisms | None:
     """Return the mechanisms of a scene's intact rock, or of a pillar's rock mass where `model` is
-    "equivalent"; the scene has a quality factor."""
+    "equivalent"; None without a quality factor."""
     rock = scene.rock
-    assert rock.quality_factor is not None
+    if rock.quality_factor is None:
+        return None
     found = fitted(rock.quality_factor, *rock.quality_frequencies(scene.pulses))
     if model == "jointed" or not isinstance(scene, Scene):
         return found

@@ -17,17 +17,17 @@ from typing import Any
 
 import numpy as np
 
-from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.material.contacts import contacts, drawn, welds
+from jointwave.cases.material.properties import Properties
 from jointwave.cases.material.strength import strength_of
+from jointwave.cases.material.uniform import calibrate_uniform
 from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.scene import Scene
-from jointwave.cases.schema.segment import alone, regions
 
 
 def calibrate_layered(scene: Scene) -> Properties:
     """Return the properties of a scene with segments or random joints."""
-    parts = tuple(calibrate(alone(scene, one)) for one in regions(scene))
+    parts = tuple(calibrate_uniform(scene.alone(one)) for one in scene.parts)
     segment = np.repeat(np.arange(len(parts)), [one.block_count for one in parts])
     whole = _as_one(scene, parts)
     return Properties(parts=parts, segment=segment, **_joints(scene, parts, segment), **whole)

@@ -6,8 +6,8 @@ from functools import reduce
 
 import numpy as np
 
-from jointwave.cases.schema.joint import PARTS, UNLIMITED, JointLaw
-from jointwave.cases.schema.law_part import tangent
+from jointwave.cases.schema.joint import JointLaw
+from jointwave.cases.schema.law_parts import PARTS, UNLIMITED, tangent
 from jointwave.cases.schema.scene import Scene
 
 #: The keys of slip: without them no joint has that effect.

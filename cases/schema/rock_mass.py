@@ -6,7 +6,7 @@ mean the same. SI units; x to the right, y upwards, plane strain.
 
 from typing import ClassVar
 
-from pydantic import PrivateAttr, model_validator
+from pydantic import PrivateAttr
 
 from jointwave.cases.schema.damping import Damping
 from jointwave.cases.schema.domain import Domain
@@ -21,7 +21,6 @@ from jointwave.cases.schema.plane import (
 )
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.region import Region
-from jointwave.cases.schema.rock_mass_checks import check
 from jointwave.cases.schema.sources import PlaneLoad, Wave
 from jointwave.cases.schema.tables import Time
 from jointwave.cases.schema.values import Pair, Positive, Table, Words
@@ -50,11 +49,6 @@ class RockMass(Table):
 
     kind: ClassVar[str] = "rock mass"
     _where: str = PrivateAttr(default="")
-
-    @model_validator(mode="after")
-    def _fits_together(self) -> "RockMass":
-        check(self)
-        return self
 
     @property
     def where(self) -> str:

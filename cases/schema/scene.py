@@ -7,14 +7,12 @@ end, x and z across. The reference scene is that of Guo & Li (2002), Chin. J. Ro
 
 from typing import Any, ClassVar
 
-from pydantic import PrivateAttr, ValidationInfo, model_validator
+from pydantic import PrivateAttr
 
-from jointwave.cases.schema.consistency import check
 from jointwave.cases.schema.damping import Damping
 from jointwave.cases.schema.joint import Joints, SoftLayer
-from jointwave.cases.schema.joints_at_places import spelled_out
 from jointwave.cases.schema.pulse import NO_LOAD, Load, shortest_period
-from jointwave.cases.schema.segment import Segment, regions
+from jointwave.cases.schema.segment import Part, Segment, parts_of
 from jointwave.cases.schema.tables import (
     LEAN,
     Ends,
@@ -58,16 +56,6 @@ class Scene(Table):
     excavated: ClassVar[bool] = False  #: as of a `RockMass`
     _where: str = PrivateAttr(default="")
 
-    @model_validator(mode="before")
-    @classmethod
-    def _joints_at_places(cls, tables: Any, info: ValidationInfo) -> Any:
-        return spelled_out(tables, info.context) if isinstance(tables, dict) else tables
-
-    @model_validator(mode="after")
-    def _fits_together(self) -> "Scene":
-        check(self)
-        return self
-
     @property
     def pulses(self) -> tuple[Load]:
         """Everything that acts over time."""
@@ -95,7 +83,22 @@ class Scene(Table):
     @property
     def block_count(self) -> int:
         """Number of blocks N."""
-        return sum(one.blocks for one in regions(self))
+        return sum(one.blocks for one in self.parts)
+
+    @property
+    def parts(self) -> list[Part]:
+        """The parts between which rock or joints differ, from the loaded end on: one without
+        segments."""
+        return parts_of(self.pillar, self.segments)
+
+    def alone(self, part: Part) -> "Scene":
+        """Return a part as a scene of one rock without soft layers; it is not checked."""
+        update: dict[str, Any] = {"segments": [], "soft_layers": [], "scatter": None}
+        update["pillar"] = part.pillar(self.pillar.side)
+        if part.segment is not None:
+            one = self.segments[part.segment]
+            update |= {"rock": one.rock(self.rock), "joints": one.law(self.joints)}
+        return self.model_copy(update=update)
 
     @property
     def is_uniform(self) -> bool:

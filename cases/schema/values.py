@@ -1,7 +1,6 @@
 """Types of values in a scene file, and the message for a value that does not fit."""
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -86,23 +85,6 @@ def contradiction(key: str, value: object, allowed: str) -> PydanticCustomError:
     return PydanticCustomError(
         "contradiction", "{allowed}", {"allowed": allowed, "key": key, "found": value}
     )
-
-
-def check_all(*checks: Callable[[], None]) -> None:
-    """Run checks and raise the contradictions that they find as one error; what stops a check
-    after a contradiction is taken for its consequence."""
-    found: list[PydanticCustomError] = []
-    for one in checks:
-        try:
-            one()
-        except PydanticCustomError as error:
-            found.append(error)
-        except Exception:
-            if not found:
-                raise
-    if found:
-        contexts = [one.context or {} for one in found]
-        raise PydanticCustomError("contradiction", "{allowed}", contexts[0] | {"several": contexts})
 
 
 def folder_of(info: ValidationInfo, key: str) -> tuple[Path, bool]:

@@ -4,7 +4,7 @@ from jointwave.cases.effects import is_spatial
 from jointwave.cases.histories import LoadHistory
 from jointwave.cases.loads import load_history, velocity_of
 from jointwave.cases.material.calibrate import Properties, calibrate
-from jointwave.cases.schema.joint import PARTS
+from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.solvers.record import Answer
 

@@ -22,7 +22,8 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.calibrate import Properties, calibrate, mechanisms_of
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.scene_type import pillar_of
 from jointwave.compare.readings.attenuation import known_distances, sampling, variables, waveforms
 from jointwave.compare.readings.recordings import Recording

@@ -16,8 +16,8 @@ from typing import Any, TypeVar
 
 from jointwave.cases.effects import active_effects
 from jointwave.cases.files import read_json
+from jointwave.cases.run_memory import waveform_bytes
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.size import waveform_bytes
 from jointwave.compare.engines import ENGINES
 from jointwave.compare.runs.output import write_text
 from jointwave.compare.runs.processes import started

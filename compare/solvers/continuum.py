@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from jointwave.cases.size import estimates
+from jointwave.cases.run_memory import estimates
 from jointwave.compare.solvers.incident import incident, note_sides
 from jointwave.compare.solvers.record import Answer, Form, Kind, Line, Prepared, Rock, Solver
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from jointwave.cases.size import estimates
+from jointwave.cases.run_memory import estimates
 from jointwave.compare.solvers.incident import incident, note_sides
 from jointwave.compare.solvers.record import Answer, Form, Line, Prepared, Rock, Solver
 
@@ -45,7 +45,7 @@ def applies(scene: Scene | RockMass) -> Answer:
     from jointwave.cases.schema.scene import Scene
 
     if scene.rock.quality_factor is not None:
-        from jointwave.cases.material.constant_q import beyond_blocks
+        from jointwave.cases.effects import beyond_blocks
 
         if beyond := beyond_blocks(scene):
             return Answer(beyond)

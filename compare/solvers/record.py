@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from jointwave.cases.run_memory import waveform_bytes
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.size import waveform_bytes
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -5,10 +5,11 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
+from jointwave.cases.checks.scene import checked
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.effective_medium import slowest
 from jointwave.cases.sampling import sample_times
-from jointwave.cases.scene_type import AnyScene, checked
+from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import ENGINES, applies, solve, solver

@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
+from jointwave.cases.checks.scene import checked
 from jointwave.cases.errors import SceneError, nearest
-from jointwave.cases.scene_type import AnyScene, Either, checked
+from jointwave.cases.scene_type import AnyScene, Either
 from jointwave.cases.schema.keys import in_words, keys
 
 CLOCK = "clock"  # shift added to the times of the files, s

@@ -14,10 +14,11 @@ from math import nan, pi
 import numpy as np
 import xarray as xr
 
+from jointwave.cases.checks.scene import checked
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.rock import ElasticRock
-from jointwave.cases.scene_type import AnyScene, checked
+from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import Progress, solve

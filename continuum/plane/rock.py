@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.calibrate import mechanisms_of
+from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.material.dashpots import set_time_constants
 from jointwave.cases.material.effective_medium import compliant, stiffness
 from jointwave.cases.material.rock import elastic_rock

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from jointwave.cases.incident import IncidentField, free_field
-from jointwave.cases.material.calibrate import mechanisms_of
+from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.material.prestress import refuse_beyond_strength
+from jointwave.cases.run_memory import refuse_beyond_memory, waveform_bytes
 from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.size import refuse_beyond_memory, waveform_bytes
 from jointwave.continuum.build import critical_step, rock_operators, weight_of
 from jointwave.continuum.model import Ends, Model
 from jointwave.continuum.plane.discrete import PlaneDiscrete

@@ -6,8 +6,8 @@ import numpy as np
 
 from jointwave.cases.material.effective_medium import slowest
 from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.size import refuse_beyond_memory, snapshot_bytes
 from jointwave.continuum.size import ENTRY, FREEDOM, resolved_period
 
 #: Elements in the way of the slowest wave in one period, by their order.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from jointwave.cases.schema.joint import PARTS
+from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.plane.rock import smeared
 

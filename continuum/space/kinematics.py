@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.calibrate import Properties, mechanisms_of
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
-from jointwave.cases.schema.segment import alone, regions
 from jointwave.continuum.space.elasticity import Material, Section
 
 MODELS = ("jointed", "equivalent")
@@ -81,11 +81,11 @@ def materials(scene: Scene, p: Properties, model: str, layers: tuple[int, ...]) 
     """
     found, relaxes = [], mechanisms_of(scene, model)
     sections = scene.motion.rotation == "none"
-    for one, region in zip(p.each, regions(scene), strict=True):
+    for one, part in zip(p.each, scene.parts, strict=True):
         modulus, poisson = one.modulus, one.poisson
         if model == "jointed":
             assert one.intact_modulus is not None
-            modulus, poisson = one.intact_modulus, alone(scene, region).rock.intact_poisson
+            modulus, poisson = one.intact_modulus, scene.alone(part).rock.intact_poisson
         eta = one.time_constant or 0.0
         if relaxes is not None:
             modulus, eta = modulus * relaxes.unrelaxed, 0.0

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.material.calibrate import Properties, mechanisms_of
-from jointwave.cases.material.constant_q import Mechanisms, in_series
+from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.material.constant_q import Mechanisms, in_series, mechanisms_of
 from jointwave.cases.schema.scene import Scene
 
 

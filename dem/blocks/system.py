@@ -8,9 +8,9 @@ import numpy as np
 
 from jointwave.cases.incident import IncidentField, free_field
 from jointwave.cases.material.quiet_sides import borne, impedances
+from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes, waveform_bytes
 from jointwave.cases.sampling import Clock, clock
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.size import refuse_beyond_memory, snapshot_bytes, waveform_bytes
 from jointwave.dem.blocks.build import RigidBlocks, constants, contacts, form_of, rigid_blocks
 from jointwave.dem.blocks.edges import dashpots, on_freedoms, points_on
 from jointwave.dem.blocks.model import PlaneModel, held_by

@@ -12,8 +12,9 @@ from scipy.special import gammaincinv
 from jointwave import cases
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.spectrum import SHARE, highest_frequency, shortest_wave
-from jointwave.cases.warnings import LEAST_BLOCKS, MOST_REFLECTED, SHORTENED, warnings
+from jointwave.cases.spectrum import LEAST_BLOCKS, SHARE, highest_frequency, shortest_wave
+from jointwave.cases.warnings import warnings
+from jointwave.cases.warnings.pillar import MOST_REFLECTED, SHORTENED
 from jointwave.compare.scenes import find, shipped_files
 
 MODULUS, DENSITY = 2400.0 * 1000.0**2, 2400.0  # a bar speed of 1000 m/s

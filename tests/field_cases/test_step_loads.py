@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import jointwave as jw
-from jointwave.cases.warnings import OF_A_RISE, warnings
+from jointwave.cases.warnings import warnings
+from jointwave.cases.warnings.shared import OF_A_RISE
 
 DENSITY, SPEED, BLOCK = 2670.0, 3464.0, 10.0
 NORMAL, STEP, DISTANCE = 120e6, 81.6e6, 0.40  # Pa, Pa of the wave, m

@@ -10,7 +10,8 @@ Valid for any load; every joint carries tension and no layer is stiffer than the
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.material.calibrate import calibrate, mechanisms_of
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.laplace import solved
 from jointwave.compare.exact.bar.transfer import Bar, end_of, rocks

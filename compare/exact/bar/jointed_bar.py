@@ -12,7 +12,8 @@ Valid for any load; every joint carries tension and the scene gives intact_modul
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.material.calibrate import Properties, calibrate, mechanisms_of
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.laplace import solved
 from jointwave.compare.exact.bar.transfer import Bar, End, end_of, rocks

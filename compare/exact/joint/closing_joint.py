@@ -22,7 +22,7 @@ import xarray as xr
 from jointwave.cases.loads import LoadHistory, load_history
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.sampling import sample_times
-from jointwave.cases.schema.joint import UNLIMITED
+from jointwave.cases.schema.law_parts import UNLIMITED
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.images import ENTERS
 from jointwave.compare.exact.conditions import holds, static_stress

@@ -8,8 +8,8 @@ import numpy as np
 from jointwave.cases.partition.joints import direction_of
 from jointwave.cases.partition.outline import outline_of
 from jointwave.cases.partition.regions import strata
-from jointwave.cases.schema.joint import PARTS
 from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.rock_mass import RockMass
 
 PARALLEL = 1e-6  #: sine of the largest angle between directions that count as parallel

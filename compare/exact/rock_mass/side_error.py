@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from jointwave.cases.checks.rock_mass import distance
 from jointwave.cases.incident import PlaneWave, plane_wave
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.joints import direction_of
@@ -19,7 +20,6 @@ from jointwave.cases.partition.outline import outline_of
 from jointwave.cases.partition.regions import rocks_of
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.rock_mass_checks import distance
 from jointwave.compare.exact.plane.waves import face
 from jointwave.compare.exact.rock_mass import normal_incidence
 from jointwave.compare.exact.rock_mass.conditions import (

@@ -8,7 +8,6 @@ from matplotlib.text import Text
 
 from jointwave.cases.material.contacts import contacts, welds
 from jointwave.cases.schema.scene import Scene
-from jointwave.cases.schema.segment import regions
 from jointwave.compare.figures.drawing.sketch import (
     EDGE,
     INK,
@@ -56,7 +55,7 @@ def sketch_of(scene: Scene) -> Sketch:
     if scene.prestress is not None and scene.prestress.normal:
         words = f"prestress {_number(scene.prestress.normal, 'Pa')}"
         shapes.append(note(corner * [0.5, 1.0], words, "center"))
-    blocks = f"in {len(regions(scene))} segments" if scene.segments else f"of {pillar.block:g} m"
+    blocks = f"in {len(scene.parts)} segments" if scene.segments else f"of {pillar.block:g} m"
     average = " on average" if scene.scatter else ""
     size = (
         f": {scene.block_count:,} blocks {blocks}{average}, {pillar.side:g} m × {pillar.side:g} m"
@@ -78,7 +77,7 @@ def block_edges(scene: Scene) -> list[float]:
     if not scene.is_uniform:
         every = contacts(scene)
         edges = every[np.r_[True, ~welds(scene), True]]
-        starts = [one.start for one in regions(scene)]
+        starts = [one.start for one in scene.parts]
         return np.union1d(edges if len(edges) <= MOST else every[[0, -1]], starts).tolist()
     count, length = scene.block_count, scene.pillar.length
     return np.linspace(0, length, (count if count <= MOST else 1) + 1).tolist()
@@ -92,7 +91,7 @@ def _across(places: list[float], half: float) -> np.ndarray:
 def _blocks(scene: Scene, half: float) -> list[Artist]:
     """Return the blocks, by the segment that holds them, and the joints between them."""
     edges = block_edges(scene)
-    stops = [one.stop for one in regions(scene)] if scene.segments else [np.inf]
+    stops = [one.stop for one in scene.parts] if scene.segments else [np.inf]
     segment = np.searchsorted(stops, (np.array(edges[1:]) + edges[:-1]) / 2)
     ends = np.array(list(pairwise(edges)))
     corners = np.stack([ends[:, [0, 1, 1, 0]], np.full((len(ends), 4), half) * [-1, -1, 1, 1]], 2)

@@ -11,8 +11,8 @@ import pytest
 
 from closed_forms.constant_q import ConstantQ
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.calibrate import calibrate, mechanisms_of
-from jointwave.cases.material.constant_q import fitted
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.constant_q import fitted, mechanisms_of
 
 
 def band(decades: float, points: int = 2000) -> np.ndarray:
@@ -155,6 +155,6 @@ def test_rock_without_a_quality_factor_imports_nothing_of_it():
         "from jointwave.compare.engines import solve\n"
         "scene = cases.load_variant(find('guo-li-2002/fig-03'), '')\n"
         "solve('jointed-bar', scene)\n"
-        "assert 'jointwave.cases.material.constant_q' not in sys.modules"
+        "assert 'scipy.optimize' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

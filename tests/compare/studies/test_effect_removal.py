@@ -5,7 +5,7 @@ import pytest
 from jointwave.cases.effects import active_effects, effects
 from jointwave.cases.errors import SceneError
 from jointwave.cases.read import load_tables
-from jointwave.cases.schema.joint import PARTS
+from jointwave.cases.schema.law_parts import PARTS
 from jointwave.compare.studies.effect_removal import WITHOUT, left_out
 
 LAYER = [{"y": 20.0, "spacing_stiffness": 4e8, "damping_ratio": 0.05, "tension": False}]

@@ -6,7 +6,8 @@ import tracemalloc
 import pytest
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.size import LIMIT, estimates, refuse_beyond_memory
+from jointwave.cases.run_memory import estimates, refuse_beyond_memory
+from jointwave.cases.size import LIMIT
 from jointwave.compare.engines import solve
 from jointwave.compare.runs import timings
 from jointwave.compare.studies.forecast import Run, forecast, forecasts

@@ -1,63 +1,34 @@
-"""Warnings of likely mistakes in a scene, one line each.
-
-No scene is refused: unusual values may be intended. `--strict` makes each line an error.
-"""
-
-from __future__ import annotations
+"""Warnings of likely mistakes in a pillar, one line each."""
 
 from collections.abc import Callable, Iterator
-from math import hypot, nan, sqrt
-from typing import TYPE_CHECKING
-
-import numpy as np
+from math import hypot, sqrt
 
 from jointwave.cases.effects import bends, is_spatial
-from jointwave.cases.histories import Gabor, Ricker, Sine, periodic
 from jointwave.cases.material.calibrate import Properties, calibrate
-from jointwave.cases.material.contact_points import lever
-from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.plausible import implausible
+from jointwave.cases.plausible import implausible
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.spectrum import LEAST_BLOCKS, ShortestWave, shortest_wave
-
-if TYPE_CHECKING:
-    from jointwave.cases.schema.joint import Joints
-    from jointwave.cases.schema.pulse import Pulse
+from jointwave.cases.warnings.shared import (
+    of_a_jump,
+    of_lever,
+    of_local_damping,
+    of_pulse,
+    onset,
+)
 
 MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
 SHORTENED = 1.5  # a step shortened by less than this factor is not reported
 ON_JOINT = 1e-9  # of the pillar's length, and of a block: rounding of a receiver's place
-LEAST_LEVER = 0.75  # of contact points where a face opens, over half its width
-ONSET = 0.01  # of a load's peak: defines its beginning
-#: Of the duration: the end of a table that no one cut off there.
-LATE = 5.0
-#: Crossings of the pillar in a period of the load's highest frequency that no wave test has.
-STATIC = 100.0
-
-OF_A_RISE = 40  # blocks that the front of a load passes while it rises
 
 Rule = Callable[[Scene, Properties, ShortestWave | None], Iterator[str]]
 
 
-def warnings(scene: AnyScene) -> list[str]:
-    """Return warnings of probable mistakes in a scene, one line each."""
-    if not isinstance(scene, Scene):
-        from jointwave.cases.plane.warnings import warnings_in_plane
-
-        return warnings_in_plane(scene)
+def warnings_of_pillar(scene: Scene) -> list[str]:
+    """Return warnings of probable mistakes in a pillar, one line each."""
     p = calibrate(scene)
     wave = shortest_wave(scene, p)
     found = [line for rule in RULES for line in rule(scene, p, wave)]
     return [*implausible(scene), *found, *of_local_damping(scene, wave is not None)]
-
-
-def of_local_damping(scene: AnyScene, acts: bool) -> Iterator[str]:
-    """Warn of local damping where a load or wave acts."""
-    if scene.damping.local and acts:
-        yield (
-            "damping.local distorts waves: it is meant for static states, not for a scene with a "
-            "load"
-        )
 
 
 def _of_poisson(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
@@ -81,70 +52,6 @@ def _of_times(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterato
     if wave is not None:
         crossings = p.bar_speed / (wave.frequency * scene.pillar.length)
         yield from of_pulse("load", scene.load, scene.time.duration, crossings)
-
-
-def of_pulse(table: str, pulse: Pulse, end: float, crossings: float = nan) -> Iterator[str]:
-    """Say where a load or wave acts outside the run, or its table is not in seconds.
-
-    table : of the scene that holds it. end : of the run, s. crossings : of the pillar by a wave in
-    a period of the load's highest frequency.
-    """
-    if pulse.shape == "step":
-        return
-    if pulse.history is not None:
-        yield from _of_table(table, pulse, end, crossings)
-    elif pulse.rise is not None and pulse.rise > end:
-        yield (
-            f"{table}.rise = {pulse.rise:g} s is longer than the scene, time.duration = {end:g} s"
-        )
-    elif pulse.period and (wavelet := _wavelet(pulse)) and wavelet.centre > end:
-        yield (
-            f"{table}.period = {pulse.period:g} s: the wavelet peaks at "
-            f"{wavelet.centre / pulse.period:g} periods, after the end of the scene at "
-            f"time.duration = {end:g} s"
-        )
-    elif pulse.period and pulse.period > end:
-        meant = f"; {pulse.period:g} Hz is {1 / pulse.period:g} s" if pulse.period > 1 else ""
-        yield (
-            f"{table}.period = {pulse.period:g} s is longer than the scene, time.duration = "
-            f"{end:g} s{meant}"
-        )
-    elif pulse.period and STATIC < crossings < 1e3 * STATIC:
-        yield (
-            f"{table}.period = {pulse.period:g} s: a wave crosses the rock {crossings:.3g} times "
-            f"in it; {pulse.period:g} ms is {pulse.period / 1e3:g} s"
-        )
-
-
-def _of_table(table: str, pulse: Pulse, end: float, crossings: float) -> Iterator[str]:
-    history = pulse.history
-    assert history is not None
-    last, file = float(history.time[-1]), pulse.file
-    peak = float(history.time[np.abs(history.stress).argmax()])
-    late = peak > end
-    slow = STATIC < crossings < 1e3 * STATIC
-    if not pulse.timed and (slow or look_like_milliseconds(history.time, history.stress, end)):
-        why = (
-            f"the scene ends at {end:g} s"
-            if late
-            else f"a wave crosses the rock {crossings:.3g} times in a period of them"
-        )
-        yield (
-            f"{table}.file = {file!r}: its times, up to {last:g} s, look like milliseconds "
-            f"({why}): in seconds they are {last / 1e3:g}"
-        )
-    elif late:
-        yield (
-            f"{table}.file = {file!r} peaks at {peak:g} s, after the end of the scene at "
-            f"time.duration = {end:g} s"
-        )
-
-
-def look_like_milliseconds(time: np.ndarray, values: np.ndarray, end: float) -> bool:
-    """Return whether a history peaks far after the end of a scene (s), and with its times as
-    milliseconds would lie within it."""
-    last = time[-1]
-    return bool(time[np.abs(values).argmax()] > end and LATE * end < last <= 1e3 * end)
 
 
 def _of_half_a_load(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
@@ -206,18 +113,6 @@ def _of_a_jump(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterat
         yield from of_a_jump("load", scene.load, scene.pillar.block, speed)
 
 
-def of_a_jump(table: str, pulse: Pulse, block: float, speed: float) -> Iterator[str]:
-    """Say what a step does to joints that can fail, and the rise that blocks (m) need of waves of
-    this speed (m/s). table : of the scene that holds it."""
-    if pulse.shape == "step":
-        yield (
-            f"{table}.shape = 'step': blocks of {block:.3g} m overshoot behind its front by up to "
-            "27 %, and joints that slip, open or break do so too early: a load that rises in "
-            f"{OF_A_RISE * block / speed:.3g} s (a 'triangle' of long decay, a 'table') overshoots "
-            "by at most 2 %"
-        )
-
-
 def _least_critical_step(scene: Scene, p: Properties) -> float:
     """Return a critical step (s) of the row of blocks that no motion of it falls short of.
 
@@ -276,30 +171,6 @@ def _fastest(scene: Scene, p: Properties) -> float:
     return p.shear_speed if shear_alone or twist else p.bar_speed
 
 
-def onset(pulse: Pulse) -> float:
-    """Return when a load or wave first reaches a hundredth of its peak, s."""
-    history = pulse.history
-    if wavelet := _wavelet(pulse):
-        time = np.linspace(0.0, wavelet.centre, 1000)
-        values = wavelet.value(time)
-    elif history is not None:
-        time, values = history.time, history.stress
-    else:
-        return 0.0
-    felt = np.abs(values) >= ONSET * np.abs(values).max()
-    first = int(felt.argmax())
-    return float(time[max(first - 1, 0)])
-
-
-def _wavelet(pulse: Pulse) -> Ricker | Gabor | None:
-    """Return a pulse with a gradual onset; None for others."""
-    if pulse.shape not in ("ricker", "gabor") or pulse.period is None:
-        return None
-    found = periodic(pulse.shape, 1.0, pulse.period, pulse.cycles)
-    assert not isinstance(found, Sine)
-    return found
-
-
 def _of_quiet_ends(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
     """Warn of the reflection by a dashpot on a whole block; scenes with a source are exempt."""
     if wave is None or scene.source is not None or wave.reflection <= MOST_REFLECTED:
@@ -332,18 +203,6 @@ def _of_contact_points(scene: Scene, p: Properties, wave: ShortestWave | None) -
     breaks = any(one.tensile_strength is not None for one in (scene.joints, *scene.layers))
     if bends(scene) and (breaks or not p.tension.all()):
         yield from of_lever("joints", scene.joints)
-
-
-def of_lever(table: str, joints: Joints) -> Iterator[str]:
-    """Warn of contact points far from the edges of a face that may open under bending."""
-    rule, count = joints.point_rule, joints.contact_points
-    if (found := lever(rule, count)) < LEAST_LEVER:
-        thicker = f"{1 / found:.3g} times the thickness" if found else "more than any thickness"
-        yield (
-            f"{table}.contact_points = {count} ({rule}): a face of rigid blocks that opens bears "
-            f"at {found:.3g} of its half width, so that what stands by its edges needs {thicker}; "
-            f"contact_points = 8 with point_rule = 'gauss' bears at {lever('gauss', 8):.3g}"
-        )
 
 
 RULES: tuple[Rule, ...] = (

@@ -1,22 +1,23 @@
 """Contradictions between the tables of a rock mass."""
 
-from __future__ import annotations
-
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
+from pydantic_core import PydanticCustomError
 
-from jointwave.cases.schema.joint_set import check_sets
-from jointwave.cases.schema.region import check_regions
-from jointwave.cases.schema.shared_checks import check_fields, check_quality, check_time
+from jointwave.cases.checks.joint_sets import check_sets
+from jointwave.cases.checks.regions import check_regions
+from jointwave.cases.checks.shared import check_fields, check_quality, check_time, found_by
+from jointwave.cases.geometry.cell_complex import GeometryError, polygon
+from jointwave.cases.geometry.sets import cut_by_sets
+from jointwave.cases.geometry.solids import cut_into_regions
+from jointwave.cases.partition.joints import plane_sets
+from jointwave.cases.partition.outline import Outline, outline_of
+from jointwave.cases.partition.regions import bounded
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.cases.schema.tables import LEAN
-from jointwave.cases.schema.values import check_all, contradiction
-
-if TYPE_CHECKING:
-    from jointwave.cases.partition.outline import Outline
-    from jointwave.cases.schema.rock_mass import RockMass
-    from jointwave.cases.schema.sources import PlaneLoad
+from jointwave.cases.schema.values import contradiction
 
 GRAZING = 1e-6  #: cosine below which a wave travels along a side or a joint
 PARTNER = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
@@ -24,28 +25,21 @@ PARTNER = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
 BESIDE = 1e-6
 
 
-def check(scene: RockMass) -> None:
-    """Raise the contradictions of a rock mass whose tables are each right."""
-    outline = _outline(scene)
-    _check_cut = _check_cuts if scene.domain.given is None else _check_mesh
-    check_all(
+def contradictions(scene: RockMass) -> list[PydanticCustomError]:
+    """Return the contradictions of a rock mass whose tables are each right."""
+    try:
+        outline = outline_of(scene.domain)
+    except GeometryError as error:
+        return [contradiction(error.key, None, str(error))]
+    cuts = _check_cuts if scene.domain.given is None else _check_mesh
+    of_shape = (check_regions, cuts, _check_receivers, _check_boundaries, _check_waves)
+    of_loads = ((f"loads[{i}]", load) for i, load in enumerate(scene.loads))
+    return found_by(
         partial(check_sets, scene),
-        *(
-            partial(one, scene, outline)
-            for one in (
-                check_regions,
-                _check_cut,
-                _check_receivers,
-                _check_boundaries,
-                _check_waves,
-            )
-        ),
+        *(partial(one, scene, outline) for one in of_shape),
         *(partial(one, scene) for one in (check_time, check_fields, check_quality)),
         partial(_check_support, scene, outline),
-        *(
-            partial(_check_load, f"loads[{i}]", load, scene, outline)
-            for i, load in enumerate(scene.loads)
-        ),
+        *(partial(_check_load, table, load, scene, outline) for table, load in of_loads),
     )
 
 
@@ -79,25 +73,9 @@ def _check_mesh(scene: RockMass, outline: Outline) -> None:
             raise contradiction(key, scene.domain.mesh, allowed)
 
 
-def _outline(scene: RockMass) -> Outline:
-    from jointwave.cases.geometry.cell_complex import GeometryError
-    from jointwave.cases.partition.outline import outline_of
-
-    try:
-        return outline_of(scene.domain)
-    except GeometryError as error:
-        raise contradiction(error.key, None, str(error)) from None
-
-
 def _check_cuts(scene: RockMass, outline: Outline) -> None:
     """Refuse joints that miss the domain. Those of spacings that fit into it do not, and sets that
     end at others are known when they are cut."""
-    from jointwave.cases.geometry.cell_complex import GeometryError, polygon
-    from jointwave.cases.geometry.sets import cut_by_sets
-    from jointwave.cases.geometry.solids import cut_into_regions
-    from jointwave.cases.partition.joints import plane_sets
-    from jointwave.cases.partition.regions import bounded
-
     whole = cut_into_regions(polygon(outline.hull), bounded(scene.regions), outline.tolerance)
     for i, one in enumerate(plane_sets(scene.joint_sets, scene.regions)):
         if one.ends_at or one.widest < float(np.ptp(outline.hull @ one.normal)):

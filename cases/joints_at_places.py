@@ -9,19 +9,21 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from jointwave.cases.errors import SceneError
 from jointwave.cases.schema.pulse import Load
 from jointwave.cases.schema.tables import CONSTANTS, SPEEDS
-from jointwave.cases.schema.values import contradiction
+from jointwave.cases.spectrum import frequency_of
 
 BLOCKS = 40  # a wavelength of the load's highest frequency, where no block size is given
 WITHOUT_LOAD = 100  # blocks of the pillar where nothing acts
 
 
-def spelled_out(scene: dict[str, Any], context: Any) -> dict[str, Any]:
+def spelled_out(scene: dict[str, Any], where: str, context: Any) -> dict[str, Any]:
     """Return the tables of a pillar with `pillar.joints` in the words of segments and soft layers;
     as they are where it is absent, or a value that it needs is none.
 
-    context : of the validation, for files. Raises the first contradiction with other tables.
+    where : the scene is from. context : of the validation, for files. Raises SceneError for the
+    first contradiction with other tables.
     """
     pillar, rock, joints = (scene.get(key, {}) for key in ("pillar", "rock", "joints"))
     if not all(isinstance(one, dict) for one in (pillar, rock, joints)) or "joints" not in pillar:
@@ -32,7 +34,7 @@ def spelled_out(scene: dict[str, Any], context: Any) -> dict[str, Any]:
     if not isinstance(places, list) or not _positive(length, rock.get("density"), *places, *own):
         return scene
     for key, value, allowed in _contradictions(scene, places, length):
-        raise contradiction(key, value, allowed)
+        raise SceneError(where, key, value, allowed)
     if not _positive(intact := rock["intact_modulus"]):
         return scene
     block = pillar.get("block") or _block(scene, sqrt(intact / rock["density"]), context)
@@ -84,8 +86,6 @@ def _whole(length: float, block: float) -> float:
 
 def _block(scene: dict[str, Any], speed: float, context: Any) -> float:
     """Return the block size that resolves the load in rock of this bar speed (m/s), m."""
-    from jointwave.cases.spectrum import frequency_of
-
     try:
         load = Load.model_validate(scene.get("load"), context=context)
         frequency = frequency_of(load, scene["time"]["duration"])

@@ -1,21 +1,35 @@
 """Contradictions common to pillars and rock masses."""
 
-from __future__ import annotations
-
+from collections.abc import Callable
 from math import ceil, floor, log10
-from typing import TYPE_CHECKING
+
+from pydantic_core import PydanticCustomError
 
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.joint import PARTS
+from jointwave.cases.schema.joint import JointLaw
+from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.pulse import shortest_period
+from jointwave.cases.schema.segment import Segment
 from jointwave.cases.schema.values import contradiction
-
-if TYPE_CHECKING:
-    from jointwave.cases.schema.joint import JointLaw
 
 MOST_SAMPLES = 10_000_000  # 80 MB for each section, point and energy term
 MOST_SNAPSHOTS = 10_000
 SNAP = 1 + 1e-6  # least ratio of the fracture energy to that of a vertical softening line
+
+
+def found_by(*checks: Callable[[], None]) -> list[PydanticCustomError]:
+    """Return the contradictions that checks raise; what stops a check after one is taken for its
+    consequence."""
+    found: list[PydanticCustomError] = []
+    for one in checks:
+        try:
+            one()
+        except PydanticCustomError as error:
+            found.append(error)
+        except Exception:
+            if not found:
+                raise
+    return found
 
 
 def check_time(scene: AnyScene) -> None:
@@ -27,9 +41,8 @@ def check_time(scene: AnyScene) -> None:
             allowed += f": absent, it is a 200th of the period, {period:g} s"
         raise contradiction("record.interval", interval, allowed)
     if duration / interval > MOST_SAMPLES:
-        raise contradiction(
-            "record.interval", interval, f"must give at most {MOST_SAMPLES:,} samples"
-        )
+        allowed = f"must give at most {MOST_SAMPLES:,} samples"
+        raise contradiction("record.interval", interval, allowed)
 
 
 def check_fields(scene: AnyScene) -> None:
@@ -38,16 +51,11 @@ def check_fields(scene: AnyScene) -> None:
     if fields is None:
         return
     if not interval * (1 - 1e-9) <= fields <= duration:
-        raise contradiction(
-            "record.fields",
-            fields,
-            f"must lie between the sampling interval {interval:g} s and time.duration = "
-            f"{duration:g}",
-        )
+        span = f"the sampling interval {interval:g} s and time.duration = {duration:g}"
+        raise contradiction("record.fields", fields, f"must lie between {span}")
     if duration / fields > MOST_SNAPSHOTS:
-        raise contradiction(
-            "record.fields", fields, f"must give at most {MOST_SNAPSHOTS:,} snapshots"
-        )
+        allowed = f"must give at most {MOST_SNAPSHOTS:,} snapshots"
+        raise contradiction("record.fields", fields, allowed)
 
 
 def check_quality(scene: AnyScene) -> None:
@@ -62,6 +70,13 @@ def check_quality(scene: AnyScene) -> None:
     if scene.damping.rayleigh is not None:
         allowed = "damping.rayleigh already damps the rock: give one of them"
         raise contradiction("rock.quality_factor", quality, allowed)
+
+
+def check_damping(table: str, law: JointLaw | Segment, scene: AnyScene) -> None:
+    """Raise a contradiction of a damping ratio with Rayleigh damping."""
+    if scene.damping.rayleigh is not None and law.damping_ratio is not None:
+        allowed = "damping.rayleigh already sets the dashpots: give one of them"
+        raise contradiction(f"{table}.damping_ratio", law.damping_ratio, allowed)
 
 
 def check_strength(table: str, law: JointLaw) -> None:
@@ -81,13 +96,19 @@ def check_strength(table: str, law: JointLaw) -> None:
             raise contradiction(f"{table}.{found[0]}", getattr(law, found[0]), found[1])
     residual, cohesion = law.residual_cohesion, law.cohesion
     if residual is not None and (cohesion is None or residual > cohesion):
+        most = "needs a cohesion" if cohesion is None else f"at most the cohesion {cohesion:g} Pa"
+        raise contradiction(f"{table}.residual_cohesion", residual, most)
+
+
+def check_fracture(table: str, law: JointLaw, stiffness: float, symbol: str) -> None:
+    """Refuse a joint whose stress falls faster than it can unload (Pa/m): it would snap back."""
+    if law.tensile_strength is None or law.fracture_energy is None:
+        return
+    least = SNAP * law.tensile_strength**2 / (2 * stiffness)
+    if law.fracture_energy < least:
+        digit = 10.0 ** (floor(log10(least)) - 3)
         allowed = (
-            "needs a cohesion" if cohesion is None else f"at most the cohesion {cohesion:g} Pa"
+            f"must exceed tensile_strength^2 / (2 {symbol}), or the joint snaps back: at least "
+            f"{ceil(least / digit) * digit:.4g} J/m2"
         )
-        raise contradiction(f"{table}.residual_cohesion", residual, allowed)
-
-
-def rounded_up(x: float) -> float:
-    """Return the next number of four digits."""
-    digit = 10.0 ** (floor(log10(x)) - 3)
-    return ceil(x / digit) * digit
+        raise contradiction(f"{table}.fracture_energy", law.fracture_energy, allowed)

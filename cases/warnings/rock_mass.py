@@ -7,6 +7,7 @@ from typing import cast
 
 import numpy as np
 
+from jointwave.cases.checks.rock_mass import GRAZING, distance
 from jointwave.cases.incident import plane_wave
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.joints import direction_of
@@ -15,15 +16,14 @@ from jointwave.cases.partition.outline import outline_of
 from jointwave.cases.partition.parts import loaded_lines
 from jointwave.cases.partition.regions import rocks_of
 from jointwave.cases.partition.scene import partition_of
+from jointwave.cases.plausible import LENGTH, implausible, of_dip, of_value
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.plane import IntactRock
-from jointwave.cases.schema.plausible import LENGTH, implausible, of_dip, of_value
 from jointwave.cases.schema.region import Region
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.rock_mass_checks import GRAZING, distance
 from jointwave.cases.schema.sources import PlaneLoad, Wave
 from jointwave.cases.spectrum import LEAST_BLOCKS, frequency_of, highest_frequency
-from jointwave.cases.warnings import of_a_jump, of_lever, of_local_damping, of_pulse, onset
+from jointwave.cases.warnings.shared import of_a_jump, of_lever, of_local_damping, of_pulse, onset
 
 NEAR = 0.05  # of the domain's size: distance of a receiver from the joint that it is meant for
 COINCIDENT = 1e-9  # of the domain's size: distance of two joints that are one

@@ -1,87 +1,83 @@
-"""Contradictions between the tables of a scene."""
-
-from __future__ import annotations
+"""Contradictions between the tables of a pillar."""
 
 from collections.abc import Iterator
 from functools import partial
-from typing import TYPE_CHECKING
 
-from jointwave.cases.schema.discretisation import check_discretisation, check_scheme
-from jointwave.cases.schema.joint import ACROSS, JointLaw
-from jointwave.cases.schema.plausible import INTACT, meant
-from jointwave.cases.schema.segment import Segment, alone, check_segments, regions
-from jointwave.cases.schema.shared_checks import (
-    SNAP,
+from pydantic_core import PydanticCustomError
+
+from jointwave.cases.checks.numerics import check_discretisation, check_scheme
+from jointwave.cases.checks.segments import check_segments
+from jointwave.cases.checks.shared import (
+    check_damping,
     check_fields,
+    check_fracture,
     check_quality,
     check_strength,
     check_time,
-    rounded_up,
+    found_by,
 )
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.contacts import contacts
+from jointwave.cases.material.stiffness import equivalent_constants
+from jointwave.cases.plausible import INTACT, meant
+from jointwave.cases.schema.joint import JointLaw
+from jointwave.cases.schema.law_parts import ACROSS
+from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.tables import PAIRS, check_given_once
-from jointwave.cases.schema.values import check_all, contradiction, is_extreme
-
-if TYPE_CHECKING:
-    from jointwave.cases.schema.scene import Scene
+from jointwave.cases.schema.values import contradiction, is_extreme
 
 
-def check(scene: Scene) -> None:
-    """Raise the contradictions of a scene whose tables are each right."""
-    check_all(*(partial(one, scene) for one in CHECKS))
+def contradictions(scene: Scene) -> list[PydanticCustomError]:
+    """Return the contradictions of a scene whose tables are each right."""
+    return found_by(*(partial(one, scene) for one in CHECKS))
 
 
 def _check_layers(scene: Scene) -> None:
     if not scene.soft_layers:
         return
-    from jointwave.cases.material.contacts import contacts
-
     pillar, seen, joints = scene.pillar, set(), contacts(scene)[1:-1]
     for i, layer in enumerate(scene.soft_layers):
-        joint = int(abs(joints - layer.y).argmin())
+        joint, key = int(abs(joints - layer.y).argmin()), f"soft_layers[{i}].y"
         loose = scene.scatter is not None and scene.scatter.spacing > 0  # the nearest will do
         if abs(joints[joint] - layer.y) > 1e-6 * pillar.block and not loose:
             last = pillar.length - pillar.block
-            where = (
-                f"a multiple of {pillar.block:g} from {pillar.block:g} to {last:g}"
-                if not scene.segments
-                else f"the nearest is at {joints[joint]:g}"
-            )
-            raise contradiction(f"soft_layers[{i}].y", layer.y, f"must be on a joint: {where}")
+            where = f"a multiple of {pillar.block:g} from {pillar.block:g} to {last:g}"
+            if scene.segments:
+                where = f"the nearest is at {joints[joint]:g}"
+            raise contradiction(key, layer.y, f"must be on a joint: {where}")
         if joint in seen:
-            raise contradiction(f"soft_layers[{i}].y", layer.y, "has a soft layer already")
+            raise contradiction(key, layer.y, "has a soft layer already")
         seen.add(joint)
 
 
+def _check_places(scene: Scene) -> None:
+    if (places := scene.pillar.joints) is not None:
+        allowed = "is for files and tables (jointwave.load): here give segments and soft_layers"
+        raise contradiction("pillar.joints", places, allowed)
+
+
 def _check_receivers(scene: Scene) -> None:
-    if not scene.record.stress and not scene.record.velocity:
+    record, length = scene.record, scene.pillar.length
+    if not record.stress and not record.velocity:
         raise contradiction("record", None, "give at least one of record.stress and velocity")
-    for key in ("stress", "velocity"):
-        places = getattr(scene.record, key)
+    for key, places in (("record.stress", record.stress), ("record.velocity", record.velocity)):
         for y in places:
-            if y > scene.pillar.length:
-                raise contradiction(
-                    f"record.{key}", y, f"must lie between 0 and {scene.pillar.length:g} m"
-                )
+            if y > length:
+                raise contradiction(key, y, f"must lie between 0 and {length:g} m")
         if len(set(places)) < len(places):
-            raise contradiction(f"record.{key}", places, "must not repeat a position")
+            raise contradiction(key, places, "must not repeat a position")
 
 
 def _check_rock(scene: Scene) -> None:
-    from jointwave.cases.material.stiffness import equivalent_constants
-
     check_given_once("rock", scene.rock, "joints", scene.joints)
     intact, given = scene.rock.intact_modulus, equivalent_constants(scene.rock)
     if given and intact is not None and intact <= given[0]:
-        raise contradiction(
-            "rock.intact_modulus",
-            intact,
-            f"must exceed the rock mass's equivalent modulus {given[0]:.4g}{meant(intact, INTACT)}",
-        )
-    parts = (alone(scene, one) for one in regions(scene))
+        mass = f"the rock mass's equivalent modulus {given[0]:.4g}{meant(intact, INTACT)}"
+        raise contradiction("rock.intact_modulus", intact, f"must exceed {mass}")
+    parts = (scene.alone(one) for one in scene.parts)
     if any(not one.joints.normal_stiffness and not equivalent_constants(one.rock) for one in parts):
-        raise contradiction(
-            "rock", None, f"give exactly one pair: {PAIRS}; or joints.normal_stiffness"
-        )
+        allowed = f"give exactly one pair: {PAIRS}; or joints.normal_stiffness"
+        raise contradiction("rock", None, allowed)
 
 
 def _check_lever(scene: Scene) -> None:
@@ -90,9 +86,8 @@ def _check_lever(scene: Scene) -> None:
         raise contradiction("load.at", load.at, f"must lie on the face, within {half:g} m")
     if scene.motion.rotation == "none" and (load.is_eccentric or load.arm is not None):
         key, value = ("at", load.at) if load.arm is None else ("arm", load.arm)
-        raise contradiction(
-            f"load.{key}", value, "rotates the blocks, which motion.rotation = 'none' excludes"
-        )
+        allowed = "rotates the blocks, which motion.rotation = 'none' excludes"
+        raise contradiction(f"load.{key}", value, allowed)
 
 
 def _check_extreme(scene: Scene) -> None:
@@ -118,11 +113,14 @@ def _beyond_scaling(scene: Scene) -> Iterator[tuple[str, object, bool]]:
     yield "load.at", load.at, load.is_eccentric
     yield "load.arm", load.arm, load.arm is not None
     yield "load.file", load.file, load.file is not None
-    laws: dict[str, JointLaw] = {"joints": scene.joints}
-    laws |= {f"soft_layers[{i}]": layer for i, layer in enumerate(scene.soft_layers)}
-    for table, law in laws.items():
+    for table, law in _laws(scene, scene.soft_layers).items():
         for key in ("cohesion", *ACROSS):
             yield f"{table}.{key}", getattr(law, key), getattr(law, key) is not None
+
+
+def _laws(scene: Scene, layers: list) -> dict[str, JointLaw]:
+    """Return the law of the joints and those of soft layers, by table."""
+    return {"joints": scene.joints} | {f"soft_layers[{i}]": one for i, one in enumerate(layers)}
 
 
 def _check_ends(scene: Scene) -> None:
@@ -140,67 +138,43 @@ def _check_ends(scene: Scene) -> None:
         allowed = "must be along or across the axis where ends.start = 'quiet'"
         raise contradiction("load.direction", load.direction, allowed)
     if ends.start == "fixed" and not load.is_motion and load.amplitude:
-        raise contradiction(
-            "ends.start", ends.start, "needs load.quantity 'velocity' or 'acceleration', or no load"
-        )
+        allowed = "needs load.quantity 'velocity' or 'acceleration', or no load"
+        raise contradiction("ends.start", ends.start, allowed)
     if gravity is None or "fixed" in (ends.start, ends.end) or any(scene.bears):
         return
     if gravity.static:
         allowed = "needs a fixed end, a quiet or matched one below it, or gravity.static = false"
         raise contradiction("gravity.static", True, allowed)
-    for key, kind in ends.model_dump().items():
+    for key, kind in ends:
         if kind != "free" and gravity.acceleration:
             allowed = "gravity pulls the pillar off it: needs a fixed, quiet or matched end below"
             raise contradiction(f"ends.{key}", kind, allowed)
 
 
 def _check_damping(scene: Scene) -> None:
-    if scene.damping.rayleigh is None:
-        return
-    named: dict[str, JointLaw | Segment] = {"joints": scene.joints}
-    named |= {f"soft_layers[{i}]": layer for i, layer in enumerate(scene.soft_layers)}
-    named |= {f"segments[{i}]": segment for i, segment in enumerate(scene.segments)}
-    for table, law in named.items():
-        if law.damping_ratio is not None:
-            raise contradiction(
-                f"{table}.damping_ratio",
-                law.damping_ratio,
-                "damping.rayleigh already sets the dashpots: give one of them",
-            )
+    segments = {f"segments[{i}]": one for i, one in enumerate(scene.segments)}
+    for table, law in (_laws(scene, scene.soft_layers) | segments).items():
+        check_damping(table, law, scene)
 
 
 def _check_strength(scene: Scene) -> None:
     """Layers take what they do not give from the joints, so that these come first."""
-    check_strength("joints", scene.joints)
-    for i, layer in enumerate(scene.layers):
-        check_strength(f"soft_layers[{i}]", layer)
+    for table, law in _laws(scene, scene.layers).items():
+        check_strength(table, law)
 
 
 def _check_fracture(scene: Scene) -> None:
-    """A joint whose stress falls faster than it can unload would snap back."""
-    laws = [scene.joints, *scene.layers]
-    if all(law.tensile_strength is None for law in laws):
-        return
-    from jointwave.cases.material.calibrate import calibrate
-
-    p = calibrate(scene)
-    for i, (law, stiffness) in enumerate(
-        zip(laws, [p.regular_stiffness, *p.stiffness[p.soft]], strict=True)
-    ):
-        if law.tensile_strength is None or law.fracture_energy is None:
-            continue
-        least = SNAP * law.tensile_strength**2 / (2 * stiffness)
-        if law.fracture_energy < least:
-            raise contradiction(
-                f"soft_layers[{i - 1}].fracture_energy" if i else "joints.fracture_energy",
-                law.fracture_energy,
-                "must exceed tensile_strength^2 / (2 K'_n), or the joint snaps back: "
-                f"at least {rounded_up(least):.4g} J/m2",
-            )
+    laws = _laws(scene, scene.layers)
+    if any(law.tensile_strength is not None for law in laws.values()):
+        p = calibrate(scene)
+        stiffness = [p.regular_stiffness, *p.stiffness[p.soft]]
+        for (table, law), k in zip(laws.items(), stiffness, strict=True):
+            check_fracture(table, law, k, "K'_n")
 
 
 CHECKS = (
     check_segments,
+    _check_places,
     _check_layers,
     _check_receivers,
     _check_rock,

@@ -1,0 +1,1 @@
+"""Contradictions between the tables of a scene whose tables are each right."""

@@ -1,0 +1,72 @@
+"""Contradictions of the regions of a rock mass with its domain and joint sets."""
+
+import shapely
+
+from jointwave.cases.partition.outline import Outline
+from jointwave.cases.partition.regions import rocks_beside, shapes
+from jointwave.cases.schema.region import REST
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.values import contradiction
+
+
+def check_regions(scene: RockMass, outline: Outline) -> None:
+    """Raise the first contradiction of the regions, and of the joint sets that name them."""
+    names = [one.name for one in scene.regions]
+    for i, name in enumerate(names):
+        if name == REST or name in names[:i]:
+            allowed = f"must be unique, and not {REST!r}, which is the name of [rock]"
+            raise contradiction(f"regions[{i}].name", name, allowed)
+    for i, one in enumerate(scene.joint_sets):
+        for name in one.regions:
+            if name not in (REST, *names):
+                allowed = f"must name regions: {', '.join([REST, *names])}"
+                raise contradiction(f"joint_sets[{i}].regions", name, allowed)
+    _check_damping(scene)
+    if names and scene.domain.mesh is not None:
+        allowed = "cannot be combined with domain.mesh"
+        raise contradiction("regions", len(names), allowed)
+    _check_outlines(scene, outline)
+    least = outline.tolerance * outline.size
+    *held, rest = (one.area for one in shapes(scene.regions, outline))
+    for i, (region, area) in enumerate(zip(scene.regions, held, strict=True)):
+        if area <= least:
+            key = "through" if region.outline is None else "outline"
+            allowed = "leaves the region empty: it is outside the domain, or later regions cover it"
+            raise contradiction(f"regions[{i}].{key}", getattr(region, key), allowed)
+    if rest <= least:
+        raise contradiction("regions", len(names), "must leave part of the domain to [rock]")
+    _check_periodic(scene)
+
+
+def _check_outlines(scene: RockMass, outline: Outline) -> None:
+    """Refuse outlines that are no polygons, and those on sides that waves enter through."""
+    for i, one in enumerate(scene.regions):
+        if one.outline is None:
+            continue
+        shape = shapely.Polygon(one.outline) if len(one.outline) > 2 else shapely.Polygon()
+        if not (shape.is_valid and shape.area > 0):
+            allowed = "must be a polygon that does not cross itself"
+            raise contradiction(f"regions[{i}].outline", len(one.outline), allowed)
+        within = shapely.Polygon(outline.corners).exterior.distance(shape)
+        if within <= outline.tolerance and (scene.waves or scene.boundaries.sides("periodic")):
+            allowed = "must lie inside the domain, not on its sides, with waves or periodic sides"
+            raise contradiction(f"regions[{i}].outline", len(one.outline), allowed)
+
+
+def _check_damping(scene: RockMass) -> None:
+    """Refuse dashpots by a damping ratio between blocks of no one density."""
+    for i, one in enumerate(scene.joint_sets):
+        if one.damping_ratio and len({rock.density for rock in rocks_beside(scene, one)}) > 1:
+            key = f"joint_sets[{i}].damping_ratio"
+            allowed = f"needs rock of one density: restrict the set by joint_sets[{i}].regions"
+            raise contradiction(key, one.damping_ratio, allowed)
+
+
+def _check_periodic(scene: RockMass) -> None:
+    """Refuse boundaries that do not run from one periodic side to the other."""
+    for i, one in enumerate(scene.regions):
+        for side, along in (("left", 0.0), ("bottom", 90.0)):
+            held = getattr(scene.boundaries, side)
+            if one.outline is None and held == "periodic" and (one.dip - along) % 180 != 0:
+                allowed = f"must be {along:g} or opposite: boundaries.{side} is periodic"
+                raise contradiction(f"regions[{i}].dip", one.dip, allowed)

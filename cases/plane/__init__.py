@@ -1,1 +1,0 @@
-"""Effects and warnings of the scene of a rock mass."""

@@ -1,0 +1,159 @@
+"""The optional parts of the joint law as all but their formulas know them."""
+
+from collections.abc import Callable, Mapping
+from math import atan, degrees
+from typing import Any, NamedTuple
+
+from jointwave.cases.schema.joint import JointLaw
+
+#: Strength (Pa) and opening (m) of a joint that never fails beside joints that do, and closure (m)
+#: of one that does not stiffen; its square is still a number.
+UNLIMITED = 1e100
+
+
+class LawPart(NamedTuple):
+    """An optional part of the joint law, all but its formula.
+
+    name : of the effect. keys : which need one another; the first says whether a joint has the
+    part. others : keys that need not be given.
+    without : the parameters of `joints.law.Law` that it brings, at their values in a joint without
+    it beside ones with it. made : how those follow from the keys that are no keys themselves.
+    words : what a joint with it does. sample : keys at common values.
+    along : whether it acts in shear only. instead_of : keys that contradict it.
+    wrong : returns which key contradicts others and what is allowed, None where none does.
+    """
+
+    name: str
+    keys: tuple[str, ...]
+    without: Mapping[str, float | Callable[[Any], float]]
+    words: str
+    sample: dict[str, float]
+    made: dict[str, Callable[[Any], float]]
+    others: tuple[str, ...] = ()
+    along: bool = True
+    instead_of: tuple[str, ...] = ()
+    wrong: Callable[[Any], tuple[str, str] | None] = lambda law: None
+
+    def of(self, law: JointLaw) -> bool:
+        """Return whether a law has this part."""
+        return getattr(law, self.keys[0]) is not None
+
+    def why(self, has: bool) -> str:
+        """Return in words which key says whether joints have it."""
+        return f"{self.keys[0]} is given" if has else f"no {self.keys[0]}"
+
+    @property
+    def all_keys(self) -> tuple[str, ...]:
+        """Every key of it."""
+        return (*self.keys, *self.others)
+
+    def parameters(self, law: JointLaw) -> list[float]:
+        """Return the parameters of a joint, in the order of `without`."""
+        if not self.of(law):
+            return [one(law) if callable(one) else one for one in self.without.values()]
+        made = {key: getattr(law, key) for key in self.all_keys}
+        made |= {name: value(law) for name, value in self.made.items()}
+        return [made[name] for name in self.without]
+
+
+def tangent(angle: float | None) -> float:
+    """Return the tangent of an angle in degrees, 0 of none."""
+    import numpy as np  # not where keys alone are completed
+
+    return float(np.tan(np.radians(angle or 0.0)))
+
+
+def _needs_friction(key: str) -> Callable[[Any], tuple[str, str] | None]:
+    """Return the check that an angle is at most that of friction."""
+
+    def wrong(law: JointLaw) -> tuple[str, str] | None:
+        angle, static = getattr(law, key), law.friction_angle
+        if static is None:
+            return key, "needs a friction_angle"
+        return (key, f"must be at most friction_angle = {static:g}") if angle > static else None
+
+    return wrong
+
+
+def _lifts_too_far(law: JointLaw) -> tuple[str, str] | None:
+    """What lifts the faces must not take more work than friction gives: both tangents are linear in
+    the path, so that the ends of the weakening decide."""
+    if (found := _needs_friction("dilation_angle")(law)) is not None:
+        return found
+    dynamic, distance = law.dynamic_friction_angle, law.weakening_distance
+    if dynamic is None or distance is None or law.dilation_distance is None:
+        return None
+    share = max(1 - distance / law.dilation_distance, 0.0)
+    if share * tangent(law.dilation_angle) <= tangent(dynamic):
+        return None
+    most = degrees(atan(tangent(dynamic) / share))
+    return "dilation_angle", (
+        f"must be at most {most:.4g}, so that dilation stays below friction at "
+        f"dynamic_friction_angle = {dynamic:g}"
+    )
+
+
+PARTS = (
+    LawPart(
+        "closure",
+        ("maximum_closure",),
+        without={"maximum_closure": UNLIMITED},
+        words="a joint stiffens as it closes",
+        sample={"maximum_closure": 1e-3},
+        made={},
+        along=False,
+    ),
+    LawPart(
+        "weakening",
+        ("weakening_distance", "dynamic_friction_angle"),
+        without={
+            "weakening_distance": 1.0,
+            "dynamic_friction": lambda law: tangent(law.friction_angle),
+        },
+        words="slip weakens a joint",
+        sample={"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3},
+        made={"dynamic_friction": lambda law: tangent(law.dynamic_friction_angle)},
+        wrong=_needs_friction("dynamic_friction_angle"),
+    ),
+    LawPart(
+        "dilation",
+        ("dilation_angle", "dilation_distance"),
+        without={"dilation": 0.0, "dilation_distance": 1.0},
+        words="a joint dilates as it slips",
+        sample={"dilation_angle": 5.0, "dilation_distance": 1e-2},
+        made={"dilation": lambda law: tangent(law.dilation_angle)},
+        wrong=_lifts_too_far,
+    ),
+    LawPart(
+        "rate and state",
+        ("direct_effect", "evolution_effect", "critical_slip_distance", "reference_rate"),
+        without={"direct_effect": 0.0, "evolution_effect": 0.0}
+        | {"critical_slip_distance": 1.0, "reference_rate": 1.0, "initial_state": 1.0},
+        words="friction depends on the rate of slip",
+        sample={"direct_effect": 0.01, "evolution_effect": 0.015}
+        | {"critical_slip_distance": 1e-4, "reference_rate": 1e-6},
+        others=("initial_state",),
+        made={
+            "initial_state": lambda law: (
+                law.initial_state or law.critical_slip_distance / law.reference_rate
+            )
+        },
+        # Friction is as small as slip is slow: nothing could lift the faces.
+        instead_of=("dynamic_friction_angle", "dilation_angle"),
+        wrong=lambda law: (
+            None if law.friction_angle else ("direct_effect", "needs a friction_angle")
+        ),
+    ),
+    LawPart(
+        "softening",
+        ("tensile_strength", "fracture_energy"),
+        without={"tensile_strength": UNLIMITED, "critical_opening": UNLIMITED},
+        words="a joint has a tensile strength",
+        sample={"tensile_strength": 1e5, "fracture_energy": 100.0},
+        made={"critical_opening": lambda law: 2 * law.fracture_energy / law.tensile_strength},
+        along=False,
+        instead_of=("tension",),
+    ),
+)
+#: The keys of the parts that do not act only along a joint.
+ACROSS = tuple(part.keys[0] for part in PARTS if not part.along)

@@ -1,0 +1,141 @@
+"""Warnings that pillars and rock masses share, of pulses, damping and contact points."""
+
+from collections.abc import Iterator
+from math import nan
+
+import numpy as np
+
+from jointwave.cases.histories import Gabor, Ricker, Sine, periodic
+from jointwave.cases.material.contact_points import lever
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.joint import Joints
+from jointwave.cases.schema.pulse import Pulse
+
+LEAST_LEVER = 0.75  # of contact points where a face opens, over half its width
+ONSET = 0.01  # of a load's peak: defines its beginning
+#: Of the duration: the end of a table that no one cut off there.
+LATE = 5.0
+#: Crossings of the pillar in a period of the load's highest frequency that no wave test has.
+STATIC = 100.0
+OF_A_RISE = 40  # blocks that the front of a load passes while it rises
+
+
+def of_pulse(table: str, pulse: Pulse, end: float, crossings: float = nan) -> Iterator[str]:
+    """Say where a load or wave acts outside the run, or its table is not in seconds.
+
+    table : of the scene that holds it. end : of the run, s. crossings : of the pillar by a wave in
+    a period of the load's highest frequency.
+    """
+    if pulse.shape == "step":
+        return
+    if pulse.history is not None:
+        yield from _of_table(table, pulse, end, crossings)
+    elif pulse.rise is not None and pulse.rise > end:
+        yield (
+            f"{table}.rise = {pulse.rise:g} s is longer than the scene, time.duration = {end:g} s"
+        )
+    elif pulse.period and (wavelet := _wavelet(pulse)) and wavelet.centre > end:
+        yield (
+            f"{table}.period = {pulse.period:g} s: the wavelet peaks at "
+            f"{wavelet.centre / pulse.period:g} periods, after the end of the scene at "
+            f"time.duration = {end:g} s"
+        )
+    elif pulse.period and pulse.period > end:
+        meant = f"; {pulse.period:g} Hz is {1 / pulse.period:g} s" if pulse.period > 1 else ""
+        yield (
+            f"{table}.period = {pulse.period:g} s is longer than the scene, time.duration = "
+            f"{end:g} s{meant}"
+        )
+    elif pulse.period and STATIC < crossings < 1e3 * STATIC:
+        yield (
+            f"{table}.period = {pulse.period:g} s: a wave crosses the rock {crossings:.3g} times "
+            f"in it; {pulse.period:g} ms is {pulse.period / 1e3:g} s"
+        )
+
+
+def _of_table(table: str, pulse: Pulse, end: float, crossings: float) -> Iterator[str]:
+    history = pulse.history
+    assert history is not None
+    last, file = float(history.time[-1]), pulse.file
+    peak = float(history.time[np.abs(history.stress).argmax()])
+    late = peak > end
+    slow = STATIC < crossings < 1e3 * STATIC
+    if not pulse.timed and (slow or look_like_milliseconds(history.time, history.stress, end)):
+        why = (
+            f"the scene ends at {end:g} s"
+            if late
+            else f"a wave crosses the rock {crossings:.3g} times in a period of them"
+        )
+        yield (
+            f"{table}.file = {file!r}: its times, up to {last:g} s, look like milliseconds "
+            f"({why}): in seconds they are {last / 1e3:g}"
+        )
+    elif late:
+        yield (
+            f"{table}.file = {file!r} peaks at {peak:g} s, after the end of the scene at "
+            f"time.duration = {end:g} s"
+        )
+
+
+def look_like_milliseconds(time: np.ndarray, values: np.ndarray, end: float) -> bool:
+    """Return whether a history peaks far after the end of a scene (s), and with its times as
+    milliseconds would lie within it."""
+    last = time[-1]
+    return bool(time[np.abs(values).argmax()] > end and LATE * end < last <= 1e3 * end)
+
+
+def of_a_jump(table: str, pulse: Pulse, block: float, speed: float) -> Iterator[str]:
+    """Say what a step does to joints that can fail, and the rise that blocks (m) need of waves of
+    this speed (m/s). table : of the scene that holds it."""
+    if pulse.shape == "step":
+        yield (
+            f"{table}.shape = 'step': blocks of {block:.3g} m overshoot behind its front by up to "
+            "27 %, and joints that slip, open or break do so too early: a load that rises in "
+            f"{OF_A_RISE * block / speed:.3g} s (a 'triangle' of long decay, a 'table') overshoots "
+            "by at most 2 %"
+        )
+
+
+def onset(pulse: Pulse) -> float:
+    """Return when a load or wave first reaches a hundredth of its peak, s."""
+    history = pulse.history
+    if wavelet := _wavelet(pulse):
+        time = np.linspace(0.0, wavelet.centre, 1000)
+        values = wavelet.value(time)
+    elif history is not None:
+        time, values = history.time, history.stress
+    else:
+        return 0.0
+    felt = np.abs(values) >= ONSET * np.abs(values).max()
+    first = int(felt.argmax())
+    return float(time[max(first - 1, 0)])
+
+
+def _wavelet(pulse: Pulse) -> Ricker | Gabor | None:
+    """Return a pulse with a gradual onset; None for others."""
+    if pulse.shape not in ("ricker", "gabor") or pulse.period is None:
+        return None
+    found = periodic(pulse.shape, 1.0, pulse.period, pulse.cycles)
+    assert not isinstance(found, Sine)
+    return found
+
+
+def of_local_damping(scene: AnyScene, acts: bool) -> Iterator[str]:
+    """Warn of local damping where a load or wave acts."""
+    if scene.damping.local and acts:
+        yield (
+            "damping.local distorts waves: it is meant for static states, not for a scene with a "
+            "load"
+        )
+
+
+def of_lever(table: str, joints: Joints) -> Iterator[str]:
+    """Warn of contact points far from the edges of a face that may open under bending."""
+    rule, count = joints.point_rule, joints.contact_points
+    if (found := lever(rule, count)) < LEAST_LEVER:
+        thicker = f"{1 / found:.3g} times the thickness" if found else "more than any thickness"
+        yield (
+            f"{table}.contact_points = {count} ({rule}): a face of rigid blocks that opens bears "
+            f"at {found:.3g} of its half width, so that what stands by its edges needs {thicker}; "
+            f"contact_points = 8 with point_rule = 'gauss' bears at {lever('gauss', 8):.3g}"
+        )
