@@ -215,8 +215,9 @@ def _of_sides(scene: RockMass, kind: str) -> Effect:
 def _of_forces_in_plane(scene: RockMass) -> Iterator[Effect]:
     yield from _of_body_forces(scene, scene.damping.alpha)
     stress = scene.prestress
-    words = stress and f"xx {stress.xx:.4g}, yy {stress.yy:.4g}, xy {stress.xy:.4g} Pa"
-    words = words and words + scene.excavated * ", openings excavated"
+    keys = ("xx", "yy", "zz", "xy", "yz", "xz") if scene.in_space else ("xx", "yy", "xy")
+    words = stress and ", ".join(f"{key} {getattr(stress, key):.4g}" for key in keys)
+    words = words and words + " Pa" + scene.excavated * ", openings excavated"
     yield _called_for("prestress", words, "no [prestress]")
     waves, pushed = len(scene.waves), len(scene.pushes)
     yield _called_for("incident waves", waves and f"{waves} in [[waves]]", "no [[waves]]")

@@ -55,7 +55,7 @@ OF_JOINTS = {
     "maximum_closure": CLOSURE,
 }
 OF_PILLAR = {"length": LENGTH, "side": LENGTH, "block": LENGTH}
-OF_PRESTRESS = {"normal": ACTING, "xx": ACTING, "yy": ACTING}
+OF_PRESTRESS = {"normal": ACTING, "xx": ACTING, "yy": ACTING, "zz": ACTING}
 #: Angles (degrees) below these are rather radians, or a coefficient of friction.
 LEAST_ANGLE = {"friction_angle": 2.0, "dynamic_friction_angle": 1.0, "dilation_angle": 0.5}
 OVERDAMPED = 1.0  # damping ratio
@@ -135,7 +135,7 @@ def _of_sources(scene: AnyScene) -> Iterator[str]:
 
 def _of_prestress(scene: AnyScene) -> Iterator[str]:
     for key in OF_PRESTRESS if scene.prestress is not None else ():
-        value = getattr(scene.prestress, key, 0.0)
+        value = getattr(scene.prestress, key, None) or 0.0
         if value < 0:
             yield f"prestress.{key} = {value:g} Pa is tension: compression is positive"
         yield from of_value(f"prestress.{key}", abs(value), OF_PRESTRESS[key])

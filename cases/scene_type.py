@@ -11,7 +11,16 @@ if TYPE_CHECKING:
     from jointwave.cases.schema.scene import Scene
 
 AnyScene: TypeAlias = "Scene | RockMass"  # a text: to import it costs nothing
+NOT_SOLVED = "no engine solves these yet"  #: of scenes in space
 Either = TypeVar("Either", bound="AnyScene")
+
+
+def refuse_space(scene: AnyScene) -> None:
+    """Raise SceneError for a scene in space, which no engine solves yet."""
+    if scene.in_space:
+        allowed = f"is of a scene in space: {NOT_SOLVED}; jointwave explain and picture show it"
+        size = scene.domain.size  # type: ignore[union-attr]
+        raise SceneError(scene.where, "domain.size", size, allowed)
 
 
 def pillar_of(scene: AnyScene, what: str = "this") -> Scene:

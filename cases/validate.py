@@ -45,7 +45,8 @@ def validated(table: dict[str, Any], path: Path, given: frozenset[str]) -> Any:
     """
     asked = {PLACE.sub("", key) for key in given}
     where = f"{path} [{table['name']}]" if table.get("name") else str(path)
-    model, context = _model_of(table, where), {"folder": path.parent, "asked": asked}
+    model = _model_of(table, where)
+    context = {"folder": path.parent, "asked": asked, "dimension": _dimension(table)}
     try:
         scene = model.model_validate(spelled_out(table, where, context), context=context)
     except ValidationError as error:
@@ -62,6 +63,13 @@ def _model_of(table: dict[str, Any], where: str) -> Any:
     from jointwave.cases.schema.rock_mass import RockMass  # with shapely, which no pillar needs
 
     return RockMass
+
+
+def _dimension(table: dict[str, Any]) -> int:
+    """Return in how many dimensions a rock mass is: 3 where its size has three numbers."""
+    domain = table.get("domain")
+    size = domain.get("size") if isinstance(domain, dict) else None
+    return 3 if isinstance(size, list) and len(size) == 3 else 2
 
 
 def _error(where: str, first: Any, model: Any) -> SceneError:

@@ -45,7 +45,7 @@ def _check_in_mesh(table: str, one: JointSet) -> None:
 
 def _check_places(table: str, one: JointSet) -> None:
     if one.spacing is None and one.through is None:
-        allowed = "give a spacing, or through = [x, y] for one joint"
+        allowed = "give a spacing, or through = [x, y], in space [x, y, z], for one joint"
         raise contradiction(f"{table}.spacing", None, allowed)
     single = one.spacing is None
     for key, value in (("offset", one.offset), ("scatter", one.scatter)):

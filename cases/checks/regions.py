@@ -1,15 +1,20 @@
 """Contradictions of the regions of a rock mass with its domain and joint sets."""
 
+from typing import Any
+
+import numpy as np
 import shapely
 
+from jointwave.cases.geometry.measure import cell_moments
 from jointwave.cases.partition.outline import Outline
 from jointwave.cases.partition.regions import rocks_beside, shapes
 from jointwave.cases.schema.region import REST
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.values import contradiction
+from jointwave.cases.space import uncut
 
 
-def check_regions(scene: RockMass, outline: Outline) -> None:
+def check_regions(scene: RockMass, outline: Any) -> None:
     """Raise the first contradiction of the regions, and of the joint sets that name them."""
     names = [one.name for one in scene.regions]
     for i, name in enumerate(names):
@@ -26,8 +31,13 @@ def check_regions(scene: RockMass, outline: Outline) -> None:
         allowed = "cannot be combined with domain.mesh"
         raise contradiction("regions", len(names), allowed)
     _check_outlines(scene, outline)
-    least = outline.tolerance * outline.size
-    *held, rest = (one.area for one in shapes(scene.regions, outline))
+    least = outline.tolerance * outline.size ** (scene.domain.dimension - 1)
+    if scene.in_space:
+        body = uncut(scene, outline)
+        volumes = cell_moments(body).size
+        *held, rest = np.bincount(body.region % (len(names) + 1), volumes, len(names) + 1)
+    else:
+        *held, rest = (one.area for one in shapes(scene.regions, outline))
     for i, (region, area) in enumerate(zip(scene.regions, held, strict=True)):
         if area <= least:
             key = "through" if region.outline is None else "outline"
@@ -65,7 +75,7 @@ def _check_damping(scene: RockMass) -> None:
 def _check_periodic(scene: RockMass) -> None:
     """Refuse boundaries that do not run from one periodic side to the other."""
     for i, one in enumerate(scene.regions):
-        for side, along in (("left", 0.0), ("bottom", 90.0)):
+        for side, along in (("left", 0.0), ("bottom", 90.0)) if not scene.in_space else ():
             held = getattr(scene.boundaries, side)
             if one.outline is None and held == "periodic" and (one.dip - along) % 180 != 0:
                 allowed = f"must be {along:g} or opposite: boundaries.{side} is periodic"

@@ -1,6 +1,7 @@
 """Contradictions between the tables of a rock mass."""
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 from pydantic_core import PydanticCustomError
@@ -18,9 +19,11 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.cases.schema.tables import LEAN
 from jointwave.cases.schema.values import contradiction
+from jointwave.cases.space import Box, box_of, joint_planes, uncut
 
 GRAZING = 1e-6  #: cosine below which a wave travels along a side or a joint
 PARTNER = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
+PARTNER |= {"front": "back", "back": "front"}
 #: Tolerance of points on the boundary, over the size of the domain.
 BESIDE = 1e-6
 
@@ -28,7 +31,7 @@ BESIDE = 1e-6
 def contradictions(scene: RockMass) -> list[PydanticCustomError]:
     """Return the contradictions of a rock mass whose tables are each right."""
     try:
-        outline = outline_of(scene.domain)
+        outline = box_of(scene.domain) if scene.in_space else outline_of(scene.domain)
     except GeometryError as error:
         return [contradiction(error.key, None, str(error))]
     cuts = _check_cuts if scene.domain.given is None else _check_mesh
@@ -43,7 +46,7 @@ def contradictions(scene: RockMass) -> list[PydanticCustomError]:
     )
 
 
-def _check_support(scene: RockMass, outline: Outline) -> None:
+def _check_support(scene: RockMass, outline: Outline | Box) -> None:
     """Refuse rock under gravity that no side bears, though some side holds it back."""
     gravity, normals = scene.gravity, outline.normals()
     quiet = [side for side in scene.boundaries.sides("quiet") if side in normals]
@@ -58,7 +61,7 @@ def _check_support(scene: RockMass, outline: Outline) -> None:
         raise contradiction(f"boundaries.{quiet[0]}", "quiet", allowed)
 
 
-def _check_mesh(scene: RockMass, outline: Outline) -> None:
+def _check_mesh(scene: RockMass, outline: Outline | Box) -> None:
     """Check that the joints of a mesh are those of the joint sets."""
     rock, key = scene.domain.given, "domain.mesh"
     assert rock is not None
@@ -73,12 +76,16 @@ def _check_mesh(scene: RockMass, outline: Outline) -> None:
             raise contradiction(key, scene.domain.mesh, allowed)
 
 
-def _check_cuts(scene: RockMass, outline: Outline) -> None:
+def _check_cuts(scene: RockMass, outline: Any) -> None:
     """Refuse joints that miss the domain. Those of spacings that fit into it do not, and sets that
     end at others are known when they are cut."""
-    whole = cut_into_regions(polygon(outline.hull), bounded(scene.regions), outline.tolerance)
-    for i, one in enumerate(plane_sets(scene.joint_sets, scene.regions)):
-        if one.ends_at or one.widest < float(np.ptp(outline.hull @ one.normal)):
+    if scene.in_space:
+        whole, sets = uncut(scene, outline), joint_planes(scene)
+    else:
+        whole = cut_into_regions(polygon(outline.hull), bounded(scene.regions), outline.tolerance)
+        sets = plane_sets(scene.joint_sets, scene.regions)
+    for i, one in enumerate(sets):
+        if one.ends_at or one.widest < float(np.ptp(scene.domain.corners @ one.normal)):
             continue
         try:
             cut_by_sets(whole, [one], outline.tolerance)
@@ -87,7 +94,7 @@ def _check_cuts(scene: RockMass, outline: Outline) -> None:
             raise contradiction(key, None, str(error)) from None
 
 
-def _check_receivers(scene: RockMass, outline: Outline) -> None:
+def _check_receivers(scene: RockMass, outline: Outline | Box) -> None:
     record = scene.record
     if not (record.points or record.joints or record.fields):
         raise contradiction("record", None, "give at least one of record.points, joints and fields")
@@ -101,13 +108,13 @@ def _check_receivers(scene: RockMass, outline: Outline) -> None:
                 raise contradiction(f"record.{key}[{i}]", place, "must not repeat a position")
 
 
-def _check_in_rock(key: str, place: list[float], outline: Outline) -> None:
+def _check_in_rock(key: str, place: list[float], outline: Outline | Box) -> None:
     if not outline.holds(place):
         allowed = "must lie in the domain and outside its openings"
         raise contradiction(key, place, allowed)
 
 
-def _check_boundaries(scene: RockMass, outline: Outline) -> None:
+def _check_boundaries(scene: RockMass, outline: Outline | Box) -> None:
     normals = outline.normals()
     for side in scene.boundaries.model_fields_set:
         key, held = f"boundaries.{side}", getattr(scene.boundaries, side)
@@ -121,7 +128,7 @@ def _check_boundaries(scene: RockMass, outline: Outline) -> None:
             raise contradiction(f"boundaries.{side}", held, allowed)
 
 
-def _check_waves(scene: RockMass, outline: Outline) -> None:
+def _check_waves(scene: RockMass, outline: Outline | Box) -> None:
     for i, wave in enumerate(scene.waves):
         for side, normals in outline.normals().items():
             held = getattr(scene.boundaries, side)
@@ -130,7 +137,7 @@ def _check_waves(scene: RockMass, outline: Outline) -> None:
                 raise contradiction(f"boundaries.{side}", held, allowed)
 
 
-def _check_load(table: str, load: PlaneLoad, scene: RockMass, outline: Outline) -> None:
+def _check_load(table: str, load: PlaneLoad, scene: RockMass, outline: Outline | Box) -> None:
     if load.at is not None:
         _check_in_rock(f"{table}.at", load.at, outline)
     if load.opening is not None and load.opening >= len(scene.domain.holes):
@@ -142,7 +149,7 @@ def _check_load(table: str, load: PlaneLoad, scene: RockMass, outline: Outline) 
         _check_part(table, load, outline)
 
 
-def _check_side(table: str, load: PlaneLoad, scene: RockMass, outline: Outline) -> None:
+def _check_side(table: str, load: PlaneLoad, scene: RockMass, outline: Outline | Box) -> None:
     assert load.side is not None
     key, held = f"{table}.side", getattr(scene.boundaries, load.side)
     if load.side not in outline.normals():
@@ -154,7 +161,7 @@ def _check_side(table: str, load: PlaneLoad, scene: RockMass, outline: Outline) 
         raise contradiction(key, load.side, allowed)
 
 
-def _check_part(table: str, load: PlaneLoad, outline: Outline) -> None:
+def _check_part(table: str, load: PlaneLoad, outline: Any) -> None:
     """Refuse `between` points that are not on the loaded side or opening."""
     assert load.between is not None
     edges = outline.edges(load.side, load.opening)

@@ -23,7 +23,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
 
 if TYPE_CHECKING:
-    from jointwave.cases.schema.plane import StressInPlane
+    from jointwave.cases.schema.plane import InSituStress
     from jointwave.cases.schema.pulse import Pulse
     from jointwave.cases.schema.rock_mass import RockMass
 
@@ -90,7 +90,7 @@ def _densest(scene: AnyScene) -> float:
     return max(scene.rock.density, *(one.density or 0.0 for one in regions), 0.0)
 
 
-def _largest(stress: StressInPlane, excavated: bool) -> float:
+def _largest(stress: InSituStress, excavated: bool) -> float:
     """Return the largest stress in the plane, not below zero: s1, or 3 s1 - s2 at the wall of a
     circular opening (Kirsch); at corners of others it is more in places."""
     mean, half = (stress.xx + stress.yy) / 2, hypot((stress.xx - stress.yy) / 2, stress.xy)

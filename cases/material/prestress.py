@@ -12,7 +12,7 @@ from jointwave.cases.partition.joints import direction_of
 
 if TYPE_CHECKING:
     from jointwave.cases.schema.joint_set import JointSet
-    from jointwave.cases.schema.plane import StressInPlane
+    from jointwave.cases.schema.plane import InSituStress
     from jointwave.cases.schema.rock_mass import RockMass
 
 SLACK = 1e-9  # of the stress: tractions that are at a limit
@@ -29,7 +29,7 @@ def refuse_beyond_strength(scene: RockMass) -> None:
             raise SceneError(scene.where, "prestress", None, allowed)
 
 
-def beyond_strength(joint: JointSet, stress: StressInPlane) -> str | None:
+def beyond_strength(joint: JointSet, stress: InSituStress) -> str | None:
     """Return whether a joint "opens" or "slides" under a stress, None if it carries it."""
     along = direction_of(joint.dip)
     normal = np.array([-along[1], along[0]])

@@ -1,27 +1,50 @@
-"""The domain of a rock mass in the plane, and how it is cut into blocks."""
+"""The domain of a rock mass, and how it is cut into blocks."""
 
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
-from jointwave.cases.schema.values import Point, Positive, Table, contradiction, named_file
+from jointwave.cases.schema.values import (
+    Number,
+    Offset,
+    Point,
+    Positive,
+    Table,
+    check_dimension,
+    contradiction,
+    named_file,
+)
 
 if TYPE_CHECKING:
     from jointwave.cases.partition.given import GivenRock
 
 
-class Domain(Table):
-    """The region of the rock mass, in plane strain: x to the right, y upwards."""
+class Prism(Table):
+    """An opening in space, the prism of a polygon: a tunnel, or a cavern with an arched roof."""
 
-    #: m, width and height of a rectangle with its lower left corner at the origin
-    size: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = None
+    #: m, corners, by their two coordinates other than along the axis, in the order x, y, z
+    polygon: Annotated[list[Offset], Field(min_length=3)]
+    axis: Literal["x", "y", "z"]  #: along which it reaches
+    #: m, from where to where along the axis; absent: all through the domain
+    ends: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = None
+
+
+class Domain(Table):
+    """The region of the rock mass: in plane strain with x to the right and y upwards, or in space
+    with x to the east, y to the north and z upwards."""
+
+    #: m, width and height of a rectangle, or width, depth and height of a box, from the origin on;
+    #: three numbers make the scene one in space, and all its points and directions have three
+    size: Annotated[list[Positive], Field(min_length=2, max_length=3)] | None = None
     outline: list[Point] | None = None  #: m, corners of a polygon, instead of size
     #: a gmsh file (.msh) instead: groups "rock..." of triangles or quadrilaterals, and "joint NAME"
     #: of the edges of each joint set; its outline and openings are those of the rock
     mesh: str | None = None
-    #: m, corners of polygons to be excavated
+    #: m, corners of polygons to be excavated; in space of boxes, two opposite corners each
     openings: list[list[Point]] = Field(default_factory=list)
+    prisms: list[Prism] = Field(default_factory=list)
     #: for non-convex blocks at openings; cut: into convex parts along the opening's faces
     non_convex: Literal["refuse", "cut"] = "refuse"
     #: for blocks below the next two limits; merge: with a neighbour, if the result is convex
@@ -34,6 +57,7 @@ class Domain(Table):
 
     @model_validator(mode="after")
     def _one_shape(self, info: ValidationInfo) -> "Domain":
+        check_dimension(self, info, space=("prisms",))
         if sum(one is not None for one in (self.size, self.outline, self.mesh)) != 1:
             allowed = "give exactly one of domain.size, domain.outline and domain.mesh"
             raise contradiction("domain", None, allowed)
@@ -65,9 +89,15 @@ class Domain(Table):
         return self._mesh_path
 
     @property
-    def holes(self) -> list[list[list[float]]]:
-        """Corners of all openings, m."""
-        return self.openings if self.given is None else self.given.outlines[1:]
+    def dimension(self) -> int:
+        """The number of dimensions, 2 or 3."""
+        return 3 if self.size is not None and len(self.size) == 3 else 2
+
+    @property
+    def holes(self) -> list[Any]:
+        """All openings: corners of polygons or boxes, m, and prisms."""
+        own = [*self.openings, *self.prisms]
+        return own if self.given is None else self.given.outlines[1:]
 
     @property
     def corners(self) -> list[list[float]]:
@@ -77,5 +107,7 @@ class Domain(Table):
         if self.outline is not None:
             return self.outline
         assert self.size is not None
+        if self.dimension == 3:
+            return [list(one) for one in product(*((0.0, x) for x in self.size))]
         x, y = self.size
         return [[0.0, 0.0], [x, 0.0], [x, y], [0.0, y]]

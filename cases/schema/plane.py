@@ -1,25 +1,28 @@
 """The small tables of a rock mass: intact rock, boundaries, initial stress, receivers, numerics."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, ValidationInfo, model_validator
 
 from jointwave.cases.schema.damping import Attenuating
 from jointwave.cases.schema.values import (
-    DirectionInPlane,
     NonNegative,
     Number,
     Point,
     Poisson,
     Positive,
     Table,
+    UnitVector,
+    check_dimension,
+    contradiction_here,
+    dimension,
 )
 
 Held = Literal["quiet", "free", "fixed", "periodic"]
 
 
 class IntactRock(Attenuating):
-    """The rock between the joints, in plane strain."""
+    """The rock between the joints, in plane strain or in space."""
 
     density: Positive  #: kg/m3
     intact_modulus: Positive  #: Pa, Young's modulus
@@ -31,8 +34,10 @@ class Boundaries(Table):
 
     left: Held = "free"  #: side of least x
     right: Held = "free"  #: side of largest x
-    bottom: Held = "free"  #: side of least y
-    top: Held = "free"  #: side of largest y
+    front: Held = "free"  #: side of least y, in space
+    back: Held = "free"  #: side of largest y, in space
+    bottom: Held = "free"  #: side of least y, in space of least z
+    top: Held = "free"  #: side of largest y, in space of largest z
     outline: Literal["quiet", "free", "fixed"] = "free"  #: all other sides of an outline
 
     def sides(self, *kinds: str) -> list[str]:
@@ -40,26 +45,41 @@ class Boundaries(Table):
         return [side for side, held in self if held in kinds]
 
 
-class GravityInPlane(Table):
+class GravityOfRock(Table):
     """A body force. Fixed sides bear the weight, and quiet ones, which exert beside their dashpots
     what held sides would at rest: below the rock (within 45 degrees) held in all directions, beside
     it along their normal. A quiet side above the rock bears the in-situ stress alone."""
 
-    direction: DirectionInPlane = Field(default=[0.0, -1.0])  #: x, y
+    direction: UnitVector = Field(default=[0.0, -1.0])  #: x, y, in space x, y, z and [0, 0, -1]
     acceleration: NonNegative = 9.81  #: m/s2
     static: bool = True  #: the scene starts in equilibrium; False: gravity acts suddenly at t = 0
 
+    @model_validator(mode="before")
+    @classmethod
+    def _downwards(cls, table: Any, info: ValidationInfo) -> Any:
+        absent = isinstance(table, dict) and "direction" not in table
+        return table | {"direction": [0.0, 0.0, -1.0]} if absent and dimension(info) == 3 else table
 
-class StressInPlane(Table):
+
+class InSituStress(Table):
     """In-situ stress of the rock mass, uniform before openings are excavated: free and quiet sides
     bear it, the walls of openings are free."""
 
     xx: Number  #: Pa, compression positive
     yy: Number  #: Pa, compression positive
     xy: Number = 0.0  #: Pa, component of the same tensor
+    zz: Number | None = None  #: Pa, in space, where it is required
+    yz: Number = 0.0  #: Pa, in space
+    xz: Number = 0.0  #: Pa, in space
+
+    @model_validator(mode="after")
+    def _fits_dimension(self, info: ValidationInfo) -> "InSituStress":
+        if check_dimension(self, info, space=("zz", "yz", "xz")) and self.zz is None:
+            raise contradiction_here("zz", None, "is required in space")
+        return self
 
 
-class RecordInPlane(Table):
+class RecordOfRock(Table):
     """The results that are recorded."""
 
     #: m, where velocity, displacement and stress are recorded; on a joint the mean of both sides

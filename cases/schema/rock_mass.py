@@ -1,7 +1,8 @@
-"""The scene of a rock mass in the plane: a domain cut by joint sets, under waves and loads.
+"""The scene of a rock mass, in the plane or in space: a domain cut by joint sets, and its loads.
 
 A file with a table [domain] holds one; a file with [pillar] is a `Scene`. Tables that both have
-mean the same. SI units; x to the right, y upwards, plane strain.
+mean the same. SI units; x to the right and y upwards in plane strain, or x to the east, y to the
+north and z upwards.
 """
 
 from typing import ClassVar
@@ -13,11 +14,11 @@ from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.plane import (
     Boundaries,
-    GravityInPlane,
+    GravityOfRock,
+    InSituStress,
     IntactRock,
     NumericsInPlane,
-    RecordInPlane,
-    StressInPlane,
+    RecordOfRock,
 )
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.region import Region
@@ -27,7 +28,7 @@ from jointwave.cases.schema.values import Pair, Positive, Table, Words
 
 
 class RockMass(Table):
-    """A rock mass in the plane: domain, rock, joints, waves, loads and receivers."""
+    """A rock mass: domain, rock, joints, waves, loads and receivers."""
 
     title: Words  #: used in tables and figures
     source: Words | None = None  #: reference of the scene
@@ -39,11 +40,11 @@ class RockMass(Table):
     loads: list[PlaneLoad] = []
     boundaries: Boundaries = Boundaries()
     damping: Damping = Damping()
-    gravity: GravityInPlane | None = None
-    prestress: StressInPlane | None = None
+    gravity: GravityOfRock | None = None
+    prestress: InSituStress | None = None
     time: Time
     numerics: NumericsInPlane = NumericsInPlane()
-    record: RecordInPlane
+    record: RecordOfRock
     expect: dict[Pair, Positive] = {}  #: bounds on the relative L2 misfit of pairs
     name: str = ""  #: of the variant; empty for the base scene
 
@@ -54,6 +55,11 @@ class RockMass(Table):
     def where(self) -> str:
         """The file and variant that the scene was read from, else its title: for messages."""
         return self._where or self.title
+
+    @property
+    def in_space(self) -> bool:
+        """Whether the scene is one in space, not in the plane."""
+        return self.domain.dimension == 3
 
     @property
     def pulses(self) -> tuple[Wave | PlaneLoad, ...]:

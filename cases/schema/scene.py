@@ -54,6 +54,7 @@ class Scene(Table):
 
     kind: ClassVar[str] = "pillar"
     excavated: ClassVar[bool] = False  #: as of a `RockMass`
+    in_space: ClassVar[bool] = False  #: as of a `RockMass`
     _where: str = PrivateAttr(default="")
 
     @property

@@ -1,13 +1,20 @@
-"""Sources in the plane: plane waves, pressures, forces and a shaken base."""
+"""Sources in rock: plane waves, pressures, forces and a shaken base."""
 
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, model_validator
+import numpy as np
+from pydantic import Field, ValidationInfo, model_validator
 
 from jointwave.cases.schema.pulse import Pulse
-from jointwave.cases.schema.values import DirectionInPlane, Number, Point, contradiction_here
+from jointwave.cases.schema.values import (
+    Number,
+    Point,
+    UnitVector,
+    check_dimension,
+    contradiction_here,
+)
 
-Side = Literal["left", "right", "bottom", "top", "outline"]
+Side = Literal["left", "right", "front", "back", "bottom", "top", "outline"]
 
 #: Required and optional keys of each kind of load, in addition to its pulse.
 KEYS = {
@@ -15,6 +22,7 @@ KEYS = {
     "force": ({"at", "direction"}, set()),
     "base": ({"side", "direction"}, set()),
 }
+LEAST_ACROSS = 1e-9  #: one less the cosine between the direction of a wave and its polarisation
 QUANTITIES = {"pressure": {"stress"}, "force": {"force"}, "base": {"velocity", "acceleration"}}
 
 
@@ -26,11 +34,27 @@ class Wave(Pulse):
     amplitude: Number  #: Pa or m/s by `quantity`; a factor on the history for "table"
     #: stress: on the wave front, compression positive for P; velocity: of the particles
     quantity: Literal["stress", "velocity"] = "stress"  # type: ignore[assignment]
-    #: P: particles move along the direction; S: normal to it, to its left
+    #: P: particles move along the direction; S: normal to it, to its left, in space as
+    #: `polarisation`
     kind: Literal["P", "S"]
-    direction: DirectionInPlane  #: x, y: of propagation
+    direction: UnitVector  #: x, y, in space x, y, z: of propagation
+    #: x, y, z: of particle motion of an S wave in space, of which the part across the direction
+    #: counts
+    polarisation: UnitVector | None = None
     #: m, where the pulse begins at t = 0; absent: the first corner of the domain that it reaches
     through: Point | None = None
+
+    @model_validator(mode="after")
+    def _is_polarised(self, info: ValidationInfo) -> "Wave":
+        in_space = check_dimension(self, info, space=("polarisation",))
+        if self.kind == "P" and self.polarisation is not None:
+            raise contradiction_here("polarisation", self.polarisation, "is of S waves")
+        if in_space and self.kind == "S":
+            along = np.dot(self.polarisation or self.direction, self.direction)
+            if abs(along) > 1 - LEAST_ACROSS:
+                allowed = "is required for an S wave in space: not along its direction"
+                raise contradiction_here("polarisation", self.polarisation, allowed)
+        return self
 
 
 class PlaneLoad(Pulse):
@@ -39,7 +63,8 @@ class PlaneLoad(Pulse):
 
     file_key: ClassVar[str] = "loads.file"
 
-    amplitude: Number  #: Pa, N/m, m/s or m/s2 by `quantity`; a factor on the history for "table"
+    #: Pa, N/m, in space N, m/s or m/s2 by `quantity`; a factor on the history for "table"
+    amplitude: Number
     #: pressure: stress; force: force; base: velocity or acceleration
     quantity: Literal["stress", "force", "velocity", "acceleration"] = "stress"  # type: ignore[assignment]
     #: base: motion of a fixed side, or of the wave that enters a quiet side, applied as the stress
@@ -47,14 +72,16 @@ class PlaneLoad(Pulse):
     kind: Literal["pressure", "force", "base"]
     side: Side | None = None  #: loaded by a pressure, or moved as a base
     opening: Annotated[int, Field(ge=0)] | None = None  #: loaded by a pressure, counted from 0
-    #: m, two points of the boundary: the pressure acts only between them; around an opening
-    #: counter-clockwise from the first to the second, unless both are on one face
+    #: m, in the plane two points of the boundary: the pressure acts only between them; around an
+    #: opening counter-clockwise from the first to the second, unless both are on one face
     between: Annotated[list[Point], Field(min_length=2, max_length=2)] | None = None
     at: Point | None = None  #: m, where a force acts
-    direction: DirectionInPlane | None = None  #: x, y: of a force or of the motion of a base
+    #: x, y, in space x, y, z: of a force or of the motion of a base
+    direction: UnitVector | None = None
 
     @model_validator(mode="after")
-    def _keys_of_kind(self) -> "PlaneLoad":
+    def _keys_of_kind(self, info: ValidationInfo) -> "PlaneLoad":
+        check_dimension(self, info, plane=("between",))
         needed, taken = KEYS[self.kind]
         for key in ("side", "opening", "between", "at", "direction"):
             value = getattr(self, key)

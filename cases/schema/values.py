@@ -2,7 +2,7 @@
 
 import re
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInfo
 from pydantic_core import PydanticCustomError
@@ -59,15 +59,31 @@ def _unit(vector: list[float]) -> list[float]:
     return vector
 
 
+def dimension(info: ValidationInfo) -> int:
+    """Return in how many dimensions the scene is that a value belongs to: 2, or 3 in space."""
+    return int((info.context or {}).get("dimension", 2))
+
+
+def _per_axis(vector: list[float], info: ValidationInfo) -> list[float]:
+    """Refuse vectors of another dimension than the domain's."""
+    if len(vector) != dimension(info):
+        size = "has three" if dimension(info) == 3 else "has not three"
+        context = {"allowed": f"{dimension(info)} numbers: domain.size {size}"}
+        raise PydanticCustomError("axes", "must have {allowed}", context)
+    return vector
+
+
 Words = Annotated[str, AfterValidator(_words)]
 Number = Annotated[float, AfterValidator(_magnitude)]
 Amplitude = Annotated[float, AfterValidator(_amplitude)]  #: of a load
 Positive = Annotated[float, Field(gt=0), AfterValidator(_magnitude)]
 NonNegative = Annotated[float, Field(ge=0), AfterValidator(_magnitude)]
+Dip = Annotated[float, Field(ge=-180, le=180)]
+DipDirection = Annotated[float, Field(ge=0, le=360)]
 Poisson = Annotated[float, Field(gt=-1, lt=0.5)]
 Offset = Annotated[list[Number], Field(min_length=2, max_length=2)]
-Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
-DirectionInPlane = Annotated[list[Number], Field(min_length=2, max_length=2), AfterValidator(_unit)]
+Point = Annotated[list[Number], AfterValidator(_per_axis)]  #: of a rock mass
+UnitVector = Annotated[list[Number], AfterValidator(_per_axis), AfterValidator(_unit)]
 Direction = Annotated[list[Number], Field(min_length=3, max_length=3), AfterValidator(_unit)]
 Pair = Annotated[str, AfterValidator(_pair)]
 
@@ -85,6 +101,27 @@ def contradiction(key: str, value: object, allowed: str) -> PydanticCustomError:
     return PydanticCustomError(
         "contradiction", "{allowed}", {"allowed": allowed, "key": key, "found": value}
     )
+
+
+def check_dimension(
+    table: Table, info: ValidationInfo, space: tuple[str, ...] = (), plane: tuple[str, ...] = ()
+) -> bool:
+    """Refuse the keys of a table that are for scenes in space in the plane, and the reverse; return
+    whether the scene is in space."""
+    in_space = dimension(info) == 3
+    for key in plane if in_space else space:
+        if key in table.model_fields_set:
+            allowed = f"has no meaning in {'space' if in_space else 'the plane'}"
+            raise contradiction_here(key, getattr(table, key), allowed)
+    return in_space
+
+
+def check_attitude(table: Any, info: ValidationInfo) -> None:
+    """Refuse a plane in space by its dip alone, and a dip direction in the plane."""
+    in_space = check_dimension(table, info, space=("dip_direction",))
+    if in_space and table.dip % 180 and table.dip_direction is None:
+        allowed = "is required in space: of the line of dip, degrees clockwise from north (y)"
+        raise contradiction_here("dip_direction", None, allowed)
 
 
 def folder_of(info: ValidationInfo, key: str) -> tuple[Path, bool]:

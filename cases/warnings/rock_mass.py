@@ -35,7 +35,7 @@ Source = tuple[str, "Wave | PlaneLoad"]  # its table in the scene and itself
 
 def warnings_in_plane(scene: RockMass) -> list[str]:
     """Return warnings of probable mistakes in a rock mass, one line each."""
-    found = [line for rule in RULES for line in rule(scene)]
+    found = [line for rule in (IN_SPACE if scene.in_space else RULES) for line in rule(scene)]
     return [*implausible(scene), *found, *of_local_damping(scene, bool(_sources(scene)))]
 
 
@@ -293,6 +293,7 @@ def _of_contact_points(scene: RockMass) -> Iterator[str]:
                 return
 
 
+IN_SPACE = (_of_poisson, _of_half_a_load)  #: rules of scenes in space
 RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
     _of_poisson,
     _of_joints_given_twice,

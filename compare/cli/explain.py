@@ -11,7 +11,7 @@ from jointwave.cases.effects import effects
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.block_summary import block_summary
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.scene_type import NOT_SOLVED, AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import ENGINES, solver
@@ -31,6 +31,8 @@ def explanation(scene: AnyScene) -> Facts:
 
     Raises SceneError where no engine that applies can run.
     """
+    if isinstance(scene, RockMass) and scene.in_space:
+        return _in_space(scene)
     answers = applicable(scene)
     able = [name for name, answer in answers.items() if answer]
     engines = [name for name in ENGINES if name in able]
@@ -52,6 +54,17 @@ def explanation(scene: AnyScene) -> Facts:
         "cannot_run": failures,
         "solutions": {k: {"applies": bool(a), "why_not": a.reason} for k, a in answers.items()},
         "references": {name: r._asdict() for name, r in references.items()},
+    }
+
+
+def _in_space(scene: RockMass) -> Facts:
+    """Return the blocks and the effects of a scene in space."""
+    return {
+        "title": scene.title,
+        "variant": scene.name,
+        **block_summary(scene),
+        "effects": {e.name: {"active": e.active, "why": e.reason} for e in effects(scene)},
+        "in_space": NOT_SOLVED,
     }
 
 

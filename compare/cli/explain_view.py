@@ -10,8 +10,9 @@ from jointwave.compare.text import in_seconds, percent
 
 #: The units of facts, and what facts are called whose names do not say it.
 UNITS = {
-    "m": "from to block length centroid",
+    "m": "from to block length centroid width",
     "m²": "area",
+    "m³": "volume",
     "m/s": "bar_speed shear_speed intact_bar_speed velocity p_speed s_speed",
     "Pa": "equivalent_modulus stress",
     "Pa/m": "joint_stiffness",
@@ -32,7 +33,7 @@ LABELS = {key: f"{key} ({unit})" for unit, keys in UNITS.items() for key in keys
     "transmission": "transmission from the segment before",
 }
 APART = {"title", "variant", "effects", "steps", "limits_the_step", "cannot_run", "solutions"}
-APART |= {"references"}
+APART |= {"references", "in_space"}
 
 
 def show_explanation(found: dict[str, Any], every: bool) -> None:
@@ -46,6 +47,9 @@ def show_explanation(found: dict[str, Any], every: bool) -> None:
         for name, one in found["effects"].items()
     ]
     _show("effects are not active", effects, "active", every)
+    if "in_space" in found:
+        say(f"in space: {found['in_space']}")
+        return
     solutions = [
         {
             "solution": label_of(name),

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from jointwave.cases.errors import SceneError, all_of
-from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.scene_type import AnyScene, refuse_space
 from jointwave.compare import scenes
 from jointwave.compare.cli import completion
 from jointwave.compare.cli.terminal import say_warnings
@@ -152,9 +152,16 @@ def root(
 
 
 def load(
-    scene: str, changes: list[str], variant: str | None, strict: bool = False
+    scene: str,
+    changes: list[str],
+    variant: str | None,
+    strict: bool = False,
+    in_space: bool = False,
 ) -> list[AnyScene]:
-    """Return a file's variants, or the one that is named, with `--set` applied, warned of."""
+    """Return a file's variants, or the one that is named, with `--set` applied, warned of.
+
+    in_space : whether scenes in space are taken, which no engine solves yet; else they are refused.
+    """
     from jointwave.cases.read import parse_override
 
     overrides = dict(parse_override(text) for text in changes)
@@ -162,6 +169,8 @@ def load(
         found = scenes.load_variants(scene, overrides)
     else:
         found = [scenes.load(scene, variant, overrides)]
+    for one in found if not in_space else ():
+        refuse_space(one)
     warn(found, strict)
     return found
 

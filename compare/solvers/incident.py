@@ -31,7 +31,7 @@ def side_error(scene: Scene | RockMass) -> SideError | None:
     """Return the error of the quiet sides of a rock mass that its receivers feel, None without."""
     from jointwave.cases.schema.scene import Scene
 
-    if isinstance(scene, Scene) or not scene.waves:
+    if isinstance(scene, Scene) or scene.in_space or not scene.waves:
         return None
     from jointwave.compare.exact.rock_mass import side_error
 

@@ -20,7 +20,7 @@ import xarray as xr
 
 from jointwave.cases.errors import InterruptedRun, SceneError
 from jointwave.cases.read import parse_override
-from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.scene_type import AnyScene, refuse_space
 from jointwave.compare.engines import Progress
 from jointwave.compare.figures.comparison import write_comparisons
 from jointwave.compare.misfit.external import Curves
@@ -113,7 +113,10 @@ def sweep_of(
 def _scenes(path: Path, variant: str | None, changes: dict[str, Any]) -> list[AnyScene]:
     if (number := changes.pop(MEMBER, 0)) > 0:
         changes |= ensemble.seeds(load(path, variant or "", changes), number)
-    return load_variants(path, changes) if variant is None else [load(path, variant, changes)]
+    found = load_variants(path, changes) if variant is None else [load(path, variant, changes)]
+    for scene in found:
+        refuse_space(scene)
+    return found
 
 
 def _folder(setting: dict[str, Any], number: int) -> str:

@@ -13,7 +13,7 @@ from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.locate import block_at
 from jointwave.cases.partition.parts import loaded_part
 from jointwave.cases.sampling import Clock
-from jointwave.cases.schema.plane import StressInPlane
+from jointwave.cases.schema.plane import InSituStress
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.dem.blocks.edges import gathered, on_rows, points_on, resultant
@@ -123,7 +123,7 @@ class Sources:
         return time.dt * stride * felt
 
 
-def reactions(partition: Partition, sides: list[str], stress: StressInPlane) -> Pattern:
+def reactions(partition: Partition, sides: list[str], stress: InSituStress) -> Pattern:
     """Return the forces by which the rock beyond some sides goes on to bear a stress."""
     edges = partition.boundary
     points = points_on(partition, edges, on_sides(partition, sides))

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from jointwave.cases.scene_type import NOT_SOLVED
 from jointwave.compare.cli import completion, terminal
 from jointwave.compare.cli.options import (
     CORES,
@@ -177,8 +178,7 @@ def report(
     claims, and all studies. Results are read from and stored in out/SCENE, points of studies in
     DIR.
     """
-    for one in scenes or []:
-        load(one, [], None, strict)
+    scenes = _solved(scenes or [], strict)
     from jointwave.compare.cli.forecast_view import show_forecasts
     from jointwave.compare.cli.report_view import show_report
     from jointwave.compare.report.report import build, planned
@@ -186,12 +186,23 @@ def report(
 
     stored = ResultFolder(RESULTS, fresh)
     if dry:
-        runs, drawing = planned(out, scenes or (), stored)
+        runs, drawing = planned(out, scenes, stored)
         show_forecasts(runs, as_json, drawing=drawing)
         return
     with (
         locked(out, out / "figures", out / "studies"),
         terminal.progress("report") as advance,
     ):
-        found = build(out, advance, 2, scenes or (), peers, stored=stored)
+        found = build(out, advance, 2, scenes, peers, stored=stored)
     show_report(found, as_json)
+
+
+def _solved(names: list[str], strict: bool) -> list[str]:
+    """Return the scenes that engines solve, and print a line for each other one; raises SceneError
+    where there is no other."""
+    every = {name: load(name, [], None, strict, in_space=True) for name in names}
+    left_out = [name for name, found in every.items() if any(one.in_space for one in found)]
+    if names and set(left_out) == set(names):
+        load(left_out[0], [], None)
+    terminal.say_warnings(f"{name} is left out, in space: {NOT_SOLVED}" for name in left_out)
+    return [name for name in names if name not in left_out]

@@ -61,7 +61,7 @@ def picture(
         from jointwave.compare.figures.drawing.scene import scene_figure
         from jointwave.compare.misfit.pairs import Comparison
 
-        scenes = load(source, changes, variant, strict)
+        scenes = load(source, changes, variant, strict, in_space=True)
         title = scenes[0].title
         figure = scene_figure("scene", [Comparison(one) for one in scenes]).figure
     terminal.say(f"wrote {write_drawing(path, figure, title)}")

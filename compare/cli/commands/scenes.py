@@ -13,7 +13,7 @@ import typer
 
 from jointwave import cases
 from jointwave.cases.errors import SceneError
-from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.scene_type import NOT_SOLVED, AnyScene
 from jointwave.compare.cli import terminal
 from jointwave.compare.cli.options import (
     CORES,
@@ -45,7 +45,12 @@ from jointwave.compare.solvers.dem import DEM
 def list_scenes(as_json: JsonOption = False) -> None:
     """List the shipped scenes and their variants."""
     facts: list[dict[str, Any]] = [
-        {"scene": name, "title": scenes[0].title, "variants": [one.name for one in scenes[1:]]}
+        {
+            "scene": name,
+            "title": scenes[0].title,
+            "variants": [one.name for one in scenes[1:]],
+            **({"remark": f"in space: {NOT_SOLVED}"} if scenes[0].in_space else {}),
+        }
         for name, scenes in ((name, cases.load(find(name))) for name in shipped())
     ]
     if as_json:
@@ -162,6 +167,6 @@ def explain(
     from jointwave.compare.cli.explain import explanation
     from jointwave.compare.cli.explain_view import show_explanation
 
-    for one in load(scene, changes, variant or "", strict):
+    for one in load(scene, changes, variant or "", strict, in_space=True):
         found = explanation(one)
         terminal.print_json(found) if as_json else show_explanation(found, every)

@@ -7,7 +7,7 @@ from jointwave.cases.material.dashpots import set_time_constants
 from jointwave.cases.schema.damping import Damping, Rayleigh
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
-from jointwave.cases.schema.plane import IntactRock, RecordInPlane
+from jointwave.cases.schema.plane import IntactRock, RecordOfRock
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.tables import Time
 
@@ -21,7 +21,7 @@ def scene(*sets, **tables):
         rock=IntactRock(density=2500.0, intact_modulus=5e10),
         joint_sets=[JointSet(name=str(i), **law | keys) for i, keys in enumerate(sets)],
         time=Time(duration=1.0),
-        record=RecordInPlane(points=[[1.0, 1.0]]),
+        record=RecordOfRock(points=[[1.0, 1.0]]),
         **tables,
     )
 

@@ -4,11 +4,11 @@ import pytest
 
 from jointwave.cases.material.prestress import beyond_strength
 from jointwave.cases.schema.joint_set import JointSet
-from jointwave.cases.schema.plane import StressInPlane
+from jointwave.cases.schema.plane import InSituStress
 
 #: At 30 degrees: t_n = 1 x 1/4 + 5 x 3/4 = 4 MPa, |t_s| = 4 sqrt(3)/4 = 1.732 MPa.
-PRESSED = StressInPlane(xx=1e6, yy=5e6)
-PULLED = StressInPlane(xx=-1e6, yy=-1e6)
+PRESSED = InSituStress(xx=1e6, yy=5e6)
+PULLED = InSituStress(xx=-1e6, yy=-1e6)
 
 
 @pytest.mark.parametrize(

@@ -363,7 +363,7 @@ def test_a_mistake_is_one_line(written, name):
     with pytest.raises(SceneError) as error:
         load(path)
     line = str(error.value)
-    assert line.startswith(f"{path}") and "\n" not in line and len(line) < len(str(path)) + 500
+    assert line.startswith(f"{path}") and "\n" not in line and len(line) < len(str(path)) + 550
     for word in words:
         assert word in line
 

@@ -1,0 +1,227 @@
+"""Rock masses in space: what their files may hold, their blocks, and mistakes in one line."""
+
+from math import cos, radians, sin
+
+import numpy as np
+import pytest
+
+from jointwave import cases
+from jointwave.cases.errors import SceneError
+from jointwave.cases.space import SIDES, blocks_in_space
+from jointwave.cases.warnings import warnings
+
+ROCK = {"density": 2600.0, "intact_modulus": 5e10}
+STIFF = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+DOMAIN = {"size": [8.0, 6.0, 4.0]}
+BED = STIFF | {"name": "bed", "dip": 0.0, "spacing": 1.0}
+EAST = STIFF | {"name": "east", "dip": 90.0, "dip_direction": 90.0, "spacing": 2.0}
+WAVE = {"kind": "P", "direction": [0.0, 0.0, 1.0], "shape": "step", "amplitude": 1e6}
+S_WAVE = WAVE | {"kind": "S"}
+BASE = {"kind": "base", "side": "bottom", "quantity": "velocity", "shape": "step", "amplitude": 1.0}
+QUIET = {"bottom": "quiet"}
+
+
+def scene(**tables):
+    """Return a scene in space with these tables beside a box of rock, its beds and a receiver."""
+    every = {"title": "box", "domain": DOMAIN, "rock": ROCK, "joint_sets": [BED]}
+    every |= {"time": {"duration": 0.1}, "record": {"points": [[1.0, 1.0, 1.5]]}} | tables
+    return cases.load_tables(every)
+
+
+def test_all_that_a_scene_in_space_may_hold():
+    found = scene(
+        waves=[WAVE, S_WAVE | {"polarisation": [1.0, 0.0, 0.0], "through": [0.0, 0.0, 0.0]}],
+        loads=[
+            {"kind": "force", "at": [1.0, 1.0, 4.0], "direction": [0.6, 0.8, 0.0]}
+            | {"quantity": "force", "shape": "step", "amplitude": 1e3}
+        ],
+        boundaries=dict.fromkeys(("left", "right", "front", "back", "bottom"), "quiet"),
+        gravity={},
+        prestress={"xx": 1e6, "yy": 2e6, "zz": 3e6, "yz": 1e5},
+        regions=[{"name": "cap", "dip": 10.0, "dip_direction": 45.0, "through": [0.0, 0.0, 3.0]}],
+    )
+    assert found.in_space and found.kind == "rock mass" and warnings(found) == []
+    assert found.gravity.direction == [0.0, 0.0, -1.0] and found.prestress.zz == 3e6
+    assert [one.polarisation for one in found.waves] == [None, [1.0, 0.0, 0.0]]
+
+
+BLOCKS = {
+    "beds": ([BED], {}, 4),
+    "two sets": ([BED, EAST], {}, 16),
+    "brickwork": ([BED, EAST | {"ends_at": ["bed"], "offset": 0.5}], {}, 2 * 4 + 2 * 5),
+    "a box out of one bed": ([BED], {"openings": [[[6.0, 0.0, 1.0], [4.0, 6.0, 2.0]]]}, 5),
+}
+
+
+@pytest.mark.parametrize(("sets", "domain", "count"), BLOCKS.values(), ids=BLOCKS)
+def test_blocks_of_a_box(sets, domain, count):
+    """Their number, and their volume less that of openings."""
+    blocks = blocks_in_space(scene(joint_sets=sets, domain=DOMAIN | domain))
+    out = 12.0 if domain else 0.0
+    assert blocks.count == count and blocks.volume.sum() == pytest.approx(192.0 - out, rel=1e-12)
+    area = np.bincount(blocks.boundary.side, blocks.boundary.area, minlength=7)
+    if not domain:
+        assert area[:6] == pytest.approx([24, 24, 32, 32, 48, 48], rel=1e-12)
+    assert dict(zip(SIDES, area, strict=False))["right"] == pytest.approx(24.0, rel=1e-12)
+
+
+def test_an_arched_opening_is_taken_out_all_along_its_axis():
+    """By its area times the length of the axis, in x and z along y; its walls are a side."""
+    polygon = [[3.0, 1.0], [5.0, 1.0], [5.0, 2.0], [4.0, 3.0], [3.0, 2.0]]
+    prisms = [{"polygon": polygon, "axis": "y"}]
+    given = scene(domain=DOMAIN | {"prisms": prisms, "non_convex": "cut"})
+    blocks = blocks_in_space(given)
+    assert blocks.volume.sum() == pytest.approx(192.0 - 3.0 * 6.0, rel=1e-12)
+    walls = blocks.boundary.area[blocks.boundary.side == len(SIDES)].sum()
+    assert walls == pytest.approx(6.0 * (2.0 + 1.0 + 1.0 + 2 * 2**0.5), rel=1e-12)
+
+
+@pytest.mark.parametrize(("dip", "towards"), [(30.0, 0.0), (60.0, 90.0), (45.0, 200.0)])
+def test_joints_dip_where_they_say(dip, towards):
+    """The normal of joints points up and towards the dip direction, clockwise from north."""
+    one = STIFF | {"name": "one", "dip": dip, "dip_direction": towards, "through": [4.0, 3.0, 2.0]}
+    found = blocks_in_space(scene(joint_sets=[one])).contacts
+    normal = found.normal[0] * np.sign(found.normal[0, 2])
+    across, turn = sin(radians(dip)), radians(towards)
+    up = [across * sin(turn), across * cos(turn), cos(radians(dip))]
+    assert len(found) == 1 and normal == pytest.approx(up, abs=1e-15)
+
+
+MISTAKES = {
+    "a point of the plane": (
+        {"record": {"points": [[1.0, 1.0]]}},
+        "record.points[0] = [1.0, 1.0]: must have 3 numbers: domain.size has three",
+    ),
+    "a direction of the plane": (
+        {"waves": [WAVE | {"direction": [0.0, 1.0]}], "boundaries": QUIET},
+        "waves[0].direction = [0.0, 1.0]: must have 3 numbers",
+    ),
+    "no dip direction": (
+        {"joint_sets": [{k: v for k, v in EAST.items() if k != "dip_direction"}]},
+        "joint_sets[0].dip_direction: is required in space",
+    ),
+    "an S wave of any polarisation": (
+        {"waves": [S_WAVE], "boundaries": QUIET},
+        "waves[0].polarisation: is required for an S wave in space",
+    ),
+    "a polarisation along the wave": (
+        {"waves": [S_WAVE | {"polarisation": [0.0, 0.0, -1.0]}], "boundaries": QUIET},
+        "waves[0].polarisation = [0.0, 0.0, -1.0]: is required for an S wave in space: not along",
+    ),
+    "a polarised P wave": (
+        {"waves": [WAVE | {"polarisation": [1.0, 0.0, 0.0]}], "boundaries": QUIET},
+        "waves[0].polarisation = [1.0, 0.0, 0.0]: is of S waves",
+    ),
+    "no zz": ({"prestress": {"xx": 1e6, "yy": 1e6}}, "prestress.zz: is required in space"),
+    "an outline of a region": (
+        {"regions": [{"name": "lens", "outline": [[1.0, 1.0, 1.0]]}]},
+        "regions[0].outline = [[1.0, 1.0, 1.0]]: has no meaning in space",
+    ),
+    "a region outside": (
+        {"regions": [{"name": "cap", "through": [0.0, 0.0, 5.0]}]},
+        "regions[0].through = [0.0, 0.0, 5.0]: leaves the region empty",
+    ),
+    "a polygon as an opening": (
+        {"domain": DOMAIN | {"openings": [[[1.0, 1.0, 1.0], [2.0, 1.0, 1.0], [2.0, 2.0, 1.0]]]}},
+        "domain.openings[0]: must be two opposite corners of a box",
+    ),
+    "an opening outside": (
+        {"domain": DOMAIN | {"openings": [[[1.0, 1.0, 1.0], [2.0, 2.0, 9.0]]]}},
+        "domain.openings[0]: must lie in the domain, near [",
+    ),
+    "a prism that crosses itself": (
+        {
+            "domain": DOMAIN
+            | {
+                "prisms": [
+                    {"axis": "x", "polygon": [[1.0, 1.0], [2.0, 2.0], [2.0, 1.0], [1.0, 2.0]]}
+                ]
+            }
+        },
+        "domain.prisms[0].polygon: must be a polygon that does not cross itself",
+    ),
+    "ends of a prism": (
+        {
+            "domain": DOMAIN
+            | {
+                "prisms": [
+                    {
+                        "axis": "x",
+                        "polygon": [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]],
+                        "ends": [3.0, 2.0],
+                    }
+                ]
+            }
+        },
+        "domain.prisms[0].ends: must be two increasing numbers",
+    ),
+    "a wave through a free side": (
+        {"waves": [WAVE | {"direction": [0.0, 1.0, 0.0]}]},
+        "boundaries.front = 'free': must be 'quiet': waves[0] enters there",
+    ),
+    "one periodic side": (
+        {"boundaries": {"front": "periodic"}},
+        "boundaries.front = 'periodic': needs boundaries.back = 'periodic', too",
+    ),
+    "a joint outside": (
+        {"joint_sets": [STIFF | {"name": "one", "dip": 0.0, "through": [0.0, 0.0, 7.0]}]},
+        "joint_sets[0].through: must lie in the domain, near [0, 0, 7]",
+    ),
+    "a point in an opening": (
+        {"domain": DOMAIN | {"openings": [[[0.0, 0.0, 1.0], [2.0, 2.0, 2.0]]]}},
+        "record.points[0] = [1.0, 1.0, 1.5]: must lie in the domain and outside its openings",
+    ),
+    "a part of a side": (
+        {
+            "loads": [
+                BASE
+                | {
+                    "kind": "pressure",
+                    "quantity": "stress",
+                    "between": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
+                }
+            ]
+        },
+        "loads[0].between = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]: has no meaning in space",
+    ),
+}
+
+
+@pytest.mark.parametrize(("tables", "said"), MISTAKES.values(), ids=MISTAKES)
+def test_a_mistake_is_one_line(tables, said):
+    with pytest.raises(SceneError) as error:
+        scene(**tables)
+    assert str(error.value).startswith(f"scene: {said}") and "\n" not in str(error.value)
+
+
+IN_PLANE = {
+    "a point": ({"record": {"points": [[1.0, 1.0, 1.0]]}}, "must have 2 numbers"),
+    "a dip direction": ({"joint_sets": [BED | {"dip_direction": 0.0}]}, "no meaning in the plane"),
+    "a side": ({"boundaries": {"front": "free"}}, "is not a side of this domain, which has left"),
+    "a stress": ({"prestress": {"xx": 1e6, "yy": 1e6, "zz": 1e6}}, "no meaning in the plane"),
+    "a prism": (
+        {
+            "domain": {
+                "size": [8.0, 6.0],
+                "prisms": [{"axis": "x", "polygon": [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]]}],
+            }
+        },
+        "no meaning in the plane",
+    ),
+}
+
+
+@pytest.mark.parametrize(("tables", "said"), IN_PLANE.values(), ids=IN_PLANE)
+def test_what_is_of_scenes_in_space_is_refused_in_the_plane(tables, said):
+    plane = {"domain": {"size": [8.0, 6.0]}, "record": {"points": [[1.0, 1.5]]}}
+    with pytest.raises(SceneError, match=said) as error:
+        scene(**plane | tables)
+    assert "\n" not in str(error.value)
+
+
+def test_more_blocks_than_memory_are_refused_before_they_are_cut():
+    small = [one | {"spacing": 1e-3} for one in (BED, EAST)]
+    with pytest.raises(SceneError, match=r"joint_sets: the blocks would need about .* available"):
+        blocks_in_space(
+            scene(joint_sets=[*small, EAST | {"name": "n", "dip_direction": 0.0, "spacing": 1e-3}])
+        )
