@@ -87,7 +87,7 @@ def _is_label(text: str) -> bool:
 def read_curves(texts: Sequence[str], scenes: Sequence[AnySource]) -> list[Curves]:
     """Read the arguments of `--with`, each FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
 
-    FILE is NetCDF, written by `jointwave run` or with `time` and, for example, `stress`; or a table
+    FILE is NetCDF, as `jointwave run` writes it; or a table
     or seismogram as `cases.records` reads them, a header `time [ms], stress@20 [MPa]` or two bare
     columns, time in s first. LABEL selects one of several curves, or labels the only one; COLUMN is
     a header. Empty cells are skipped. One entry per file, and per set of times in it.

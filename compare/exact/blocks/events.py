@@ -3,8 +3,8 @@
 While no joint opens or closes the chain is linear, and from rest under static gravity and prestress
 its motion is a Taylor series of x' = A x + b f(t): with steps of STEP over the norm of A the term
 of order ORDER is below round-off. The force of a joint and that of its spring are then polynomials,
-and all points at which they change sign are found from their Bernstein coefficients (`bernstein`).
-At the first of them the step ends, the joint opens or closes, and the series restarts.
+of one sign where all their Bernstein coefficients are; else their roots are looked at. At the first
+change of sign the step ends, the joint opens or closes, and the series restarts.
 
 A tension-free joint is closed while neither its spring nor spring and dashpot together pull. A
 damped one opens when their sum vanishes, with its spring still compressed, and closes when the gap
@@ -13,14 +13,15 @@ vanishes, immediately with the force of its dashpot.
 
 from dataclasses import dataclass
 from itertools import pairwise
+from math import comb
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts1
+from numpy.polynomial.polynomial import polyder, polyval
 from scipy.sparse import csr_array
 
 from jointwave.cases.histories import LoadHistory
 from jointwave.cases.size import require
-from jointwave.compare.exact.blocks.bernstein import of_powers, sign_changes
 from jointwave.compare.exact.blocks.system import BlockSystem
 
 ORDER = 24
@@ -28,10 +29,16 @@ STEP = 2.0  # over the norm of A: the last term is 2^24 / 24! = 3e-17
 LOAD_STEP = 1 / 24  # of the load's period: its interpolation error is below 1e-15
 SETTLED = 4 / 3  # of the time at which a wavelet has fallen to 1e-8: it is 1e-24 then
 LEAST = 1e-6  # of a step: minimum time between changes of a joint that has just changed twice
+NEGLIGIBLE = 1e-18  # of the largest coefficient
+NOW = 1e-14  # of a step: a nearer root is that of its beginning, or round-off
+REAL = 1e-6  # largest imaginary part of a root that counts: round-off parts two that are close
 
 _NODES = (1 + chebpts1(10)) / 2
 _POWERS = np.vander(_NODES, increasing=True)
-_BERNSTEIN = of_powers(ORDER)
+#: From the coefficients of powers to those of Bernstein's polynomials (Farouki 2012).
+_BERNSTEIN = np.array(
+    [[comb(i, k) / comb(ORDER, k) for k in range(ORDER + 1)] for i in range(ORDER + 1)]
+)
 
 
 @dataclass(frozen=True)
@@ -176,7 +183,8 @@ class _Walk:
         for i in np.flatnonzero(~stays):
             least = LEAST if contacts.changed[i] > 1 else 0.0
             now = contacts.closed[i]
-            found = _change_of(forces[:, :, i], bounds[:, :, i], now, least, best)
+            crosses = (bounds[:, :, i].min(axis=1) < 0) & (bounds[:, :, i].max(axis=1) > 0)
+            found = _change_of(forces[:, :, i], crosses, now, least, best)
             if found is not None and (found[0] < best or event is None):
                 best, event = found[0], (int(i), found[1])
         return best, event
@@ -197,24 +205,29 @@ class _Walk:
 
 
 def _change_of(
-    forces: np.ndarray, bounds: np.ndarray, closed: bool, least: float, up_to: float
+    forces: np.ndarray, crosses: np.ndarray, closed: bool, least: float, up_to: float
 ) -> tuple[float, int] | None:
     """Return the first time before `up_to` at which a joint changes, and the force that causes it:
-    0 that of the spring, 1 that of spring and dashpot together."""
-    powers = [p.tolist() for p in forces]
-    roots = [(r, kind) for kind in (0, 1) for r in sign_changes(bounds[kind], powers[kind], up_to)]
+    0 that of the spring, 1 that of spring and dashpot together. crosses : those that may be zero.
+    """
+    found = [(r, int(kind)) for kind in np.flatnonzero(crosses) for r in _roots(forces[kind])]
+    roots = [one for one in found if one[0] < up_to]
     edges = sorted([(0.0, -1), *roots])
     for (a, kind), b in zip(edges, [*(r for r, _ in edges[1:]), up_to], strict=True):
-        values = [_value(p, (a + b) / 2) for p in powers]
-        holds = min(values) >= 0
+        values = polyval((a + b) / 2, forces.T)
+        holds = values.min() >= 0
         if b > least and holds != closed:
             a = max(a, least)
             return a, kind if kind >= 0 else int(values[1] < values[0])
     return None
 
 
-def _value(powers: list, x: float) -> float:
-    value = 0.0
-    for c in reversed(powers):
-        value = value * x + c
-    return value
+def _roots(powers: np.ndarray) -> list[float]:
+    """Return the roots of a polynomial in (0, 1), to round-off by Newton steps."""
+    kept = np.flatnonzero(np.abs(powers) > NEGLIGIBLE * np.abs(powers).max())[-1] + 1
+    found = np.roots(powers[:kept][::-1].astype(float))
+    x = found.real[(np.abs(found.imag) < REAL) & (found.real > 0) & (found.real < 1)]
+    for _ in range(2):
+        slope = polyval(x, polyder(powers))
+        x = x - np.divide(polyval(x, powers), slope, out=np.zeros_like(slope), where=slope != 0)
+    return x[(x > NOW) & (x < 1)].tolist()

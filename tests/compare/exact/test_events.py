@@ -4,9 +4,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from numpy.polynomial import polynomial as poly
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
@@ -16,7 +13,6 @@ from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.exact.blocks import no_tension
-from jointwave.compare.exact.blocks.bernstein import of_powers, sign_changes
 from jointwave.compare.exact.blocks.events import integrate
 from jointwave.compare.exact.blocks.system import chain, receivers
 from jointwave.compare.exact.conditions import drive
@@ -231,17 +227,6 @@ def test_the_bound_of_the_error_holds(seed, tmp_path):
         error = np.sqrt(((wave - exact)[:, :known] ** 2).mean(axis=1))
         assert (error <= bound).all()
         assert (bound <= 1e-5 * np.abs(wave[:, :known]).max()).all()
-
-
-@given(st.lists(st.floats(0.001, 0.999), min_size=1, max_size=5, unique=True))
-def test_no_root_is_missed(roots):
-    """A product of linear factors changes sign at each of its roots, however close."""
-    roots = sorted(roots)
-    if min(np.diff(roots), default=1.0) < 1e-3:
-        return
-    powers = poly.polyfromroots(roots)
-    found = sign_changes(of_powers(len(roots)) @ powers, powers.tolist())
-    assert found == pytest.approx(roots, abs=1e-7)
 
 
 def test_the_time_is_said_from_which_bouncing_is_chaotic(tmp_path):

@@ -129,7 +129,6 @@ def test_a_column_of_our_own_table_is_selected_by_its_header(pillar, tmp_path):
 @pytest.mark.parametrize(
     ("label", "variable"),
     [
-        (":stress@20", xr.DataArray(STRESS, {"time": TIME}, ["time"])),
         ("", xr.DataArray(STRESS, {"time": TIME, "stress_y": 20.0}, ["time"])),
         (
             "",
@@ -139,7 +138,7 @@ def test_a_column_of_our_own_table_is_selected_by_its_header(pillar, tmp_path):
             ":-stress@20",
             xr.DataArray(
                 -1e-6 * STRESS,
-                {"time": ("time", 1e3 * TIME, {"units": "milliseconds"})},
+                {"time": ("time", 1e3 * TIME, {"units": "milliseconds"}), "stress_y": 20.0},
                 ["time"],
                 attrs={"units": "MPa"},
             ),
@@ -147,7 +146,7 @@ def test_a_column_of_our_own_table_is_selected_by_its_header(pillar, tmp_path):
     ],
 )
 def test_any_netcdf_with_time_and_stress_is_read(label, variable, tmp_path, scene):
-    """Named by hand, by the receiver that was selected, or by the dimension that results have."""
+    """At a receiver that was selected, or over the dimension that results have."""
     path = tmp_path / "other.nc"
     variable.rename("stress").to_netcdf(path)
     (curves,) = read_curves([f"{path}{label}"], [scene])
@@ -399,8 +398,11 @@ def netcdf_faults():
     stress = ("time", STRESS)
     yield xr.Dataset({"stress": stress}), "time"
     yield xr.Dataset({"strain": stress}, {"time": TIME}), "one or more of stress"
-    yield xr.Dataset({"stress": stress}, {"time": TIME[[0, 2, 1, 3]]}), "sample 2: time = 0.001"
-    yield xr.Dataset({"stress": stress}, {"time": TIME}), "must be named as stress@20"
+    yield (
+        xr.Dataset({"stress": stress}, {"time": TIME[[0, 2, 1, 3]], "stress_y": 20.0}),
+        "sample 2: time = 0.001",
+    )
+    yield xr.Dataset({"stress": stress}, {"time": TIME}), "stress: must be over time and one of"
     yield xr.Dataset({"stress": (("x", "time"), STRESS[None])}, {"time": TIME}), "stress_y"
     holes = np.where(TIME == 2e-3, np.nan, STRESS)
     receiver = {"time": TIME, "stress_y": 20.0}
