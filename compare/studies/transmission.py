@@ -42,8 +42,8 @@ def transmission(
     """Return |R_p|, |R_s|, |T_p| and |T_s| [solver, angle] of a scene's parallel joints: particle
     velocity of the reflected and transmitted P and S waves over that of the incident wave.
 
-    Rock and joints are those of the scene; its domain, waves and receivers do not matter. `residual`
-    is the part of the motion that these waves do not explain, nan where none is read.
+    Rock and joints are those of the scene; its domain, waves and receivers do not matter.
+    `residual` is the part of the motion that these waves do not explain, nan where none is read.
 
     Parameters
     ----------

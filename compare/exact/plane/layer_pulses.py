@@ -145,7 +145,9 @@ def _amplitudes(
     def inverted(some: list[tuple[LayerWave, float]]) -> np.ndarray:
         def transfer(omega: np.ndarray) -> np.ndarray:
             found = np.concatenate(stack.layers(omega), axis=-1) - sharp[:, None]
-            found = np.ascontiguousarray(np.moveaxis(found, -1, 1))  # as in `waves.solve_pair`
+            # Of a strided array numpy multiplies the last numbers by other instructions, with
+            # another last digit.
+            found = np.ascontiguousarray(np.moveaxis(found, -1, 1))
             decay = [np.exp(1j * omega * q * d) if d else 1.0 for _, d in some]
             return np.array(
                 [

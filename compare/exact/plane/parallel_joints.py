@@ -26,7 +26,7 @@ from jointwave.compare.exact.plane.oblique_joint import (
     scattering,
 )
 from jointwave.compare.exact.plane.pulse import Layers, PulseStack, axes_of
-from jointwave.compare.exact.plane.waves import Kind, slowness_along, slownesses_across, solve_pair
+from jointwave.compare.exact.plane.waves import Kind, slowness_along, slownesses_across
 
 
 def coefficients(
@@ -72,8 +72,7 @@ def march(
         if rocks[k] is not rocks[k + 1]:
             back, returned = scattering(rocks[k + 1], joints[k], slowness, omega, rocks[k])
         rest = E[k][..., :, None] * reflected[0] * E[k][..., None, :]
-        M = np.eye(2) - back @ rest
-        Y = solve_pair((M[..., 0, :], M[..., 1, :]), (T[..., 0, :], T[..., 1, :]))
+        Y = np.linalg.solve(np.eye(2) - back @ rest, T)
         reflected.insert(0, R + returned @ rest @ Y)
         behind.insert(0, Y)
     return reflected, behind

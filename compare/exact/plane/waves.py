@@ -105,13 +105,3 @@ def stress(rock: ElasticRock, slowness: np.ndarray, polarisation: np.ndarray) ->
     trace = np.trace(sg, axis1=-2, axis2=-1)[..., None, None]
     sheared = rock.shear_modulus * (sg + np.swapaxes(sg, -2, -1))
     return -(rock.lame * trace * np.eye(2) + sheared)
-
-
-def solve_pair(rows: tuple, sides: tuple) -> np.ndarray:
-    """Return r [..., out, in] of rows[i] . r = sides[i], two rows and sides [..., 2] each."""
-    # Columns of their own: of a strided one numpy takes the memory behind it for its own too, and
-    # multiplies by other instructions, with another last digit, where the product begins there.
-    (a, b), (c, d) = ([np.ascontiguousarray(row[..., k, None]) for k in (0, 1)] for row in rows)
-    (left, right), det = sides, a * d - b * c
-    p, s = left * d - right * b, a * right - c * left
-    return np.stack([p / det, s / det], axis=-2)

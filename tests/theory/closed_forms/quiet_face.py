@@ -20,7 +20,6 @@ from jointwave.compare.exact.plane.waves import (
     cosines,
     face,
     slowness_along,
-    solve_pair,
 )
 
 
@@ -44,7 +43,8 @@ def reflection(
     w = face(rock, slowness)
     normal, n = _weighed(w.normal, w.normal_velocity, rock.p_impedance, dashpots[0])
     shear, t = _weighed(w.shear, w.shear_velocity, rock.s_impedance, dashpots[1])
-    return solve_pair((normal - n, t - shear), (-normal - n, -t - shear))
+    rows, sides = (normal - n, t - shear), (-normal - n, -t - shear)
+    return np.linalg.solve(*(np.stack(np.broadcast_arrays(*x), axis=-2) for x in (rows, sides)))
 
 
 def energy_flux(incidence: Kind, angle: Values, rock: ElasticRock, found: tuple) -> np.ndarray:
