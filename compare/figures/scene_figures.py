@@ -14,7 +14,7 @@ from jointwave.compare.figures.charts.propagation import propagation
 from jointwave.compare.figures.charts.spacetime import diagrams_of, space_time
 from jointwave.compare.figures.charts.spectra import spectra
 from jointwave.compare.figures.charts.waveforms import waveforms
-from jointwave.compare.figures.drawing.scene import scene_figure, sketch_of
+from jointwave.compare.figures.drawing.scene import scene_figure
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison
@@ -31,7 +31,7 @@ def figures_of(
     space-time diagrams.
     """
     return [
-        *_scene(name, comparisons),
+        scene_figure(name, comparisons),
         *peak_velocities(name, comparisons),
         *waveforms(name, comparisons),
         *_space_time(name, comparisons, fields),
@@ -39,19 +39,6 @@ def figures_of(
         *propagation(name, comparisons),
         *energy(name, comparisons),
     ]
-
-
-def _scene(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
-    """Return the drawing of the scene or, if variants look different, of the one with most parts
-    and, folded, of all."""
-    every = scene_figure(name, comparisons)
-    if every.table["variant"].nunique() == 1:
-        return [every]
-    named = dict(zip(variant_names(comparisons), comparisons, strict=True))
-    most = max(named, key=lambda one: len(sketch_of(named[one].scene).table()))
-    first = replace(scene_figure(name, [named[most]]), title=f"{every.title}, {most}")
-    folded = replace(every, name=f"{name}-scenes", title="The scene, all variants", folded=True)
-    return [first, folded]
 
 
 def _space_time(

@@ -19,9 +19,9 @@ v = a (1 - R). These are the impedance recursions of Brekhovskikh (Waves in Laye
 with the joint of Schoenberg (JASA 68, 1980).
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -117,18 +117,11 @@ class Cell(NamedTuple):
         share = self.passed / (1 - self.far * R)
         return self.near + self.back * share * R, share
 
-    def twice(self) -> "Cell":
-        """Return two such parts of the same rock in series."""
-        near, share = self.before(self.near)
-        passed = share * self.passed
-        return Cell(near, self.far + self.passed * share * self.far, passed, passed)
-
 
 def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return stress and velocity [places, len(s)] at `places` (m) for an end stress of 1.
 
-    s : complex array of Laplace variables, 1/s, with positive real parts. Equal joints at equal
-    spacings with no place among them are combined by doubling.
+    s : complex array of Laplace variables, 1/s, with positive real parts.
     """
     zs = [rock.impedance(s) for rock in bar.rocks]
     slowness = [s * rock.density / z for rock, z in zip(bar.rocks, zs, strict=True)]
@@ -141,9 +134,7 @@ def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, n
     nodes, joint_of = nodes_of(bar, places)
 
     @lru_cache(16)  # of joints that all differ, some
-    def cell(kind: Kind, doublings: int) -> Cell:
-        if doublings:
-            return cell(kind, doublings - 1).twice()
+    def cell(kind: Kind) -> Cell:
         z, q = zs[kind.rock], np.exp(-kind.h * slowness[kind.rock])
         x = s * z * kind.compliance / (1 + s * kind.time_constant)
         if kind.rock == kind.behind:
@@ -153,23 +144,20 @@ def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, n
         near, far = (off - x * Z) / whole, (-off - x * Z) / whole
         return Cell(near * q**2, far, 2 * z / whole * q, 2 * Z / whole * q)
 
-    for members in _runs(bar, nodes, joint_of, places):
-        i, kind = members[0]
+    for i, kind in _kinds(bar, nodes, joint_of):
         here = np.abs(places - nodes[i]) < 1e-9 * bar.length
         if here.any():
             stress[here], velocity[here] = zs[kind.behind] * (1 + R), 1 - R
             if kind.compliance or kind.rock != kind.behind:
-                R, share = cell(kind._replace(h=0.0), 0).before(R)
+                R, share = cell(kind._replace(h=0.0)).before(R)
                 passing = passing * share
                 stress[here] *= share
                 velocity[here] = (velocity[here] * share + 1 - R) / 2
                 kind = Kind(0.0, 0.0, kind.h, kind.rock, kind.rock)
             reached.append((here, passing))
             passing = np.ones_like(R)
-        for doublings in range(len(members).bit_length()):
-            if len(members) >> doublings & 1:
-                R, share = cell(kind, doublings).before(R)
-                passing = passing * share
+        R, share = cell(kind).before(R)
+        passing = passing * share
     entering = passing / (zs[0] * (1 + R) + bar.start.impedance(s) * (1 - R))
     for here, beyond in reversed(reached):
         stress[here] *= entering
@@ -189,21 +177,16 @@ class Kind(NamedTuple):
     behind: int
 
 
-def _runs(bar: Bar, nodes: np.ndarray, joint_of: dict[int, int], places: np.ndarray) -> list[list]:
-    """Return runs of nodes of the same kind from the far end on; a node with a place is a run of
-    its own."""
-    held = (np.abs(places[:, None] - nodes) < 1e-9 * bar.length).any(axis=0)
+def _kinds(bar: Bar, nodes: np.ndarray, joint_of: dict[int, int]) -> Iterator[tuple[int, Kind]]:
+    """Yield the nodes with their kinds from the far end on."""
     h = np.append(0.0, np.diff(nodes)).round(12)
     starts, close = [rock.y for rock in bar.rocks[1:]], 1e-9 * bar.length
     before, behind = (np.searchsorted(starts, nodes + off) for off in (-close, close))
-    kinds = []
     for i in range(len(nodes) - 1, -1, -1):
         j = joint_of.get(i)
         C, eta = (0.0, 0.0) if j is None else (bar.joint_compliance[j], bar.joint_time_constant[j])
         rocks = int(before[i]), int(behind[i])
-        kinds.append((i, Kind(float(C), float(eta), float(h[i]), *rocks)))
-    runs = groupby(kinds, key=lambda one: (one[1], one[0] if held[one[0]] else -1))
-    return [list(members) for _, members in runs]
+        yield i, Kind(float(C), float(eta), float(h[i]), *rocks)
 
 
 def _end_reflection(end: End, s: np.ndarray, z: np.ndarray) -> np.ndarray:

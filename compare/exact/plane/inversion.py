@@ -14,8 +14,7 @@ points in each bin avoid wrapping of the tails; one FFT per point sums over all 
 
 Motion after the window is reduced by the factor WRAPPED; frequencies end at pi / step, tapered by
 exp(-36 (omega step / pi)^8). A coarser inversion, with half of the window and every second sample
-of the pulse, has a larger error: SAFETY times the largest difference of the two within NEAR fine
-steps bounds the error, with FLOOR times the largest motion for round-off.
+of the pulse, has a larger error: the difference of the two bounds it.
 """
 
 from collections.abc import Callable
@@ -25,16 +24,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-WINDOW = 2  # times the requested duration, in the coarser of the two inversions
 WRAPPED = 1e-11
 STEPS = 4096  # least number in the requested duration
 GAUSS = 10  # points per bin
 SLOPE = 16  # bins over which the path climbs
 CLIMB = 160  # points on the slope
-NEAR = 9  # fine steps
-SAFETY = 2.0  # factor on the difference of the two inversions
-FLOOR = 2e-10  # of the largest motion
-FAINT = 1e-9  # of a pulse's spectrum: the highest frequencies that `analytic_inverse` leaves out
 
 Function = Callable[[np.ndarray], np.ndarray]
 
@@ -53,55 +47,49 @@ class Window(NamedTuple):
         return 2 * np.pi / (len(self.times) * self.step)
 
 
+class Accuracy(NamedTuple):
+    """How an inversion is done: its window over the duration, every which sample of the pulse it
+    takes, and the part of the pulse's spectrum below which frequencies are left out."""
+
+    window: int
+    skip: int = 1
+    least: float = 0.0
+
+
+#: That of fields at many places; that of solutions, and a coarser one whose difference bounds it.
+QUICK, FINE, ROUGH = Accuracy(4, least=1e-9), Accuracy(4), Accuracy(2, skip=2)
+
+
 def inverse(
-    transfer: Function, pulse: Function, times: np.ndarray, earliest: float, causal: bool
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return u [..., n] at `times` (s, equally spaced) and the bound on its root-mean-square error
-    [...].
-
-    transfer : H [..., k] at complex omega [k] (rad/s). pulse : f, taken as zero before the first of
-    the times. earliest : delay of the first arrival, s.
-    """
-    from scipy.ndimage import maximum_filter1d
-
-    windows = [window_of(times, size, max(0.0, -earliest)) for size in (2 * WINDOW, WINDOW)]
-    found, rough = (
-        _inverse(transfer, pulse, window, len(times), skip, causal).real
-        for window, skip in zip(windows, (1, 2), strict=True)
-    )
-    stride = windows[0].stride
-    off = maximum_filter1d(np.abs(found - rough), NEAR, axis=-1)[..., ::stride]
-    peak = max(np.abs(found).max(), np.abs(pulse(windows[0].times)).max())
-    error = SAFETY * np.sqrt(np.mean(off**2, axis=-1)) + FLOOR * peak
-    return found[..., ::stride], error
-
-
-def analytic_inverse(
-    transfer: Function, pulse: Function, times: np.ndarray, causal: bool
+    transfer: Function, pulse: Function, times: np.ndarray, causal: bool, how: Accuracy
 ) -> np.ndarray:
-    """Return (1/pi) int F H e^{-i omega t} d omega [..., n], whose real part is u, for a pulse that
-    no arrival precedes; as `inverse`, but without a bound and without the frequencies at which the
-    pulse's spectrum is below FAINT."""
-    window = window_of(times, 2 * WINDOW, 0.0)
-    found = _inverse(transfer, pulse, window, len(times), 1, causal, FAINT)
+    """Return (1/pi) int F H e^{-i omega t} d omega [..., n] at `times` (s, equally spaced), whose
+    real part is u.
+
+    transfer : H [..., k] at complex omega [k] (rad/s). pulse : f, which no arrival precedes, taken
+    as zero before the first of the times.
+    """
+    window = window_of(times, how.window)
+    found = _inverse(transfer, pulse, window, len(times), causal, how)
     return found[..., :: window.stride]
 
 
-def window_of(times: np.ndarray, size: float, lead: float) -> Window:
-    """Return the window of `size` times the duration and the lead (s)."""
+def window_of(times: np.ndarray, size: float) -> Window:
+    """Return the window of `size` times the duration."""
     from scipy.fft import next_fast_len
 
     n = len(times)
     stride = -(-STEPS // n)
     step = (times[-1] - times[0]) / (n - 1) / stride
-    count = 4 * next_fast_len(int(np.ceil(size * (stride * n + lead / step) / 4)))
+    count = 4 * next_fast_len(int(np.ceil(size * stride * n / 4)))
     decay = -np.log(WRAPPED) / (count * step)
     return Window(times[0] + step * np.arange(count), step, stride, float(decay))
 
 
-def _inverse(transfer, pulse, window, n, skip, causal, least=0.0) -> np.ndarray:
+def _inverse(transfer, pulse, window, n, causal, how) -> np.ndarray:
     """Return the complex motion whose real part is u, at the fine steps of n samples, from every
     `skip`-th fine sample of the pulse."""
+    skip, least = how.skip, how.least
     signal, keep = pulse(window.times)[::skip], slice(0, n * window.stride)
     if causal:
         return _level(transfer, signal, window, skip, 0.5, 0, least)[..., keep]

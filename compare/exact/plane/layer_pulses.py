@@ -11,10 +11,11 @@ that follows a pulse without delay is summed in time, with all its kinks.
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import prod
+from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.compare.exact.plane.inversion import STEPS, analytic_inverse
+from jointwave.compare.exact.plane.inversion import FINE, QUICK, ROUGH, STEPS, Accuracy, inverse
 from jointwave.compare.exact.plane.pulse import Pulse, PulseStack, modes_of
 
 HALF = 4  # samples on either side
@@ -24,6 +25,8 @@ SPARE = 8
 NEGLIGIBLE = 1e-10  # of an evanescent wave
 FAINT = 1e-8  # of a pulse's spectrum
 AT_ONCE = 200  # amplitudes inverted together
+SAFETY = 3.0  # factor on the difference of the two inversions
+FLOOR = 2e-10  # of the largest motion
 TOGETHER = 32  # places at which an evanescent wave is found together
 
 
@@ -44,13 +47,41 @@ class LayerWave:
     shares: np.ndarray | None = None
 
 
-def motion(
-    pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return velocity [m, 2, n] (m/s) and stress [m, 3, n] (Pa, tension positive), as
-    `pulse_fields` does.
+class Fields(NamedTuple):
+    """Motion at points, arrays [points, components, times], and bounds [points, components] on its
+    root-mean-square error: velocity (x, y) in m/s, stress (xx, yy, xy) in Pa, tension positive."""
 
-    pulse : zero before 0 s. points : [m, 2], m. times : equally spaced, s.
+    velocity: np.ndarray
+    stress: np.ndarray
+    velocity_error: np.ndarray
+    stress_error: np.ndarray
+
+
+def fields(pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.ndarray) -> Fields:
+    """Return particle velocity and stress in front of, between and behind joints, with bounds from
+    the difference of two inversions, and from round-off.
+
+    pulse, points, times : as `motion` has them.
+    """
+    found, rough = (motion(pulse, stack, points, times, how) for how in (FINE, ROUGH))
+    peak, errors = np.abs(pulse(np.asarray(times))).max(), []
+    for one, other, unit in zip(found, rough, (1.0, stack.rocks[0].p_impedance), strict=True):
+        off = SAFETY * np.sqrt(np.mean((one - other) ** 2, axis=-1))
+        errors.append(off + FLOOR * max(np.abs(one).max(initial=0.0), peak * float(unit)))
+    return Fields(*found, *errors)
+
+
+def motion(
+    pulse: Pulse,
+    stack: PulseStack,
+    points: np.ndarray,
+    times: np.ndarray,
+    how: Accuracy = QUICK,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return velocity [m, 2, n] (m/s) and stress [m, 3, n] (Pa, tension positive).
+
+    pulse : at the origin, zero before 0 s. points : [m, 2], m; one on a joint belongs to the side
+    from which the pulse comes. times : equally spaced, s.
     """
     t, places = np.asarray(times, dtype=float), np.atleast_2d(points) @ stack.axes.rows.T
     modes = modes_of(stack)
@@ -59,7 +90,7 @@ def motion(
     fine, stride = _fine_times(stack, waves, t)
     sharp = np.concatenate(stack.at_once, axis=-1)
     found = np.zeros((len(places), modes.shape[2], len(t)))
-    amplitudes = _amplitudes(pulse, stack, waves, fine)
+    amplitudes = _amplitudes(pulse, stack, waves, fine, how)
     for one, rows in zip(waves, amplitudes, strict=True):
         mode, share = modes[one.layer, one.wave][:, None], sharp[one.layer, one.wave]
         for k, (place, late) in enumerate(zip(one.members, one.delays, strict=True)):
@@ -133,7 +164,7 @@ def _fine_times(stack: PulseStack, waves: list[LayerWave], t: np.ndarray) -> tup
 
 
 def _amplitudes(
-    pulse: Pulse, stack: PulseStack, waves: list[LayerWave], fine: np.ndarray
+    pulse: Pulse, stack: PulseStack, waves: list[LayerWave], fine: np.ndarray, how: Accuracy
 ) -> Iterator[np.ndarray]:
     """Yield each wave's complex amplitude without the undelayed part (its real part is the motion),
     [1, samples], or those of an evanescent wave at its depths [d, samples]."""
@@ -156,7 +187,7 @@ def _amplitudes(
                 ]
             )
 
-        return analytic_inverse(transfer, pulse, fine, causal)
+        return inverse(transfer, pulse, fine, causal, how)
 
     parts = (inverted(rows[k : k + AT_ONCE]) for k in range(0, len(rows), AT_ONCE))
     each = (row for part in parts for row in part)

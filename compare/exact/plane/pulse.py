@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.material.rock import ElasticRock
-from jointwave.compare.exact.plane.inversion import inverse
 from jointwave.compare.exact.plane.waves import (
     KINDS,
     Kind,
@@ -26,17 +25,6 @@ from jointwave.compare.exact.plane.waves import (
 #: Particle velocity (m/s) as a function of times (s), along the direction of travel (P) or along it
 #: rotated anticlockwise by a right angle (SV).
 Pulse = Callable[[np.ndarray], np.ndarray]
-
-
-class Fields(NamedTuple):
-    """Motion at points, arrays [points, components, times], and bounds [points, components] on its
-    root-mean-square error: velocity (x, y) in m/s, stress (xx, yy, xy) in Pa, tension positive.
-    """
-
-    velocity: np.ndarray
-    stress: np.ndarray
-    velocity_error: np.ndarray
-    stress_error: np.ndarray
 
 
 class Axes(NamedTuple):
@@ -97,33 +85,6 @@ def axes_of(rock: ElasticRock, kind: Kind, direction: np.ndarray, dip: float) ->
     return Axes(np.array([t, n]), float(slowness), np.eye(2)[KINDS.index(kind)])
 
 
-def pulse_fields(pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.ndarray) -> Fields:
-    """Return particle velocity and stress in front of, between and behind joints.
-
-    pulse : at the origin, taken as zero before the first of the times. points : [m, 2], m; one on a
-    joint belongs to the side from which the pulse comes. times : equally spaced, s.
-    """
-    axes, depths, q = stack.axes, stack.depths, stack.axes.incident @ stack.slownesses[0]
-    t, places = np.asarray(times, dtype=float), np.atleast_2d(points) @ axes.rows.T
-    waves = [_waves(place, stack) for place in places]
-    modes = modes_of(stack)[[layer for layer, _ in waves]]
-    sharp = np.concatenate(stack.at_once, axis=-1)
-
-    def transfer(omega: np.ndarray) -> np.ndarray:
-        amplitudes = np.concatenate(stack.layers(omega), axis=-1) - sharp[:, None]
-        found = [_delayed(amplitudes[layer], omega, delays) for layer, delays in waves]
-        return np.einsum("mkw,mwc->mck", np.array(found), modes)
-
-    earliest = axes.slowness * places[:, 0] + q.real * np.minimum(places[:, 1], depths[0])
-    found, error = inverse(transfer, pulse, t, earliest.min(), not stack.is_evanescent)
-    for each, mode, (layer, delays) in zip(found, modes, waves, strict=True):
-        at = t - delays.real[:, None]
-        passed = np.where(at < t[0], 0, pulse(at))  # zero before the first time
-        each += mode.real.T @ (sharp[layer][:, None] * passed)
-    unit = float(stack.rocks[0].p_impedance)
-    return Fields(found[:, :2], unit * found[:, 2:], error[:, :2], unit * error[:, 2:])
-
-
 def modes_of(stack: PulseStack) -> np.ndarray:
     """Return velocity, and stress over the first rock's Z_p, of unit waves [layers, (P+, SV+, P-,
     SV-), (x, y, xx, yy, xy)]."""
@@ -136,20 +97,3 @@ def modes_of(stack: PulseStack) -> np.ndarray:
         tensor = stress(rock, s, g) / stack.rocks[0].p_impedance
         found.append(np.concatenate([g, tensor[:, [0, 1, 0], [0, 1, 1]]], axis=1))
     return np.array(found)
-
-
-def _waves(place: np.ndarray, stack: PulseStack) -> tuple[int, np.ndarray]:
-    """Return the layer of a place (t, n) and the complex delays (s) of [P+, SV+, P-, SV-] there
-    from the points at which their amplitudes are given."""
-    (x, z), depths = place, stack.depths
-    layer = int(np.searchsorted(depths, z))
-    first, last = depths[max(layer - 1, 0)], depths[min(layer, len(depths) - 1)]
-    across = stack.slownesses[layer]
-    late = np.concatenate([across * (z - first), across * (last - z)])
-    return layer, late + stack.axes.slowness * x + stack.lead
-
-
-def _delayed(amplitudes: np.ndarray, omega: np.ndarray, delays: np.ndarray) -> np.ndarray:
-    """Return amplitudes [omega, wave] delayed by `delays` (s)."""
-    phases = 1j * omega[:, None] * delays
-    return amplitudes * np.exp(np.where(amplitudes == 0, 0, phases))

@@ -7,8 +7,7 @@ waves in intact rock. One joint that stiffens at normal incidence has its own ex
 
 It acts on all quiet sides, and is exact there where the planes are all that there is and joints
 stay linear: errors inside are then the engine's own. 1000 points and 2000 times of one joint take
-about 0.5 s of CPU time, 1 s where P waves are evanescent; it differs from `pulse.pulse_fields` by
-less than the bound given there, about 1e-9 of a smooth pulse.
+about 0.5 s of CPU time, 1 s where P waves are evanescent.
 """
 
 from dataclasses import dataclass

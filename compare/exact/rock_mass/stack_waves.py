@@ -23,7 +23,7 @@ from jointwave.cases.partition.locate import contact_at, sides_at
 from jointwave.cases.partition.outline import TOLERANCE
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.compare.exact.plane.pulse import pulse_fields
+from jointwave.compare.exact.plane.layer_pulses import fields
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass.conditions import prestress_of
 from jointwave.compare.exact.rock_mass.stack import JointStack, against, begun, stack_of
@@ -123,7 +123,7 @@ def motion_at(
         wave = plane_wave(scene, one)
         met = stack.met_by(wave)
         by_value, by_integral = (
-            pulse_fields(signal, met, places - wave.through, times)
+            fields(signal, met, places - wave.through, times)
             for signal in (wave.pulse.value, wave.pulse.impulse)
         )
         begin = wave.pulse.impulse(-wave.lateness(places))[:, None] * wave.polarisation

@@ -1,14 +1,18 @@
 """Amplitude spectra of the waveforms, with the characteristic frequencies of the scene."""
 
+from math import pi
+from typing import NamedTuple
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading
-from jointwave.compare.figures.charts.marks import Frequency, marks_of
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.receivers import Panel, in_rows
 from jointwave.compare.figures.style import GREY, style
@@ -22,6 +26,33 @@ TAPERED = 0.1  # of the waveform, at its end
 PADDED = 2  # times its length, at least, to the next power of two
 BEYOND = 2.5  # times the highest mark: where spectra end
 OF_LOAD = 25.0  # times the load's frequency, at least
+
+
+class Frequency(NamedTuple):
+    """A frequency (Hz) that is marked, and its meaning, short and in words."""
+
+    name: str
+    frequency: float
+    words: str
+
+
+def marks_of(panel: Panel) -> list[Frequency]:
+    """Return the marks of a panel in order of frequency: of the load and, of a pillar, the cut-off
+    of a chain, omega = 2 sqrt(k/m) = 2 c/d (Brillouin 1946), of the least c/d: that of longitudinal
+    waves or, if blocks do not rotate, of shear waves."""
+    scene, (quantity, component, _) = panel.comparison.scene, panel.place
+    periods = {one.period for one in scene.pulses if one.period}
+    found, rate = [Frequency("load", 1 / period, "1/T of the load") for period in periods], 0.0
+    if isinstance(scene, Scene):
+        p = calibrate(scene)
+        along = quantity in ("stress", "velocity") and component in ("", "y")
+        if along or len(p.each) > 1:
+            rate = min(one.bar_speed / one.spacing for one in p.each)
+        elif scene.motion.rotation == "none" and quantity != "rotation":
+            rate = p.shear_speed / p.spacing
+    if rate:
+        found.append(Frequency("chain cut-off", rate / pi, "cut-off of the chain of blocks"))
+    return sorted(found, key=lambda mark: mark.frequency)
 
 
 def tapered(values: np.ndarray) -> np.ndarray:

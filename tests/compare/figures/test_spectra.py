@@ -5,10 +5,15 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from closed_forms.parallel_joints import transmission
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.compare.figures.charts.marks import band_edge, marks_of
-from jointwave.compare.figures.charts.spectra import TAPERED, spectra, spectra_of, spectrum, tapered
+from jointwave.compare.figures.charts.spectra import (
+    TAPERED,
+    marks_of,
+    spectra,
+    spectra_of,
+    spectrum,
+    tapered,
+)
 from jointwave.compare.figures.receivers import panels
 
 LAYER = {"y": 20.0, "spacing_stiffness": 4.375e8}
@@ -76,23 +81,6 @@ def test_nothing_passes_above_the_cut_off_of_the_chain(pillar, compared):
     assert passed("equivalent-bar") > 0.1
 
 
-def test_joints_between_stiff_rock_end_their_band_as_a_chain_does():
-    impedance, crossing, stiffness = 1e7, 1e-7, 1e9
-    chain = sqrt(stiffness / (impedance * crossing)) / pi  # of mass Z times the crossing
-    assert band_edge(impedance, stiffness, crossing) == pytest.approx(chain, rel=1e-3)
-
-
-def test_many_joints_pass_below_their_band_edge_and_not_above():
-    impedance, stiffness, crossing = 1.44e7, 9.7e9, 8.3e-5
-    edge = band_edge(impedance, stiffness, crossing)
-
-    def passes(frequency):
-        kappa = stiffness / (impedance * 2 * pi * frequency)
-        return transmission(60, kappa, frequency * crossing)
-
-    assert passes(1.02 * edge) < 1e-3 < 0.01 < passes(0.98 * edge)
-
-
 @pytest.fixture(scope="module")
 def picture(scene_with, compared):
     keys = {"time.duration": 0.04, "record.velocity": [30.25]}
@@ -115,9 +103,9 @@ def test_curves_hold_the_numbers_of_the_table(picture):
 
 
 def test_every_panel_has_its_own_marks(picture):
-    # Load, cut-off and band edge.
+    # Load and cut-off.
     lines = [sum(line.get_linestyle() == ":" for line in ax.lines) for ax in picture.figure.axes]
-    assert lines == [3, 3, 3, 3]
+    assert lines == [2, 2, 2, 2]
 
 
 def test_axes_are_logarithmic(picture, ink):

@@ -6,9 +6,9 @@ from numpy.polynomial.legendre import leggauss
 from scipy.special import erfc
 
 from closed_forms.oblique_joint import coefficients
-from jointwave.compare.exact.plane import inversion, parallel_joints
+from jointwave.compare.exact.plane import inversion, layer_pulses, parallel_joints
+from jointwave.compare.exact.plane.layer_pulses import fields
 from jointwave.compare.exact.plane.oblique_joint import Joint
-from jointwave.compare.exact.plane.pulse import pulse_fields
 from jointwave.compare.exact.plane.waves import polarisations
 
 TRAVELS = [("P", 0), ("P", 50), ("P", 130), ("SV", 25), ("SV", -60), ("SV", 200)]
@@ -32,7 +32,7 @@ DIP = 0.3
 def at_joints(rock, joints, wave, pulse, dip, offsets, points, times):
     """Return the fields of a pulse at the origin; wave : its kind and direction."""
     stack = parallel_joints.stack_of([rock] * (len(joints) + 1), joints, *wave, dip, offsets)
-    return pulse_fields(pulse, stack, np.asarray(points), times)
+    return fields(pulse, stack, np.asarray(points), times)
 
 
 def at_one_joint(rock, joint, wave, pulse, dip, points, times):
@@ -197,7 +197,8 @@ def test_the_error_is_bounded(monkeypatch, rock, ricker, directed, kind, degrees
     """Twice the window and twice the frequencies lie within the bound of the error, 1e-9 of smooth
     pulses. The kinks of half a sine are summed in time but for their evanescent part."""
     times = np.linspace(0, 0.06, 601)
-    monkeypatch.setattr(inversion, "STEPS", 1024)
+    for module in (inversion, layer_pulses):
+        monkeypatch.setattr(module, "STEPS", 1024)
 
     def half_sine(t):
         return np.where(t < 0.01, np.sin(np.pi * np.minimum(t, 0.01) / 0.01), 0.0)
@@ -210,8 +211,9 @@ def test_the_error_is_bounded(monkeypatch, rock, ricker, directed, kind, degrees
         return at_joints(rock, joints, wave, pulse, 0.1, [0.0, 9.0], points, times)
 
     found = fields()
-    monkeypatch.setattr(inversion, "WINDOW", 2 * inversion.WINDOW)
-    monkeypatch.setattr(inversion, "STEPS", 2 * inversion.STEPS)
+    monkeypatch.setattr(layer_pulses, "FINE", inversion.Accuracy(8))
+    for module in (inversion, layer_pulses):
+        monkeypatch.setattr(module, "STEPS", 2048)
     finer = fields()
     for part, error in (("velocity", "velocity_error"), ("stress", "stress_error")):
         off = getattr(found, part) - getattr(finer, part)

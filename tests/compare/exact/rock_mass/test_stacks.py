@@ -9,8 +9,8 @@ from jointwave.cases.incident import plane_wave
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.engines import applies, solve
 from jointwave.compare.exact.plane import parallel_joints
+from jointwave.compare.exact.plane.layer_pulses import fields
 from jointwave.compare.exact.plane.oblique_joint import Joint
-from jointwave.compare.exact.plane.pulse import pulse_fields
 from jointwave.compare.exact.rock_mass.stack import stack_of
 
 SPACED = {"spacing": 6.0, "through": [0.0, 3.0]}
@@ -254,7 +254,7 @@ def test_unlike_sets_and_scattered_spacings_are_the_formula(rock_mass, joint, wa
         offsets,
     )
     points = np.array(scene.record.points)
-    expected = pulse_fields(incident.pulse.value, stack, points, sample_times(scene))
+    expected = fields(incident.pulse.value, stack, points, sample_times(scene))
     found = solve("parallel-joints", scene)
     off = found.velocity.values.swapaxes(1, 2) - expected.velocity
     assert np.abs(off).max() < 1e-12 * np.abs(expected.velocity).max()
