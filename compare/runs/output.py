@@ -75,6 +75,22 @@ def sweep(folder: Path) -> None:
 NETCDF = (b"CDF", b"\x89HDF")
 
 
+#: First bytes of drawings and films by suffix; MP4 begins with the size of its first box.
+BEGINS: dict[str, tuple[bytes, ...]] = {
+    **{".pdf": (b"%PDF",), ".svg": (b"<?xml", b"<svg"), ".png": (b"\x89PNG",)},
+    **{".mp4": (b"\0\0\0",), ".gif": (b"GIF87a", b"GIF89a")},
+}
+DRAWINGS, FILMS = (".pdf", ".svg", ".png"), (".mp4", ".gif")
+
+
+def check_out(path: Path, kinds: tuple[str, ...] = DRAWINGS) -> None:
+    """Raise SceneError if `--out` cannot be a file of these kinds: for its suffix, or for a file of
+    another kind there."""
+    if path.suffix not in kinds:
+        raise SceneError("--out", str(path), None, f"must end in {' or '.join(kinds)}")
+    refuse_foreign(path, BEGINS[path.suffix])
+
+
 def refuse_foreign(path: Path, begins: tuple[bytes, ...] = NETCDF) -> None:
     """Raise SceneError if the existing file at a path does not begin like one of jointwave's.
 

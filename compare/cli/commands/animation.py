@@ -75,13 +75,14 @@ def animate(
     _require_positive("--scale", scale)
     _require_positive("--seconds", seconds)
     from jointwave.compare.figures.animation.frame import PIXELS
-    from jointwave.compare.figures.animation.video import refuse, write_video
+    from jointwave.compare.figures.animation.video import write_video
     from jointwave.compare.runs import timings
+    from jointwave.compare.runs.output import FILMS, check_out
     from jointwave.compare.runs.reuse import SNAPSHOTS, ResultFolder
 
     (one,) = load(scene, changes, variant, strict)
     quantity, path = _quantity(one, shown), out or Path(f"{_name(scene, one)}.mp4")
-    refuse(path)
+    check_out(path, FILMS)
     stored, interval = ResultFolder(results_of(scene, results), fresh), interval_of(one, frames)
     if dry:
         from jointwave.compare.cli.forecast_view import show_forecasts
@@ -154,12 +155,10 @@ def view(
         open_window(frame, _nearest(frame, at))
         return
     from jointwave.compare.figures.export import write_drawing
-    from jointwave.compare.runs.output import refuse_foreign
+    from jointwave.compare.runs.output import check_out
 
     path = out or Path(f"{_name(scene, one)}.png")
-    if path.suffix != ".png":
-        raise SceneError("--out", str(path), None, "must end in .png")
-    refuse_foreign(path, (b"\x89PNG",))
+    check_out(path, (".png",))
     frame = _frame(one, interval_of(one), (scale, quantity), stored)
     frame.show(_nearest(frame, at))
     write_drawing(path, frame.figure, one.title, {"savefig.dpi": "figure"})

@@ -44,12 +44,12 @@ def picture(
     the whole body: peak particle velocity, or speed, stress or slip at one instant; those of two
     engines side by side with their difference.
     """
-    from jointwave.compare.figures import paper
     from jointwave.compare.figures.export import write_drawing
+    from jointwave.compare.runs.output import check_out
 
     folder = Path(source)
     path = out or Path(re.sub(r"\.(toml|nc)$", "", folder.resolve().name) + ".png")
-    paper.check_file(path)
+    check_out(path)
     if folder.is_dir() or folder.suffix == ".nc":
         if changes or variant is not None:
             raise SceneError("--set, --variant", "", None, "are of a scene, not of a folder")

@@ -147,9 +147,10 @@ def figure(
     from jointwave.compare.figures.export import write_drawing
     from jointwave.compare.figures.style import printed
     from jointwave.compare.runs import jobs
+    from jointwave.compare.runs.output import check_out
     from jointwave.compare.runs.reuse import ResultFolder
 
-    paper.check_file(out)
+    check_out(out)
     rc = printed(width, font_size)
     scenes = load(scene, changes, variant, strict)
     runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []

@@ -10,11 +10,8 @@ from subprocess import PIPE, Popen
 import numpy as np
 from imageio_ffmpeg import get_ffmpeg_exe
 
-from jointwave.cases.errors import SceneError
-from jointwave.compare.runs.output import refuse_foreign, write
+from jointwave.compare.runs.output import FILMS, check_out, write
 
-#: First bytes of the files, by suffix: MP4 begins with the size of its first box, below 256.
-BEGINS = {".mp4": (b"\0\0\0",), ".gif": (b"GIF87a", b"GIF89a")}
 #: Every player shows H.264 in 4:2:0; its index comes first, so that it plays while it loads. Each
 #: frame of a GIF has a palette, so that ffmpeg need not have all frames in memory.
 PALETTES = "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1:dither=none"
@@ -24,13 +21,6 @@ ENCODING = {
 }
 
 
-def refuse(path: Path) -> None:
-    """Raise SceneError if `path` cannot be an animation."""
-    if path.suffix not in BEGINS:
-        raise SceneError("--out", str(path), None, f"must end in {' or '.join(BEGINS)}")
-    refuse_foreign(path, BEGINS[path.suffix])
-
-
 def write_video(
     path: Path, images: Iterable[np.ndarray], size: tuple[int, int], rate: float
 ) -> Path:
@@ -38,7 +28,7 @@ def write_video(
 
     size : width and height, even. rate : images per second.
     """
-    refuse(path)
+    check_out(path, FILMS)
     raw = f"-f rawvideo -pix_fmt rgba -s {size[0]}x{size[1]} -r {Fraction(rate)} -i -".split()
 
     def save(new: Path) -> None:

@@ -55,7 +55,7 @@ def test_results_are_drawn_side_by_side_with_their_difference(jointwave, folder)
 def test_a_mistake_is_one_line(jointwave, folder):
     for arguments, said in (
         ((SCENE, "--map", "ppv"), "--map: is of results: `jointwave run guo-li-2002/fig-07 --set"),
-        ((SCENE, "--out", "a.gif"), "--out: a.gif: must end in .pdf, .svg, .png"),
+        ((SCENE, "--out", "a.gif"), "--out: a.gif: must end in .pdf or .svg or .png"),
         (("none",), "none: cannot be read"),
         ((".",), ".: has no result of an engine, such as dem.nc"),
         ((folder, "--variant", "soft layer"), "are of a scene, not of a folder"),

@@ -87,7 +87,7 @@ def test_what_is_asked_for_is_drawn(pillar):
 @pytest.mark.parametrize(
     "arguments, words",
     [
-        (("--out", "figure.doc"), "must end in .pdf, .svg, .png"),
+        (("--out", "figure.doc"), "must end in .pdf or .svg or .png"),
         (("--out", "figure.pdf", "--width", "3"), "width"),
         (("--out", "figure.pdf", "--engine", "exact", "--model", "no-tension-chain"), "tension"),
         (("--out", "taken.pdf", "--variant", "", "--engine", "dem"), "would be overwritten"),

@@ -8,7 +8,8 @@ from imageio_ffmpeg import count_frames_and_secs, get_ffmpeg_exe, read_frames
 from PIL import Image
 
 from jointwave.cases import SceneError
-from jointwave.compare.figures.animation.video import refuse, write_video
+from jointwave.compare.figures.animation.video import write_video
+from jointwave.compare.runs.output import FILMS, check_out
 
 COUNT, SECONDS, SIZE = 12, 1.5, (64, 48)
 
@@ -59,7 +60,7 @@ def test_gif_has_every_picture_and_the_whole_time(tmp_path):
 @pytest.mark.parametrize("name", ["bar.avi", "bar", "bar.mp4.txt"])
 def test_other_endings_are_refused(name, tmp_path):
     with pytest.raises(SceneError, match=r"--out.*must end in .mp4 or .gif"):
-        refuse(tmp_path / name)
+        check_out(tmp_path / name, FILMS)
 
 
 @pytest.mark.parametrize("ending", [".mp4", ".gif"])
