@@ -12,7 +12,6 @@ import typer
 from jointwave.cases.errors import SceneError, all_of
 from jointwave.cases.scene_type import AnyScene, refuse_space
 from jointwave.compare import scenes
-from jointwave.compare.cli import completion
 from jointwave.compare.cli.terminal import say_warnings
 from jointwave.compare.engines import selection
 from jointwave.compare.runs.processes import started
@@ -50,10 +49,7 @@ EngineOption = Annotated[
 ]
 ModelOption = Annotated[
     list[str] | None,
-    typer.Option(
-        help="Continuum model (jointed, equivalent) or name of an exact solution.",
-        autocompletion=completion.models,
-    ),
+    typer.Option(help="Continuum model (jointed, equivalent) or name of an exact solution."),
 ]
 SetOption = Annotated[
     list[str],
@@ -61,7 +57,6 @@ SetOption = Annotated[
         "--set",
         metavar="KEY=VALUE",
         help="Override a key in every variant.",
-        autocompletion=completion.settings,
     ),
 ]
 SweepOption = Annotated[
@@ -71,7 +66,6 @@ SweepOption = Annotated[
         metavar="KEY=VALUES",
         help="Sweep a key over FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C; repeatable for all "
         "combinations. Writes a folder for each point, and sweep.csv.",
-        autocompletion=completion.settings,
     ),
 ]
 EnsembleOption = Annotated[
@@ -88,9 +82,7 @@ EnsembleOption = Annotated[
 ]
 VariantOption = Annotated[
     str | None,
-    typer.Option(
-        help="Only this variant ('' for the base scene).", autocompletion=completion.variants
-    ),
+    typer.Option(help="Only this variant ('' for the base scene)."),
 ]
 OutOption = Annotated[Path, typer.Option(help="Folder for results.")]
 WithOption = Annotated[

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from jointwave.cases.scene_type import NOT_SOLVED
-from jointwave.compare.cli import completion, terminal
+from jointwave.compare.cli import terminal
 from jointwave.compare.cli.options import (
     CORES,
     RESULTS,
@@ -97,9 +97,7 @@ def plan(
 def study(
     name: Annotated[
         str | None,
-        typer.Argument(
-            help="A shipped study or a study's TOML file.", autocompletion=completion.studies
-        ),
+        typer.Argument(help="A shipped study or a study's TOML file."),
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder for tables and points.")] = Path("studies"),
     workers: WorkersOption = CORES,

@@ -6,7 +6,6 @@ import sys
 
 import pytest
 
-from jointwave.cases.schema.keys import keys
 from jointwave.compare.cli.program import main
 from jointwave.compare.scenes import shipped_files
 
@@ -47,35 +46,8 @@ def test_scenes_by_name(complete):
     assert complete("jointwave new x --from nothing") == []
 
 
-def test_engines_models_and_studies(complete):
+def test_engines(complete):
     assert complete(f"jointwave run {SCENE} --engine ") == ["dem", "continuum", "exact"]
-    assert complete(f"jointwave run {SCENE} --model joi") == ["jointed", "jointed-bar"]
-    assert {"free-pillar", "stability"} <= set(complete("jointwave study "))
-
-
-def test_variants_of_the_scene_that_is_named(complete):
-    """A name of two words as bash takes it for one; of no scene, none."""
-    assert complete(f"jointwave run {SCENE} --variant ")[0] == "zeta\\ 0.02"
-    assert complete("jointwave run nothing.toml --variant ") == []
-
-
-@pytest.mark.parametrize("option", ["--set", "--sweep"])
-def test_keys(option, complete):
-    line = f"jointwave run {SCENE} {option} "
-    wanted = [f"{key}=" for key, _ in keys() if not key.startswith(("soft_layers.", "segments."))]
-    assert complete(line) == wanted and len(wanted) > 40
-    assert complete(f"{line}joints.damp") == ["joints.damping_ratio="]
-
-
-BROKEN = ["[pillar\n", "variants = 3\n"]
-BROKEN += ['variants = [1, { name = 2 }, { name = "\\u001b[2J" }]\n']
-
-
-@pytest.mark.parametrize("text", BROKEN)
-def test_a_broken_scene_is_no_message(tmp_path, text, complete):
-    """Nor does a name reach the terminal that moves its cursor."""
-    (tmp_path / "broken.toml").write_text(text)
-    assert complete("jointwave run broken.toml --variant ", cwd=tmp_path) == []
 
 
 #: What validates scenes, computes and draws; `typer` may bring the last two by itself.
@@ -120,14 +92,12 @@ def test_commands_are_listed_without_what_carries_them_out(option):
     assert imported(option) == set()
 
 
-LINES = ["jointwave com", "jointwave run --model j", "jointwave study f"]
-LINES += [f"jointwave run {SCENE} --variant ", f"jointwave run {SCENE} --set joints.damp"]
+LINES = ["jointwave com", "jointwave run guo", f"jointwave run {SCENE} --engine d"]
 
 
 @pytest.mark.parametrize("line", LINES)
 def test_words_are_completed_without_what_validates_and_computes(line):
-    """Newer typer converts the words before the last by pydantic; keys are those of the models."""
+    """Newer typer converts the words before the last by pydantic."""
     place = str(len(line.split(" ")) - 1)
     asked = {"_JOINTWAVE_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": place}
-    models = {"jointwave.cases.schema"} if "--set" in line else set()
-    assert imported(**asked) <= {"pydantic"} | models
+    assert imported(**asked) <= {"pydantic"}
