@@ -5,7 +5,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointwave.cases.geometry.cell_complex import OUTSIDE, Complex
-from jointwave.cases.geometry.measure import Outlines, cell_moments, facet_moments, outlines
+from jointwave.cases.geometry.measure import (
+    Moments,
+    Outlines,
+    cell_moments,
+    facet_moments,
+    outlines,
+    united,
+)
 
 
 @dataclass(frozen=True)
@@ -87,46 +94,48 @@ def blocks_of(body: Complex, tolerance: float) -> Blocks:
 
     tolerance : m, below which vertices lie in a line.
     """
-    body = _in_rows(body)
-    m = cell_moments(body)
-    inner = np.flatnonzero(body.inner)
+    moments = facet_moments(body, np.arange(len(body.sides)))
+    half = body.halves()
+    m = cell_moments(body, half, Moments(*(array[half.facet] for array in moments)))
+    order = _in_rows(body, m)
+    number = np.full(body.count + 1, OUTSIDE)
+    number[order] = np.arange(len(order))
+    body = replace(body, sides=number[body.sides], region=body.region[order], count=len(order))
+    inner, outer = np.flatnonzero(body.inner), np.flatnonzero(~body.inner)
     i, j = np.sort(body.sides[inner], axis=1).T
-    contacts = _grouped(body, inner, np.stack([i, j, body.joint_set[inner]], axis=1), tolerance)
-    outer = np.flatnonzero(~body.inner)
-    key = [body.sides[outer].max(axis=1), body.side[outer], body.plane[outer]]
-    key += [body.joint_set[outer], body.sides[outer, 0] == OUTSIDE]
-    boundary = _grouped(body, outer, np.stack(key, axis=1), tolerance)
-    return Blocks(body, m.size, m.centroid, m.second, contacts, boundary)
+    key = np.stack([i, j, body.joint_set[inner]], axis=1)
+    contacts = _grouped(body, inner, key, moments, tolerance)
+    block, into = body.sides[outer].max(axis=1), body.sides[outer, 0] == OUTSIDE
+    key = np.stack(
+        [block, body.side[outer], body.plane[outer], body.joint_set[outer], into], axis=1
+    )
+    boundary = _grouped(body, outer, key, moments, tolerance)
+    own = Moments(*(array[order] for array in m))
+    return Blocks(body, own.size, own.centroid, own.second, contacts, boundary)
 
 
-def _in_rows(body: Complex) -> Complex:
-    """Return a complex with its cells numbered along rows, the longest extent first."""
-    used = np.unique(body.halves().cell)
-    m = cell_moments(body)
+def _in_rows(body: Complex, m: Moments) -> np.ndarray:
+    """Return the cells that there are, int array, in rows, along the longest extent first."""
+    used = np.flatnonzero(m.size > 0)
     away = m.centroid[used] - body.vertices.min(axis=0)
     size = m.size[used].mean() ** (1 / body.dim)
     axes = np.argsort(-np.ptp(body.vertices, axis=0), kind="stable")
     rows = [np.floor(away[:, axis] / size) for axis in axes[:-1]]
-    order = np.lexsort([away[:, axes[-1]], *reversed(rows)])
-    number = np.full(body.count + 1, OUTSIDE)
-    number[used[order]] = np.arange(len(order))
-    return replace(
-        body,
-        sides=number[body.sides],
-        region=body.region[used[order]],
-        count=len(order),
-    )
+    return used[np.lexsort([away[:, axes[-1]], *reversed(rows)])]
 
 
-def _grouped(body: Complex, facets: np.ndarray, key: np.ndarray, tolerance: float) -> Facets:
-    """Return facets, those of one key (int array [m, n]) as one piece."""
+def _grouped(
+    body: Complex, facets: np.ndarray, key: np.ndarray, moments: Moments, tolerance: float
+) -> Facets:
+    """Return facets, those of one key (int array [m, n]) as one piece; moments : of all facets."""
     first, group, order = _groups(key)
     one = facets[first]
     blocks = body.sides[one]
     turned = (blocks[:, 0] == OUTSIDE) | ((blocks[:, 1] != OUTSIDE) & (blocks[:, 0] > blocks[:, 1]))
     blocks = np.where(turned[:, None], blocks[:, ::-1], blocks)
     normal = np.where(turned[:, None], -1.0, 1.0) * body.normals[body.plane[one]]
-    m = facet_moments(body, facets[order], group, len(first))
+    parts = Moments(*(array[facets[order]] for array in moments))
+    m = united(parts, group, len(first))
     return Facets(
         blocks=blocks,
         normal=normal,

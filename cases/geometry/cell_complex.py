@@ -139,9 +139,10 @@ class Complex:
 
     def origins(self, half: Halves) -> np.ndarray:
         """Return a vertex of the facet of each half [h, d], m."""
-        number = np.arange(len(half.facet))
-        pairs = self.vertices_of(np.stack([number, half.facet], axis=1))
-        return self.vertices[pairs[np.searchsorted(pairs[:, 0], number), 1]]
+        first = half.facet
+        for bound in reversed(self.bounds):
+            first = bound[np.searchsorted(bound[:, 0], first), 1]
+        return self.vertices[first]
 
     def depths(self, point: np.ndarray) -> np.ndarray:
         """Return how deep a point [d] lies in each cell [count], m; negative outside of it, and

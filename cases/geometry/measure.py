@@ -1,7 +1,8 @@
 """Volume, centroid and second moments of cells, and pieces of their surfaces, in any dimension.
 
-Cells and facets are fans of simplices about the mean of their vertices. A simplex of k dimensions,
-corners v, has the second moment V / ((k + 1) (k + 2)) (sum v v + sum v sum v) about the origin.
+Facets are fans of simplices from one of their vertices. A simplex of k dimensions, corners v, has
+the second moment V / ((k + 1) (k + 2)) (sum v v + sum v sum v) about the origin. Cells are cones
+over their facets.
 """
 
 from math import factorial
@@ -22,61 +23,85 @@ class Moments(NamedTuple):
     second: np.ndarray
 
 
-def facet_simplices(body: Complex) -> tuple[np.ndarray, np.ndarray]:
-    """Return simplices that make up the facets, float array [m, d, d], and the facet of each [m],
-    in order."""
+def facet_moments(body: Complex, facets: np.ndarray) -> Moments:
+    """Return the moments of some facets, int array [n]."""
+    number = len(facets)
     if body.dim == 1:
-        return body.vertices[:, None], np.arange(len(body.vertices))
-    ends = body.vertices[body.bounds[0][:, 1].reshape(-1, 2)]
-    if body.dim == 2:
-        return ends, np.arange(len(ends))
-    number = np.arange(len(body.sides))
-    middle = body.means(body.vertices_of(np.stack([number, number], axis=1)), len(number))
-    facet, edge = body.bounds[-1].T
-    return np.concatenate([ends[edge], middle[facet][:, None]], axis=1), facet
+        simplices, which = body.vertices[facets][:, None], np.arange(number)
+    elif body.dim == 2:
+        simplices, which = (
+            body.vertices[body.bounds[0][:, 1].reshape(-1, 2)[facets]],
+            np.arange(number),
+        )
+    else:
+        pairs = composed(np.stack([np.arange(number), facets], axis=1), body.bounds[-1])[0]
+        ends = body.vertices[body.bounds[0][:, 1].reshape(-1, 2)[pairs[:, 1]]]
+        which, start = pairs[:, 0], np.flatnonzero(np.diff(pairs[:, 0], prepend=-1))
+        apex = ends[start, 0][which]
+        simplices = np.concatenate([ends, apex[:, None]], axis=1)
+    first = np.searchsorted(which, np.arange(number))
+    return _total(simplices, which, simplices[first, -1])
 
 
-def cell_moments(body: Complex, half: Halves | None = None) -> Moments:
-    """Return the moments of all cells, or of those whose halves are given; volume 0 of others."""
-    simplices, facet = facet_simplices(body)
+def cell_moments(
+    body: Complex, half: Halves | None = None, facets: Moments | None = None
+) -> Moments:
+    """Return the moments of all cells by cones over their facets; volume 0 of those without.
+
+    half : the facets of cells; all where absent. facets : moments of the facet of each half.
+
+    A cone of height h over a facet of size A, with f from its apex to the facet's centroid and S
+    the facet's second moment, has A h / d, A h f / (d + 1) and h (S + A f f) / (d + 2) about its
+    apex.
+    """
     half = half or body.halves()
-    number = np.stack([facet, np.arange(len(facet))], axis=1)
-    cell, part = composed(np.stack([half.cell, half.facet], axis=1), number)[0].T
+    facets = facets or facet_moments(body, half.facet)
     centre = body.centres(half)
-    x = np.concatenate([simplices[part], centre[cell][:, None]], axis=1)
-    return _total(x, cell, centre)
+    away = facets.centroid - centre[half.cell]
+    height, dim = (away * half.outward).sum(axis=1), body.dim
+    size = facets.size * height
+    second = size[:, None, None] * away[:, :, None] * away[:, None]
+    second += height[:, None, None] * facets.second
+    parts = Moments(size / dim, size[:, None] * away / (dim + 1), second / (dim + 2))
+    return _about_centroids(parts, half.cell, centre)
 
 
-def facet_moments(body: Complex, facets: np.ndarray, group: np.ndarray, number: int) -> Moments:
-    """Return the moments of each of a number of groups of facets (int arrays [m]) in one plane."""
-    simplices, facet = facet_simplices(body)
-    table = np.stack([facet, np.arange(len(facet))], axis=1)
-    which, part = composed(np.stack([group, facets], axis=1), table)[0].T
-    first = np.full(number, -1)
-    first[which[::-1]] = part[::-1]
-    return _total(simplices[part], which, simplices[first][:, 0])
+def united(parts: Moments, owner: np.ndarray, number: int) -> Moments:
+    """Return the moments of a number of things made of parts with their owners (int array [m])."""
+    about = np.zeros((number, parts.centroid.shape[1]))
+    about[owner[::-1]] = parts.centroid[::-1]
+    away = parts.centroid - about[owner]
+    moment = parts.size[:, None] * away
+    second = parts.second + moment[:, :, None] * away[:, None]
+    return _about_centroids(Moments(parts.size, moment, second), owner, about)
 
 
-def _total(x: np.ndarray, owner: np.ndarray, about: np.ndarray) -> Moments:
-    """Return the moments of things made of simplices x [m, k + 1, d] with their owners [m]; about :
-    a point of each thing [n, d], m."""
-    k, number = x.shape[1] - 1, len(about)
-    x = x - about[owner][:, None]
-    size = _sizes(x[:, 1:] - x[:, :1])
-    total = x.sum(axis=1)
-    second = (x[:, :, :, None] * x[:, :, None]).sum(axis=1) + total[:, :, None] * total[:, None]
-    second *= (size / ((k + 1) * (k + 2)))[:, None, None]
+def _about_centroids(parts: Moments, owner: np.ndarray, about: np.ndarray) -> Moments:
+    """Return the moments of things by the sizes of their parts, and these parts' first and second
+    moments about a point of each thing [n, d], m."""
+    number = len(about)
 
     def summed(values: np.ndarray) -> np.ndarray:
         flat = values.reshape(len(values), int(np.prod(values.shape[1:]))).T
         sums = [np.bincount(owner, weights=one, minlength=number) for one in flat]
         return np.stack(sums, axis=1).reshape(number, *values.shape[1:])
 
-    whole = summed(size)
+    whole = summed(parts.size)
     with np.errstate(invalid="ignore", divide="ignore"):
-        centre = summed(size[:, None] * total / (k + 1)) / whole[:, None]
-    inner = summed(second) - whole[:, None, None] * centre[:, :, None] * centre[:, None]
+        centre = summed(parts.centroid) / whole[:, None]
+    inner = summed(parts.second) - whole[:, None, None] * centre[:, :, None] * centre[:, None]
     return Moments(whole, about + centre, inner)
+
+
+def _total(x: np.ndarray, owner: np.ndarray, about: np.ndarray) -> Moments:
+    """Return the moments of things made of simplices x [m, k + 1, d] with their owners [m]; about :
+    a point of each thing [n, d], m."""
+    k = x.shape[1] - 1
+    x = x - about[owner][:, None]
+    size, total = _sizes(x[:, 1:] - x[:, :1]), x.sum(axis=1)
+    second = np.einsum("mki,mkj->mij", x, x) + total[:, :, None] * total[:, None]
+    second *= (size / ((k + 1) * (k + 2)))[:, None, None]
+    return _about_centroids(Moments(size, size[:, None] * total / (k + 1), second), owner, about)
 
 
 def _sizes(edges: np.ndarray) -> np.ndarray:

@@ -59,9 +59,10 @@ def pieces_of(body: Complex, cells: np.ndarray) -> tuple[dict[int, Piece], Besid
     """Return some cells (bool array [count]) as pieces by their numbers, and the cells beside each
     with what they share."""
     half = body.beside(cells)
-    area = facet_moments(body, half.facet, np.arange(len(half.facet)), len(half.facet)).size
+    moments = facet_moments(body, half.facet)
+    area = moments.size
     place = (body.origins(half) * half.outward).sum(axis=1)
-    volume = cell_moments(body, half).size
+    volume = cell_moments(body, half, moments).size
     corners = body.corners(half)
     first = np.searchsorted(corners[:, 0], np.arange(body.count + 1))
     found: dict[int, Piece] = {}

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from jointwave.cases.geometry.cell_complex import NO_SET, Complex, NonConvex
+from jointwave.cases.geometry.cell_complex import NO_SET, Complex, Halves, NonConvex
 from jointwave.cases.geometry.cut import cut, one_plane
 from jointwave.cases.geometry.pieces import Joiner, clipped, pieces_of
 
@@ -125,7 +125,8 @@ def taken_out(body: Complex, solids: Sequence[tuple[Solid, int]], tolerance: flo
     in convex parts along these faces."""
     whole = np.arange(body.count)  # the block that a cell is a part of
     for solid, side in solids:
-        near = _near(body, np.concatenate([face for face, _ in solid.faces()]), tolerance)
+        corners = np.concatenate([face for face, _ in solid.faces()])
+        near = _near(body, body.halves(), corners, tolerance)
         for face, normal in solid.faces():
             passed = _passed(body, near, face, normal, tolerance)
             split = near & np.isin(whole, whole[passed])  # all of the block, to choose its pieces
@@ -155,9 +156,9 @@ def check_convex(body: Complex, solids: Sequence[tuple[Solid, int]]) -> None:
     )
 
 
-def _near(body: Complex, corners: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return which cells' bounding boxes meet that of some points [n, d], bool array [count]."""
-    cell, vertex = body.corners(body.halves()).T
+def _near(body: Complex, half: Halves, corners: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return which of some cells' boxes meet that of some points [n, d], bool array [count]."""
+    cell, vertex = body.corners(half).T
     near = np.zeros(body.count, bool)
     begins = np.flatnonzero(np.diff(cell, prepend=-1))
     x = body.vertices[vertex]
@@ -178,7 +179,7 @@ def _passed(
     low, high = np.full(body.count, np.inf), np.full(body.count, -np.inf)
     np.minimum.at(low, cell, s[vertex])
     np.maximum.at(high, cell, s[vertex])
-    crossed = (low < -tolerance) & (high > tolerance) & _near(body, face, tolerance)
+    crossed = (low < -tolerance) & (high > tolerance) & _near(body, half, face, tolerance)
     mine = np.flatnonzero(crossed[half.cell])
     if not len(mine):
         return found
