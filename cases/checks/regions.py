@@ -8,10 +8,10 @@ import shapely
 from jointwave.cases.geometry.measure import cell_moments
 from jointwave.cases.partition.outline import Outline
 from jointwave.cases.partition.regions import rocks_beside, shapes
+from jointwave.cases.partition.scene import rock_of
 from jointwave.cases.schema.region import REST
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.values import contradiction
-from jointwave.cases.space import uncut
 
 
 def check_regions(scene: RockMass, outline: Any) -> None:
@@ -33,7 +33,7 @@ def check_regions(scene: RockMass, outline: Any) -> None:
     _check_outlines(scene, outline)
     least = outline.tolerance * outline.size ** (scene.domain.dimension - 1)
     if scene.in_space:
-        body = uncut(scene, outline)
+        body = rock_of(outline, scene.regions)
         volumes = cell_moments(body).size
         *held, rest = np.bincount(body.region % (len(names) + 1), volumes, len(names) + 1)
     else:

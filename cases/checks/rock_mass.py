@@ -9,17 +9,16 @@ from pydantic_core import PydanticCustomError
 from jointwave.cases.checks.joint_sets import check_sets
 from jointwave.cases.checks.regions import check_regions
 from jointwave.cases.checks.shared import check_fields, check_quality, check_time, found_by
-from jointwave.cases.geometry.cell_complex import GeometryError, polygon
+from jointwave.cases.geometry.cell_complex import GeometryError
 from jointwave.cases.geometry.sets import cut_by_sets
-from jointwave.cases.geometry.solids import cut_into_regions
+from jointwave.cases.partition.box import Box
 from jointwave.cases.partition.joints import plane_sets
-from jointwave.cases.partition.outline import Outline, outline_of
-from jointwave.cases.partition.regions import bounded
+from jointwave.cases.partition.outline import Outline
+from jointwave.cases.partition.scene import rock_of, shape_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.cases.schema.tables import LEAN
 from jointwave.cases.schema.values import contradiction
-from jointwave.cases.space import Box, box_of, joint_planes, uncut
 
 GRAZING = 1e-6  #: cosine below which a wave travels along a side or a joint
 PARTNER = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
@@ -31,7 +30,7 @@ BESIDE = 1e-6
 def contradictions(scene: RockMass) -> list[PydanticCustomError]:
     """Return the contradictions of a rock mass whose tables are each right."""
     try:
-        outline = box_of(scene.domain) if scene.in_space else outline_of(scene.domain)
+        outline = shape_of(scene.domain)
     except GeometryError as error:
         return [contradiction(error.key, None, str(error))]
     cuts = _check_cuts if scene.domain.given is None else _check_mesh
@@ -79,11 +78,8 @@ def _check_mesh(scene: RockMass, outline: Outline | Box) -> None:
 def _check_cuts(scene: RockMass, outline: Any) -> None:
     """Refuse joints that miss the domain. Those of spacings that fit into it do not, and sets that
     end at others are known when they are cut."""
-    if scene.in_space:
-        whole, sets = uncut(scene, outline), joint_planes(scene)
-    else:
-        whole = cut_into_regions(polygon(outline.hull), bounded(scene.regions), outline.tolerance)
-        sets = plane_sets(scene.joint_sets, scene.regions)
+    whole = rock_of(outline, scene.regions)
+    sets = plane_sets(scene.joint_sets, scene.regions, scene.domain.dimension)
     for i, one in enumerate(sets):
         if one.ends_at or one.widest < float(np.ptp(scene.domain.corners @ one.normal)):
             continue

@@ -36,10 +36,11 @@ def fits(one: Piece, other: Piece, normal: np.ndarray, tolerance: float) -> bool
 
 def united(one: Piece, other: Piece, normal: np.ndarray, area: float) -> Piece:
     """Return two pieces that fit as one; normal, area : of the plane between them."""
-    planes = zip(one.without(normal), other.without(-normal), strict=True)
+    (normals, places), (others, further) = one.without(normal), other.without(-normal)
     return Piece(
         np.concatenate([one.vertices, other.vertices]),
-        *(np.concatenate(both) for both in planes),
+        np.concatenate([normals, others]),
+        np.concatenate([places, further]),
         one.volume + other.volume,
         one.surface + other.surface - 2 * area,
     )

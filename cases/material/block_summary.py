@@ -12,10 +12,14 @@ from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.regions import rocks_of
-from jointwave.cases.partition.scene import partition_bytes, partition_of
+from jointwave.cases.partition.scene import (
+    blocks_of_scene,
+    partition_bytes,
+    partition_of,
+    shape_of,
+)
 from jointwave.cases.schema.region import REST
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.space import SIDES, blocks_in_space
 
 
 def block_summary(scene: RockMass) -> dict[str, Any]:
@@ -75,7 +79,7 @@ def _block(found: Partition, one: int) -> dict[str, Any]:
 
 def _in_space(scene: RockMass) -> dict[str, Any]:
     """Return the blocks of a scene in space, and the speeds of the waves of its intact rock."""
-    found, facts = blocks_in_space(scene), dict[str, Any]()
+    found, facts = blocks_of_scene(scene), dict[str, Any]()
     width, contacts, outer = widths(found.body, found.body.halves()), found.contacts, found.boundary
     for name, one in (("smallest", found.volume.argmin()), ("largest", found.volume.argmax())):
         size = {"volume": float(found.volume[one]), "width": float(width[one])}
@@ -90,7 +94,7 @@ def _in_space(scene: RockMass) -> dict[str, Any]:
         own = contacts.joint_set == (k if k < len(scene.joint_sets) else NO_SET)
         size = {"contacts": int(own.sum()), "area": float(contacts.area[own].sum())}
         facts.setdefault("joint_sets", {})[name] = size
-    sides = [*SIDES, *(f"opening {k}" for k in range(len(scene.domain.holes)))]
+    sides = shape_of(scene.domain).sides
     number = np.bincount(outer.side, minlength=len(sides))
     return {
         "blocks": found.count,

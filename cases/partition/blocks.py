@@ -1,11 +1,13 @@
 """Blocks, contacts and boundary edges in the plane as plain arrays, the input of engines."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from jointwave.cases.geometry.blocks import Blocks, Facets
 from jointwave.cases.geometry.relations import composed
+from jointwave.cases.schema.joint_set import JointSet
 
 
 @dataclass(frozen=True)
@@ -132,7 +134,7 @@ def plane_contacts(facets: Facets) -> Contacts:
 
 
 def plane_partition(
-    blocks: Blocks, sides: tuple[str, ...], joint_sets: tuple[str, ...]
+    blocks: Blocks, sides: tuple[str, ...], joint_sets: Sequence[JointSet]
 ) -> Partition:
     """Return the arrays of blocks in the plane; boundary edges have the sides of their facets."""
     corners, first = _rings(blocks)
@@ -156,7 +158,7 @@ def plane_partition(
             joint_set=outer.joint_set,
         ),
         sides=sides,
-        joint_sets=joint_sets,
+        joint_sets=tuple(one.name for one in joint_sets),
         blocks=blocks,
     )
 

@@ -1,4 +1,4 @@
-"""Joint sets of a scene as sets of planes."""
+"""Joint sets of a scene as sets of planes, and the attitude of planes."""
 
 from collections.abc import Sequence
 from math import cos, radians, sin
@@ -19,19 +19,35 @@ def direction_of(dip: float) -> np.ndarray:
     return np.array([exact[0], exact[1] if dip >= 0 else -exact[1]])
 
 
-def plane_sets(sets: Sequence[JointSet], regions: Sequence[Region] = ()) -> list[PlaneSet]:
+def attitude(one: JointSet | Region, dim: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the unit normal [d] of planes, which points up, and unit vectors in them [d - 1, d].
+
+    In the plane these are the direction of joints, in space the strike and the line of dip.
+    """
+    down, up = direction_of(one.dip)
+    if dim == 2:
+        return np.array([-up, down]), np.array([[down, up]])
+    turn = (one.dip_direction or 0.0) % 360
+    north, east = direction_of(turn - 360 if turn > 180 else turn)
+    along = np.array([[north, -east, 0.0], [down * east, down * north, -up]])
+    return np.array([up * east, up * north, down]), along
+
+
+def plane_sets(
+    sets: Sequence[JointSet], regions: Sequence[Region] = (), dim: int = 2
+) -> list[PlaneSet]:
     """Return the planes of joint sets in a domain with some regions of rock."""
     numbers = {REST: -1, **{one.name: k for k, one in enumerate(regions)}}
     found = []
     for one in sets:
-        along = direction_of(one.dip)
+        normal, along = attitude(one, dim)
         found.append(
             PlaneSet(
                 name=one.name,
-                normal=np.array([-along[1], along[0]]),
-                along=along[None],
+                normal=normal,
+                along=along,
                 spacing=one.spacing,
-                through=np.array(one.through if one.through is not None else [0.0, 0.0]),
+                through=np.zeros(dim) if one.through is None else np.array(one.through),
                 ends_at=tuple(one.ends_at),
                 offset=one.offset,
                 scatter=one.scatter,

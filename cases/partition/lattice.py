@@ -202,7 +202,7 @@ def _rests(where: Place, normal: np.ndarray) -> tuple[float | None, float | None
     """Return the part of a block from the lowest and from the highest side along a normal to the
     line next to it; None where no side runs along the lines there."""
     start, end = where.corners, np.roll(where.corners, -1, axis=0)
-    held = where.outline.sides_of(start, end)
+    held = where.outline.along(start, end)
     found: list[float | None] = []
     inner = on_boundary(where.scene.regions, (start + end) / 2, where.outline.tolerance)
     s = np.stack([start, end]) @ normal

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from jointwave.cases.geometry.cell_complex import GeometryError
-from jointwave.cases.geometry.solids import corners_of
+from jointwave.cases.geometry.blocks import Facets
+from jointwave.cases.geometry.cell_complex import Complex, GeometryError, polygon
+from jointwave.cases.geometry.solids import Solid, corners_of, polygon_solid
 from jointwave.cases.schema.domain import Domain
 
 SIDES = ("left", "right", "bottom", "top", "outline")
@@ -35,7 +36,7 @@ class Outline:
     shape: shapely.Geometry
     tolerance: float
 
-    def sides_of(self, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    def along(self, start: np.ndarray, end: np.ndarray) -> np.ndarray:
         """Return the index in SIDES of edges of the outer boundary from `start` to `end`, float
         arrays [n, 2], m: along the left, right, bottom or top of the domain, or elsewhere."""
         low, high = self.corners.min(axis=0), self.corners.max(axis=0)
@@ -48,6 +49,32 @@ class Outline:
         return side
 
     @property
+    def sides(self) -> tuple[str, ...]:
+        """Names of the sides, those of openings last."""
+        openings = sum(side > 0 for _, side in self.taken)
+        return (*SIDES, *(f"opening {k}" for k in range(openings)))
+
+    @property
+    def solids(self) -> list[tuple[Solid, int]]:
+        """What is taken out of the hull, with the side that its edges become."""
+        return [(polygon_solid(corners), side) for corners, side in self.taken]
+
+    @property
+    def volume(self) -> float:
+        """Area, openings included, m2."""
+        return float(shapely.Polygon(self.corners).area)
+
+    def whole(self) -> Complex:
+        """Return the hull as one cell."""
+        return polygon(self.hull)
+
+    def sides_of(self, facets: Facets) -> np.ndarray:
+        """Return the index in `sides` of facets of the outer boundary and of openings."""
+        ends = facets.outlines.corners.reshape(-1, 2, 2)
+        outer = self.along(ends[:, 0], ends[:, 1])
+        return np.where(facets.side == 0, outer, len(SIDES) - 1 + facets.side)
+
+    @property
     def size(self) -> float:
         """Diagonal of the bounding box, m."""
         return float(np.hypot(*np.ptp(self.corners, axis=0)))
@@ -58,7 +85,7 @@ class Outline:
             corners = next(corners for corners, k in self.taken if k == 1 + opening)
             return np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
         start, end = self.corners, np.roll(self.corners, -1, axis=0)
-        chosen = self.sides_of(start, end) == SIDES.index(side or "outline")
+        chosen = self.along(start, end) == SIDES.index(side or "outline")
         return np.stack([start, end], axis=1)[chosen]
 
     def normals(self) -> dict[str, np.ndarray]:

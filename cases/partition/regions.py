@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from jointwave.cases.geometry.solids import ROCK, HalfSpace, Solid, corners_of, polygon_solid
-from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.joints import attitude, direction_of
 from jointwave.cases.schema.region import REST
 
 if TYPE_CHECKING:
@@ -79,15 +79,14 @@ def strata(regions: Sequence[Region]) -> list[Region]:
     return [one for one in regions if one.outline is None]
 
 
-def bounded(regions: Sequence[Region]) -> list[Solid | HalfSpace]:
+def bounded(regions: Sequence[Region], dim: int = 2) -> list[Solid | HalfSpace]:
     """Return what bounds each region."""
     found: list[Solid | HalfSpace] = []
     for one in regions:
         if one.outline is not None:
             found.append(polygon_solid(corners_of(shapely.Polygon(one.outline))))
         else:
-            x, y = direction_of(one.dip)
-            found.append(HalfSpace(np.array([-y, x]), np.array(one.through)))
+            found.append(HalfSpace(attitude(one, dim)[0], np.array(one.through)))
     return found
 
 

@@ -1,26 +1,23 @@
-"""The partition of a rock-mass scene, and its memory, estimated in advance."""
+"""The blocks of a rock-mass scene, and their memory, estimated in advance."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
+from math import prod
 
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.geometry.blocks import Facets, blocks_of
-from jointwave.cases.geometry.cell_complex import Complex, GeometryError, Sliver, polygon
+from jointwave.cases.geometry.blocks import Blocks, blocks_of
+from jointwave.cases.geometry.cell_complex import Complex, GeometryError, Sliver
 from jointwave.cases.geometry.sets import cut_by_sets
 from jointwave.cases.geometry.slivers import Limits, without_slivers
-from jointwave.cases.geometry.solids import (
-    check_convex,
-    cut_into_regions,
-    polygon_solid,
-    taken_out,
-)
+from jointwave.cases.geometry.solids import check_convex, cut_into_regions, taken_out
 from jointwave.cases.partition.blocks import Partition, plane_partition
+from jointwave.cases.partition.box import Box, box_of
 from jointwave.cases.partition.given import complex_of
-from jointwave.cases.partition.joints import direction_of, plane_sets
-from jointwave.cases.partition.outline import SIDES, Outline, outline_of
+from jointwave.cases.partition.joints import attitude, plane_sets
+from jointwave.cases.partition.outline import Outline, outline_of
 from jointwave.cases.partition.periodic import across_periodic
 from jointwave.cases.partition.regions import bounded
 from jointwave.cases.schema.domain import Domain
@@ -35,8 +32,43 @@ THIN = 1e-2
 #: thinnest block decides the step, but what is joined has no strain: with a third of the spacing a
 #: wave's error does not fall with the blocks, with 0.03 it does and steps are three times as many.
 LATTICE = (0.03, THIN)
-#: Bytes of memory for each block while a domain is cut.
-OF_BLOCK = 2500
+#: Bytes of memory for each block while a domain of two or three dimensions is cut.
+OF_BLOCK = {2: 2500, 3: 30_000}
+
+
+def shape_of(domain: Domain) -> Outline | Box:
+    """Return the shape of a domain; raises GeometryError if it is invalid."""
+    return box_of(domain) if domain.dimension == 3 else outline_of(domain)
+
+
+def rock_of(shape: Outline | Box, regions: Sequence[Region]) -> Complex:
+    """Return a domain in cells of one region of rock each."""
+    whole = shape.whole()
+    return cut_into_regions(whole, bounded(regions, whole.dim), shape.tolerance)
+
+
+def blocks_of_domain(
+    domain: Domain,
+    sets: Sequence[JointSet],
+    further: Sequence[JointSet] = (),
+    regions: Sequence[Region] = (),
+) -> Blocks:
+    """Return a domain in convex blocks; of a mesh, its cells. `side` of their boundary is an index
+    in the `sides` of the domain's shape.
+
+    further : sets of cuts, of which some or all may be where joints are.
+
+    Raises GeometryError, with place and cause, where a joint set cuts nothing, a block is not
+    convex or a sliver is left.
+    """
+    shape = shape_of(domain)
+    if domain.given is not None:
+        body = complex_of(domain.given, [one.name for one in sets])
+    else:
+        body = _body(domain, shape, sets, further, regions)
+    found = blocks_of(body, shape.tolerance)
+    side = shape.sides_of(found.boundary)
+    return replace(found, boundary=replace(found.boundary, side=side))
 
 
 def cut(
@@ -45,40 +77,26 @@ def cut(
     further: Sequence[JointSet] = (),
     regions: Sequence[Region] = (),
 ) -> Partition:
-    """Return a domain in convex blocks; of a mesh, its cells.
-
-    further : sets of cuts, of which some or all may be where joints are.
-
-    Raises GeometryError, with place and cause, where a joint set cuts nothing, a block is not
-    convex or a sliver is left.
-    """
-    outline = outline_of(domain)
-    body = _body(domain, outline, sets, further, regions)
-    found = blocks_of(body, outline.tolerance)
-    found = replace(found, boundary=_named(found.boundary, outline))
-    sides = (*SIDES, *(f"opening {k}" for k in range(len(domain.holes))))
-    return plane_partition(found, sides, tuple(one.name for one in sets))
+    """Return what `blocks_of_domain` does in the plane as arrays for engines."""
+    blocks = blocks_of_domain(domain, sets, further, regions)
+    return plane_partition(blocks, outline_of(domain).sides, sets)
 
 
 def _body(
     domain: Domain,
-    outline: Outline,
+    shape: Outline | Box,
     sets: Sequence[JointSet],
     further: Sequence[JointSet],
     regions: Sequence[Region],
 ) -> Complex:
     """Return a domain in cells."""
-    if domain.given is not None:
-        return complex_of(domain.given, [one.name for one in sets])
-    body = cut_into_regions(polygon(outline.hull), bounded(regions), outline.tolerance)
-    planes = plane_sets([*sets, *further], regions)
-    body = cut_by_sets(body, planes, outline.tolerance, len(sets))
-    solids = [(polygon_solid(corners), side) for corners, side in outline.taken]
-    body = taken_out(body, solids, outline.tolerance)
+    body, tolerance = rock_of(shape, regions), shape.tolerance
+    planes = plane_sets([*sets, *further], regions, domain.dimension)
+    body = taken_out(cut_by_sets(body, planes, tolerance, len(sets)), shape.solids, tolerance)
     if domain.non_convex == "refuse":
-        check_convex(body, solids)
+        check_convex(body, shape.solids)
     kept = len(sets) if further else None
-    return _without_slivers(body, domain, [*sets, *further], kept, outline.tolerance)
+    return _without_slivers(body, domain, [*sets, *further], kept, tolerance)
 
 
 def least_width(domain: Domain, sets: Sequence[JointSet], thin: float = THIN) -> float:
@@ -108,58 +126,61 @@ def _without_slivers(
     raise AssertionError
 
 
-def _named(facets: Facets, outline: Outline) -> Facets:
-    """Return boundary edges with the outer ones told apart: those along the left, right, bottom and
-    top of the domain, and others."""
-    ends = facets.outlines.corners.reshape(-1, 2, 2)
-    outer = outline.sides_of(ends[:, 0], ends[:, 1])
-    return replace(facets, side=np.where(facets.side == 0, outer, len(SIDES) - 1 + facets.side))
-
-
-def partition_of(scene: RockMass, further: Sequence[JointSet] = ()) -> Partition:
-    """Return the blocks of a rock mass.
+def blocks_of_scene(scene: RockMass, further: Sequence[JointSet] = ()) -> Blocks:
+    """Return the blocks of a rock mass, in the plane or in space.
 
     further : sets of cuts through intact rock, beyond the scene's own sets; their contacts have
-    indices beyond those of the partition's `joint_sets`.
+    indices beyond those of the scene's sets.
 
     Raises SceneError, in one line with place and cause, where it cannot be cut into convex blocks,
-    periodic sides do not fit each other, or the blocks would take more memory than a run may.
+    or the blocks would take more memory than a run may.
     """
     refuse_too_many(scene, further)
     try:
-        found = cut(scene.domain, scene.joint_sets, further, scene.regions)
-        across_periodic(scene, found)  # whether its sides fit each other
-        return found
+        return blocks_of_domain(scene.domain, scene.joint_sets, further, scene.regions)
     except GeometryError as error:
         raise SceneError(scene.where, error.key, None, str(error)) from None
 
 
-def block_count(domain: Domain, sets: list[JointSet]) -> float:
+def partition_of(scene: RockMass, further: Sequence[JointSet] = ()) -> Partition:
+    """Return the blocks of a rock mass in the plane, as `blocks_of_scene` does, as arrays for
+    engines; raises SceneError, too, where periodic sides do not fit each other."""
+    blocks = blocks_of_scene(scene, further)
+    found = plane_partition(blocks, outline_of(scene.domain).sides, scene.joint_sets)
+    try:
+        across_periodic(scene, found)  # whether its sides fit each other
+    except GeometryError as error:
+        raise SceneError(scene.where, error.key, None, str(error)) from None
+    return found
+
+
+def block_count(domain: Domain, sets: Sequence[JointSet]) -> float:
     """Return about how many blocks a domain is cut into: one more than there are joints, and
-    crossings of joints, openings left out."""
+    crossings of two joints and of three, openings and ends of joints left out."""
     if domain.given is not None:
         return float(domain.given.number)
-    corners = np.array(domain.corners)
-    size = float(np.hypot(*np.ptp(corners, axis=0)))
-    x, y = corners.T
-    area = abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1))) / 2
-    count = 1.0
-    for one in sets:
-        normal = direction_of(one.dip)[::-1] * [-1, 1]
-        count += float(np.ptp(corners @ normal)) / one.spacing if one.spacing else 1.0
-    for one, other in combinations(sets, 2):
-        (a, b), (c, d) = direction_of(one.dip), direction_of(other.dip)
-        sine = abs(float(a * d - b * c))
-        if one.spacing and other.spacing:
-            count += area * sine / (one.spacing * other.spacing)
-        else:
-            count += size * sine / (one.spacing or other.spacing or size)
+    corners, dim, count = np.array(domain.corners), domain.dimension, 1.0
+    volume, normals = shape_of(domain).volume, [attitude(one, dim)[0] for one in sets]
+    joints = [
+        float(np.ptp(corners @ normal)) / one.spacing if one.spacing else 1.0
+        for normal, one in zip(normals, sets, strict=True)
+    ]
+    for number in range(1, dim + 1):
+        for some in combinations(range(len(sets)), number):
+            n = np.array([normals[k] for k in some])
+            sine = float(np.sqrt(max(np.linalg.det(n @ n.T), 0.0)))
+            spacings = [sets[k].spacing or 0.0 for k in some]
+            if number == dim and all(spacings):
+                count += volume * sine / prod(spacings)
+            else:
+                count += prod(joints[k] for k in some) * sine
     return count
 
 
 def partition_bytes(scene: RockMass, further: Sequence[JointSet] = ()) -> float:
-    """Return the memory for the partition of a rock mass, bytes."""
-    return OF_BLOCK * block_count(scene.domain, [*scene.joint_sets, *further])
+    """Return the memory for the blocks of a rock mass while they are cut, bytes."""
+    each = OF_BLOCK[scene.domain.dimension]
+    return each * block_count(scene.domain, [*scene.joint_sets, *further])
 
 
 def refuse_too_many(scene: RockMass, further: Sequence[JointSet] = ()) -> None:

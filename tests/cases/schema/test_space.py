@@ -7,7 +7,8 @@ import pytest
 
 from jointwave import cases
 from jointwave.cases.errors import SceneError
-from jointwave.cases.space import SIDES, blocks_in_space
+from jointwave.cases.partition.box import SIDES
+from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.warnings import warnings
 
 ROCK = {"density": 2600.0, "intact_modulus": 5e10}
@@ -56,7 +57,7 @@ BLOCKS = {
 @pytest.mark.parametrize(("sets", "domain", "count"), BLOCKS.values(), ids=BLOCKS)
 def test_blocks_of_a_box(sets, domain, count):
     """Their number, and their volume less that of openings."""
-    blocks = blocks_in_space(scene(joint_sets=sets, domain=DOMAIN | domain))
+    blocks = blocks_of_scene(scene(joint_sets=sets, domain=DOMAIN | domain))
     out = 12.0 if domain else 0.0
     assert blocks.count == count and blocks.volume.sum() == pytest.approx(192.0 - out, rel=1e-12)
     area = np.bincount(blocks.boundary.side, blocks.boundary.area, minlength=7)
@@ -70,7 +71,7 @@ def test_an_arched_opening_is_taken_out_all_along_its_axis():
     polygon = [[3.0, 1.0], [5.0, 1.0], [5.0, 2.0], [4.0, 3.0], [3.0, 2.0]]
     prisms = [{"polygon": polygon, "axis": "y"}]
     given = scene(domain=DOMAIN | {"prisms": prisms, "non_convex": "cut"})
-    blocks = blocks_in_space(given)
+    blocks = blocks_of_scene(given)
     assert blocks.volume.sum() == pytest.approx(192.0 - 3.0 * 6.0, rel=1e-12)
     walls = blocks.boundary.area[blocks.boundary.side == len(SIDES)].sum()
     assert walls == pytest.approx(6.0 * (2.0 + 1.0 + 1.0 + 2 * 2**0.5), rel=1e-12)
@@ -80,7 +81,7 @@ def test_an_arched_opening_is_taken_out_all_along_its_axis():
 def test_joints_dip_where_they_say(dip, towards):
     """The normal of joints points up and towards the dip direction, clockwise from north."""
     one = STIFF | {"name": "one", "dip": dip, "dip_direction": towards, "through": [4.0, 3.0, 2.0]}
-    found = blocks_in_space(scene(joint_sets=[one])).contacts
+    found = blocks_of_scene(scene(joint_sets=[one])).contacts
     normal = found.normal[0] * np.sign(found.normal[0, 2])
     across, turn = sin(radians(dip)), radians(towards)
     up = [across * sin(turn), across * cos(turn), cos(radians(dip))]
@@ -221,7 +222,7 @@ def test_what_is_of_scenes_in_space_is_refused_in_the_plane(tables, said):
 
 def test_more_blocks_than_memory_are_refused_before_they_are_cut():
     small = [one | {"spacing": 1e-3} for one in (BED, EAST)]
-    with pytest.raises(SceneError, match=r"joint_sets: the blocks would need about .* available"):
-        blocks_in_space(
+    with pytest.raises(SceneError, match=r"spacing = 0.001: gives about .* available"):
+        blocks_of_scene(
             scene(joint_sets=[*small, EAST | {"name": "n", "dip_direction": 0.0, "spacing": 1e-3}])
         )
