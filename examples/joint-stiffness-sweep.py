@@ -28,7 +28,7 @@ import numpy as np
 
 import jointwave as jw
 
-ENGINES = "dem", "continuum-equivalent"
+ENGINES = {"dem": "rigid blocks", "continuum-equivalent": "homogenised rock"}
 PERIOD = 0.02  # s, of the pulse's peak frequency
 tables = {
     "title": "One joint between half-spaces",
@@ -87,7 +87,7 @@ for engine in ENGINES:
 # The largest distance of any frequency from the formula, by stiffness:
 
 # %%
-print("K (Pa/m)     dem     continuum-equivalent")
+print("K (Pa/m)     rigid blocks  homogenised rock")
 worst = 0.0
 for stiffness in stiffnesses:
     row = []
@@ -96,7 +96,7 @@ for stiffness in stiffnesses:
         formula = 1 / np.sqrt(1 + (omega * rock.impedance / (2 * stiffness)) ** 2)
         row.append(abs(found - formula).max())
     worst = max(worst, *row)
-    print(f"{stiffness:.3e}   {row[0]:.4f}   {row[1]:.4f}")
+    print(f"{stiffness:.3e}    {row[0]:<12.4f}  {row[1]:.4f}")
 assert worst < 0.02
 
 # %% [markdown]
@@ -110,7 +110,7 @@ looks = ("o", "#56b4e9"), ("x", "#009e73")
 for engine, (marker, colour) in zip(ENGINES, looks, strict=True):
     for stiffness in stiffnesses:
         omega, found = measured[engine, stiffness]
-        label = engine if stiffness == stiffnesses[0] else None
+        label = ENGINES[engine] if stiffness == stiffnesses[0] else None
         at = stiffness / (omega * rock.impedance)
         ax.plot(at, found, marker, color=colour, fillstyle="none", markersize=5, label=label)
 ax.set(xlabel=r"$K / \omega Z$", ylabel="|T|")

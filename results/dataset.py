@@ -173,8 +173,8 @@ def static_attributes(scene: AnyScene) -> dict[str, Any]:
     """Return the attributes of a result that describe its initial state.
 
     starts : "unloaded", "prestressed" or "at rest under gravity". prestress : in every section of a
-    pillar, Pa, if any; in a rock mass the first sample is the initial state. Displacement is
-    relative to the initial state.
+    pillar, Pa, if any; in a rock mass the first sample is the initial state, from which
+    displacement counts.
     """
     prestress = scene.prestress
     normal = getattr(prestress, "normal", None)

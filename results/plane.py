@@ -66,7 +66,7 @@ def plane_dataset(
         at = np.array(places, dtype=float).reshape(-1, 2)
         coords[name] = ((name,), np.arange(len(at), dtype=np.int32))
         coords |= {f"{name}_{axis}": ((name,), at[:, k]) for k, axis in enumerate("xy")}
-    return assemble(
+    found = assemble(
         coords,
         {**quantities, "energy": energy},
         DIMENSIONS,
@@ -74,3 +74,6 @@ def plane_dataset(
         errors or {},
         attributes_of(scene, engine, attributes),
     )
+    if energy is not None:
+        found["energy"].attrs["units"] = "J/m"  # of thickness
+    return found

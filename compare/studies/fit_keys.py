@@ -1,5 +1,6 @@
 """The keys that a fit may change, with their starting values and bounds."""
 
+import re
 from collections.abc import Mapping
 from fnmatch import fnmatch
 from functools import reduce
@@ -11,7 +12,8 @@ from pydantic import ValidationError
 from jointwave.cases.checks.scene import checked
 from jointwave.cases.errors import SceneError, nearest
 from jointwave.cases.scene_type import AnyScene, Either
-from jointwave.cases.schema.keys import in_words, keys
+from jointwave.cases.schema.keys import field_comments, in_words, keys
+from jointwave.cases.units import UNITS
 
 CLOCK = "clock"  # shift added to the times of the files, s
 FACTOR = 1000.0  # by which a positive key may change, if nothing else bounds it
@@ -23,6 +25,7 @@ FIXED = (
     *("expect.*", "domain.*", "regions.*.dip", "segments.*.y", "segments.*.block"),
     *("joint_sets.*.dip", "joint_sets.*.spacing", "joint_sets.*.offset", "joint_sets.*.scatter*"),
 )
+UNIT = re.compile(r"(kg/m3|Pa/m|Pa|m/s2?|m|1/s|s|Hz|degrees|J/m2)(?=[,; ]|$)")
 FORMS = "must be KEY, KEY=START or KEY=LOW:START:HIGH, of numbers, LOW first"
 
 
@@ -108,6 +111,17 @@ def _held(key: str, scene: AnyScene) -> tuple[str, Any]:
 
 def _part(table: Any, name: str) -> Any:
     return table[int(name)] if isinstance(table, list) else getattr(table, name)
+
+
+def unit_of(key: str, scene: AnyScene) -> str:
+    """Return the SI unit of a key of `--free`, with which its comment begins; "" without one."""
+    *tables, name = key.split(".")
+    table = reduce(_part, tables, scene)
+    if name == "amplitude":
+        units = UNITS[table.quantity.removeprefix("incident-")]
+        return "" if table.shape == "table" else next(iter(units))
+    found = UNIT.match("s" if key == CLOCK else field_comments(type(table))[name])
+    return found[0] if found else ""
 
 
 def changed(scene: Either, values: Mapping[str, float]) -> Either:

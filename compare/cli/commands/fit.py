@@ -70,6 +70,7 @@ def fit(
     from jointwave.compare.misfit.external import doubts, read_curves
     from jointwave.compare.runs.output import write_csv
     from jointwave.compare.studies.fit import fit as fitted
+    from jointwave.compare.studies.fit_keys import unit_of
 
     (one,) = load(scene, changes, variant or "", strict)
     curves = read_curves(given, [one])
@@ -78,6 +79,7 @@ def fit(
         found = fitted(one, curves, free, _solver(one, engine, model), advance)
     files = [write_csv(out / "fit.csv", found.table.reset_index(), 12)] if out is not None else []
     values, waveforms = found.values.reset_index(), found.waveforms.astype({"place": str})
+    values.insert(1, "unit", [unit_of(key, one) for key in values.key])
     if as_json:
         facts = {
             "title": one.title,
@@ -94,15 +96,15 @@ def fit(
         terminal.print_json(facts)
         return
     title = f"{one.title} {one.name}".strip()
-    terminal.say(f"{title}, fitted by {label_of(found.solver)} in {found.trials} solutions", "bold")
+    terminal.say(f"{title}, fitted by {label_of(found.solver)} ({found.trials} solutions)", "bold")
     worst = waveforms.loc[waveforms.after.idxmax()]
     where = f"; worst {worst['name']}, {worst.place}" if len(waveforms) > 1 else ""
     terminal.say(f"misfit {waveforms.before.max():.3%} before, {worst.after:.3%} after{where}")
-    cells = values[["value", "low", "high", "start"]].map("{:.6g}".format)
-    rows = [[key, *numbers] for key, numbers in zip(values.key, cells.values.tolist(), strict=True)]
-    columns = ["key", "value", "from", "to", "start"]
+    cells = values[["key", "unit", "value", "low", "high", "start"]]
     terminal.say("values, with 95 % intervals", "bold")
-    terminal.show_table(columns, rows)
+    terminal.show_table(
+        [*cells], cells.map(lambda x: x if isinstance(x, str) else f"{x:.6g}").values.tolist()
+    )
     for note in found.notes:
         terminal.say(f"note: {note}")
     terminal.say("The intervals assume the model: jointwave compare shows how far models differ.")
