@@ -45,7 +45,7 @@ SceneArgument = Annotated[
 Engine = StrEnum("Engine", list(selection()))  # type: ignore[misc]
 EngineOption = Annotated[
     list[Engine],
-    typer.Option(help="dem: rigid blocks; continuum: deformable rock; exact. Repeatable."),
+    typer.Option(help="dem: rigid blocks; continuum: rock; exact: exact solutions. Repeatable."),
 ]
 ModelOption = Annotated[
     list[str] | None,
@@ -56,7 +56,7 @@ SetOption = Annotated[
     typer.Option(
         "--set",
         metavar="KEY=VALUE",
-        help="Override a key in every variant.",
+        help="Change a key in every variant; repeatable.",
     ),
 ]
 SweepOption = Annotated[
@@ -75,14 +75,14 @@ EnsembleOption = Annotated[
         metavar="N",
         min=0,
         max=10_000,
-        help="N members with consecutive seeds of random joints: mean and percentiles of every "
+        help="Run N scenes with consecutive seeds of random joints: mean and percentiles of every "
         "number (ensemble.csv) and waveform (NAME-ensemble.nc).",
         show_default=False,
     ),
 ]
 VariantOption = Annotated[
     str | None,
-    typer.Option(help="Only this variant ('' for the base scene)."),
+    typer.Option(help="Only this variant ('': the base scene)."),
 ]
 OutOption = Annotated[Path, typer.Option(help="Folder for results.")]
 WithOption = Annotated[
@@ -90,23 +90,27 @@ WithOption = Annotated[
     typer.Option(
         "--with",
         metavar="FILE[:COLUMN][=][LABEL]",
-        help="External curves: FILE, FILE:stress@20, FILE:COLUMN=stress@20; repeatable.",
+        help="Measured or other curves: FILE, FILE:stress@20, FILE:COLUMN=stress@20; repeatable.",
     ),
 ]
-WorkersOption = Annotated[int, typer.Option(min=1, help="Processes, where nothing is timed.")]
+WorkersOption = Annotated[
+    int, typer.Option(min=1, help="Number of processes; what is timed runs in one.")
+]
 DryOption = Annotated[
     bool,
-    typer.Option("--dry-run", help="Only print what would run, with time and memory."),
+    typer.Option("--dry-run", help="Only print what would run, with its time and memory."),
 ]
 StrictOption = Annotated[bool, typer.Option("--strict", help="Treat warnings as errors.")]
 ResultsOption = Annotated[
     Path | None,
     typer.Option(
         metavar="DIR",
-        help="Folder of the scene's results, read where they are the same (default: out/SCENE).",
+        help="Folder where results of the scene are read and stored (default: out/SCENE).",
     ),
 ]
-FreshOption = Annotated[bool, typer.Option("--fresh", help="Compute anew what could be read.")]
+FreshOption = Annotated[
+    bool, typer.Option("--fresh", help="Compute again what could be read from a folder.")
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print machine-readable JSON.")]
 
 CORES = os.cpu_count() or 1
@@ -132,10 +136,10 @@ def root(
     \b
     First steps:
       jointwave new my-scene           write a scene with every key explained
-      jointwave explain my-scene.toml  what it has, before anything is run
-      jointwave compare my-scene.toml  solve it by all means: how far apart, why
-      jointwave animate my-scene.toml  see the wave, as a film
-      jointwave list                   scenes that are shipped, used by their names
+      jointwave explain my-scene.toml  its effects, time steps and solutions
+      jointwave compare my-scene.toml  solve it by all means; how far apart, why
+      jointwave animate my-scene.toml  the wave as a film
+      jointwave list                   the shipped scenes, used by their names
     """
     command = context.invoked_subcommand
     if command not in ("run", "study") and started().comm is not None:

@@ -116,11 +116,11 @@ def _part(table: Any, name: str) -> Any:
 def unit_of(key: str, scene: AnyScene) -> str:
     """Return the SI unit of a key of `--free`, with which its comment begins; "" without one."""
     *tables, name = key.split(".")
-    table = reduce(_part, tables, scene)
+    table: Any = reduce(_part, tables, scene)
     if name == "amplitude":
         units = UNITS[table.quantity.removeprefix("incident-")]
         return "" if table.shape == "table" else next(iter(units))
-    found = UNIT.match("s" if key == CLOCK else field_comments(type(table))[name])
+    found = UNIT.match("s" if key == CLOCK else field_comments(table.__class__)[name])
     return found[0] if found else ""
 
 

@@ -29,15 +29,17 @@ from jointwave.compare.engines import label_of
 
 ScaleOption = Annotated[
     float | None,
-    typer.Option(metavar="X", help="Exaggeration of displacements (default: visible)."),
+    typer.Option(
+        metavar="X", help="Exaggeration of displacements (default: such that they are seen)."
+    ),
 ]
 MapOption = Annotated[
     str | None,
     typer.Option(
         "--map",
         metavar="QUANTITY",
-        help="Colours: stress (the default of a pillar), speed (of a rock mass); of a pillar also "
-        "across, its velocity across the axis.",
+        help="Colours: stress (default for a pillar), speed (default for a rock mass) or, for a "
+        "pillar, across: the velocity across its axis.",
     ),
 ]
 OneVariantOption = Annotated[str, typer.Option(help="Use this variant instead of the base scene.")]
@@ -49,7 +51,7 @@ FRAME = "frames"  # among the rates of this machine
 def animate(
     scene: SceneArgument,
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help=".mp4 or .gif; default SCENE.mp4 here.")
+        Path | None, typer.Option(metavar="FILE", help=".mp4 or .gif (default: SCENE.mp4).")
     ] = None,
     shown: MapOption = None,
     variant: OneVariantOption = "",
@@ -57,9 +59,13 @@ def animate(
     scale: ScaleOption = None,
     frames: Annotated[
         int | None,
-        typer.Option(min=2, max=5000, help=f"Default: record.fields has them, else {FRAMES}."),
+        typer.Option(
+            min=2,
+            max=5000,
+            help=f"Number of frames (default: the snapshots of record.fields, else {FRAMES}).",
+        ),
     ] = None,
-    seconds: Annotated[float, typer.Option(help="Length of the animation.")] = SECONDS,
+    seconds: Annotated[float, typer.Option(help="Duration of the film.")] = SECONDS,
     results: ResultsOption = None,
     fresh: FreshOption = False,
     dry: DryOption = False,
@@ -68,9 +74,9 @@ def animate(
 ) -> None:
     """Animate the blocks and the wave of both engines as MP4 or GIF.
 
-    Both share one colour scale, and the frame says how much is beyond it. It gives the exaggeration
-    of displacements. The continuum is the jointed rock if it applies, else the homogenised rock; if
-    neither does, the frame gives the reason.
+    Both engines share one colour scale. Each frame gives the exaggeration of displacements and the
+    part that exceeds the scale. The continuum is the jointed rock if it applies, else the
+    homogenised rock. If neither applies, the frames give the reason.
     """
     _require_positive("--scale", scale)
     _require_positive("--seconds", seconds)
@@ -119,10 +125,12 @@ def animate(
 def view(
     scene: SceneArgument,
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write this .png, open no window.")
+        Path | None,
+        typer.Option(metavar="FILE", help="Write this .png instead of opening a window."),
     ] = None,
     time: Annotated[
-        float | None, typer.Option(metavar="T", help="s (default: middle of the scene).")
+        float | None,
+        typer.Option(metavar="T", help="Instant, s (default: the middle of the scene)."),
     ] = None,
     shown: MapOption = None,
     variant: OneVariantOption = "",
@@ -135,8 +143,8 @@ def view(
     """Show a scene by both engines, displaced and coloured by the wave.
 
     Pillars are shown in three dimensions, rock masses in their plane, on one colour scale.
-    Opens a window of PyVista with a slider over time; with --out, or without a display or PyVista,
-    writes an image of the instant nearest to T: of the scene's own snapshots, else of 201.
+    Opens a window of PyVista with a slider over time. With --out, or without a display or PyVista,
+    writes an image of the snapshot nearest to T: one of record.fields, else one of 201.
     """
     _require_positive("--scale", scale)
     from jointwave.compare.runs.reuse import ResultFolder

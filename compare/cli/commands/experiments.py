@@ -44,9 +44,9 @@ def effects(
 ) -> None:
     """Measure what every effect of a scene costs and changes.
 
-    That is its time, and the misfit of the result without it.
-    For a pillar, or a rock mass that rigid blocks can represent. Results are saved in DIR and not
-    measured again.
+    For each effect this is its part of the time of a step, and the misfit of the result without it.
+    The scene is a pillar, or a rock mass that rigid blocks can represent. Results are saved in DIR
+    and not measured again.
     """
     from jointwave.compare.cli.forecast_view import show_forecasts
     from jointwave.compare.cli.study_view import run_and_show
@@ -69,9 +69,18 @@ def effects(
 @app.command()
 def plan(
     scene: SceneArgument,
-    misfit: Annotated[float, typer.Option(min=0.0, help="Relative L2, from finest physics.")],
+    misfit: Annotated[
+        float,
+        typer.Option(
+            min=0.0, help="Largest relative L2 misfit from the finest physics: 0.02 is 2 %."
+        ),
+    ],
     seconds: Annotated[
-        float | None, typer.Option(min=0.0, help="Most accurate within this time.")
+        float | None,
+        typer.Option(
+            min=0.0,
+            help="Limit of stepping, s: the most accurate run within it, if none meets the misfit.",
+        ),
     ] = None,
     changes: SetOption = [],
     variant: VariantOption = None,
@@ -80,7 +89,7 @@ def plan(
 ) -> None:
     """Find the cheapest engine, elements and step that meet a misfit.
 
-    They are run from cheap to dear; the last line is the command that runs the one that is found.
+    Runs from the cheapest one on, until one meets the misfit, and prints the command for that run.
     """
     scenes = load(scene, changes, variant or "", strict)
     from jointwave.compare.cli import plan_view
@@ -104,13 +113,13 @@ def study(
     dry: DryOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Run a study, accuracy against cost; without a name, list them.
+    """Run a study of accuracy against cost; without a name, list them.
 
-    A scene is solved in many ways, each with its error and its cost, as one table and its diagram.
+    A scene is solved in many ways, each with its error and its cost, in a table and a diagram.
     Finished points are saved in DIR/NAME/ and not run again. Under mpiexec the processes share
     the points; those of a timed study are run one at a time. The study `stability` runs both
-    engines on hard cases, each with a criterion from theory; `oblique-joint` compares reflection
-    and transmission of P and SV waves at one joint, over the angle, `parallel-joints` at several.
+    engines on hard cases, each with a criterion from theory. `oblique-joint` compares reflection
+    and transmission of P and SV waves at one joint with theory, `parallel-joints` at several.
     """
     from jointwave.compare.cli.forecast_view import show_forecasts
     from jointwave.compare.cli.study_view import run_and_show, show_studies
@@ -165,7 +174,9 @@ def report(
     dry: DryOption = False,
     peers: Annotated[
         Path | None,
-        typer.Option(help="Table of make bench-peers (default: out/peers/points.csv if present)."),
+        typer.Option(
+            help="Table of `make bench-peers` (default: out/peers/points.csv if it exists)."
+        ),
     ] = None,
     strict: StrictOption = False,
     as_json: JsonOption = False,

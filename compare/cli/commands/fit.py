@@ -39,33 +39,33 @@ def fit(
         ),
     ],
     engine: Annotated[
-        Engine | None, typer.Option(help="Solver of the scene (default: rigid blocks).")
+        Engine | None,
+        typer.Option(help="dem: rigid blocks (default); continuum: rock; exact: exact solutions."),
     ] = None,
     model: ModelOption = None,
     changes: SetOption = [],
     variant: VariantOption = "",
-    out: Annotated[Path | None, typer.Option(help="Folder of a table, fit.csv.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the table fit.csv.")] = None,
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Fit keys of a scene to measured waveforms by least squares.
 
-    Values come with 95 % intervals.
-    --free names keys by their dotted path, joints.normal_stiffness or
-    soft_layers.0.spacing_stiffness, optionally with start and bounds:
-    KEY=START or KEY=LOW:START:HIGH. clock is a shift of the times of the files, s,
-    started from cross-correlation. --with is that of compare: quantity, place, sign
-    and unit of every column; amplitudes are never scaled.
+    Values come with 95 % intervals, for independent residuals. Keys that the waveforms cannot
+    distinguish and keys that stop at a bound are named. A search that does not converge ends with
+    exit code 3.
 
-    Without --engine the scene is solved by rigid blocks, exactly in time (lattice) where that
-    applies and the chain is short. In a rock mass keys are joint_sets.0.normal_stiffness or
-    waves.0.amplitude, and waveforms those of its points and joints.
+    --free names keys by their dotted path, such as joints.normal_stiffness or
+    soft_layers.0.spacing_stiffness, in a rock mass joint_sets.0.normal_stiffness or
+    waves.0.amplitude, optionally with start and bounds: KEY=START or KEY=LOW:START:HIGH. The key
+    clock is a shift of the times of the files in s, and starts from cross-correlation. --with is
+    that of compare: quantity, place, sign and unit of every column. Amplitudes are never scaled.
 
-    Intervals assume independent residuals; keys that the waveforms cannot distinguish, and
-    keys that stop at a bound, are named. A search that does not converge ends with exit code 3.
+    Without --engine the scene is solved by rigid blocks, in a short chain by their exact solution
+    (lattice).
 
     --out writes fit.csv: values, intervals and correlations. The last line printed is a command
-    that compares the fitted scene with the same files, with figures.
+    that compares the fitted scene with the same files.
     """
     from jointwave.compare.misfit.external import doubts, read_curves
     from jointwave.compare.runs.output import write_csv

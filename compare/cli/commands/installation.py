@@ -23,7 +23,7 @@ def new(
         ),
     ] = None,
     rock_mass: Annotated[
-        bool, typer.Option("--rock-mass", help="Write a rock mass (a wave at one joint).")
+        bool, typer.Option("--rock-mass", help="Write a rock mass with one joint, not a pillar.")
     ] = False,
 ) -> None:
     """Write a scene to start from, NAME.toml, with every key explained.
@@ -42,9 +42,9 @@ def new(
 def doctor(as_json: JsonOption = False) -> None:
     """Print what is installed, and check both engines.
 
-    They are checked against exact solutions.
-    Exit code 0 if both engines pass, else 1; missing or broken parts are listed. The first run
-    compiles kernels, which takes up to a minute.
+    The engines are checked against exact solutions, and missing or broken parts are listed. The
+    exit code is 0 if both engines pass, else 1. The first run compiles kernels, which takes up to a
+    minute.
     """
     from jointwave.compare.cli.doctor import examine
 

@@ -19,19 +19,20 @@ def picture(
         str,
         typer.Argument(
             metavar="SCENE|FOLDER",
-            help="A scene, drawn as it is; or results of `run` with snapshots, a folder or a file.",
+            help="A scene; or results of `run` with snapshots, as a folder or a file.",
             autocompletion=shipped,
         ),
     ],
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help=".png, .svg or .pdf; default NAME.png here.")
+        Path | None, typer.Option(metavar="FILE", help=".png, .svg or .pdf (default: NAME.png).")
     ] = None,
     quantity: Annotated[
         str | None,
-        typer.Option("--map", help="Of a folder: ppv (the default), speed, stress or slip."),
+        typer.Option("--map", help="Map of results: ppv (the default), speed, stress or slip."),
     ] = None,
     time: Annotated[
-        float | None, typer.Option(metavar="T", help="s (default: where the map is strongest).")
+        float | None,
+        typer.Option(metavar="T", help="Instant of the map, s (default: where it is strongest)."),
     ] = None,
     changes: SetOption = [],
     variant: VariantOption = None,
@@ -39,10 +40,10 @@ def picture(
 ) -> None:
     """Draw a scene, or a map of its results.
 
-    A scene is drawn with its joints, boundaries, receivers, loads and waves, every variant that
-    looks different. Results with snapshots (`run --set record.fields=1e-3`) are drawn as a map of
-    the whole body: peak particle velocity, or speed, stress or slip at one instant; those of two
-    engines side by side with their difference.
+    A scene is drawn with its joints, boundaries, receivers, loads and waves. Variants that look
+    different have a drawing each. Results with snapshots (`run --set record.fields=1e-3`) are drawn
+    as a map of the whole body: peak particle velocity, or speed, stress or slip at one instant. The
+    results of two engines are drawn side by side, with their difference.
     """
     from jointwave.compare.figures.export import write_drawing
     from jointwave.compare.runs.output import check_out

@@ -80,7 +80,7 @@ def run(
             "--checkpoint-every",
             metavar="SECONDS",
             min=0.0,
-            help="From one checkpoint to the next; 0: none.",
+            help="Time between two checkpoints; 0: none.",
         ),
     ] = 60.0,
     resume: Annotated[
@@ -94,17 +94,17 @@ def run(
 ) -> None:
     """Simulate a scene and write its results as NetCDF files.
 
-    Each is DIR/[variant/]ENGINE[-MODEL].nc. With record.fields also its snapshots, as a .pvd file
-    for ParaView. Under mpiexec the processes share each run of the continuum; everything else is
-    done by the first of them.
+    The files are DIR/[variant/]ENGINE[-MODEL].nc. With record.fields, snapshots are written as
+    well, as a .pvd file for ParaView. Under mpiexec the processes share each run of the
+    continuum; the first process does everything else.
 
-    Results that are there already are read; --fresh computes them anew. With --resume a killed run
-    continues from its last checkpoint, with a bit-identical result. Ctrl-C saves the partial
+    Results that are stored already are read; --fresh computes them again. With --resume a killed
+    run continues from its last checkpoint, with a bit-identical result. Ctrl-C saves the partial
     result.
 
-    --sweep runs every value of a key, DIR/KEY=VALUE/... each, in several processes; finished
-    points are not run again, failed ones are listed. --ensemble does so for every member of a
-    scene with random joints.
+    --sweep runs the scene for every value of a key, each in DIR/KEY=VALUE/, in several
+    processes. Finished points are not run again; failed ones are listed. --ensemble runs a
+    scene with random joints for several seeds.
     """
     from jointwave.compare.cli import run_view
     from jointwave.compare.runs import jobs
@@ -151,7 +151,8 @@ def run(
 def explain(
     scene: SceneArgument,
     every: Annotated[
-        bool, typer.Option("--all", help="Also effects and solutions that it has not, and why.")
+        bool,
+        typer.Option("--all", help="Also absent effects and solutions that do not apply, and why."),
     ] = False,
     changes: SetOption = [],
     variant: VariantOption = None,
@@ -160,7 +161,7 @@ def explain(
 ) -> None:
     """Print what a scene has, its time steps, and what can solve it.
 
-    Its rock and its blocks, the waves that enter, the effects that are active, the step of each
+    These are its rock and its blocks, the waves that enter, the active effects, the step of each
     engine and what limits it, the solutions that apply with the options that select them, and the
     reference of each engine. Nothing is run.
     """

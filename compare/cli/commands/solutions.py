@@ -36,14 +36,17 @@ from jointwave.compare.cli.options import (
 def compare(
     scene: SceneArgument,
     every: Annotated[
-        bool, typer.Option("--all", help="Also every misfit, and why solutions do not apply.")
+        bool, typer.Option("--all", help="Also every misfit, and why other solutions do not apply.")
     ] = False,
     reads: Annotated[
         bool, typer.Option("--read", help="Also peak velocity, Arias intensity, spectra, speeds.")
     ] = False,
     changes: SetOption = [],
     variant: VariantOption = None,
-    out: Annotated[Path | None, typer.Option(help="Also write tables, curves and figure.")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for tables, curves, figure and, without --results, results."),
+    ] = None,
     spectral: Annotated[
         bool, typer.Option(help="Add envelope and phase misfit (Kristekova et al. 2006).")
     ] = True,
@@ -60,27 +63,24 @@ def compare(
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Solve a scene by all that applies: how far apart, and why.
+    """Solve a scene by all that applies; say how far apart, and why.
 
-    One line per engine: its worst misfit from the finest physics, with variant and receiver, its
-    reference, its own numerical error, the stepping time, and the verdict. --all, --json, --out and
-    --with also run all other solvers; --all shows every misfit of every pair, and data over model
-    for external curves.
-
-    Results are read from and stored in the folder of --results, else of --out.
+    Prints a line per engine: its worst misfit from the finest physics, with variant and receiver,
+    its reference, its own numerical error, the stepping time, and the verdict. --all, --json, --out
+    and --with also run all other solvers. --all prints the misfit of every pair, and the peak ratio
+    of data and model for external curves.
 
     --with adds a waveform of another code, figure or experiment: a table with a header such as
-    "time [ms], stress@20 [MPa]", a seismogram, or a NetCDF file. A label names the only curve of a
-    file without names, or takes one out of several: curve.csv:stress@20,
-    "run.nc:-velocity@20.25 [mm/s]"; a column's header in front takes that column:
-    "gauge.csv:CH 3=stress@20 [MPa]".
+    "time [ms], stress@20 [MPa]", a seismogram, or a NetCDF file. A label names the curve of a file
+    without names, or selects one of several: curve.csv:stress@20, "run.nc:-velocity@20.25 [mm/s]".
+    With the header of a column in front it selects that column: "gauge.csv:CH 3=stress@20 [MPa]".
     Receivers of a rock mass have two coordinates: "velocity_x@[20,30]", "stress_xx@[20,30] [MPa]",
-    "gap@[20,20]". The default unit is SI; stress is positive in compression, a minus sign inverts
-    it. Only the overlap in time is compared; amplitudes are never scaled, and times shifted only by
-    --align.
+    "gap@[20,20]". The default unit is SI. Stress is positive in compression; a minus sign inverts
+    a curve. Only the overlap in time is compared. Amplitudes are never scaled; times are shifted
+    only by --align.
 
-    --sweep compares every value of a key, in several processes, and writes one table of all;
-    --ensemble every member of a scene with random joints, with statistics of all.
+    --sweep compares the scene for every value of a key, in several processes, and writes one
+    table. --ensemble compares a scene with random joints for several seeds, with statistics.
     """
     from jointwave.compare.cli.comparison_view import show_comparisons
     from jointwave.compare.misfit.ranking import applicable, deciding
