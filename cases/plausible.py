@@ -54,6 +54,7 @@ OF_JOINTS = {
     "tensile_strength": STRENGTH,
     "maximum_closure": CLOSURE,
 }
+POISSON = ("equivalent_poisson", "intact_poisson")
 OF_PILLAR = {"length": LENGTH, "side": LENGTH, "block": LENGTH}
 OF_PRESTRESS = {"normal": ACTING, "xx": ACTING, "yy": ACTING, "zz": ACTING}
 #: Angles (degrees) below these are rather radians, or a coefficient of friction.
@@ -72,6 +73,9 @@ def implausible(scene: AnyScene) -> Iterator[str]:
     for table, (holder, known) in tables.items():
         for key, usual in known.items():
             yield from of_value(f"{table}.{key}", getattr(holder, key, None), usual)
+        for key in POISSON:
+            if (value := getattr(holder, key, None)) and value < 0:
+                yield f"{table}.{key} = {value:g} is negative, which no known rock is"
     for table, law in _laws(scene).items():
         yield from _of_law(table, law)
         rest = law.under(scene.joints) if table.startswith("soft") else law  # type: ignore[union-attr]
@@ -121,11 +125,8 @@ def of_dip(key: str, dip: float) -> Iterator[str]:
 
 def _of_sources(scene: AnyScene) -> Iterator[str]:
     """Yield loads and waves in other units, of a table by its peak."""
-    named = {"load": scene.load} if hasattr(scene, "load") else {}
-    for key in ("waves", "loads"):
-        named |= {f"{key}[{i}]": one for i, one in enumerate(getattr(scene, key, []))}
     usual = {"stress": ACTING, "incident-stress": ACTING, "velocity": MOTION}
-    for table, one in named.items():
+    for table, one in scene.sources.items():
         peak = 1.0 if one.history is None else float(abs(one.history.stress).max())
         if one.quantity in usual:
             whose = f"{table}.amplitude" if one.file is None else f"the peak of {table}"

@@ -46,32 +46,22 @@ def clock(
     Above the critical step the step is taken as asked for, to the nearest divisor of the interval,
     and refused with both numbers unless it is allowed.
     """
-    wanted = fraction * critical
+    wanted, own = fraction * critical, f"numerics.{key}.step_fraction"
     if fraction > 1 and not allow_unstable:
-        raise SceneError(
-            scene.where,
-            f"numerics.{key}.step_fraction",
-            fraction,
+        allowed = (
             f"gives a step of {wanted:.4g} s above the critical step {critical:.4g} s; "
-            f"at most 1, unless numerics.{key}.allow_unstable = true",
+            f"at most 1, unless numerics.{key}.allow_unstable = true"
         )
+        raise SceneError(scene.where, own, fraction, allowed)
     ratio = scene.interval / wanted
     if fraction > 1 and ratio < 1:
-        raise SceneError(
-            scene.where,
-            "record.interval",
-            scene.interval,
-            f"must be at least the step {wanted:.4g} s of numerics.{key}.step_fraction",
-        )
+        allowed = f"must be at least the step {wanted:.4g} s of {own}"
+        raise SceneError(scene.where, "record.interval", scene.interval, allowed)
     stride = max(1, ceil(ratio * (1 - 1e-12)) if fraction <= 1 else round(ratio))
     found = Clock(scene.interval / stride, stride, len(sample_times(scene)))
     if found.steps > MOST_STEPS:
-        raise SceneError(
-            scene.where,
-            f"numerics.{key}.step_fraction",
-            fraction,
-            f"gives {found.steps:.3g} steps of {found.dt:.4g} s; at most {MOST_STEPS:.0e}",
-        )
+        allowed = f"gives {found.steps:.3g} steps of {found.dt:.4g} s; at most {MOST_STEPS:.0e}"
+        raise SceneError(scene.where, own, fraction, allowed)
     return found
 
 

@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from jointwave.cases.checks.scene import checked
 from jointwave.cases.errors import SceneError, all_of, nearest
 from jointwave.cases.joints_at_places import spelled_out
+from jointwave.cases.schema.keys import model_in
 from jointwave.cases.schema.scene import Scene
 
 PLACE = re.compile(r"\.\d+(?=\.)")  # in a list of tables, as in `waves.0.file`
@@ -33,8 +34,6 @@ ALLOWED = {
     "less_than_equal": "must be at most {le:g}",
     "too_short": "must have {min_length} numbers",
     "too_long": "must have {max_length} numbers",
-    "magnitude": "must lie between 1e-30 and 1e30 in magnitude",
-    "pair": "must be 'a ~ b', two solvers by name",
 }
 
 
@@ -94,13 +93,8 @@ def _known_keys(location: tuple[int | str, ...], model: Any) -> list[str]:
     top = model
     for part in location[:-1]:
         if isinstance(part, str):
-            model = _table_of(model.model_fields[part].annotation)
+            model = model_in(model.model_fields[part].annotation)
     return [k for k in model.model_fields if k != "name" or model is not top]
-
-
-def _table_of(annotation: Any) -> Any:
-    options = getattr(annotation, "__args__", (annotation,))
-    return next(t for t in options if hasattr(t, "model_fields"))
 
 
 def _dotted(location: tuple[int | str, ...]) -> str:

@@ -115,8 +115,8 @@ def _check_boundaries(scene: RockMass, outline: Outline | Box) -> None:
     for side in scene.boundaries.model_fields_set:
         key, held = f"boundaries.{side}", getattr(scene.boundaries, side)
         if side not in normals:
-            known = ", ".join(normals)
-            raise contradiction(key, held, f"is not a side of this domain, which has {known}")
+            allowed = f"is not a side of this domain, which has {', '.join(normals)}"
+            raise contradiction(key, held, allowed)
     for side, other in PARTNER.items():
         held, across = getattr(scene.boundaries, side), getattr(scene.boundaries, other)
         if held == "periodic" and across != "periodic":

@@ -9,10 +9,8 @@ MPa and mm, of the third cycle of loading, to which joints in the ground are nea
     d_m = -0.1032 - 0.0074 JRC + 1.135 (JCS / a)^-0.251.
 """
 
-from __future__ import annotations
-
 from math import hypot, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,12 +18,10 @@ from jointwave.cases.loads import velocity_of
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.plane import InSituStress
+from jointwave.cases.schema.pulse import Pulse
+from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
-
-if TYPE_CHECKING:
-    from jointwave.cases.schema.plane import InSituStress
-    from jointwave.cases.schema.pulse import Pulse
-    from jointwave.cases.schema.rock_mass import RockMass
 
 SAMPLES = 10_001  # of a pulse, for its peak, in addition to its breaks
 

@@ -39,22 +39,6 @@ class JointSet:
     normal_compliance: float = 0.0
     shear_compliance: float = 0.0
 
-    def __post_init__(self) -> None:
-        n = np.asarray(self.normal, dtype=float)
-        if n.shape not in ((2,), (3,)) or abs(n @ n - 1) > 1e-9:
-            raise ValueError(f"normal is {self.normal}, must be a unit vector of 2 or 3 components")
-        if not min(self.normal_compliance, self.shear_compliance) >= 0:
-            raise ValueError("compliances of a joint set must not be negative")
-
-
-def joint_set(
-    normal: np.ndarray, spacing: float, normal_stiffness: float, shear_stiffness: float
-) -> JointSet:
-    """Return a set by its spacing (m) and stiffnesses (Pa/m)."""
-    if not min(spacing, normal_stiffness, shear_stiffness) > 0:
-        raise ValueError("spacing and stiffnesses of a joint set must be positive")
-    return JointSet(normal, 1 / (spacing * normal_stiffness), 1 / (spacing * shear_stiffness))
-
 
 def compliant(sets: Iterable[schema.JointSet]) -> list[JointSet]:
     """Return the sets of a scene that have a spacing; a single joint is not a medium."""
@@ -64,7 +48,8 @@ def compliant(sets: Iterable[schema.JointSet]) -> list[JointSet]:
             assert one.normal_stiffness and one.shear_stiffness
             x, y = direction_of(one.dip)
             laws = one.normal_stiffness, one.shear_stiffness
-            found.append(joint_set(np.array([-y, x]), one.spacing, *laws))
+            Z = (1 / (one.spacing * stiffness) for stiffness in laws)
+            found.append(JointSet(np.array([-y, x]), *Z))
     return found
 
 
@@ -82,14 +67,13 @@ def slowest(scene: RockMass) -> float:
 
 def compliance(rock: ElasticRock, sets: list[JointSet], dimension: int = 2) -> np.ndarray:
     """Return S in Kelvin's form (1/Pa), a tensor's orthogonal components: [3, 3] or [6, 6]."""
-    for one in sets:
-        if len(one.normal) != dimension:
-            raise ValueError(f"normal {one.normal} must have {dimension} components")
-    added = (
-        one.normal_compliance * opening(one.normal) + one.shear_compliance * sliding(one.normal)
-        for one in sets
-    )
-    return sum(added, start=np.linalg.inv(intact(rock, dimension)))
+    return sum(map(_added, sets), start=np.linalg.inv(intact(rock, dimension)))
+
+
+def _added(one: JointSet) -> np.ndarray:
+    """Return what one set adds to the compliance, in Kelvin's form."""
+    n = one.normal
+    return one.normal_compliance * opening(n) + one.shear_compliance * sliding(n)
 
 
 def intact(rock: ElasticRock, dimension: int = 2) -> np.ndarray:
@@ -123,10 +107,7 @@ def joints_alone(sets: list[JointSet], dimension: int = 2) -> np.ndarray:
     """Return C of rigid bodies between joints in Voigt's form, Pa; enormous for strains that none
     of the sets takes on."""
     scale = _scale(dimension)
-    S = sum(
-        one.normal_compliance * opening(one.normal) + one.shear_compliance * sliding(one.normal)
-        for one in sets
-    )
+    S = sum(map(_added, sets), start=np.zeros((len(scale), len(scale))))
     S = S + RIGID * np.abs(S).max() * np.eye(len(scale))
     return np.linalg.inv(S) / np.outer(scale, scale)
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from jointwave.cases.material.contacts import contacts, drawn, welds
-from jointwave.cases.material.properties import Properties
+from jointwave.cases.material.properties import Properties, of_bar
 from jointwave.cases.material.strength import strength_of
 from jointwave.cases.material.uniform import calibrate_uniform
 from jointwave.cases.schema.joint import JointLaw
@@ -120,26 +120,12 @@ def _as_one(scene: Scene, parts: tuple[Properties, ...]) -> dict[str, Any]:
         for of in ([one.modulus for one in parts], [one.shear_modulus for one in parts])
     )
     density = float(share @ [one.density for one in parts])
-    eta = float(_constants(parts).max())
-    speed, shear_speed, first = sqrt(modulus / density), sqrt(shear / density), parts[0]
-    mass, side, spacing = density * first.area * length / count, first.side, length / count
+    eta, first = float(_constants(parts).max()), parts[0]
     return {
+        **of_bar(density, first.side, length / count, modulus, shear),
         "block_count": count,
-        "spacing": spacing,
-        "side": side,
-        "area": first.area,
-        "density": density,
-        "block_mass": mass,
-        "inertia_across": mass * (side**2 + spacing**2) / 12,
-        "inertia_along": mass * side**2 / 6,
-        "modulus": modulus,
         "poisson": max((one.poisson for one in parts), key=abs),
-        "shear_modulus": shear,
         "intact_modulus": float(1 / (share / np.array(intact)).sum()) if all(intact) else None,
-        "bar_speed": speed,
-        "shear_speed": shear_speed,
-        "impedance": density * speed,
-        "shear_impedance": density * shear_speed,
         "time_constant": eta or None,
         "mass_damping": first.mass_damping,
         "local_damping": first.local_damping,

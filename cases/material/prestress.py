@@ -1,19 +1,14 @@
 """Whether the joints of a rock mass carry its prestress."""
 
-from __future__ import annotations
-
 from math import inf, radians, tan
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.partition.joints import direction_of
-
-if TYPE_CHECKING:
-    from jointwave.cases.schema.joint_set import JointSet
-    from jointwave.cases.schema.plane import InSituStress
-    from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.plane import InSituStress
+from jointwave.cases.schema.rock_mass import RockMass
 
 SLACK = 1e-9  # of the stress: tractions that are at a limit
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
+from math import inf, sqrt
 
 import numpy as np
 
@@ -205,6 +205,22 @@ class Properties(Strength):
             (self.time_constant or 0.0) if usual is None else usual
         )
         return differs & (self.excess_compliance == 0)
+
+
+def of_bar(
+    density: float, side: float, spacing: float, modulus: float, shear_modulus: float
+) -> dict[str, float]:
+    """Return what follows for `Properties` from these of them."""
+    area, speed, shear_speed = side**2, sqrt(modulus / density), sqrt(shear_modulus / density)
+    mass = density * area * spacing
+    return {
+        **{"density": density, "side": side, "spacing": spacing, "area": area, "block_mass": mass},
+        "inertia_across": mass * (side**2 + spacing**2) / 12,
+        "inertia_along": mass * side**2 / 6,
+        **{"modulus": modulus, "bar_speed": speed, "impedance": density * speed},
+        "shear_modulus": shear_modulus,
+        **{"shear_speed": shear_speed, "shear_impedance": density * shear_speed},
+    }
 
 
 def _half_block(whole: float, rock: float | None, spacing: float) -> float:

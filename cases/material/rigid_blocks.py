@@ -27,7 +27,6 @@ from jointwave.cases.partition.joints import direction_of
 from jointwave.cases.partition.lattice import by_direction
 from jointwave.cases.partition.regions import rocks_of, within
 from jointwave.cases.schema.joint_set import JointSet
-from jointwave.cases.schema.plane import IntactRock
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.spectrum import LEAST_BLOCKS, highest_frequency
 
@@ -144,47 +143,27 @@ def welds(
     shift: np.ndarray,
 ) -> Stiffness:
     """Return the stiffness of contacts [c] between blocks [c, 2] that no joint set and no set of
-    cuts made.
+    cuts made: the rock on both sides in series.
 
     start : a place on each contact [c, 2], m. normal : [c, 2]. shift : by which blocks j stand
-    elsewhere, across periodic sides [c, 2], m.
+    elsewhere, across periodic sides [c, 2], m. Beside another region's rock, half a block has the
+    compliance of its joints along the contact, if there are some.
     """
     if not len(blocks):
         return Stiffness(np.zeros(0), np.zeros(0))
-    reach, thickness = np.zeros((2, len(blocks), 2))
-    for side, block in enumerate(blocks.T):
-        off = start - side * shift - partition.centroid[block]
-        reach[:, side] = np.abs((off * normal).sum(axis=1))
-        pairs = zip(map(partition.corners_of, block), normal, strict=True)
-        thickness[:, side] = [np.ptp(corners @ n) for corners, n in pairs]
-    regions, shares = partition.region[blocks], rock_shares(scene, further)
-    return welded(shares, rocks_of(scene), regions, normal, reach, thickness)
-
-
-def welded(
-    shares: list[RockShare],
-    rocks: list[IntactRock],
-    regions: np.ndarray,
-    normal: np.ndarray,
-    reach: np.ndarray,
-    thickness: np.ndarray,
-) -> Stiffness:
-    """Return the stiffness of contacts [c] without a joint: the rock on both sides in series.
-
-    regions : on both sides [c, 2]. normal : [c, 2]. reach : of the centroids from the contact, and
-    thickness : of the blocks across it [c, 2], m. Beside another region's rock, half a block has
-    the compliance of its joints along the contact, if there are some.
-    """
-    found = np.zeros((len(normal), 2))
-    for c, (pair, n) in enumerate(zip(regions, normal, strict=True)):
-        for side, region in enumerate(pair):
+    shares, rocks, found = rock_shares(scene, further), rocks_of(scene), np.zeros((len(blocks), 2))
+    for c, (pair, n) in enumerate(zip(blocks, normal, strict=True)):
+        regions = partition.region[pair]
+        for side, (block, region) in enumerate(zip(pair, regions, strict=True)):
             share, rock = shares[region], rocks[region]
-            at = share.parallel_to(n) if pair[0] != pair[1] else -1
+            at = share.parallel_to(n) if regions[0] != regions[1] else -1
             if at >= 0:
-                found[c] += share.compliance[at] * thickness[c, side] / 2
+                thickness = np.ptp(partition.corners_of(block) @ n)
+                found[c] += share.compliance[at] * thickness / 2
             else:
+                reach = abs((start[c] - side * shift[c] - partition.centroid[block]) @ n)
                 shear = shear_modulus(rock.intact_modulus, rock.intact_poisson)
-                found[c] += reach[c, side] / np.array([constrained_modulus(rock), shear])
+                found[c] += reach / np.array([constrained_modulus(rock), shear])
     return Stiffness(*(1 / found).T)
 
 

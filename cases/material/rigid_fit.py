@@ -39,10 +39,6 @@ def rigid_fit(compliance: np.ndarray, normals: np.ndarray) -> RigidFit:
 
     S = np.asarray(compliance, dtype=float)
     size = np.linalg.norm(S)
-    if not size > 0:
-        raise ValueError("the compliance is 0: there are no joints to fit")
-    if len(S) != {2: 3, 3: 6}[np.shape(normals)[1]]:
-        raise ValueError(f"normals of {np.shape(normals)[1]} components, compliance of {len(S)}")
     parts = [form(n).ravel() for n in normals for form in (opening, sliding)]
     A = np.concatenate([np.transpose(parts), LEAST * np.eye(len(parts))])
     Z, _ = nnls(A, np.concatenate([S.ravel() / size, np.zeros(len(parts))]))

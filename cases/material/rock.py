@@ -1,16 +1,11 @@
 """Isotropic elastic rock by its density and the speeds of its waves."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from jointwave.cases.material.elastic import speeds_from_modulus
-
-if TYPE_CHECKING:
-    from jointwave.cases.schema.plane import IntactRock
+from jointwave.cases.schema.plane import IntactRock
 
 Values = float | np.ndarray
 
@@ -22,13 +17,6 @@ class ElasticRock:
     density: Values
     p_speed: Values
     s_speed: Values
-
-    def __post_init__(self) -> None:
-        for name in ("density", "p_speed", "s_speed"):
-            if not (np.asarray(getattr(self, name)) > 0).all():
-                raise ValueError(f"{name} is {getattr(self, name)}, must be positive")
-        if not (np.asarray(self.p_speed) > self.s_speed).all():
-            raise ValueError(f"p_speed {self.p_speed} must be above s_speed {self.s_speed}")
 
     @property
     def p_impedance(self) -> Values:

@@ -62,9 +62,15 @@ class RockMass(Table):
         return self.domain.dimension == 3
 
     @property
+    def sources(self) -> dict[str, Wave | PlaneLoad]:
+        """Everything that acts over time, by its table."""
+        waves = {f"waves[{i}]": one for i, one in enumerate(self.waves)}
+        return waves | {f"loads[{i}]": one for i, one in enumerate(self.loads)}
+
+    @property
     def pulses(self) -> tuple[Wave | PlaneLoad, ...]:
         """Everything that acts over time."""
-        return (*self.waves, *self.loads)
+        return tuple(self.sources.values())
 
     @property
     def bases(self) -> list[PlaneLoad]:

@@ -58,7 +58,12 @@ class Scene(Table):
     _where: str = PrivateAttr(default="")
 
     @property
-    def pulses(self) -> tuple[Load]:
+    def sources(self) -> dict[str, Load]:
+        """Everything that acts over time, by its table."""
+        return {"load": self.load}
+
+    @property
+    def pulses(self) -> tuple[Load, ...]:
         """Everything that acts over time."""
         return (self.load,)
 

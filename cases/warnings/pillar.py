@@ -1,23 +1,19 @@
 """Warnings of likely mistakes in a pillar, one line each."""
 
 from collections.abc import Callable, Iterator
-from math import hypot, sqrt
 
-from jointwave.cases.effects import bends, is_spatial
+from jointwave.cases.effects import bends
 from jointwave.cases.material.calibrate import Properties, calibrate
-from jointwave.cases.plausible import implausible
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.spectrum import LEAST_BLOCKS, ShortestWave, shortest_wave
 from jointwave.cases.warnings.shared import (
     of_a_jump,
     of_lever,
-    of_local_damping,
-    of_pulse,
+    of_pulses,
     onset,
 )
 
 MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
-SHORTENED = 1.5  # a step shortened by less than this factor is not reported
 ON_JOINT = 1e-9  # of the pillar's length, and of a block: rounding of a receiver's place
 
 Rule = Callable[[Scene, Properties, ShortestWave | None], Iterator[str]]
@@ -27,8 +23,7 @@ def warnings_of_pillar(scene: Scene) -> list[str]:
     """Return warnings of probable mistakes in a pillar, one line each."""
     p = calibrate(scene)
     wave = shortest_wave(scene, p)
-    found = [line for rule in RULES for line in rule(scene, p, wave)]
-    return [*implausible(scene), *found, *of_local_damping(scene, wave is not None)]
+    return [line for rule in RULES for line in rule(scene, p, wave)]
 
 
 def _of_poisson(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
@@ -42,16 +37,10 @@ def _of_poisson(scene: Scene, p: Properties, wave: ShortestWave | None) -> Itera
     if given and rock.intact_modulus is None and "intact_poisson" in rock.model_fields_set:
         poisson = rock.intact_poisson
         yield f"rock.intact_poisson = {poisson:g} is not used: it needs rock.intact_modulus"
-    for key in ("equivalent_poisson", "intact_poisson"):
-        value = getattr(rock, key)
-        if value is not None and value < 0:
-            yield f"rock.{key} = {value:g} is negative, which no known rock is"
 
 
 def _of_times(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
-    if wave is not None:
-        crossings = p.bar_speed / (wave.frequency * scene.pillar.length)
-        yield from of_pulse("load", scene.load, scene.time.duration, crossings)
+    yield from of_pulses(scene, p.bar_speed / scene.pillar.length)
 
 
 def _of_half_a_load(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
@@ -90,20 +79,6 @@ def _of_wavelength(scene: Scene, p: Properties, wave: ShortestWave | None) -> It
         )
 
 
-def _of_step(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
-    """Say where samples are closer than the steps that rigid blocks would take."""
-    interval, coarse = scene.interval, wave is not None and wave.blocks < LEAST_BLOCKS
-    if coarse and scene.record.interval is None:
-        return  # a 200th of a period that the blocks do not resolve, which is said already
-    wanted = scene.numerics.dem.step_fraction * _least_critical_step(scene, p)
-    if interval * SHORTENED < wanted and scene.numerics.dem.step_fraction <= 1:
-        whose = "" if scene.record.interval else ", a 200th of the period,"
-        yield (
-            f"record.interval = {interval:.4g} s{whose} shortens the step of rigid blocks, "
-            f"{wanted:.4g} s by numerics.dem.step_fraction"
-        )
-
-
 def _of_a_jump(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
     """Warn of a step load on joints that can fail: behind its front a chain of blocks overshoots by
     23 to 27 % (Airy's function), behind a rise over 40 blocks by at most 2 % up to 200 blocks on.
@@ -111,35 +86,6 @@ def _of_a_jump(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterat
     if scene.load.amplitude and (bool(p.given) or not p.tension.all()):
         speed = p.shear_speed if scene.load.is_across else p.bar_speed
         yield from of_a_jump("load", scene.load, scene.pillar.block, speed)
-
-
-def _least_critical_step(scene: Scene, p: Properties) -> float:
-    """Return a critical step (s) of the row of blocks that no motion of it falls short of.
-
-    From bounds on its largest frequency (Gershgorin): of axial motion 4 K'_n A / m, of motion in
-    space twice the larger of those of the faces' springs in translation and in rotation. Where a
-    block is joined to a wall, whose spring counts once, their mean takes the place of K'. With
-    dashpots 2 / omega (sqrt(1 + (omega eta)^2) - omega eta), as leapfrog's that extrapolates rates.
-    """
-    normal, shear = float(p.stiffness.max()), float(p.shear_stiffness.max())
-    for kind, rock in ((scene.ends.start, p.at_start), (scene.ends.end, p.at_end)):
-        if kind == "fixed":
-            normal = max(normal, (rock.wall_stiffness + 2 * normal) / 4)
-            shear = max(shear, (rock.wall_shear_stiffness + 2 * shear) / 4)
-    normal, shear = normal * p.area, shear * p.area
-    square = 4 * normal / (p.block_mass if p.masses is None else float(p.masses.min()))
-    if is_spatial(scene):
-        turning = shear * p.spacing**2 / 4 + normal * p.side**2 / 4
-        twisting = shear * p.side**2 / 2
-        square = 2 * max(
-            square,
-            4 * shear / p.block_mass,
-            4 * turning / p.inertia_across,
-            4 * twisting / p.inertia_along,
-        )
-    omega, times = sqrt(square), p.joint_time_constant
-    ratio = 0.0 if times is None else omega * float(times.max())
-    return 2 / (omega * (hypot(1, ratio) + ratio))
 
 
 def _of_arrivals(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
@@ -209,7 +155,6 @@ RULES: tuple[Rule, ...] = (
     _of_poisson,
     _of_times,
     _of_wavelength,
-    _of_step,
     _of_a_jump,
     _of_arrivals,
     _of_quiet_ends,

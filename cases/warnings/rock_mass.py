@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator
 from itertools import combinations
-from math import nan
 from typing import cast
 
 import numpy as np
@@ -16,42 +15,27 @@ from jointwave.cases.partition.outline import outline_of
 from jointwave.cases.partition.parts import loaded_lines
 from jointwave.cases.partition.regions import rocks_of
 from jointwave.cases.partition.scene import partition_of
-from jointwave.cases.plausible import LENGTH, implausible, of_dip, of_value
+from jointwave.cases.plausible import LENGTH, of_dip, of_value
 from jointwave.cases.schema.joint_set import JointSet
-from jointwave.cases.schema.plane import IntactRock
-from jointwave.cases.schema.region import Region
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad, Wave
-from jointwave.cases.spectrum import LEAST_BLOCKS, frequency_of, highest_frequency
-from jointwave.cases.warnings.shared import of_a_jump, of_lever, of_local_damping, of_pulse, onset
+from jointwave.cases.spectrum import LEAST_BLOCKS, highest_frequency
+from jointwave.cases.warnings.shared import of_a_jump, of_lever, of_pulses, onset
 
 NEAR = 0.05  # of the domain's size: distance of a receiver from the joint that it is meant for
 COINCIDENT = 1e-9  # of the domain's size: distance of two joints that are one
-
 EARLY = 1e-6  # of the duration: by which a wave may seem to be early
-
-Source = tuple[str, "Wave | PlaneLoad"]  # its table in the scene and itself
 
 
 def warnings_in_plane(scene: RockMass) -> list[str]:
     """Return warnings of probable mistakes in a rock mass, one line each."""
-    found = [line for rule in (IN_SPACE if scene.in_space else RULES) for line in rule(scene)]
-    return [*implausible(scene), *found, *of_local_damping(scene, bool(_sources(scene)))]
+    rules = IN_SPACE if scene.in_space else RULES
+    return [line for rule in rules for line in rule(scene)]
 
 
-def _sources(scene: RockMass) -> list[Source]:
-    """Return waves and loads of nonzero amplitude with their tables."""
-    named: list[Source] = [(f"waves[{i}]", wave) for i, wave in enumerate(scene.waves)]
-    named += [(f"loads[{i}]", load) for i, load in enumerate(scene.loads)]
-    return [(table, one) for table, one in named if one.amplitude]
-
-
-def _of_poisson(scene: RockMass) -> Iterator[str]:
-    tables = ["rock", *(f"regions[{i}]" for i in range(len(scene.regions)))]
-    rocks: list[IntactRock | Region] = [scene.rock, *scene.regions]
-    for table, one in zip(tables, rocks, strict=True):
-        if (poisson := one.intact_poisson or 0.0) < 0:
-            yield f"{table}.intact_poisson = {poisson:g} is negative, which no known rock is"
+def _acting(scene: RockMass) -> dict[str, Wave | PlaneLoad]:
+    """Return waves and loads of nonzero amplitude by their tables."""
+    return {table: one for table, one in scene.sources.items() if one.amplitude}
 
 
 def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
@@ -73,9 +57,21 @@ def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
                 )
 
 
+def _normal(dip: float) -> np.ndarray:
+    """Return the unit normal [2] of joints of a dip."""
+    return direction_of(dip)[::-1] * [-1, 1]
+
+
+def _away(one: JointSet, points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Return the distances of points [n, 2] from the nearest joint of a set without scatter, m."""
+    across = points @ _normal(one.dip)
+    apart = np.subtract.outer(across, _places(one, one.dip, corners))
+    return np.abs(apart).min(axis=1, initial=np.inf)
+
+
 def _places(one: JointSet, dip: float, corners: np.ndarray) -> np.ndarray:
     """Return where the joints of a set without scatter lie along the normal to a dip, m."""
-    normal = direction_of(dip)[::-1] * [-1, 1]
+    normal = _normal(dip)
     origin, across = normal @ (one.through or [0.0, 0.0]), corners @ normal
     if one.spacing is None:
         return np.array([origin])
@@ -88,29 +84,22 @@ def _of_places(scene: RockMass) -> Iterator[str]:
     """Say which spacings exceed the domain, and which receivers of joints are far from any."""
     corners, sets = np.array(scene.domain.corners), scene.joint_sets
     for i, one in enumerate(sets):
-        extent = float(np.ptp(corners @ (direction_of(one.dip)[::-1] * [-1, 1])))
+        extent = float(np.ptp(corners @ _normal(one.dip)))
         if one.spacing is not None and one.spacing > extent and scene.domain.mesh is None:
             yield (
                 f"joint_sets[{i}].spacing = {one.spacing:g} m exceeds the domain, {extent:g} m "
                 f"across its joints; {one.spacing:g} mm is {one.spacing / 1e3:g} m"
             )
-    if any(one.scatter or one.ends_at or one.regions for one in sets) or scene.domain.mesh:
+    known = bool(sets) and not any(one.scatter or one.ends_at or one.regions for one in sets)
+    if not known or scene.domain.mesh:
         return  # where joints run, only the cuts know
-    far = NEAR * float(np.ptp(corners, axis=0).max())
-    for k, place in enumerate(scene.record.joints):
-        away = min(
-            float(
-                np.abs(
-                    _places(one, one.dip, corners) - direction_of(one.dip)[::-1] * [-1, 1] @ place
-                ).min(initial=np.inf)
-            )
-            for one in sets
+    places = np.array(scene.record.joints).reshape(-1, 2)
+    away = np.min([_away(one, places, corners) for one in sets], axis=0, initial=np.inf)
+    for k in np.flatnonzero(away > NEAR * np.ptp(corners, axis=0).max()):
+        yield (
+            f"record.joints[{k}] = [{places[k, 0]:g}, {places[k, 1]:g}] is {away[k]:.3g} m from "
+            "the nearest joint, whose motion it records"
         )
-        if away > far:
-            yield (
-                f"record.joints[{k}] = [{place[0]:g}, {place[1]:g}] is {away:.3g} m from the "
-                "nearest joint, whose motion it records"
-            )
 
 
 def _of_directions(scene: RockMass) -> Iterator[str]:
@@ -143,19 +132,14 @@ def _of_a_jump(scene: RockMass) -> Iterator[str]:
     block, fastest = scene.numerics.dem.block or _block_size(scene), elastic_rock(scene.rock)
     if not fails or block is None:
         return
-    for table, pulse in _sources(scene):
+    for table, pulse in _acting(scene).items():
         speed = fastest.s_speed if pulse.kind == "S" else fastest.p_speed
         yield from of_a_jump(table, pulse, block, float(speed))
 
 
 def _of_times(scene: RockMass) -> Iterator[str]:
     fastest = max(float(elastic_rock(one).p_speed) for one in rocks_of(scene))
-    crossings = fastest / float(np.ptp(scene.domain.corners, axis=0).max())
-    for table, pulse in _sources(scene):
-        frequency = frequency_of(pulse, scene.time.duration)
-        yield from of_pulse(
-            table, pulse, scene.time.duration, crossings / frequency if frequency else nan
-        )
+    yield from of_pulses(scene, fastest / float(np.ptp(scene.domain.corners, axis=0).max()))
 
 
 def _of_wavelength(scene: RockMass) -> Iterator[str]:
@@ -219,12 +203,12 @@ def _of_parts(scene: RockMass) -> Iterator[str]:
 def _of_arrivals(scene: RockMass) -> Iterator[str]:
     """Warn of receivers that no wave in intact rock reaches before the end of the scene."""
     falls = scene.gravity is not None and not scene.gravity.static
-    sources, end = _sources(scene), scene.time.duration
+    sources, end = _acting(scene), scene.time.duration
     if falls or not sources:
         return
     for key in ("points", "joints"):
         for i, place in enumerate(getattr(scene.record, key)):
-            at = min(_arrival(scene, pulse, np.array(place)) for _, pulse in sources)
+            at = min(_arrival(scene, pulse, np.array(place)) for pulse in sources.values())
             if at >= end:
                 yield (
                     f"record.{key}[{i}] = [{place[0]:g}, {place[1]:g}] is reached at {at:.4g} s: "
@@ -268,9 +252,7 @@ def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
     for k, one in enumerate(scene.joint_sets):
         if one.scatter or scene.domain.mesh or not len(points):
             continue
-        across = points @ (direction_of(one.dip)[::-1] * [-1, 1])
-        places = _places(one, one.dip, corners)
-        near = np.abs(np.subtract.outer(across, places)).min(axis=1, initial=np.inf)
+        near = _away(one, points, corners)
         on = np.flatnonzero(near <= COINCIDENT * np.hypot(*np.ptp(corners, axis=0)))
         if len(on) and (one.ends_at or one.regions):
             sides = sides_at(partition_of(scene), points[on])
@@ -293,9 +275,9 @@ def _of_contact_points(scene: RockMass) -> Iterator[str]:
                 return
 
 
-IN_SPACE = (_of_poisson, _of_half_a_load)  #: rules of scenes in space
-RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
-    _of_poisson,
+Rules = tuple[Callable[[RockMass], Iterator[str]], ...]
+IN_SPACE: Rules = (_of_half_a_load,)  #: of scenes in space
+RULES: Rules = (
     _of_joints_given_twice,
     _of_half_a_load,
     _of_a_jump,

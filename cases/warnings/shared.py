@@ -1,4 +1,4 @@
-"""Warnings that pillars and rock masses share, of pulses, damping and contact points."""
+"""Warnings that pillars and rock masses share, of pulses and contact points."""
 
 from collections.abc import Iterator
 from math import nan
@@ -10,6 +10,7 @@ from jointwave.cases.material.contact_points import lever
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import Joints
 from jointwave.cases.schema.pulse import Pulse
+from jointwave.cases.spectrum import frequency_of
 
 LEAST_LEVER = 0.75  # of contact points where a face opens, over half its width
 ONSET = 0.01  # of a load's peak: defines its beginning
@@ -20,12 +21,20 @@ STATIC = 100.0
 OF_A_RISE = 40  # blocks that the front of a load passes while it rises
 
 
-def of_pulse(table: str, pulse: Pulse, end: float, crossings: float = nan) -> Iterator[str]:
-    """Say where a load or wave acts outside the run, or its table is not in seconds.
+def of_pulses(scene: AnyScene, crossings: float) -> Iterator[str]:
+    """Say where loads or waves act outside the run, or their tables are not in seconds.
 
-    table : of the scene that holds it. end : of the run, s. crossings : of the pillar by a wave in
-    a period of the load's highest frequency.
+    crossings : of the rock by a wave in a second.
     """
+    end = scene.time.duration
+    for table, pulse in scene.sources.items():
+        if pulse.amplitude:
+            frequency = frequency_of(pulse, end)
+            yield from _of_pulse(table, pulse, end, crossings / frequency if frequency else nan)
+
+
+def _of_pulse(table: str, pulse: Pulse, end: float, crossings: float) -> Iterator[str]:
+    """crossings : of the rock by a wave in a period of the highest frequency."""
     if pulse.shape == "step":
         return
     if pulse.history is not None:
@@ -118,15 +127,6 @@ def _wavelet(pulse: Pulse) -> Ricker | Gabor | None:
     found = periodic(pulse.shape, 1.0, pulse.period, pulse.cycles)
     assert not isinstance(found, Sine)
     return found
-
-
-def of_local_damping(scene: AnyScene, acts: bool) -> Iterator[str]:
-    """Warn of local damping where a load or wave acts."""
-    if scene.damping.local and acts:
-        yield (
-            "damping.local distorts waves: it is meant for static states, not for a scene with a "
-            "load"
-        )
 
 
 def of_lever(table: str, joints: Joints) -> Iterator[str]:

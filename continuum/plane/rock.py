@@ -10,9 +10,9 @@ import numpy as np
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.constant_q import mechanisms_of
-from jointwave.cases.material.dashpots import set_time_constants
 from jointwave.cases.material.effective_medium import compliant, stiffness
 from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.material.rock_mass import set_time_constants
 from jointwave.cases.material.strength import strength_of
 from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.periodic import Across, across_periodic, of_all

@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.material.contact_points import CUT, points_of
-from jointwave.cases.material.dashpots import set_time_constants
 from jointwave.cases.material.rigid_blocks import RigidJoints
-from jointwave.cases.material.rock_mass import Stiffness
+from jointwave.cases.material.rock_mass import Stiffness, set_time_constants
 from jointwave.cases.material.strength import strength_of
 from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.rock_mass import RockMass

@@ -14,7 +14,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.spectrum import LEAST_BLOCKS, SHARE, highest_frequency, shortest_wave
 from jointwave.cases.warnings import warnings
-from jointwave.cases.warnings.pillar import MOST_REFLECTED, SHORTENED
+from jointwave.cases.warnings.pillar import MOST_REFLECTED
 from jointwave.compare.scenes import find, shipped_files
 
 MODULUS, DENSITY = 2400.0 * 1000.0**2, 2400.0  # a bar speed of 1000 m/s
@@ -208,36 +208,6 @@ def test_a_constant_in_another_unit_is_told_what_it_is_in_that_unit(scene_with, 
 def test_intact_rock_in_gigapascal_is_told_so_where_it_is_refused(scene_with):
     with pytest.raises(SceneError, match=r"86.4 GPa is 8.64e\+10 Pa$"):
         scene_with(**{"rock.intact_modulus": 86.4})
-
-
-LAYER = {"soft_layers": [{"y": 20.0, "normal_stiffness": 9.2e15, "damping_ratio": 0.3}]}
-ENDS = {"ends.start": "quiet", "ends.end": "fixed"}
-TURNING = {"load.direction": [1.0, 0.0, 0.0], "record.velocity": [0.25]}
-
-
-@pytest.mark.parametrize("fraction", [0.05, 0.5, 1.0])
-@pytest.mark.parametrize(
-    "changes",
-    [{}, ENDS, {"joints.damping_ratio": 0.2}, LAYER, TURNING, TURNING | LAYER | ENDS],
-    ids=["free", "held", "damped", "stiff", "turning", "all"],
-)
-def test_an_interval_is_warned_of_only_where_it_shortens_the_step(scene_with, changes, fraction):
-    """Against the engine's own critical step, of which the rule's is a lower bound."""
-    from jointwave.dem.axial.simulate import scheme_of
-    from jointwave.dem.spatial.simulate import prepare
-
-    for interval in 1e-3 / 4.0 ** np.arange(10):
-        scene = scene_with(
-            **changes,
-            **{"record.interval": interval, "numerics.dem.step_fraction": fraction},
-            **{"time.duration": 1e-3},
-        )
-        spatial = "load.direction" in changes
-        clock, critical = (prepare(scene) if spatial else scheme_of(scene).build(scene))[2:]
-        warned = bool(lines(scene, "record.interval"))
-        assert not warned or (clock.stride == 1 and interval * SHORTENED < fraction * critical)
-        if interval * 8 * SHORTENED < fraction * critical:
-            assert warned
 
 
 @pytest.mark.parametrize("duration, warned", [(0.0199, True), (0.0201, False)])

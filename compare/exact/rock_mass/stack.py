@@ -11,8 +11,8 @@ import numpy as np
 
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.incident import PlaneWave, plane_wave
-from jointwave.cases.material.dashpots import set_time_constants
 from jointwave.cases.material.rock import ElasticRock, elastic_rock
+from jointwave.cases.material.rock_mass import set_time_constants
 from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.joints import direction_of
 from jointwave.cases.partition.outline import TOLERANCE, outline_of

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jointwave.cases.material.dashpots import set_time_constants
+from jointwave.cases.material.rock_mass import set_time_constants
 from jointwave.cases.schema.damping import Damping, Rayleigh
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet

@@ -9,7 +9,6 @@ from jointwave.cases.material.effective_medium import (
     christoffel,
     compliance,
     intact,
-    joint_set,
     speeds,
     stiffness,
     tensor,
@@ -36,7 +35,7 @@ def random_sets(dimension, count=3, seed=0):
 
 def test_two_orthogonal_sets_in_space():
     """lambda = mu = rho = 1, spacing 1, K_n = 2, K_s = 1: the speeds along x and (1, 1, 0)."""
-    sets = [joint_set(n, 1.0, 2.0, 1.0) for n in np.eye(3)[:2]]
+    sets = [JointSet(n, 0.5, 1.0) for n in np.eye(3)[:2]]
     found, _ = speeds(stiffness(UNIT, sets, 3), 1.0, [[1, 0, 0], [1, 1, 0]])
     assert found[0] == pytest.approx([0.57735, 0.70711, 1.08012], abs=5e-6)
     assert found[1] == pytest.approx([0.70711, 0.70711, 1.0], abs=5e-6)
@@ -45,7 +44,7 @@ def test_two_orthogonal_sets_in_space():
 def test_two_orthogonal_sets_in_plane_strain():
     """S_11 = 3/8 + 1/2, S_12 = -1/8, S_66 = 1 + 2: C_11 = 7/6, C_12 = 1/6, C_66 = 1/3, and the
     speeds along x those of the same sets in space."""
-    C = stiffness(UNIT, [joint_set(n, 1.0, 2.0, 1.0) for n in np.eye(2)])
+    C = stiffness(UNIT, [JointSet(n, 0.5, 1.0) for n in np.eye(2)])
     expected = np.array([[7 / 6, 1 / 6, 0], [1 / 6, 7 / 6, 0], [0, 0, 1 / 3]])
     np.testing.assert_allclose(C, expected, atol=1e-14)
     found, shapes = speeds(C, 1.0, [1.0, 0.0])
@@ -141,7 +140,7 @@ def test_long_waves_through_joints_travel_at_its_speeds(kind, degrees):
     now = np.block([[E @ T, np.zeros((2, 2))], [-R, np.eye(2)]])
     q = np.log(np.linalg.eigvals(np.linalg.solve(later, now))) / (1j * omega * d)
     n = np.array([0.0, 1.0])
-    C = tensor(stiffness(rock, [joint_set(n, d, 4e10, 1.5e10)]))
+    C = tensor(stiffness(rock, [JointSet(n, 1 / (d * 4e10), 1 / (d * 1.5e10))]))
     for one in q:
         s = np.array([p, one])
         gamma = np.einsum("ijkl,j,l->ik", C, s, s) / 2600.0
@@ -196,18 +195,6 @@ def test_the_lattice_of_the_fit_has_the_speeds_of_the_rock():
     assert omega[:2] / 1e-3 == pytest.approx([1.0, np.sqrt(8 / 3)], rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    "change, message",
-    [
-        (lambda: JointSet(np.array([1.0, 1.0]), 1.0, 1.0), "unit vector"),
-        (lambda: JointSet(np.array([1.0, 0.0]), -1.0, 1.0), "not be negative"),
-        (lambda: joint_set(np.array([1.0, 0.0]), 0.0, 1.0, 1.0), "must be positive"),
-        (lambda: compliance(UNIT, [JointSet(np.array([1.0, 0.0]))], 3), "3 components"),
-        (lambda: speeds(-np.eye(3), 1.0, [1.0, 0.0]), "no real waves"),
-        (lambda: rigid_fit(np.zeros((3, 3)), np.eye(2)), "compliance is 0"),
-        (lambda: rigid_fit(np.eye(6), np.eye(2)), "2 components"),
-    ],
-)
-def test_what_does_not_hold_is_refused(change, message):
-    with pytest.raises(ValueError, match=message):
-        change()
+def test_a_medium_without_real_waves_is_refused():
+    with pytest.raises(ValueError, match="no real waves"):
+        speeds(-np.eye(3), 1.0, [1.0, 0.0])

@@ -148,12 +148,3 @@ def test_arguments_broadcast(rock, joint):
     assert np.shape(found) == (4, 3, 2)
     one = coefficients("SV", np.radians(60.0), 200.0, rock, joint)
     np.testing.assert_allclose([x[2, 1] for x in found], one, rtol=1e-13)
-
-
-@pytest.mark.parametrize(
-    "numbers, message",
-    [((2600.0, 2900.0, 3000.0), "above s_speed"), ((0.0, 5000.0, 3000.0), "density is 0")],
-)
-def test_rock_that_is_none_is_refused(numbers, message):
-    with pytest.raises(ValueError, match=message):
-        ElasticRock(*numbers)
