@@ -10,6 +10,7 @@ from jointwave.cases.checks.scene import checked
 from jointwave.cases.errors import SceneError, all_of, nearest
 from jointwave.cases.joints_at_places import spelled_out
 from jointwave.cases.schema.keys import model_in
+from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 
 PLACE = re.compile(r"\.\d+(?=\.)")  # in a list of tables, as in `waves.0.file`
@@ -59,8 +60,6 @@ def _model_of(table: dict[str, Any], where: str) -> Any:
         return Scene
     if "pillar" in table:
         raise SceneError(where, "pillar", None, "give [pillar] or [domain], not both")
-    from jointwave.cases.schema.rock_mass import RockMass  # with shapely, which no pillar needs
-
     return RockMass
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -209,7 +210,7 @@ class Properties(Strength):
 
 def of_bar(
     density: float, side: float, spacing: float, modulus: float, shear_modulus: float
-) -> dict[str, float]:
+) -> dict[str, Any]:
     """Return what follows for `Properties` from these of them."""
     area, speed, shear_speed = side**2, sqrt(modulus / density), sqrt(shear_modulus / density)
     mass = density * area * spacing
