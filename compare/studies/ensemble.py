@@ -74,10 +74,8 @@ def write(out: Path, numbers: pd.DataFrame, done: pd.DataFrame, keys: list[str])
         }
         files += [write_dataset(place / f"{name}-ensemble.nc", x) for name, x in found.items()]
         by_solver = {name.removeprefix("exact-"): x for name, x in found.items()}
-        if shown := bands.bands_of(by_solver):
-            table = bands.table(shown)
-            drawn = save(bands.draw(shown), place, "ensemble-waveforms", bands.TITLE, table)
-            files += [drawn.file("csv"), *drawn.drawings]
+        if (figure := bands.draw(by_solver)) is not None:
+            files += save(figure, place, "ensemble-waveforms", "Waveforms of an ensemble").drawings
     return files
 
 

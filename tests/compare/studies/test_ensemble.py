@@ -93,9 +93,6 @@ def test_misfits_and_waveforms_of_a_comparison(command, tmp_path):
     files = [tmp_path / f"member={k}" / "exact-jointed-bar.nc" for k in (1, 2, 3)]
     every = [xr.load_dataset(file).stress for file in files]
     np.testing.assert_allclose(exact, np.median(every, axis=0), rtol=1e-12, atol=1e-9)
-    bands = pd.read_csv(tmp_path / "ensemble-waveforms.csv")
-    median = bands["jointed-bar p50 | stress at y = 5 m (Pa)"]
-    np.testing.assert_allclose(median, exact[0], rtol=1e-5, atol=1.0)  # six digits of 1e6 Pa
     assert "jointed bar, exact" in (tmp_path / "ensemble-waveforms.svg").read_text()
     assert (tmp_path / "ensemble-waveforms.png").read_bytes().startswith(b"\x89PNG")
 
