@@ -36,11 +36,16 @@ def blank(height: float, rc: dict[Any, Any] = RC) -> Iterator[Figure]:
 
 
 class Drawn(NamedTuple):
-    """A written figure: NAME.svg, NAME.pdf and, if requested, NAME.png; its numbers NAME.csv."""
+    """A written figure: NAME.svg, NAME.pdf and, if requested, NAME.png; its numbers NAME.csv.
+
+    caption : on the page. folded : whether it stands in a fold there.
+    """
 
     name: str
     title: str
     folder: Path
+    caption: str = ""
+    folded: bool = False
 
     def file(self, kind: str) -> Path:
         """Return the figure's file of a kind such as "pdf"."""

@@ -59,14 +59,6 @@ class SceneRequest(NamedTuple):
         return f"fig. {self.number}" if self.number else self.name
 
 
-class Shown(NamedTuple):
-    """A picture as it stands on the page; folded : whether it stands in a fold."""
-
-    drawn: Drawn
-    caption: str
-    folded: bool
-
-
 class SolvedScene(NamedTuple):
     """A scene solved by all that applies.
 
@@ -80,8 +72,8 @@ class SolvedScene(NamedTuple):
     request: SceneRequest
     scene: AnyScene
     seconds: dict[str, float]
-    lead: Shown | None
-    figures: list[Shown]
+    lead: Drawn | None
+    figures: list[Drawn]
     claims: list[Claim]
     tables: dict[str, pd.DataFrame]
     files: dict[str, Path]
@@ -173,7 +165,7 @@ def solve(request: SceneRequest, folder: Path, stored: ResultFolder = NOWHERE) -
 
 def _draw(
     request: SceneRequest, comparisons: list[Comparison], folder: Path, stored: ResultFolder
-) -> tuple[Shown | None, list[Shown]]:
+) -> tuple[Drawn | None, list[Drawn]]:
     """Return the picture at the head, a map or else the waveform that is furthest from its
     reference in the first variant, and all figures."""
     fields = [along_pillar(one.scene, stored) for one in comparisons]
@@ -188,6 +180,6 @@ def _draw(
     return lead, list(shown.values())
 
 
-def _save(one: SceneFigure, folder: Path) -> Shown:
+def _save(one: SceneFigure, folder: Path) -> Drawn:
     drawn = save(one.figure, folder, one.name, one.title, one.table, png=False)
-    return Shown(drawn, one.caption, one.folded)
+    return drawn._replace(caption=one.caption, folded=one.folded)

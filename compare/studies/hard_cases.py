@@ -43,7 +43,7 @@ from jointwave.compare.studies.hard_map import (
     draw_maps,
 )
 from jointwave.compare.studies.store import Pool, Store
-from jointwave.compare.studies.summary import Summary, frame, write_tables
+from jointwave.compare.studies.summary import Summary, write_tables
 from jointwave.results.dataset import energy_residual, scene_hash
 
 NAME = "stability"
@@ -221,7 +221,9 @@ def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = 
     cells = cells_of(Store[Column](Column, folder).compute(columns(), store.key, computed, pool))
     rows = Store[HardRow](HardRow, folder).compute(hard_cases(), key, run, pool, progress)
     drawn = save(draw_maps(cells), out, NAME, TITLE)
-    files = write_tables(out, NAME, frame(rows, HardRow)) + write_tables(out, f"{NAME}-map", cells)
+    files = write_tables(out, NAME, pd.DataFrame(rows, columns=HardRow._fields)) + write_tables(
+        out, f"{NAME}-map", cells
+    )
     files.append(drawn.file("svg"))
     said = sentences(rows, cells)
     failed = [f"{row.name}: {row.ended} {row.message}" for row in rows if not row.holds]

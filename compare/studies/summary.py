@@ -36,11 +36,6 @@ class Summary(NamedTuple):
     timed: bool = False
 
 
-def frame(rows: Sequence[Any], form: type) -> pd.DataFrame:
-    """Return rows of a NamedTuple as a table, SI."""
-    return pd.DataFrame([map(cell, row) for row in rows], columns=list(form._fields))  # type: ignore[attr-defined]
-
-
 def cell(value: Any) -> Any:
     """Return a value for a file's table: lists and dictionaries as JSON."""
     return json.dumps(value, default=str) if isinstance(value, list | dict) else value

@@ -8,7 +8,7 @@ import pytest
 from jointwave.compare.figures.export import Drawn
 from jointwave.compare.report.claims.claim import Claim
 from jointwave.compare.report.page import render
-from jointwave.compare.report.scenes import PAPER, SceneRequest, Shown, SolvedScene
+from jointwave.compare.report.scenes import PAPER, SceneRequest, SolvedScene
 from jointwave.compare.report.sections import section
 from jointwave.compare.studies.summary import Summary
 
@@ -66,7 +66,7 @@ def scene(tmp_path, figure, pillar):
         tables = dict.fromkeys(("verdicts", "distances", "readings", "runs"), empty)
         tables["reasons"] = pd.DataFrame(columns=["solution", "variants", "why"])
         tables["misfits"] = pd.DataFrame({"undamped (%)": [0.5]}, pd.Index(["a ~ b"], name="pair"))
-        shown = [Shown(one, "What is seen.", folded) for one, folded in figures]
+        shown = [one._replace(caption="What is seen.", folded=folded) for one, folded in figures]
         files = {"misfits": tmp_path / "misfits.csv"}
         about = {}, pd.Series(), {}
         return SolvedScene(
