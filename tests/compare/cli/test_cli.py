@@ -71,8 +71,7 @@ def test_explain_names_the_block_that_limits_the_step(pillar, jointwave):
     found = {one["engine"]: one for one in json.loads(said)["limits_the_step"]}
     assert found["dem"]["at"] == pytest.approx([22.2, 14.13], abs=0.01)
     for one in found.values():
-        assert one["longer_step"] > 2 and 0 < one["lifted"] <= 0.05 and one["size"] < 1
-        assert 0 < one["mass_added"] < 0.1
+        assert one["longer_step"] > 2 and one["size"] < 1
     assert not explanation(pillar())["limits_the_step"]
 
 
