@@ -1,4 +1,4 @@
-"""The content of a gmsh file: vertices, rock cells, and the facets of its named groups."""
+"""The content of a gmsh file: vertices, rock cells, and the facets of its named groups; VTU."""
 
 from contextlib import redirect_stderr
 from io import StringIO
@@ -43,6 +43,7 @@ FROM_GMSH = {
 #: The reader makes an array as long as the largest number of a vertex, whatever the file holds.
 ROOM, ROOM_OF_BYTE = 300_000_000, 100
 
+KINDS_OF_FILE = {"gmsh": "a gmsh mesh, version 2.2 or 4.1", "vtu": "a VTU file of VTK"}
 SAVE_GROUPS = "save it with Mesh.SaveAll = 0"
 
 
@@ -71,11 +72,11 @@ def read_tagged(path: str | Path) -> Tagged:
 
     The groups whose names start with "rock" are the rock; capitals do not matter.
     """
-    mesh = _read(Path(path))
+    mesh, _ = read_file(Path(path), "gmsh")
     names = {name: name.strip().lower() for name in mesh.field_data}
     kind, cells = _rock(mesh, [name for name, plain in names.items() if plain.startswith("rock")])
     facets = {
-        plain: _of_type(mesh, [name], FACET_NAMES[kind])
+        plain: cells_of_type(mesh, [name], FACET_NAMES[kind])
         for name, plain in names.items()
         if plain.startswith("joint") or plain in ("start", "end")
     }
@@ -85,24 +86,30 @@ def read_tagged(path: str | Path) -> Tagged:
     return Tagged(mesh.points, kind, cells[:, FROM_GMSH[kind]], facets)
 
 
-def _read(path: Path):
+def read_file(path: Path, kind: str):
+    """Return a file of a kind, "gmsh" or "vtu", as meshio's mesh, and what meshio said."""
     import meshio
 
     if not path.is_file():
         raise MeshError("is not a file" if path.exists() else "does not exist")
+    said = StringIO()
     try:
         size = path.stat().st_size
         require(size, "it")
         room = min(ROOM + ROOM_OF_BYTE * size, max(ROOM, memory()))
-        with redirect_stderr(StringIO()), catch_warnings(), within(room):
+        with redirect_stderr(said), catch_warnings(), within(room):
             simplefilter("ignore")
-            return meshio.gmsh.read(path)
+            return getattr(meshio, kind).read(path), said.getvalue()
     # A broken file can raise any error in the reader.
     except Exception as error:
-        reason = str(error) or type(error).__name__
-        if "gmsh:physical" in reason:
+        if "gmsh:physical" in one_line(error):
             raise MeshError(f"has cells in no group; {SAVE_GROUPS}") from None
-        raise MeshError(f"cannot be read as a gmsh mesh, version 2.2 or 4.1: {reason}") from None
+        raise MeshError(f"cannot be read as {KINDS_OF_FILE[kind]}: {one_line(error)}") from None
+
+
+def one_line(error: Exception) -> str:
+    """Return what an error says, in one line."""
+    return " ".join(str(error).split()) or type(error).__name__
 
 
 def _rock(mesh, names: list[str]) -> tuple[str, np.ndarray]:
@@ -118,7 +125,7 @@ def _rock(mesh, names: list[str]) -> tuple[str, np.ndarray]:
     (name,) = types
     if name not in KINDS:
         raise MeshError(f"its rock has {name} cells, must be first-order {', '.join(KINDS)}")
-    cells = _of_type(mesh, names, name)
+    cells = cells_of_type(mesh, names, name)
     dim = next(block.dim for block in mesh.cells if block.type == name)
     everything = [block for block in mesh.cells if block.dim == dim]
     others = sum(len(block.data) for block in everything if block.type != name)
@@ -128,7 +135,8 @@ def _rock(mesh, names: list[str]) -> tuple[str, np.ndarray]:
     return KINDS[name], cells
 
 
-def _of_type(mesh, names: list[str], cell: str) -> np.ndarray:
+def cells_of_type(mesh, names: list[str], cell: str) -> np.ndarray:
+    """Return the cells of one type in groups of these names, each once, by their vertices."""
     found = [block.data[inside] for block, inside in _blocks(mesh, names) if block.type == cell]
     return _each_once(found) if found else np.empty((0, 1), dtype=np.int64)
 

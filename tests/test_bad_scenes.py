@@ -626,8 +626,8 @@ MESHED = {
         'mesh = "gone.msh"\n',
         ["numerics.continuum.mesh = 'gone.msh'", "no such file"],
     ),
-    "a folder": ('mesh = ""\n', ["numerics.continuum.mesh = ''", "must be a gmsh file"]),
-    "a pipe": ('mesh = "pipe"\n', ["numerics.continuum.mesh = 'pipe'", "must be a gmsh"]),
+    "a folder": ('mesh = ""\n', ["numerics.continuum.mesh = ''", "must be a file"]),
+    "a pipe": ('mesh = "pipe"\n', ["numerics.continuum.mesh = 'pipe'", "must be a file"]),
     "a bar from a file": (
         MESH + "dim = 1\n",
         ["numerics.continuum.dim = 1", "is a bar"],

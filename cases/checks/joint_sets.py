@@ -14,7 +14,10 @@ def check_sets(scene: RockMass) -> None:
     for i, one in enumerate(sets):
         table = f"joint_sets[{i}]"
         _check_names(table, one, i, sets)
-        (_check_places if scene.domain.mesh is None else _check_in_mesh)(table, one)
+        if key := scene.domain.file_key:
+            _check_in_file(table, one, key)
+        else:
+            _check_places(table, one)
         _check_law(table, one, scene)
     try:
         in_order(plane_sets([one.model_copy(update={"regions": []}) for one in sets]))
@@ -36,10 +39,10 @@ def _check_names(table: str, one: JointSet, index: int, sets: list[JointSet]) ->
         raise contradiction(f"{table}.ends_at", one.ends_at, "must not repeat a set")
 
 
-def _check_in_mesh(table: str, one: JointSet) -> None:
+def _check_in_file(table: str, one: JointSet, file: str) -> None:
     for key in ("through", "ends_at", "regions", "offset", "scatter", "seed"):
         if value := getattr(one, key):
-            allowed = "has no effect: domain.mesh has the joints"
+            allowed = f"has no effect: {file} has the joints"
             raise contradiction(f"{table}.{key}", value, allowed)
 
 

@@ -27,8 +27,8 @@ def check_regions(scene: RockMass, outline: Any) -> None:
                 allowed = f"must name regions: {', '.join([REST, *names])}"
                 raise contradiction(f"joint_sets[{i}].regions", name, allowed)
     _check_damping(scene)
-    if names and scene.domain.mesh is not None:
-        allowed = "cannot be combined with domain.mesh"
+    if names and (key := scene.domain.file_key):
+        allowed = f"cannot be combined with {key}"
         raise contradiction("regions", len(names), allowed)
     _check_outlines(scene, outline)
     least = outline.tolerance * outline.size ** (scene.domain.dimension - 1)

@@ -12,7 +12,7 @@ from jointwave.cases.checks.shared import check_fields, check_quality, check_tim
 from jointwave.cases.geometry.cell_complex import GeometryError
 from jointwave.cases.geometry.sets import cut_by_sets
 from jointwave.cases.partition.box import Box
-from jointwave.cases.partition.joints import plane_sets
+from jointwave.cases.partition.joints import direction_of, plane_sets
 from jointwave.cases.partition.outline import Outline
 from jointwave.cases.partition.scene import rock_of, shape_of
 from jointwave.cases.schema.rock_mass import RockMass
@@ -61,7 +61,11 @@ def _check_support(scene: RockMass, outline: Outline | Box) -> None:
 
 
 def _check_mesh(scene: RockMass, outline: Outline | Box) -> None:
-    """Check that the joints of a mesh are those of the joint sets."""
+    """Check that the joints of a mesh are those of the joint sets; let those of blocks be."""
+    if scene.domain.blocks is not None:
+        normals = [direction_of(one.dip)[::-1] * [-1, 1] for one in scene.joint_sets]
+        scene.domain.join([one.name for one in scene.joint_sets], np.array(normals))
+        return
     rock, key = scene.domain.given, "domain.mesh"
     assert rock is not None
     names = [one.name.lower() for one in scene.joint_sets]

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.errors import SceneError
+from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.material import effective_medium
 from jointwave.cases.material.effective_medium import compliant, intact, joints_alone
 from jointwave.cases.material.elastic import shear_modulus
@@ -170,8 +171,10 @@ def welds(
 def against(scene: RockMass) -> str | None:
     """Return why rigid blocks cannot represent a scene, None if they can: those between joints that
     are alone can where no wave is to be resolved."""
-    if scene.domain.given is not None:
+    if scene.domain.mesh is not None:
         return "cannot make rigid blocks from the cells of domain.mesh"
+    if scene.domain.blocks is not None and (why := _against_blocks(scene)):
+        return why
     if scene.numerics.dem.block is not None or (scene.joint_sets and not _drives_waves(scene)):
         return None
     names = [*(f"region {one.name!r}" for one in scene.regions), "this domain"]
@@ -182,6 +185,19 @@ def against(scene: RockMass) -> str | None:
                 "is required (m): waves pass rigid blocks only by the joints between them, and "
                 f"{name} {has}"
             )
+    return None
+
+
+def _against_blocks(scene: RockMass) -> str | None:
+    """Return why rigid blocks cannot be those of a file, None if they can: joints part them all."""
+    rock = scene.domain.given
+    assert rock is not None
+    if scene.numerics.dem.block is not None:
+        return "has no effect on domain.blocks, which are rigid as they are"
+    if scene.boundaries.sides("periodic"):
+        return "cannot be cut along periodic sides where domain.blocks are given"
+    if sum(map(len, rock.joints.values())) < (rock.cells != OUTSIDE).all(axis=1).sum():
+        return "cannot join domain.blocks at their contacts that belong to no joint set"
     return None
 
 

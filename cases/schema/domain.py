@@ -4,6 +4,7 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import numpy as np
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from jointwave.cases.schema.values import (
@@ -18,6 +19,7 @@ from jointwave.cases.schema.values import (
 )
 
 if TYPE_CHECKING:
+    from jointwave.cases.geometry.cell_complex import Complex
     from jointwave.cases.partition.given import GivenRock
 
 
@@ -42,6 +44,10 @@ class Domain(Table):
     #: a gmsh file (.msh) instead: groups "rock..." of triangles or quadrilaterals, and "joint NAME"
     #: of the edges of each joint set; its outline and openings are those of the rock
     mesh: str | None = None
+    #: a file of convex blocks instead: VTU (.vtu) with a cell, gmsh (.msh) with a surface, COMPAS
+    #: (.json) with a mesh or OBJ (.obj) with an object a block; contacts belong to the set of their
+    #: gmsh group "joint NAME", in files without groups to the set whose dip is nearest to theirs
+    blocks: str | None = None
     #: m, corners of polygons to be excavated; in space of boxes, two opposite corners each
     openings: list[list[Point]] = Field(default_factory=list)
     prisms: list[Prism] = Field(default_factory=list)
@@ -54,38 +60,68 @@ class Domain(Table):
 
     _mesh_path: Path | None = PrivateAttr(default=None)
     _given: Any = PrivateAttr(default=None)
+    _groups: Any = PrivateAttr(default=None)
+    _body: Any = PrivateAttr(default=None)
 
     @model_validator(mode="after")
     def _one_shape(self, info: ValidationInfo) -> "Domain":
         check_dimension(self, info, space=("prisms",))
-        if sum(one is not None for one in (self.size, self.outline, self.mesh)) != 1:
-            allowed = "give exactly one of domain.size, domain.outline and domain.mesh"
+        shapes = (self.size, self.outline, self.mesh, self.blocks)
+        if sum(one is not None for one in shapes) != 1:
+            allowed = "give exactly one of domain.size, domain.outline, domain.mesh, domain.blocks"
             raise contradiction("domain", None, allowed)
-        if self.mesh is not None:
-            if self.openings:
-                raise contradiction("domain.openings", None, "are part of domain.mesh")
-            self._mesh_path = named_file(info, "domain.mesh", self.mesh)
-            self._given = self._read()
+        if key := self.file_key:
+            if self.holes:
+                raise contradiction("domain.openings", None, f"are part of {key}")
+            self._mesh_path = named_file(info, key, self.mesh or self.blocks or "")
+            self._read(self._mesh_path)
         return self
 
-    def _read(self) -> "GivenRock":
+    @property
+    def file_key(self) -> str | None:
+        """The key that names a file of rock cells or blocks, None without."""
+        if self.mesh is None and self.blocks is None:
+            return None
+        return "domain.blocks" if self.mesh is None else "domain.mesh"
+
+    def _read(self, path: Path) -> None:
+        from jointwave.cases.geometry.own_blocks import complex_of
+        from jointwave.cases.geometry.read_blocks import read_blocks
         from jointwave.cases.gmsh_file import MeshError
         from jointwave.cases.partition.given import read_rock
 
-        assert self._mesh_path is not None
         try:
-            return read_rock(self._mesh_path)
+            if self.mesh is not None:
+                self._given = read_rock(path)
+                return
+            given = read_blocks(path)
+            self._body, self._groups = complex_of(given), given.joints
+            self._given = _plane_rock(self._body, [])
         except MeshError as error:
-            raise contradiction("domain.mesh", self.mesh, str(error)) from None
+            assert self.file_key is not None
+            raise contradiction(self.file_key, self.mesh or self.blocks, str(error)) from None
+
+    def join(self, names: list[str], normals: np.ndarray) -> None:
+        """Let the contacts of `blocks` belong to joint sets, once: scenes that are made of this one
+        share its domain. normals : of the sets [sets, 2]. Raises a contradiction."""
+        from jointwave.cases.geometry.own_blocks import with_sets
+        from jointwave.cases.gmsh_file import MeshError
+
+        try:
+            if self._body is not None:
+                body = with_sets(self._body, self._groups, names, normals)
+                self._given, self._body = _plane_rock(body, names), None
+        except MeshError as error:
+            raise contradiction("domain.blocks", self.blocks, str(error)) from None
 
     @property
     def given(self) -> "GivenRock | None":
-        """The rock of the file `mesh`; None where joint sets cut the domain."""
+        """The rock of the file `mesh` or `blocks`; None where joint sets cut the domain."""
         return self._given
 
     @property
     def mesh_path(self) -> Path | None:
-        """The file `mesh`, found relative to the scene's."""
+        """The file `mesh` or `blocks`, found relative to the scene's."""
         return self._mesh_path
 
     @property
@@ -111,3 +147,16 @@ class Domain(Table):
             return [list(one) for one in product(*((0.0, x) for x in self.size))]
         x, y = self.size
         return [[0.0, 0.0], [x, 0.0], [x, y], [0.0, y]]
+
+
+def _plane_rock(body: "Complex", names: list[str]) -> "GivenRock":
+    """Return blocks in the plane as the cells of a file; names : of the joint sets."""
+    from jointwave.cases.geometry.own_blocks import around_rock
+    from jointwave.cases.gmsh_file import MeshError
+    from jointwave.cases.partition.given import GivenRock
+
+    if body.dim != 2:
+        raise MeshError("has blocks in space, must have polygons in the plane z = const")
+    ends, cells, loops = around_rock(body)
+    joints = {name.lower(): np.flatnonzero(body.joint_set == k) for k, name in enumerate(names)}
+    return GivenRock(body.vertices, ends, cells, body.count, loops, joints)

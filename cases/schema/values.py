@@ -133,14 +133,12 @@ def folder_of(info: ValidationInfo, key: str) -> tuple[Path, bool]:
 
 
 def named_file(info: ValidationInfo, key: str, name: str) -> Path:
-    """Return the path of the gmsh file that a key names, relative to the scene's folder."""
+    """Return the path of the file that a key names, relative to the scene's folder."""
     folder, anywhere = folder_of(info, key)
     try:
         path = beside(folder, name, anywhere)
         if not path.is_file():
-            raise ValueError(
-                "must be a gmsh file" if path.exists() else "cannot be read: no such file"
-            )
+            raise ValueError("must be a file" if path.exists() else "cannot be read: no such file")
     except OSError as error:
         raise contradiction(key, name, f"cannot be read: {error.strerror}") from None
     except ValueError as error:

@@ -44,7 +44,7 @@ def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
     plain = [
         (i, one)
         for i, one in enumerate(sets)
-        if not (one.scatter or one.ends_at or one.regions or scene.domain.mesh)
+        if not (one.scatter or one.ends_at or one.regions or scene.domain.file_key)
     ]
     for (i, one), (k, other) in combinations(plain, 2):
         if (one.dip - other.dip) % 180 == 0:
@@ -85,13 +85,13 @@ def _of_places(scene: RockMass) -> Iterator[str]:
     corners, sets = np.array(scene.domain.corners), scene.joint_sets
     for i, one in enumerate(sets):
         extent = float(np.ptp(corners @ _normal(one.dip)))
-        if one.spacing is not None and one.spacing > extent and scene.domain.mesh is None:
+        if one.spacing is not None and one.spacing > extent and not scene.domain.file_key:
             yield (
                 f"joint_sets[{i}].spacing = {one.spacing:g} m exceeds the domain, {extent:g} m "
                 f"across its joints; {one.spacing:g} mm is {one.spacing / 1e3:g} m"
             )
     known = bool(sets) and not any(one.scatter or one.ends_at or one.regions for one in sets)
-    if not known or scene.domain.mesh:
+    if not known or scene.domain.file_key:
         return  # where joints run, only the cuts know
     places = np.array(scene.record.joints).reshape(-1, 2)
     away = np.min([_away(one, places, corners) for one in sets], axis=0, initial=np.inf)
@@ -250,7 +250,7 @@ def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
     """Warn of points on joints, across which velocity and the stress along them jump."""
     points, corners = np.array(scene.record.points).reshape(-1, 2), np.array(scene.domain.corners)
     for k, one in enumerate(scene.joint_sets):
-        if one.scatter or scene.domain.mesh or not len(points):
+        if one.scatter or scene.domain.file_key or not len(points):
             continue
         near = _away(one, points, corners)
         on = np.flatnonzero(near <= COINCIDENT * np.hypot(*np.ptp(corners, axis=0)))

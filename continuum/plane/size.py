@@ -22,7 +22,7 @@ def element_sizes(scene: RockMass) -> dict[str, float]:
     what resolves the slowest waves of the shortest pulse, in rock with its joints; those of a mesh
     as they are."""
     numerics = scene.numerics.continuum
-    if numerics.size is not None or scene.domain.given is not None:
+    if numerics.size is not None or scene.domain.mesh is not None:
         return dict.fromkeys(("quadrilateral", "triangle"), numerics.size or np.inf)
     sharp = any(one.shape not in ("ricker", "gabor") for one in scene.pulses)
     many = IN_PERIOD[numerics.order] * (OF_KINKS if sharp else 1.0)

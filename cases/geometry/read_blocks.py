@@ -1,0 +1,219 @@
+"""Files with blocks of the user's own: VTU, gmsh, COMPAS and OBJ."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from jointwave.cases.files import read_bytes, read_json, read_text
+from jointwave.cases.gmsh_file import (
+    MeshError,
+    cells_of_type,
+    one_line,
+    read_file,
+    read_tagged,
+)
+
+LARGEST = 500_000_000  # bytes, of a file
+FLAT = 1e-9  # of the extent: what z may vary by in the plane
+JOINT, ROCK = "joint", "rock"
+#: Faces of the cells of VTU and gmsh, by meshio's names; those of polyhedra are in the file.
+FACES = {
+    kind: [[int(corner) for corner in face] for face in faces.split()]
+    for kind, faces in {
+        "tetra": "021 013 123 203",
+        "pyramid": "0321 014 124 234 304",
+        "wedge": "021 345 0143 1254 2035",
+        "hexahedron": "0321 4567 0154 1265 2376 3047",
+    }.items()
+}
+POLYGONS = ("triangle", "quad", "polygon")
+#: The corners of a quadrilateral, which come in the order of a tensor product.
+AROUND = {"triangle": [0, 1, 2], "quadrilateral": [0, 1, 3, 2]}
+
+Loop = list[int]
+Loops = list[Loop]
+
+
+class Given(NamedTuple):
+    """The blocks of a file.
+
+    x : float array [v, d], m; in the plane if all have one z.
+    blocks : polygons by their vertices. In the plane the parts of each block, in space the faces
+        of it or of its parts, counter-clockwise as seen from outside.
+    names : of the blocks, in messages.
+    joints : facets by their vertices, for the name of each group "joint NAME" in small letters;
+        None of a file that has no groups.
+    """
+
+    x: np.ndarray
+    blocks: list[Loops]
+    names: list[str]
+    joints: dict[str, list[list[int]]] | None
+
+
+def read_blocks(path: Path) -> Given:
+    """Return the blocks of a file; raises MeshError, in one phrase, where it has none."""
+    readers = {".vtu": _vtu, ".msh": _gmsh, ".json": _compas, ".obj": _obj}
+    if path.suffix.lower() not in readers:
+        raise MeshError(f"must be a file of blocks: {', '.join(readers)}")
+    try:
+        given = readers[path.suffix.lower()](path)
+    except MeshError:
+        raise
+    except Exception as error:  # of a broken file, of any kind
+        raise MeshError(f"cannot be read as {path.suffix.lower()}: {one_line(error)}") from None
+    if not given.blocks:
+        raise MeshError("has no blocks")
+    used = np.unique([vertex for loops in given.blocks for loop in loops for vertex in loop])
+    if used[0] < 0 or used[-1] >= len(given.x) or not np.isfinite(given.x[used]).all():
+        raise MeshError("has a block with a corner that is no vertex of the file")
+    extent = np.ptp(given.x[used], axis=0)
+    return given._replace(x=given.x[:, :2]) if extent[2] <= FLAT * extent.max() else given
+
+
+def read_cells(path: Path) -> Given:
+    """Return the cells of a gmsh file in the plane, as blocks: those of its groups "rock...", all
+    triangles or all quadrilaterals. Raises MeshError."""
+    tagged = read_tagged(path)
+    if tagged.kind not in AROUND:
+        raise MeshError(f"its rock has {tagged.kind} cells, must have two-dimensional ones")
+    cells = tagged.cells[:, AROUND[tagged.kind]].tolist()
+    found = {name: one for name, one in tagged.facets.items() if name.startswith(JOINT)}
+    joints = {_plain(name): one.tolist() for name, one in found.items()}
+    names = [f"cell {k}" for k in range(len(cells))]
+    return Given(tagged.x[:, :2], [[cell] for cell in cells], names, joints)
+
+
+def _plain(name: str) -> str:
+    """Return the NAME of a group "joint NAME" in small letters."""
+    return name.strip().lower()[len(JOINT) :].strip(" _-:")
+
+
+def _vtu(path: Path) -> Given:
+    mesh, said = read_file(path, "vtu")
+    if "cannot handle" in said or read_bytes(path, LARGEST, 1).count(b"<Piece") > 1:
+        raise MeshError("must be one piece of polygons or polyhedra, tetrahedra, hexahedra")
+    kinds = [block for block in mesh.cells if block.dim > 1]
+    blocks = [loops for one in kinds for loops in _cells(mesh.points, one.type, one.data)]
+    if len({block.dim for block in kinds}) > 1:
+        raise MeshError("has both polygons and polyhedra")
+    return Given(mesh.points, blocks, [f"cell {k}" for k in range(len(blocks))], None)
+
+
+def _cells(x: np.ndarray, kind: str, cells: np.ndarray) -> list[Loops]:
+    """Return the polygons of each cell of a kind that meshio knows."""
+    if kind in POLYGONS:
+        return [[cell] for cell in np.asarray(cells).tolist()]
+    if kind.startswith("polyhedron"):
+        return [[face.tolist() for face in faces] for faces in cells]
+    if kind not in FACES:
+        known = ", ".join([*POLYGONS, "polyhedron", *FACES])
+        raise MeshError(f"has {kind} cells, must be of {known}")
+    found = []
+    for face in FACES[kind]:
+        corners = x[cells[:, face]]
+        one, other = corners[:, 2] - corners[:, 0], corners[:, -1] - corners[:, 1]
+        out = corners.mean(axis=1) - x[cells].mean(axis=1)
+        inward = (np.cross(one, other) * out).sum(axis=1) < 0
+        loops = np.where(inward[:, None], cells[:, face[::-1]], cells[:, face])
+        found.append(loops.tolist())
+    return [list(faces) for faces in zip(*found, strict=True)]
+
+
+def _gmsh(path: Path) -> Given:
+    """One block for each physical surface or volume, but for each elementary one of groups
+    "rock..." and of a file without groups."""
+    mesh, _ = read_file(path, "gmsh")
+    dim = max((block.dim for block in mesh.cells), default=0)
+    none = [np.zeros(len(block.data), np.int64) for block in mesh.cells]
+    physical = mesh.cell_data.get("gmsh:physical", none)
+    names = {tag: name for name, (tag, of) in mesh.field_data.items() if of == dim}
+    kind, blocks = {2: "surface", 3: "volume"}.get(dim, ""), dict[str, Loops]()
+    grouped = any(p.any() for b, p in zip(mesh.cells, physical, strict=True) if b.dim == dim)
+    for block, groups, entities in zip(
+        mesh.cells, physical, mesh.cell_data["gmsh:geometrical"], strict=True
+    ):
+        if block.dim != dim or dim < 2:
+            continue
+        for loops, group, entity in zip(
+            _cells(mesh.points, block.type, block.data), groups, entities, strict=True
+        ):
+            if grouped and not group:
+                raise MeshError(f"has a cell of {kind} {entity} in no group")
+            name = names.get(group, f"group {group}" if grouped else ROCK)
+            key = f"{kind} {entity}" if name.lower().startswith(ROCK) else repr(name)
+            blocks.setdefault(key, []).extend(loops)
+    joints = {
+        _plain(name): [
+            facet
+            for cell in ({2: ["line"], 3: ["triangle", "quad"]}[dim])
+            for facet in cells_of_type(mesh, [name], cell).tolist()
+        ]
+        for name in mesh.field_data
+        if name.strip().lower().startswith(JOINT)
+    }
+    return Given(mesh.points, list(blocks.values()), list(blocks), joints or None)
+
+
+def _compas(path: Path) -> Given:
+    """Meshes and polyhedra in any of COMPAS's structures: assemblies, models or lists of them."""
+    x: list[list[float]] = []
+    blocks: list[Loops] = []
+    for vertices, faces in _meshes(read_json(path, LARGEST)):
+        number = {str(key): len(x) + k for k, key in enumerate(vertices)}
+        x += vertices.values()
+        blocks.append([[number[str(key)] for key in face] for face in faces])
+    return _of_objects(x, {f"block {k}": loops for k, loops in enumerate(blocks)})
+
+
+def _meshes(node) -> Iterator[tuple[dict, list]]:
+    """Yield the places of vertices by key, and the faces by these keys, of each mesh."""
+    if isinstance(node, list):
+        for one in node:
+            yield from _meshes(one)
+    elif isinstance(node, dict) and {"vertex", "face"} <= node.keys():
+        places = {
+            key: [one.get(axis, 0.0) for axis in "xyz"] for key, one in node["vertex"].items()
+        }
+        yield places, list(node["face"].values())
+    elif isinstance(node, dict) and {"vertices", "faces"} <= node.keys():
+        yield dict(enumerate(node["vertices"])), node["faces"]
+    elif isinstance(node, dict):
+        moved = node.get("transformation")
+        if moved and not np.allclose(moved["data"]["matrix"], np.eye(4), atol=0, rtol=0):
+            raise MeshError("has blocks with a transformation, must have them in place")
+        for key, one in node.items():
+            if key not in ("edge", "contacts", "interactions"):  # not of blocks
+                yield from _meshes(one)
+
+
+def _obj(path: Path) -> Given:
+    """The faces of each object (o), or of each group (g) where there are no objects."""
+    lines = [line.split() for line in read_text(path, LARGEST).replace("\\\n", " ").splitlines()]
+    mark = "o" if any(words[:1] == ["o"] for words in lines) else "g"
+    x: list[list[float]] = []
+    objects: dict[str, Loops] = {}
+    name = ""
+    for words in lines:
+        kind, *rest = words or [""]
+        if kind == "v":
+            x.append([float(word) for word in rest[:3]])
+        elif kind == mark:
+            name = " ".join(rest)
+        elif kind == "f":
+            corners = [int(word.split("/")[0]) for word in rest]
+            loop = [k - 1 if k > 0 else len(x) + k if k else -1 for k in corners]
+            objects.setdefault(name, []).append(loop)
+    return _of_objects(x, {repr(name): loops for name, loops in objects.items()})
+
+
+def _of_objects(x: list[list[float]], objects: dict[str, Loops]) -> Given:
+    """Return blocks; of one flat object each face is one."""
+    places = np.array(x, dtype=float).reshape(-1, 3)
+    blocks, names = list(objects.values()), list(objects)
+    if len(blocks) == 1 and np.ptp(places[:, 2]) <= FLAT * np.ptp(places, axis=0).max():
+        blocks = [[face] for face in blocks[0]]
+        names = [f"face {k}" for k in range(len(blocks))]
+    return Given(places, blocks, names, None)

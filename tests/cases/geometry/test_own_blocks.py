@@ -1,0 +1,399 @@
+"""Blocks of the user's own: files of every kind, against the complex that they are written from."""
+
+import json
+from itertools import pairwise
+
+import meshio
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from jointwave.cases.geometry.blocks import blocks_of
+from jointwave.cases.geometry.cell_complex import box
+from jointwave.cases.geometry.cut import Planes, cut
+from jointwave.cases.geometry.own_blocks import complex_of_file, outlines_of
+from jointwave.cases.gmsh_file import MeshError
+
+TOLERANCE = 1e-9  # m
+
+
+def cut_by(body, normal, places, joint_set=0, cells=None):
+    """Return a complex cut by planes at places along a normal, or some cells of it."""
+    family = np.where(np.ones(body.count, bool) if cells is None else cells, 0, -1)
+    planes = Planes.of_families(
+        normal,
+        family,
+        np.array(places),
+        np.array([0, len(places)]),
+        np.zeros(1, int),
+        joint_set,
+        TOLERANCE,
+    )
+    return cut(body, planes, TOLERANCE).body
+
+
+def random_blocks(dim, seed):
+    """Return a box of 10 by 8 (by 6) m, cut at random by sets of planes, each through a part of the
+    blocks that there are."""
+    rng = np.random.default_rng(seed)
+    body = box(np.zeros(dim), np.array([10.0, 8.0, 6.0])[:dim])
+    for k in range(dim):
+        normal = rng.normal(size=dim)
+        normal /= np.linalg.norm(normal)
+        reach = body.vertices @ normal
+        places = np.sort(rng.uniform(reach.min(), reach.max(), 3))
+        places = places[np.diff(places, prepend=-9) > 0.2]
+        chosen = rng.random(body.count) < 0.7
+        chosen[0] = True
+        body = cut_by(body, normal, places, k, chosen)
+    return blocks_of(body, TOLERANCE)
+
+
+def polygons(blocks):
+    """Return the faces of each block by their corners, in the plane its one outline."""
+    of, _normal, outlines = blocks.faces(TOLERANCE)
+    loops = np.split(outlines.corners, outlines.first[1:-1])
+    if blocks.body.dim == 3:
+        return [
+            [x for x, k in zip(loops, of, strict=True) if k == cell] for cell in range(blocks.count)
+        ]
+    found = []
+    for cell in range(blocks.count):
+        x = np.unique(
+            np.round(
+                np.concatenate([one for one, k in zip(loops, of, strict=True) if k == cell]), 13
+            ),
+            axis=0,
+        )
+        away = x - x.mean(axis=0)
+        found.append([x[np.argsort(np.arctan2(away[:, 1], away[:, 0]))]])
+    return found
+
+
+def in_space(x):
+    return np.pad(x, ((0, 0), (0, 3 - x.shape[1])))
+
+
+def write_vtu(path, solids):
+    """One cell a block, with vertices of its own."""
+    x, cells, first = [], [], 0
+    for faces in solids:
+        numbered = []
+        for one in faces:
+            x.append(in_space(one))
+            numbered.append(list(range(first, first + len(one))))
+            first += len(one)
+        kind = "polygon" if faces[0].shape[1] == 2 else f"polyhedron{sum(map(len, numbered))}"
+        cells.append((kind, numbered if kind == "polygon" else [numbered]))
+    meshio.write(path, meshio.Mesh(np.concatenate(x), cells))
+
+
+def write_obj(path, solids):
+    lines, first = ["# blocks"], 1
+    for k, faces in enumerate(solids):
+        lines.append(f"o block {k}")
+        for one in faces:
+            lines += ["v {:.17g} {:.17g} {:.17g}".format(*x) for x in in_space(one)]
+            lines.append("f " + " ".join(f"{first + i}//1" for i in range(len(one))))
+            first += len(one)
+    path.write_text("\n".join(lines))
+
+
+def write_json(path, solids):
+    """An assembly as COMPAS writes it."""
+    node = {}
+    for k, faces in enumerate(solids):
+        x = in_space(np.concatenate(faces))
+        first = np.cumsum([0, *map(len, faces)])
+        mesh = {
+            "vertex": {str(i): dict(zip("xyz", p, strict=True)) for i, p in enumerate(x.tolist())},
+            "face": {str(i): list(range(a, b)) for i, (a, b) in enumerate(pairwise(first))},
+        }
+        mesh = json.loads(json.dumps(mesh, default=int))
+        node[str(k)] = {"block": {"dtype": "compas_assembly.datastructures/Block", "data": mesh}}
+    graph = {"dtype": "compas.datastructures/Graph", "data": {"node": node, "edge": {}}}
+    whole = {"dtype": "compas_assembly.datastructures/Assembly", "data": {"graph": graph}}
+    path.write_text(json.dumps(whole))
+
+
+def write_msh(path, solids):
+    """One elementary entity a block, in triangles or tetrahedra from its middle."""
+    x, cells, tags, first = [], [], [], 0
+    dim = solids[0][0].shape[1]
+    for k, faces in enumerate(solids):
+        middle = np.concatenate(faces).mean(axis=0)
+        x.append(in_space(middle[None]))
+        centre, own = first, []
+        first += 1
+        for one in faces:
+            x.append(in_space(one))
+            at = list(range(first, first + len(one)))
+            first += len(one)
+            if dim == 2:
+                own += [[centre, a, b] for a, b in zip(at, at[1:] + at[:1], strict=True)]
+            else:
+                own += [[centre, at[0], a, b] for a, b in pairwise(at)]
+        cells.append(("triangle" if dim == 2 else "tetra", np.array(own)))
+        tags.append(np.full(len(own), k + 1))
+    x = np.concatenate(x)
+    # one vertex a place within a block, or its parts would not meet
+    _, number, which = np.unique(np.round(x, 12), axis=0, return_index=True, return_inverse=True)
+    cells = [(kind, which.reshape(-1)[own]) for kind, own in cells]
+    data = {"gmsh:physical": [0 * t for t in tags], "gmsh:geometrical": tags}
+    meshio.gmsh.write(path, meshio.Mesh(x[number], cells, cell_data=data), "2.2", binary=True)
+
+
+WRITERS = {"vtu": write_vtu, "obj": write_obj, "json": write_json, "msh": write_msh}
+
+
+def agree(found, expected):
+    """Assert that blocks and contacts are the same, in whatever order."""
+    assert found.count == expected.count
+    tree = np.linalg.norm(found.centroid[:, None] - expected.centroid, axis=2)
+    number = tree.argmin(axis=1)
+    assert tree.min(axis=1).max() < 1e-9 and len(set(number)) == found.count
+    scale = expected.volume.max()
+    assert np.abs(found.volume - expected.volume[number]).max() < 1e-12 * scale
+    area = {
+        tuple(sorted(pair)): a
+        for pair, a in zip(expected.contacts.blocks, expected.contacts.area, strict=True)
+    }
+    pairs = [tuple(sorted(number[pair])) for pair in found.contacts.blocks]
+    assert set(pairs) == set(area) and len(pairs) == len(area)
+    off = [abs(area[pair] - a) for pair, a in zip(pairs, found.contacts.area, strict=True)]
+    assert max(off, default=0) < 1e-12 * scale
+    for one in ("contacts", "boundary"):
+        assert getattr(found, one).area.sum() == pytest.approx(
+            getattr(expected, one).area.sum(), rel=1e-12
+        )
+
+
+@pytest.mark.parametrize("kind", WRITERS)
+@pytest.mark.parametrize("dim", [2, 3])
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_blocks_of_a_file_are_those_that_were_written(dim, kind, seed, tmp_path_factory):
+    expected = random_blocks(dim, seed)
+    path = tmp_path_factory.mktemp("blocks") / f"blocks.{kind}"
+    WRITERS[kind](path, polygons(expected))
+    body = complex_of_file(path, [], np.empty((0, dim)))
+    agree(blocks_of(body, TOLERANCE), expected)
+    cells = body.count
+    normal = np.ones(dim) / np.sqrt(dim)
+    middle = np.array([5.0, 4.0, 3.0])[:dim] @ normal
+    again = blocks_of(cut_by(body, normal, [middle]), TOLERANCE)  # surfaces are closed
+    assert again.count > cells and again.volume.sum() == pytest.approx(expected.volume.sum())
+
+
+def bricks(dim):
+    """Return a wall of four courses, offset by half a brick: cut, and the bricks one by one."""
+    size = np.array([4.0, 2.0] if dim == 2 else [4.0, 1.0, 2.0])
+    along, up = np.eye(dim)[0], np.eye(dim)[-1]
+    body = cut_by(box(np.zeros(dim), size), up, [0.5, 1.0, 1.5])
+    odd = (body.centres() @ up * 2).astype(int) % 2 == 1
+    for courses, heads in ((odd, [0.5, 1.5, 2.5, 3.5]), (~odd, [1.0, 2.0, 3.0])):
+        chosen = np.append(courses, np.zeros(body.count - len(courses), bool))
+        body = cut_by(body, along, heads, 1, chosen)
+    return blocks_of(body, TOLERANCE)
+
+
+@pytest.mark.parametrize("kind", WRITERS)
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_wall_brick_by_brick_is_the_one_that_is_cut(dim, kind, tmp_path):
+    """Each brick touches two of the course below on half of its face; sets go by the planes."""
+    expected = bricks(dim)
+    WRITERS[kind](tmp_path / f"wall.{kind}", polygons(expected))
+    normals = np.eye(dim)[[-1, 0]]
+    found = blocks_of(
+        complex_of_file(tmp_path / f"wall.{kind}", ["bed", "head"], normals), TOLERANCE
+    )
+    agree(found, expected)
+    for k in range(2):
+        own, same = (one.contacts.area[one.contacts.joint_set == k] for one in (found, expected))
+        assert np.sort(own) == pytest.approx(np.sort(same), rel=1e-12)
+    assert len(found.faces(TOLERANCE)[0]) == found.count * 2 * dim  # a face is one
+
+
+def test_a_face_that_is_touched_in_its_middle_is_one_of_both(tmp_path):
+    """A cube of half the size on a cube: the rest of the face around it is outside."""
+    cube = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
+    sides = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+    solids = []
+    for low, size in (([0, 0, 0], 1.0), ([0.25, 0.25, 1.0], 0.5)):
+        corners = np.array(low) + size * np.concatenate([cube, cube + np.array([0, 0, 1])])
+        solids.append([corners[face] for face in sides])
+    write_json(tmp_path / "two.json", solids)
+    body = complex_of_file(tmp_path / "two.json", ["one"], np.array([[0.0, 0.0, 1.0]]))
+    found = blocks_of(body, TOLERANCE)
+    assert found.volume == pytest.approx([1.0, 0.125])
+    assert found.contacts.area == pytest.approx([0.25]) and found.contacts.joint_set == [0]
+    assert found.boundary.area.sum() == pytest.approx(6 + 5 * 0.25 - 0.25)
+
+
+def test_openings_are_sides_from_left_to_right(tmp_path):
+    """A frame of two windows."""
+    x, y = np.array([0.0, 1, 2, 3, 4, 5]), np.array([0.0, 1, 2, 3])
+    solids = [
+        [np.array([[a, c], [b, c], [b, d], [a, d]])]
+        for i, (a, b) in enumerate(pairwise(x))
+        for j, (c, d) in enumerate(pairwise(y))
+        if (i, j) not in ((1, 1), (3, 1))
+    ]
+    write_obj(tmp_path / "frame.obj", solids)
+    body = complex_of_file(tmp_path / "frame.obj", [], np.empty((0, 2)))
+    outer, *holes = outlines_of(body)
+    assert np.ptp(outer, axis=0) == pytest.approx([5, 3])
+    assert [hole.mean(axis=0).tolist() for hole in holes] == [[1.5, 1.5], [3.5, 1.5]]
+    sides = blocks_of(body, TOLERANCE).boundary
+    assert [sides.area[sides.side == k].sum() for k in range(3)] == [16.0, 4.0, 4.0]
+
+
+def obj(*objects):
+    """Return the text of an OBJ file of objects, each by its corners and faces."""
+    lines, first = [], 1
+    for k, (corners, faces) in enumerate(objects):
+        lines += [f"o {k}", *("v " + " ".join(map(str, x)) for x in corners)]
+        lines += ["f " + " ".join(str(first + i) for i in face) for face in faces]
+        first += len(corners)
+    return "\n".join(lines)
+
+
+def square(x, y, size=1):
+    return [(x, y, 0), (x + size, y, 0), (x + size, y + size, 0), (x, y + size, 0)], [(0, 1, 2, 3)]
+
+
+TETRA = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+OUT = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]
+ELL = [(0, 0, 0), (2, 0, 0), (2, 1, 0), (1, 1, 0), (1, 2, 0), (0, 2, 0)]
+AROUND = [(0, 1, 7, 6), (1, 2, 8, 7), (2, 3, 9, 8), (3, 4, 10, 9), (4, 5, 11, 10), (5, 0, 6, 11)]
+PRISM = [*ELL, *((x, y, 1) for x, y, _ in ELL)], [(5, 4, 3, 2, 1, 0), tuple(range(6, 12)), *AROUND]
+CUBE = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+SIDES = [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+WARPED = [*CUBE[:6], (1, 1, 1.5), CUBE[7]]
+MOVED = {"matrix": [[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}
+MESH = {"vertex": {"0": {"x": 0, "y": 0, "z": 0}}, "face": {}}
+
+BAD = {
+    "not convex, in the plane": ("a.obj", obj((ELL, [range(6)])), "face 0 is not convex near ["),
+    "not convex, in space": ("a.obj", obj(PRISM), "'0' is not convex near ["),
+    "crossed": ("a.obj", obj(([*TETRA[:3], (1, 1, 0)], [(0, 1, 2, 3)])), "is not convex"),
+    "flat": (
+        "a.obj",
+        obj(square(0, 0), ([(1, 0, 0), (2, 0, 0), (3, 0, 0)], [(0, 1, 2)])),
+        "'1' is flat",
+    ),
+    "overlap": (
+        "a.obj",
+        obj(square(0, 0), square(0.5, 0.5)),
+        "'0' and '1' overlap near [0.75, 0.75]",
+    ),
+    "twice": ("a.obj", obj(square(0, 0), square(0, 0)), "'0' and '1' overlap"),
+    "inside": (
+        "a.obj",
+        obj((CUBE, SIDES), ([(x / 2, y / 2, z / 2) for x, y, z in CUBE], SIDES)),
+        "overlap",
+    ),
+    "not plane": ("a.obj", obj((WARPED, SIDES)), "'0' has a face that is not plane near ["),
+    "inverted": (
+        "a.obj",
+        obj((TETRA, [face[::-1] for face in OUT])),
+        "'0' has a face turned inwards",
+    ),
+    "open": ("a.obj", obj((CUBE, SIDES[:5])), "'0' is open near ["),
+    "apart": (
+        "a.obj",
+        obj(square(0, 0), square(1.1, 0)),
+        "its rock is in 2 separate pieces, one near [1.6",
+    ),
+    "by a corner": ("a.obj", obj(square(0, 0), square(1, 1)), "in 2 separate pieces"),
+    "pinched": (
+        "a.obj",
+        obj(*(square(x, y) for x in range(4) for y in range(4) if (x, y) not in ((1, 1), (2, 2)))),
+        "its outline touches itself near [2, 2]",
+    ),
+    "no vertex": (
+        "a.obj",
+        "v 0 0 0\nv 1 0 0\nf 1 2 7\n",
+        "with a corner that is no vertex of the file",
+    ),
+    "not a number": ("a.obj", "v 0 0 x\nf 1 2 3\n", "cannot be read as .obj: could not convert"),
+    "no block": ("a.obj", "v 0 0 0\n", "has no blocks"),
+    "no mesh": ("a.json", "{}", "has no blocks"),
+    "no face": ("a.json", json.dumps(MESH), "has no blocks"),
+    "no JSON": ("a.json", "{", "cannot be read as .json: is not valid JSON"),
+    "moved": (
+        "a.json",
+        json.dumps({"transformation": {"data": MOVED}, "geometry": MESH}),
+        "has blocks with a transformation, must have them in place",
+    ),
+    "no VTU": ("a.vtu", "<a/>", "cannot be read as a VTU file of VTK: "),
+    "no gmsh": ("a.msh", "nothing", "cannot be read as a gmsh mesh, version 2.2 or 4.1: "),
+    "kind": ("a.stl", "", "must be a file of blocks: .vtu, .msh, .json, .obj"),
+}
+
+
+@pytest.mark.parametrize("name, text, words", BAD.values(), ids=BAD)
+def test_what_makes_no_blocks_is_said_in_a_line(name, text, words, tmp_path):
+    (tmp_path / name).write_text(text)
+    with pytest.raises(MeshError) as error:
+        outlines_of(complex_of_file(tmp_path / name, [], np.empty((0, 2))))
+    assert words in str(error.value) and "\n" not in str(error.value)
+
+
+def test_sets_that_are_not_told_apart_are_refused(tmp_path):
+    """By the dip alone, where a contact is as near to one as to the other."""
+    (tmp_path / "a.obj").write_text(obj(square(0, 0), square(1, 0)))
+    dips = np.radians([45.0, -45.0])
+    normals = np.stack([-np.sin(dips), np.cos(dips)], axis=1)
+    with pytest.raises(
+        MeshError, match=r"near \[1, 0.5\] whose plane is as near to set 'a' as to 'b'"
+    ):
+        complex_of_file(tmp_path / "a.obj", ["a", "b"], normals)
+    body = complex_of_file(tmp_path / "a.obj", ["a"], normals[:1])
+    assert body.joint_set[body.inner] == [0]
+
+
+def grouped(path, joints, doubled=False):
+    """Write three squares in a row, surfaces 1 to 3, with the groups of edges given by name."""
+    x = np.array([[i, j, 0.0] for i in range(4) for j in range(2)])
+    quads = np.array([[0, 2, 3, 1], [2, 4, 5, 3], [4, 6, 7, 5]])
+    lines = [np.array(edges) for edges in joints.values()]
+    cells = [("quad", quads), *(("line", one) for one in lines)]
+    tags = [np.arange(1, 4), *(np.full(len(one), k) for k, one in enumerate(lines, 2))]
+    data = {"gmsh:physical": [np.ones(3, int), *tags[1:]], "gmsh:geometrical": tags}
+    fields = {"Rock": np.array([1, 2])}
+    fields |= {name: np.array([k, 1]) for k, name in enumerate(joints, 2)}
+    mesh = meshio.Mesh(x, cells, cell_data=data, field_data=fields)
+    meshio.gmsh.write(path, mesh, "2.2", binary=False)
+
+
+def test_groups_of_gmsh_are_the_joints_and_the_rest_is_rock(tmp_path):
+    grouped(tmp_path / "a.msh", {"joint Fault": [[4, 5]]})
+    body = complex_of_file(tmp_path / "a.msh", ["fault"], np.array([[0.0, 1.0]]))
+    found = blocks_of(body, TOLERANCE).contacts
+    assert found.joint_set[np.argsort(found.centroid[:, 0])].tolist() == [-1, 0]
+
+
+@pytest.mark.parametrize(
+    "joints, names, words",
+    [
+        ({"joint a": [[2, 3]]}, ["b"], "has a group 'joint a', but no joint set has this name"),
+        ({"joint a": [[2, 3]]}, ["a", "b"], "must have a group 'joint b' for joint_sets[1]"),
+        (
+            {"joint a": [[0, 1]]},
+            ["a"],
+            "1 facets of its joints are on its boundary, the first near [0, 0.5]",
+        ),
+        (
+            {"joint a": [[2, 5]]},
+            ["a"],
+            "has a facet of a joint near [1.5, 0.5], where no block has its face",
+        ),
+    ],
+)
+def test_groups_that_do_not_fit_are_said_in_a_line(joints, names, words, tmp_path):
+    grouped(tmp_path / "a.msh", joints)
+    with pytest.raises(MeshError) as error:
+        complex_of_file(tmp_path / "a.msh", names, np.eye(2)[: len(names)])
+    assert words in str(error.value)

@@ -1,0 +1,132 @@
+"""Scenes of blocks from a file."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from jointwave.cases.errors import SceneError
+from jointwave.cases.read import load
+from jointwave.compare.engines import solver
+
+SCENE = """
+title = "A brick wall"
+domain = { blocks = "wall.obj" }
+rock = { density = 2600.0, intact_modulus = 5e10, intact_poisson = 0.2 }
+waves = [{ kind = "P", direction = [0.0, 1.0], shape = "ricker", amplitude = 1e6, period = 4e-3 }]
+boundaries = { bottom = "quiet", top = "quiet" }
+time = { duration = 6e-3 }
+record = { points = [[2.3, 0.25], [2.3, 1.75]], joints = [[2.5, 1.0]], interval = 1e-4 }
+
+[[joint_sets]]
+name = "bed"
+dip = 0.0
+spacing = 0.5
+normal_stiffness = 2e10
+shear_stiffness = 8e9
+
+[[joint_sets]]
+name = "head"
+dip = 90.0
+spacing = 1.0
+normal_stiffness = 3e10
+shear_stiffness = 8e9
+"""
+CUT = SCENE.replace('{ blocks = "wall.obj" }', "{ size = [4.0, 2.0] }")
+CUT += 'ends_at = ["bed"]\noffset = 0.5\n'
+MSH = SCENE.replace("wall.obj", "wall.msh")
+
+
+def wall(windows=()):
+    """Return the text of an OBJ file of bricks of 1 by 0.5 m in four courses."""
+    lines, count = [], 0
+    for row in range(4):
+        heads = [0.0, *np.arange(0.5 if row % 2 else 1.0, 4.0), 4.0]
+        for number, (left, right) in enumerate(pairwise(heads)):
+            if (row, number) in windows:
+                continue
+            lines.append(f"o brick {row} {number}")
+            for x, y in ((left, 0.0), (right, 0.0), (right, 0.5), (left, 0.5)):
+                lines.append(f"v {x} {y + row / 2} 0")
+            lines.append("f " + " ".join(str(count + k) for k in (1, 2, 3, 4)))
+            count += 4
+    return "\n".join(lines)
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """Return a function that reads a scene beside the file of the wall."""
+
+    def read(text=SCENE, blocks=None):
+        (tmp_path / "wall.obj").write_text(wall() if blocks is None else blocks)
+        (tmp_path / "scene.toml").write_text(text)
+        (found,) = load(tmp_path / "scene.toml")
+        return found
+
+    return read
+
+
+@pytest.mark.parametrize("name", ["dem", "continuum-jointed", "continuum-equivalent"])
+def test_waves_in_a_wall_of_bricks_are_those_in_the_wall_that_is_cut(name, scene):
+    engine = solver(name)
+    own, cut = scene(), scene(CUT)
+    assert engine.applies(own)
+    found, expected = engine.run(own), engine.run(cut)
+    assert np.abs(expected.velocity).max() > 0.01
+    for one in ("velocity", "stress"):
+        off = np.abs(found[one] - expected[one]).max() / np.abs(expected[one]).max()
+        assert off < (1e-12 if name != "continuum-equivalent" else 0.05)  # of other elements
+
+
+def test_a_window_is_an_opening(scene):
+    pressed = SCENE.replace("[[joint_sets]]", LOAD + "\n[[joint_sets]]", 1)
+    found = scene(pressed, wall(windows=[(1, 2)]))
+    (window,) = found.domain.holes
+    assert np.array(window).min(axis=0).tolist() == [1.5, 0.5]
+    assert np.array(window).max(axis=0).tolist() == [2.5, 1.0]
+
+
+LOAD = """
+[[loads]]
+kind = "pressure"
+opening = 0
+shape = "ricker"
+amplitude = 1e6
+period = 4e-3
+"""
+
+
+@pytest.mark.parametrize(
+    "text, blocks, words",
+    [
+        (SCENE, "", "domain.blocks = 'wall.obj': has no blocks"),
+        (SCENE, wall() + "\no more\nf 1 2 3 4", "'brick 0 0' and 'more' overlap near ["),
+        (SCENE.replace("wall.obj", "lost.obj"), None, "domain.blocks = 'lost.obj': cannot be read"),
+        (SCENE.replace("dip = 90.0", "dip = 0.0"), None, "as near to set 'bed' as to 'head'"),
+        (SCENE + 'ends_at = ["bed"]\n', None, "has no effect: domain.blocks has the joints"),
+        (SCENE.replace("2.3, 0.25", "9.0, 0.25"), None, "record.points[0]"),
+        (
+            SCENE.replace('.obj"', '.obj", openings = [[[1.0, 1.0]]]'),
+            None,
+            "are part of domain.blocks",
+        ),
+        (SCENE.replace('.obj"', '.obj", size = [1.0, 1.0]'), None, "exactly one of domain.size"),
+    ],
+)
+def test_what_does_not_fit_blocks_is_said_in_a_line(text, blocks, words, scene):
+    with pytest.raises(SceneError) as error:
+        scene(text, blocks)
+    said = [str(one) for one in error.value.each]
+    assert any(words in line for line in said) and "\n" not in "".join(said)
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (("[[joint_sets]]", "numerics = { dem = { block = 0.2 } }\n[[joint_sets]]"), "as they are"),
+        (("boundaries = {", 'boundaries = { left = "periodic", right = "periodic",'), "periodic"),
+    ],
+)
+def test_rigid_blocks_are_those_of_the_file(change, words, scene):
+    answer = solver("dem").applies(scene(SCENE.replace(*change, 1)))
+    assert not answer and words in answer.reason
