@@ -97,5 +97,5 @@ def _limit(engine: str, at: list[float], size: float, longer_step: float) -> str
     place = ", ".join(f"{round(x, 9) + 0.0:.4g}" for x in at)
     return (
         f"the step of {label_of(engine)} is limited by the {part} at {place} m, {size:.3g} m in "
-        f"size: without the worst twentieth of all it would be {longer_step:.3g} times as long"
+        f"size: without the worst 5 % of the {part}s it would be {longer_step:.3g} times as long"
     )

@@ -53,11 +53,7 @@ ModelOption = Annotated[
 ]
 SetOption = Annotated[
     list[str],
-    typer.Option(
-        "--set",
-        metavar="KEY=VALUE",
-        help="Change a key in every variant; repeatable.",
-    ),
+    typer.Option("--set", metavar="KEY=VALUE", help="Change a key in every variant; repeatable."),
 ]
 SweepOption = Annotated[
     list[str],

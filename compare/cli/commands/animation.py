@@ -29,9 +29,7 @@ from jointwave.compare.engines import label_of
 
 ScaleOption = Annotated[
     float | None,
-    typer.Option(
-        metavar="X", help="Exaggeration of displacements (default: such that they are seen)."
-    ),
+    typer.Option(metavar="X", help="Exaggeration of displacements (default: visible)."),
 ]
 MapOption = Annotated[
     str | None,
@@ -59,11 +57,7 @@ def animate(
     scale: ScaleOption = None,
     frames: Annotated[
         int | None,
-        typer.Option(
-            min=2,
-            max=5000,
-            help=f"Number of frames (default: the snapshots of record.fields, else {FRAMES}).",
-        ),
+        typer.Option(min=2, max=5000, help=f"Frames (default: of record.fields, else {FRAMES})."),
     ] = None,
     seconds: Annotated[float, typer.Option(help="Duration of the film.")] = SECONDS,
     results: ResultsOption = None,
@@ -126,7 +120,7 @@ def view(
     scene: SceneArgument,
     out: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Write this .png instead of opening a window."),
+        typer.Option(metavar="FILE", help="Write this .png, open no window."),
     ] = None,
     time: Annotated[
         float | None,

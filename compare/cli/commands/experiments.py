@@ -71,16 +71,11 @@ def plan(
     scene: SceneArgument,
     misfit: Annotated[
         float,
-        typer.Option(
-            min=0.0, help="Largest relative L2 misfit from the finest physics: 0.02 is 2 %."
-        ),
+        typer.Option(min=0.0, help="Largest misfit, relative L2: 0.02 is 2 %."),
     ],
     seconds: Annotated[
         float | None,
-        typer.Option(
-            min=0.0,
-            help="Limit of stepping, s: the most accurate run within it, if none meets the misfit.",
-        ),
+        typer.Option(min=0.0, help="Limit of stepping, s: the best run within it."),
     ] = None,
     changes: SetOption = [],
     variant: VariantOption = None,
@@ -174,9 +169,7 @@ def report(
     dry: DryOption = False,
     peers: Annotated[
         Path | None,
-        typer.Option(
-            help="Table of `make bench-peers` (default: out/peers/points.csv if it exists)."
-        ),
+        typer.Option(help="Table of make bench-peers (default: out/peers/points.csv if present)."),
     ] = None,
     strict: StrictOption = False,
     as_json: JsonOption = False,
