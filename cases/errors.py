@@ -47,6 +47,12 @@ class SceneError(ValueError):
         return [own, *(one for other in self._arguments[4] for one in other.each)]
 
 
+def require(value: object, kind: Any, where: str, key: str, allowed: str) -> None:
+    """Raise SceneError unless a value that a caller has given is of this type."""
+    if not isinstance(value, kind):
+        raise SceneError(where, key, type(value).__name__, f"must be {allowed}")
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return the likely intended name as the end of a message; else an empty string.
 

@@ -83,8 +83,8 @@ def _one(
         return validated(table, path, given)
     names = [variant.get("name") for variant in variants]
     if name not in names:
-        known = sorted(str(n) for n in ["", *names])
-        allowed = f"must be one of {known}{nearest(name, known)}"
+        known = sorted(map(str, names))
+        allowed = f"must be one of {known}{nearest(name, known)}" if known else "the scene has none"
         raise SceneError(str(path), "variants.name", name, allowed)
     which = names.index(name)
     return validated(_variant(table, variants[which], path, which, overrides), path, given)
@@ -181,5 +181,6 @@ def _place(at: Any, part: str, key: str, value: Any, where: str) -> Any:
     if isinstance(at, dict):
         return part
     if not part.isdecimal() or int(part) >= len(at):
-        raise SceneError(where, key, value, f"index {part} is outside 0 to {len(at) - 1}")
+        allowed = f"{part} must be the number of an entry of the list, 0 to {len(at) - 1}"
+        raise SceneError(where, key, value, allowed)
     return int(part)

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from jointwave import cases
-from jointwave.cases.errors import SceneError, nearest
+from jointwave.cases.errors import SceneError, nearest, require
 from jointwave.cases.scene_type import AnyScene, pillar_of
 from jointwave.compare import engines as registry
 
@@ -28,7 +28,7 @@ def shipped_files() -> list[Path]:
 def find(scene: str | Path) -> Path:
     """Return the file of a scene given by path or by shipped name, `guo-li-2002/fig-03`.
 
-    Raises SceneError where there is none but one that is called much the same.
+    Raises SceneError for a name of neither, and where one is called much the same.
     """
     path = Path(scene)
     if path.exists() or path.is_symlink():
@@ -38,6 +38,9 @@ def find(scene: str | Path) -> Path:
         return known
     if meant := nearest(str(scene), [*_beside(path), *shipped()]):
         raise SceneError(str(scene), "", None, f"cannot be read: no such scene{meant}")
+    if not path.suffix:
+        allowed = "is neither a file nor a shipped scene; `jointwave list` names the shipped ones"
+        raise SceneError(str(scene), "", None, allowed)
     return path
 
 
@@ -50,6 +53,8 @@ def load(scene: AnySource, variant: str = "", changes: dict[str, Any] | None = N
 
     Raises jointwave.SceneError, a line a mistake with file, key, value and what is allowed.
     """
+    require(variant, str, "load", "variant", "the name of one; keys are set by changes={...}")
+    require(changes, dict | None, "load", "changes", 'a dictionary, {"time.duration": 0.1}')
     if isinstance(scene, dict):
         return _checked(cases.load_tables(scene, variant, changes))
     if isinstance(scene, str | PathLike):

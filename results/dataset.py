@@ -38,6 +38,7 @@ DIMENSIONS: dict[str, tuple[str, ...]] = {
     "energy": ("term",),
 }
 
+A_RESULT = "a result: a Dataset, of `simulate` or a file"  # what functions accept
 MOST_OPEN = 1e-3  # of a ledger's largest term, that no term may account for
 #: Of the energy at rest: a million times the round-off of double precision.
 AT_REST = 1e6 * float(np.finfo(float).eps)

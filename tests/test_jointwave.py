@@ -73,6 +73,20 @@ def test_whatever_takes_a_scene_takes_its_file_its_name_and_its_tables(tmp_path)
         (lambda: jw.spectra(jw.simulate(MOVED), axis="q"), "axis = 'q': must be one of y"),
         (lambda: jw.transfer_function(([0, 1], [0, 1]), 1), "receiver = 1: must be from -1 to 0"),
         (lambda: jw.misfit(TABLES, TABLES), "type = 'dict': must be a result"),
+        (lambda: jw.ppv_map(3), "ppv_map: type = 'int': must be a result"),
+        (lambda: jw.plot_map("dem.nc"), "plot_map: type = 'str': must be a result"),
+        (lambda: jw.verdicts(3), "verdicts: type = 'int': must be a comparison, of `compare`"),
+        (lambda: jw.figure([3]), "figure: type = 'int': must be a comparison, of `compare`"),
+        (lambda: jw.figure([]), "figure: type = 'NoneType': must be a comparison"),
+        (lambda: jw.simulate("nosuch"), "nosuch: is neither a file nor a shipped scene"),
+        (lambda: jw.load(TABLES, {"time.duration": 0.1}), "variant = 'dict': must be the name"),
+        (lambda: jw.load(TABLES, changes="a=1"), "changes = 'str': must be a dictionary"),
+        (
+            lambda: jw.load(TABLES | {"variants": []}, "damped"),
+            "variants.name = 'damped': the scene has none",
+        ),
+        (lambda: jw.compare(TABLES, ["a.csv"]), "curves = 'str': must be curves of `read_curves`"),
+        (lambda: jw.fit(TABLES, "a.csv", "load.amplitude"), "fit: curves = 'str': must be curves"),
     ],
 )
 def test_a_wrong_argument_gives_one_line_with_what_is_allowed(call, words):

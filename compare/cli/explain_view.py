@@ -4,7 +4,7 @@ from typing import Any
 
 from jointwave.cases.size import spoken
 from jointwave.compare.cli.terminal import say, show_facts
-from jointwave.compare.engines import in_words, label_of, solver
+from jointwave.compare.engines import ENGINES, in_words, label_of, solver
 from jointwave.compare.runs.jobs import options_of
 from jointwave.compare.text import in_seconds
 
@@ -76,6 +76,9 @@ def show_explanation(found: dict[str, Any], every: bool) -> None:
     for name, why in found["cannot_run"].items():
         say(f"{label_of(name)} cannot run: {why}", "red")
     _show("solutions do not apply", solutions, "applies", every)
+    for name in () if every else ENGINES:
+        if name in found["solutions"] and not found["solutions"][name]["applies"]:
+            say(f"not by {label_of(name)}: {in_words(found['solutions'][name]['why_not'])}", "dim")
     for name, reference in found["references"].items():
         by, why = label_of(reference["name"]), reference["reason"]
         say(f"reference of {label_of(name)}: {f'{by} ({why})' if by else why}")

@@ -71,7 +71,7 @@ def sweep(
         runs: list[Run] = []
         for case in asked.cases:
             if case.scene is not None:
-                stored = ResultFolder(case.folder)
+                stored = ResultFolder(case.folder, asked.fresh)
                 runs += runs_of(solvers(case.scene), case.scene, stored, point=case.point)
         failing = {case.point: case.message for case in asked.cases if case.scene is None}
         show_forecasts(runs, as_json, failing)

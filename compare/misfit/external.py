@@ -27,6 +27,7 @@ from jointwave.compare.misfit.external_netcdf import is_netcdf, read_netcdf
 from jointwave.compare.misfit.places import LABEL, QUANTITIES, Place, parsed, recorded, same
 from jointwave.compare.scenes import AnySource, load
 
+READ_CURVES = "curves of `read_curves`"  # what functions accept
 LEAST_SAMPLES = 3  # needed for a parabola through the peak of a correlation
 EXAMPLES = "stress@20, -stress@20 [MPa] or velocity_x@20.25 [mm/s]"
 EXAMPLES_IN_PLANE = "velocity_x@[20,30], -stress_xx@[20,30] [MPa] or traction_n@[20,20]"
@@ -84,8 +85,11 @@ def _is_label(text: str) -> bool:
     return LABEL.fullmatch(split_unit(text)[0].removeprefix("-").lstrip()) is not None
 
 
-def read_curves(texts: Sequence[str], scenes: Sequence[AnySource]) -> list[Curves]:
-    """Read the arguments of `--with`, each FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
+def read_curves(
+    texts: str | Sequence[str], scenes: "AnySource | Sequence[AnySource]"
+) -> list[Curves]:
+    """Read arguments of `--with`, each FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL, for one
+    or several scenes.
 
     FILE is NetCDF, as `jointwave run` writes it; or a table
     or seismogram as `cases.records` reads them, a header `time [ms], stress@20 [MPa]` or two bare
@@ -96,7 +100,7 @@ def read_curves(texts: Sequence[str], scenes: Sequence[AnySource]) -> list[Curve
     receiver of one of the scenes.
     """
     files: dict[Path, list[Selection]] = {}
-    for one in map(selection, texts):
+    for one in map(selection, [texts] if isinstance(texts, str) else texts):
         files.setdefault(one.path, []).append(one)
     short = Counter(path.name for path in files) + Counter(names())
     found: list[Curves] = []
@@ -107,8 +111,9 @@ def read_curves(texts: Sequence[str], scenes: Sequence[AnySource]) -> list[Curve
             raise
         except ValueError as error:
             raise SceneError(str(path), "", None, str(error)) from None
+    asked = scenes if isinstance(scenes, list | tuple) else [scenes]
     for curves in found:
-        _require_recorded(curves, [load(one) for one in scenes])
+        _require_recorded(curves, [load(one) for one in asked])
     return found
 
 

@@ -12,9 +12,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.errors import SceneError
+from jointwave.cases.errors import SceneError, require
 from jointwave.compare.misfit.places import UNITS, Place, shown, waveforms
 from jointwave.compare.misfit.weight import EXCITED, weigh
+from jointwave.results.dataset import A_RESULT
 
 ALIKE = 1e-9  # of the duration, by which samples may lie apart
 JUDGED = 10.0  # times its own error: the smallest misfit that a reference can resolve
@@ -109,9 +110,7 @@ def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
     Raises SceneError for results that share no receiver, or not the reference's times.
     """
     for result in (one, other):
-        if not isinstance(result, xr.Dataset):
-            allowed = "must be a result: a Dataset, of `simulate` or a file"
-            raise SceneError("misfit", "type", type(result).__name__, allowed)
+        require(result, xr.Dataset, "misfit", "type", A_RESULT)
     if not set(waveforms(one)) & set(waveforms(other)):
         raise SceneError("misfit", "receivers", None, "the results share none")
     ours, theirs = one["time"].values[: other.sizes["time"]], other["time"].values

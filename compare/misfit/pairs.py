@@ -26,6 +26,7 @@ class Pair(NamedTuple):
 
 
 GIVEN = "given curves"  # external data
+A_COMPARISON = "a comparison, of `compare`"
 
 
 @cache

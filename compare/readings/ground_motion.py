@@ -11,10 +11,11 @@ from math import pi
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.errors import SceneError
+from jointwave.cases.errors import SceneError, require
 from jointwave.compare.readings.attenuation import sampling
 from jointwave.compare.readings.oscillators import largest_displacement
 from jointwave.compare.readings.recordings import Recording, recording
+from jointwave.results.dataset import A_RESULT
 
 GRAVITY = 9.81  # m/s2
 
@@ -44,6 +45,7 @@ def ppv_map(result: xr.Dataset) -> xr.DataArray:
 
     A peak between two snapshots is not seen. Raises SceneError without `record.fields`.
     """
+    require(result, xr.Dataset, "ppv_map", "type", A_RESULT)
     if "field_velocity" not in result:
         raise SceneError(result.attrs.get("title", "result"), "record.fields", None, "is needed")
     places = result["field_points"].values.T

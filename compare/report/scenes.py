@@ -4,6 +4,7 @@ import json
 import re
 import shlex
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from time import process_time
 from typing import NamedTuple
@@ -28,7 +29,7 @@ from jointwave.compare.report.verdict import EngineScore, engine_scores
 from jointwave.compare.runs import timings
 from jointwave.compare.runs.comparison import compare
 from jointwave.compare.runs.output import write_csv
-from jointwave.compare.runs.reuse import NOWHERE, ResultFolder
+from jointwave.compare.runs.reuse import NOWHERE, ResultFolder, seconds_read
 from jointwave.compare.scenes import find, load_variants
 from jointwave.compare.studies.forecast import Run, runs_of
 
@@ -66,7 +67,7 @@ class SolvedScene(NamedTuple):
     head of its page; None without receivers. tables : by name, and the
     files of those that are written. scores : where its engines stand. worst : misfits by pair.
     versions : of the packages that solved it. about : what its misfit is made of, of the paper's
-    free pillar.
+    free pillar. read : seconds that each result took which was read, not computed.
     """
 
     request: SceneRequest
@@ -81,6 +82,7 @@ class SolvedScene(NamedTuple):
     worst: pd.Series
     versions: dict[str, str]
     about: Claim | None = None
+    read: Sequence[float] = ()
 
     @property
     def costs(self) -> dict[str, float]:
@@ -123,7 +125,7 @@ def planned(request: SceneRequest, stored: ResultFolder) -> list[Run]:
 
 
 def _own(request: SceneRequest, stored: ResultFolder) -> ResultFolder:
-    return stored._replace(folder=stored.folder and stored.folder / request.file.stem)
+    return replace(stored, folder=stored.folder and stored.folder / request.file.stem)
 
 
 def solve(request: SceneRequest, folder: Path, stored: ResultFolder = NOWHERE) -> SolvedScene:
@@ -160,6 +162,7 @@ def solve(request: SceneRequest, folder: Path, stored: ResultFolder = NOWHERE) -
         tables.worst_misfits(comparisons),
         {name: number for one in versions for name, number in one.items()},
         mostly_dispersion(comparisons) if request.number == FREE_PILLAR else None,
+        [s for one in comparisons for s in seconds_read(one.results)],
     )
 
 

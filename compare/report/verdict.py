@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from math import isfinite, isnan, nan
 from typing import Any, NamedTuple
 
+from jointwave.cases.errors import require
 from jointwave.compare.engines import ENGINES, label_of
 from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.differences import (
@@ -14,7 +15,7 @@ from jointwave.compare.misfit.differences import (
     static_difference,
 )
 from jointwave.compare.misfit.metrics import Worst, worst
-from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.misfit.pairs import A_COMPARISON, Comparison
 from jointwave.compare.misfit.ranking import kind_of, own_exact, reference_of
 
 
@@ -155,6 +156,7 @@ def _resolved(one: Worst) -> float:
 
 def verdicts(comparison: Comparison) -> dict[str, VariantScore]:
     """Return the verdict on each engine of a comparison by name."""
+    require(comparison, Comparison, "verdicts", "type", A_COMPARISON)
     return {name: score(name, comparison) for name in ENGINES if name in comparison.results}
 
 

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 
-from jointwave.cases.errors import SceneError
+from jointwave.cases.errors import SceneError, require
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import Progress
 from jointwave.compare.misfit.alignment import align_curve
-from jointwave.compare.misfit.external import Curves
+from jointwave.compare.misfit.external import READ_CURVES, Curves
 from jointwave.compare.misfit.pairs import Comparison, measure, measure_curves
 from jointwave.compare.misfit.ranking import applicable
 from jointwave.compare.runs.reuse import NOWHERE, ResultFolder
@@ -30,6 +30,8 @@ def compare(
     results are read from and written to; by default there is none.
     """
     scene = load(scene)
+    for one in curves:
+        require(one, Curves, "compare", "curves", READ_CURVES)
     comparison = solved(scene, applicable(scene), progress, stored)
     comparison.rows = measure(comparison.results, spectral, scene)
     for one in curves:

@@ -7,10 +7,10 @@ import hashlib
 import json
 import logging
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from datetime import datetime
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -62,12 +62,12 @@ def unlike(path: Path, about: Signature) -> str:
     return f"is from another {', '.join(differing)}" if differing else ""
 
 
-def read_result(path: Path, scene: AnyScene, about: Signature) -> xr.Dataset | None:
+def read_result(path: Path, scene: AnyScene, about: Signature, told: set[str]) -> xr.Dataset | None:
     """Return the result of this signature from a file; None where there is none, whose reason is
-    logged.
+    logged once.
 
     scene : that the result is for, which may differ from the one in the file in what decides
-    nothing, such as the bounds of `[expect]`.
+    nothing, such as the bounds of `[expect]`. told : the reasons that were logged.
     """
     found, why = None, unlike(path, about)
     if not why:
@@ -79,13 +79,19 @@ def read_result(path: Path, scene: AnyScene, about: Signature) -> xr.Dataset | N
         except Exception:
             why = DAMAGED
     if found is None or why:
-        if path.is_file():
-            log.info("computes %s anew: it %s", path, why)
+        if path.is_file() and why not in told:
+            log.info("computes %s anew: it %s; others for this reason are not listed", path, why)
+            told.add(why)
         return None
     texts = {k: v.astype(str) for k, v in found.variables.items() if v.dtype == object}
     numbers = {k: v.item() for k, v in found.attrs.items() if isinstance(v, np.generic)}
     of_scene = {"scene_hash": scene_hash(scene), "scene": scene.model_dump_json()}
     return found.assign(texts).assign_attrs(numbers | of_scene)
+
+
+def seconds_read(results: Mapping[str, xr.Dataset]) -> list[float]:
+    """Return the seconds that those results took which were read from files, as signed there."""
+    return [float(one.attrs[SECONDS]) for one in results.values() if SECONDS in one.attrs]
 
 
 def log_reading(read: Mapping[Path, xr.Dataset]) -> None:
@@ -98,14 +104,16 @@ def log_reading(read: Mapping[Path, xr.Dataset]) -> None:
         log.info("reads %s, computed on %s; --fresh computes anew", names, when)
 
 
-class ResultFolder(NamedTuple):
+@dataclass(frozen=True)
+class ResultFolder:
     """A folder with the results of a scene; None: nothing is read or stored.
 
-    fresh : compute anew what could be read.
+    fresh : compute anew what could be read. told : why files were not read, as far as logged.
     """
 
     folder: Path | None = None
     fresh: bool = False
+    told: set[str] = field(default_factory=set, compare=False)
 
     def solve(
         self,
@@ -128,7 +136,7 @@ class ResultFolder(NamedTuple):
 
             path = folder and result_path(folder, scene, name, suffix)
             about = signature(scene, name, 1) if path else {}
-            found = read_result(path, scene, about) if path and not self.fresh else None
+            found = read_result(path, scene, about, self.told) if path and not self.fresh else None
             if path and found is not None:
                 read[path] = result = found
             else:

@@ -13,12 +13,12 @@ import numpy as np
 import pandas as pd
 from scipy.stats import t as student
 
-from jointwave.cases.errors import SceneError, StoppedError
+from jointwave.cases.errors import SceneError, StoppedError, require
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import Progress, applies
 from jointwave.compare.exact.blocks import lattice
-from jointwave.compare.misfit.external import Curves
+from jointwave.compare.misfit.external import READ_CURVES, Curves
 from jointwave.compare.scenes import AnySource, load
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies.fit_keys import CLOCK, FreeKey, changed, free_keys
@@ -65,7 +65,7 @@ class Fit:
 def fit(
     scene: AnySource,
     curves: Sequence[Curves],
-    free: Sequence[str],
+    free: str | Sequence[str],
     solver: str | None = None,
     progress: Progress | None = None,
 ) -> Fit:
@@ -84,7 +84,9 @@ def fit(
     scene = load(scene)
     if not curves or not free:
         raise SceneError(scene.where, "", None, "a fit needs a curve of this scene and a free key")
-    keys = free_keys(list(free), scene)
+    for one in curves:
+        require(one, Curves, "fit", "curves", READ_CURVES)
+    keys = free_keys([free] if isinstance(free, str) else list(free), scene)
     first = changed(scene, {k.key: k.start for k in keys if k.key != CLOCK})
     name = _solver_of(first, solver)
     keys = [started(key, first, name, curves[0]) if key.key == CLOCK else key for key in keys]

@@ -32,7 +32,7 @@ from jointwave.compare.exact.plane.waves import Kind, polarisations, slownesses_
 SCENE = Path(__file__).parent / "joints.toml"
 BACK = 6.0  # m that SV waves begin before the domain, ahead of which they make P waves
 ROOM = 4.0  # m of the domain, between the receivers, that joints may fill
-RINGS = 6.0  # periods, extension of the record per further joint, for waves between joints
+RINGS = 6.0  # periods, extension of the record for waves between two joints
 RETURNS = 12.0  # S waves from joint to joint, the least extension
 
 
@@ -66,7 +66,8 @@ def scene_of(
     (width, height), more = base.domain.size, max(0.0, thick - larger * ROOM)
     middle = (larger * height + more) / 2
     direction = [float(np.sin(np.radians(angle))), float(np.cos(np.radians(angle)))]
-    rings = np.maximum(RINGS * series.period, RETURNS * series.spacings / rock.s_speed)
+    own = RINGS * len(series.joints) / 2 * series.period  # their modes decay with their number
+    rings = np.maximum(own, RETURNS * series.spacings / rock.s_speed)
     keys: dict[str, Any] = {
         "domain.size": [larger * width, 2 * middle],
         "rock": series.rock.model_dump(exclude_none=True),

@@ -64,12 +64,13 @@ class Store(Generic[T]):
     """The results of a study's points.
 
     form : the type of a result: a NamedTuple, or a list of them. folder : of the files; None:
-    nothing is saved. is_valid : whether a saved result is still valid.
+    nothing is saved. is_valid : whether a saved result is still valid. fresh : take none.
     """
 
     form: Any
     folder: Path | None
     is_valid: Callable[[T], bool] = lambda result: True
+    fresh: bool = False
 
     def compute(
         self,
@@ -107,7 +108,11 @@ class Store(Generic[T]):
 
     def _saved(self, name: str) -> T | None:
         """Return a saved result; None without one, or if it is no longer valid."""
-        if self.folder is None or not (path := self.folder / f"{name}.json").is_file():
+        if (
+            self.fresh
+            or self.folder is None
+            or not (path := self.folder / f"{name}.json").is_file()
+        ):
             return None
         found: T = read_kept(path, self.form)
         return found if self.is_valid(found) else None

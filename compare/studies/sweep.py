@@ -26,6 +26,8 @@ from jointwave.compare.figures.comparison import write_comparisons
 from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.places import Place, places_of
 from jointwave.compare.runs import comparison
+from jointwave.compare.runs.checkpoint.resume import CheckpointSettings
+from jointwave.compare.runs.checkpoint.signals import Signals
 from jointwave.compare.runs.jobs import plan
 from jointwave.compare.runs.reuse import ResultFolder
 from jointwave.compare.runs.run import execute
@@ -41,8 +43,8 @@ from jointwave.results.netcdf import load_netcdf
 LONGEST = 100  # characters of a folder's name
 PEAKS = ("stress", "velocity", "traction")
 Rows = list[dict[str, Any]]
-#: Solves a scene, writes its files into a folder and returns its rows.
-Work = Callable[[AnyScene, Path | None], Rows]
+#: Solves a scene, anew or not, writes its files into a folder and returns its rows.
+Work = Callable[[AnyScene, Path | None, bool], Rows]
 
 
 class Case(NamedTuple):
@@ -69,12 +71,13 @@ class Case(NamedTuple):
 
 
 class Sweep(NamedTuple):
-    """A sweep of a scene: its name, all variants at every point, and the folder; None writes
-    nothing."""
+    """A sweep of a scene: its name, all variants at every point, the folder, None writes nothing,
+    and whether to compute anew what it has."""
 
     scene: str
     cases: list[Case]
     out: Path | None
+    fresh: bool = False
 
     @property
     def scenes(self) -> list[AnyScene]:
@@ -89,9 +92,10 @@ def sweep_of(
     given: list[str],
     out: Path | None,
     members: int = 0,
+    fresh: bool = False,
 ) -> Sweep:
-    """Return the sweep of `--set`, `--variant`, `--sweep` and `--ensemble`; raises SceneError in
-    one line, also if no point has a valid scene."""
+    """Return the sweep of `--set`, `--variant`, `--sweep`, `--ensemble` and `--fresh`; raises
+    SceneError in one line, also if no point has a valid scene."""
     fixed = dict(map(parse_override, changes))
     values = axes(given, list(fixed)) | ({MEMBER: [*range(1, members + 1)]} if members else {})
     path, found, errors = find(scene), [], []
@@ -107,7 +111,7 @@ def sweep_of(
             found += [Case(setting, folder, one) for one in scenes]
     if errors and len(errors) == len(found):
         raise errors[0]
-    return Sweep(scene, found, out)
+    return Sweep(scene, found, out, fresh)
 
 
 def _scenes(path: Path, variant: str | None, changes: dict[str, Any]) -> list[AnyScene]:
@@ -135,8 +139,8 @@ def run(
     Completed cases are read from the folder, if their files are still there.
     """
     points = asked.out and asked.out / "points"
-    saved: Store[Rows] = Store(Rows, points, _has_files)
-    about, outcome = partial(_key, work=work), partial(_outcome, work=work)
+    saved: Store[Rows] = Store(Rows, points, _has_files, asked.fresh)
+    about, outcome = partial(_key, work=work), partial(_outcome, work=work, fresh=asked.fresh)
     found = saved.compute(asked.cases, about, outcome, pool, progress, lambda one: _failed(DIED))
     return pd.DataFrame(
         {key: cell(value) for key, value in case.settings.items()}
@@ -159,11 +163,13 @@ def _key(case: Case, work: Work) -> str:
     return store.key(str(case.folder), scene, joblib.hash(work))
 
 
-def _outcome(case: Case, work: Work) -> Rows:
+def _outcome(case: Case, work: Work, fresh: bool) -> Rows:
     if case.scene is None:
         return _failed(case.message)
     try:
-        return [{"state": "done", "message": ""} | row for row in work(case.scene, case.folder)]
+        return [
+            {"state": "done", "message": ""} | row for row in work(case.scene, case.folder, fresh)
+        ]
     except InterruptedRun:
         raise
     except (*FAILURES, MemoryError) as error:
@@ -174,11 +180,15 @@ def _failed(message: str) -> Rows:
     return [{"state": "failed", "message": message}]
 
 
-def run_scene(scene: AnyScene, folder: Path | None, runs: list[tuple[str, str | None]]) -> Rows:
+def run_scene(
+    scene: AnyScene, folder: Path | None, fresh: bool, runs: list[tuple[str, str | None]]
+) -> Rows:
     """Run a scene as `jointwave run` does; return a row for each receiver of each result, with the
     peak there. runs : (engine, model) each, see `compare.runs.jobs`."""
     rows: Rows = []
-    for done in execute(plan([scene], runs, folder or Path()), lambda fraction: None):
+    settings = CheckpointSettings(0.0, False, Signals(), fresh)
+    jobs = plan([scene], runs, folder or Path())
+    for done in execute(jobs, lambda fraction: None, settings=settings):
         result = load_netcdf(done.job.path)
         about = {
             "engine": done.job.name,
@@ -208,11 +218,17 @@ def _peaks(result: xr.Dataset) -> Iterator[dict[str, Any]]:
 
 
 def compare_scene(
-    scene: AnyScene, folder: Path | None, spectral: bool, curves: list[Curves], align: bool
+    scene: AnyScene,
+    folder: Path | None,
+    fresh: bool,
+    spectral: bool,
+    curves: list[Curves],
+    align: bool,
 ) -> Rows:
     """Compare a scene as `jointwave compare` does, and keep all results; return a row for each
     distance."""
-    found = comparison.compare(scene, curves, None, align, spectral, ResultFolder(folder))
+    stored = ResultFolder(folder, fresh)
+    found = comparison.compare(scene, curves, None, align, spectral, stored)
     if folder is not None:
         write_comparisons([found], folder / scene.name)
     if not found.rows:

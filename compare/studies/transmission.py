@@ -10,10 +10,10 @@ from math import nan
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.errors import SceneError
+from jointwave.cases.errors import SceneError, require
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.compare.engines import Progress, solve
+from jointwave.compare.engines import Progress, names, solve
 from jointwave.compare.exact.plane.waves import KINDS, Kind
 from jointwave.compare.exact.rock_mass.conditions import all_parallel, beyond_linear_rock
 from jointwave.compare.exact.rock_mass.stack import stack_of
@@ -56,7 +56,7 @@ def transmission(
 
     Raises SceneError for a pillar, and joints that are not linear, parallel and through all rock.
     """
-    scene, names = load(scene), [solvers] if isinstance(solvers, str) else list(solvers)
+    scene, wanted = load(scene), [solvers] if isinstance(solvers, str) else list(solvers)
     try:
         degrees = np.atleast_1d(np.asarray(angles, dtype=float))
     except (TypeError, ValueError):
@@ -66,26 +66,31 @@ def transmission(
     if degrees.ndim != 1 or not ((degrees >= 0) & (degrees < 90)).all():
         allowed = "must be from 0 to below 90 degrees from the joints' normal"
         raise SceneError("transmission", "angles", angles, allowed)
+    for name in wanted:
+        if name not in (known := [EXACT, *names()]):
+            allowed = f"must be of {', '.join(known)}"
+            raise SceneError("transmission", "solvers", name, allowed)
     if not isinstance(scene, RockMass):
         raise SceneError(scene.where, "", None, f"{NONE}: it is a pillar")
     joints, rows = _joints_of(scene, _period(scene, frequency)), list[list[float]]()
-    points = list(product(names, degrees.tolist()))
+    points = list(product(wanted, degrees.tolist()))
     for k, point in enumerate(points):
         rows.append(_measured(joints, scene.title, incidence, *point))
         if progress:
             progress((k + 1) / len(points))
-    found = np.reshape(np.transpose(rows), (5, len(names), len(degrees)))
+    found = np.reshape(np.transpose(rows), (5, len(wanted), len(degrees)))
     said = {name: f"{words} wave over the incident one" for name, words in WAVES.items()}
     said |= {"residual": "part of the motion that plane waves do not explain"}
     named = {name: (x, said[name], "1") for name, x in zip(said, found, strict=True)}
     angle = variables("angle", {"angle": (degrees, "angle from the joints' normal", "degrees")})
     about = {"incidence": incidence, "frequency": 1 / joints.period, "scene": scene.title}
-    return xr.Dataset(variables(("solver", "angle"), named), {"solver": names, **angle}, about)
+    return xr.Dataset(variables(("solver", "angle"), named), {"solver": wanted, **angle}, about)
 
 
 def _period(scene: AnyScene, frequency: float | None) -> float:
     """Return the period of the wave, s."""
     if frequency is not None:
+        require(frequency, int | float, "transmission", "frequency", "a number, Hz")
         if not 0 < frequency < np.inf:
             raise SceneError("transmission", "frequency", frequency, "must be positive, Hz")
         return 1 / frequency

@@ -18,6 +18,7 @@ from jointwave.continuum.model import Receivers
 from jointwave.continuum.plane.discrete import PlaneDiscrete, stress_of
 from jointwave.continuum.plane.recovery import recovered_stress
 from jointwave.continuum.space.evaluation import cells_at, matrix_of, places_in
+from jointwave.continuum.space.interface import facet_points
 from jointwave.continuum.space.receivers import per_component, shares_of_pieces
 
 
@@ -90,7 +91,8 @@ def _joints(scene: RockMass, discrete: PlaneDiscrete) -> JointReaders | None:
         nearest = np.abs(at - 0.5).argmin()
         if mine[on[nearest]]:
             points = across.of_facet[mine[: on[nearest]].sum()]
-            nodes = _along(facets.corners[on[nearest]], across.x[points])
+            corners = facets.corners[on[nearest]]
+            nodes = _along(corners, facet_points(body, corners[None]).x)
             weight.append(lagrange(nodes, np.clip(at[nearest], 0, 1)))
             point.append(points)
             row.append(np.full(points.size, r))

@@ -24,7 +24,11 @@ def picture(
         ),
     ],
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help=".png, .svg or .pdf (default: NAME.png).")
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help=".png, .svg or .pdf (default: NAME.png, of results NAME-MAP.png).",
+        ),
     ] = None,
     quantity: Annotated[
         str | None,
@@ -49,9 +53,11 @@ def picture(
     from jointwave.compare.runs.output import check_out
 
     folder = Path(source)
-    path = out or Path(re.sub(r"\.(toml|nc)$", "", folder.resolve().name) + ".png")
+    of_results = folder.is_dir() or folder.suffix == ".nc"
+    name = re.sub(r"\.(toml|nc)$", "", folder.resolve().name)
+    path = out or Path(f"{name}-{quantity or 'ppv'}.png" if of_results else f"{name}.png")
     check_out(path)
-    if folder.is_dir() or folder.suffix == ".nc":
+    if of_results:
         if changes or variant is not None:
             raise SceneError("--set, --variant", "", None, "are of a scene, not of a folder")
         figure, title = _map(folder, quantity or "ppv", time)

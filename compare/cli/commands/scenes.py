@@ -111,15 +111,16 @@ def run(
     from jointwave.compare.runs import run as runs
     from jointwave.compare.runs.checkpoint.resume import CheckpointSettings
 
-    if fresh and (resume or swept or members):
-        raise SceneError("--fresh", "", None, "has no meaning with --resume, --sweep, --ensemble")
+    if fresh and resume:
+        allowed = "computes anew what --resume would continue: give one of them"
+        raise SceneError("--fresh", "", None, allowed)
     out = results_of(scene, out)
     wanted = jobs.wanted([e.value for e in engine], model or [])
     if swept or members:
         from jointwave.compare.cli.study_view import sweep
         from jointwave.compare.studies.sweep import run_scene, sweep_of
 
-        cases_of = sweep_of(scene, changes, variant, swept, out, members)
+        cases_of = sweep_of(scene, changes, variant, swept, out, members, fresh)
         work = partial(run_scene, runs=wanted)
 
         def solvers(one: AnyScene) -> list[str]:

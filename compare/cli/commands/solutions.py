@@ -91,7 +91,7 @@ def compare(
         from jointwave.compare.cli.study_view import sweep
         from jointwave.compare.studies.sweep import compare_scene, sweep_of
 
-        asked = sweep_of(scene, changes, variant, swept, out, members)
+        asked = sweep_of(scene, changes, variant, swept, out, members, fresh)
         curves = _read_curves(given, asked.scenes, align, strict)
         work = partial(compare_scene, spectral=spectral, curves=curves, align=align)
         sweep(asked, work, applicable, workers, dry, as_json, strict)

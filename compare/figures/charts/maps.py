@@ -12,6 +12,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from jointwave.cases.errors import require
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.figures.animation.bodies import colours_of
@@ -21,6 +22,7 @@ from jointwave.compare.figures.charts.axes import LETTER
 from jointwave.compare.figures.drawing.sketch import ROCKS
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.style import DIFFERENCE, RC, SIZE, printed
+from jointwave.results.dataset import A_RESULT
 
 MANY = 3000  # faces above which they are an image in the drawing
 FLAT = 0.4  # height over width of a body, below which maps are one below the other
@@ -49,7 +51,10 @@ def plot_map(
     an arrow and says how much of the body they are. The difference is the second less the first.
     Raises SceneError without snapshots, for another quantity or time, and for different bodies.
     """
-    scene, given = scene_of(result), [result] if other is None else [result, other]
+    given = [result] if other is None else [result, other]
+    for one in given:
+        require(one, xr.Dataset, "plot_map", "type", A_RESULT)
+    scene = scene_of(result)
     return draw_maps(maps_of(scene, given, quantity, time), scene, printed(width, font_size))
 
 

@@ -11,13 +11,14 @@ from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from jointwave.cases.errors import require
 from jointwave.compare.engines import ENGINES, in_order, label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading, share
 from jointwave.compare.figures.figure import SceneFigure
 from jointwave.compare.figures.receivers import Panel, curve_table, in_rows, panels
 from jointwave.compare.figures.style import PALE, RC, Style, given_style, printed, style
 from jointwave.compare.figures.units import DRAWN, UNITS, Unit, unit_for
-from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.misfit.pairs import A_COMPARISON, Comparison
 
 #: Keys of a scene that do not change its physics, or only its numerical solution.
 ASIDE = {"title", "source", "name", "expect", "numerics", "record", "where"}
@@ -104,7 +105,9 @@ def figure(
 
     width : mm. font_size : points.
     """
-    found = [comparisons] if isinstance(comparisons, Comparison) else list(comparisons)
+    found = list(comparisons) if isinstance(comparisons, list | tuple) else [comparisons]
+    for one in found or [None]:
+        require(one, Comparison, "figure", "type", A_COMPARISON)
     return draw_solutions(found, False, printed(width, font_size))
 
 

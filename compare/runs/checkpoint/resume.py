@@ -1,9 +1,10 @@
 """Checkpoints of a run at intervals of wall time, its interruption, its start and continuation."""
 
 import sys
+from dataclasses import dataclass, field
 from pathlib import Path
 from time import monotonic
-from typing import Any, NamedTuple
+from typing import Any
 
 import xarray as xr
 
@@ -18,17 +19,20 @@ from jointwave.compare.runs.processes import Processes
 from jointwave.compare.runs.reuse import read_result, unlike
 
 
-class CheckpointSettings(NamedTuple):
+@dataclass(frozen=True)
+class CheckpointSettings:
     """Checkpoint settings of a command's runs.
 
     every : interval between checkpoints in wall time, s; 0: none. resume : continue the runs of an
         earlier command. signals : that end a run. fresh : compute anew what could be read.
+    told : why files were not read, as far as logged.
     """
 
     every: float
     resume: bool
     signals: Signals
     fresh: bool = False
+    told: set[str] = field(default_factory=set)
 
 
 class RunCheckpointer:
@@ -88,7 +92,7 @@ class RunCheckpointer:
         """Return the result of an earlier command, None where the run is to be computed."""
         if self.settings.fresh:
             return None
-        return read_result(self.files.result, self.scene, self.signature)
+        return read_result(self.files.result, self.scene, self.signature, self.settings.told)
 
     def _save(self, samples: int, parts: Any) -> bool:
         """Write a checkpoint and return whether it succeeded; report the first failure."""

@@ -446,5 +446,6 @@ def test_a_variant_changes_one_of_a_list_of_tables(written):
     assert [s.dip for s in steep.joint_sets] == [first.joint_sets[0].dip, 80.0]
     assert steep.joint_sets[1].model_dump() == {**first.joint_sets[1].model_dump(), "dip": 80.0}
     path = written(GOOD + '\n[[variants]]\nname = "none"\njoint_sets.7.dip = 80.0\n')
-    with pytest.raises(SceneError, match=r"variants\[1\].joint_sets = .*index 7 is outside 0 to 1"):
+    allowed = r"variants\[1\].joint_sets = .*7 must be the number of an entry of the list, 0 to 1"
+    with pytest.raises(SceneError, match=allowed):
         load(path)

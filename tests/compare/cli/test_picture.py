@@ -48,15 +48,15 @@ def test_results_are_drawn_side_by_side_with_their_difference(jointwave, folder)
     words = words_of("c.svg")
     assert {"rigid blocks", "jointed rock", "jointed rock − rigid blocks"} <= set(words)
     assert "axial stress (MPa), compression positive" in words and "difference (MPa)" in words
-    assert jointwave("picture", folder).out == "wrote short.png\n"
-    assert jointwave("picture", f"{folder}/dem.nc", "--map", "speed").out == "wrote dem.png\n"
+    assert jointwave("picture", folder).out == "wrote short-ppv.png\n"  # not as its scene
+    assert jointwave("picture", f"{folder}/dem.nc", "--map", "speed").out == "wrote dem-speed.png\n"
 
 
 def test_a_mistake_is_one_line(jointwave, folder):
     for arguments, said in (
         ((SCENE, "--map", "ppv"), "--map: is of results: `jointwave run guo-li-2002/fig-07 --set"),
         ((SCENE, "--out", "a.gif"), "--out: a.gif: must end in .pdf or .svg or .png"),
-        (("none",), "none: cannot be read"),
+        (("xyz",), "xyz: is neither a file nor a shipped scene"),
         ((".",), ".: has no result of an engine, such as dem.nc"),
         ((folder, "--variant", "soft layer"), "are of a scene, not of a folder"),
         ((folder, "--map", "heat"), "map = 'heat': must be one of ppv, speed, stress, slip"),

@@ -179,6 +179,8 @@ def test_explain_in_words(says):
     out = says("explain mass.toml --all").out
     assert "--model oblique-joint " in out and "no damping_ratio" in out
     assert "jointed-bar" not in out  # of a pillar
+    out = says("explain joint.toml --set numerics.dem={}").out
+    assert "not by rigid blocks: numerics.dem.block is required (m): waves pass rigid" in out
 
 
 def test_explain_counts_cuts_through_rock(says):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -9,6 +10,7 @@ import pytest
 
 from jointwave.compare.runs import reuse
 from jointwave.compare.runs.checkpoint import signature
+from jointwave.compare.scenes import load
 
 SCENE = "guo-li-2002/fig-03"
 SHORT = ("--variant", "", "--set", "time.duration=0.01", "--set", "pillar.length=10")
@@ -78,16 +80,20 @@ def test_what_decides_numbers_decides_whether_a_result_is_read(change, why, line
     before = stamps(lines.folder)
     (line,) = lines("run", "--set", change)
     if why:
-        assert line == f"jointwave: computes dem.nc anew: it {why}"
+        assert line.startswith(f"jointwave: computes dem.nc anew: it {why}; others for this")
     else:
         assert "reads dem.nc" in line
     assert (stamps(lines.folder) == before) == (not why)
 
 
 def test_another_program_computes_anew(lines, monkeypatch):
-    lines("run")
+    lines("run", *BOTH)
     monkeypatch.setattr(signature, "program", lambda: "other")
-    assert lines("run") == ["jointwave: computes dem.nc anew: it is from another program"]
+    (line,) = lines("run", *BOTH)  # of two results, by two engines
+    assert line.startswith("jointwave: computes dem.nc anew: it is from another program; others")
+    monkeypatch.setattr(signature, "program", lambda: "a third")
+    (line,) = lines("compare")
+    assert "computes dem.nc anew: it is from another program" in line
 
 
 @pytest.mark.parametrize("damage", ["a bit", "its end", "its signature"])
@@ -103,7 +109,7 @@ def test_damaged_result_is_computed_anew(damage, lines):
     }
     path.write_bytes(broken[damage])
     why = "does not say what computed it" if damage == "its signature" else "is damaged"
-    assert lines("compare") == [f"jointwave: computes dem.nc anew: it {why}"]
+    assert lines("compare")[0].startswith(f"jointwave: computes dem.nc anew: it {why}; others")
     assert "reads dem.nc" in lines("run")[0]
 
 
@@ -134,9 +140,37 @@ def test_folder_that_cannot_be_written_costs_the_reuse_alone(lines, jointwave):
     assert lines("compare") == [f"jointwave: results are not stored: {lines.folder}: File exists"]
 
 
-def test_fresh_has_no_meaning_with_resume(jointwave):
+def test_fresh_is_not_resumed(jointwave):
     said = jointwave("run", SCENE, "--fresh", "--resume", code=2).err
-    assert said.startswith("jointwave: --fresh: has no meaning with --resume")
+    assert (
+        said == "jointwave: --fresh: computes anew what --resume would continue: give one of them\n"
+    )
+
+
+@pytest.mark.parametrize("command", ["run", "compare"])
+def test_a_sweep_is_computed_anew_on_request_alone(command, jointwave, tmp_path):
+    """And what it then stores is read by the next one."""
+    sweep = (command, SCENE, *SHORT, *AT, "--sweep", "joints.damping_ratio=0.1,0.2")
+    sweep += ("--workers", 1, "--out", tmp_path)
+    written = []
+    for options in ((), (), ("--fresh",), ()):
+        jointwave(*sweep, *options)
+        written.append([path.stat().st_mtime_ns for path in sorted(tmp_path.glob("*/dem.nc"))])
+    first, again, fresh, last = written
+    assert len(first) == 2 and first == again and fresh == last
+    assert all(new > old for new, old in zip(fresh, first, strict=True))
+
+
+def test_a_report_says_what_it_reads(jointwave, monkeypatch, tmp_path, in_toml):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("JOINTWAVE_PROGRESS", "1000")
+    scene = load(SCENE, "", {"time.duration": 0.01, "pillar.length": 10.0, "record.stress": [5.0]})
+    tables = scene.model_dump(exclude_unset=True, exclude={"name"})
+    (tmp_path / "own.toml").write_text(in_toml(tables))
+    assert "reads" not in jointwave("report", "own.toml").err
+    said = jointwave("report", "own.toml").err
+    (line,) = [line for line in said.splitlines() if "reads" in line]
+    assert re.fullmatch(r"jointwave: reads \d+ results of own, computed in .* s; --fresh .*", line)
 
 
 def test_what_would_be_read_is_foretold(lines, jointwave):

@@ -205,6 +205,11 @@ def test_every_number_of_a_scene_is_free_or_refused(scene):
 
 FAULTS = {
     "unknown": (["--free", "joints.stiffness"], "joints.stiffness: is not a key of a scene"),
+    "number": (
+        ["--free", "soft_layers.spacing_stiffness"],
+        "did you mean soft_layers.0.spacing_stiffness?",
+    ),
+    "name": (["--free", "spacing_stiffness"], "did you mean soft_layers.0.spacing_stiffness?"),
     "text": (["--free", "ends.start"], "ends.start: must be a continuous number"),
     "whole": (["--free", "joints.contact_points"], "must be a continuous number"),
     "how": (["--free", "time.duration"], "must be a continuous number"),

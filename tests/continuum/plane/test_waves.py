@@ -38,6 +38,18 @@ def test_a_pulse_at_one_joint_is_the_exact_one(kind, dip, struck):
     assert gap_of_ledger(found) < 1e-11
 
 
+def test_a_joint_is_read_by_one_element_as_wide_as_the_period(struck):
+    """Both ends of its facet are one node."""
+    sides = dict.fromkeys(("left", "right"), "periodic") | dict.fromkeys(("bottom", "top"), "quiet")
+    record = {"points": [[2.0, 5.0]], "joints": [[2.0, 10.0], [4.9, 10.0]]}
+    tables = {"domain": {"size": [5.0, 20.0]}, "boundaries": sides, "record": record}
+    joints = [{"dip": 0.0, "through": [2.0, 10.0]}]
+    scene = struck("P", joints=joints, continuum={"size": 5.0, "order": 4}, **tables)
+    found, exact = simulate(scene, incident=field_of(scene)), ONE_JOINT.run(scene)
+    for name in ("traction", "gap"):
+        assert misfit(found[name].values, exact[name].values).max() < 2e-3
+
+
 def sent_back(scene, shares):
     """Return the P and SV wave that the top sends back of the wave of a scene, in time with it, of
     these shares of its amplitude."""
