@@ -13,7 +13,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -111,7 +111,7 @@ def read_curves(
             raise
         except ValueError as error:
             raise SceneError(str(path), "", None, str(error)) from None
-    asked = scenes if isinstance(scenes, list | tuple) else [scenes]
+    asked: Any = scenes if isinstance(scenes, list | tuple) else [scenes]
     for curves in found:
         _require_recorded(curves, [load(one) for one in asked])
     return found

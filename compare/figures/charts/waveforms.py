@@ -105,7 +105,8 @@ def figure(
 
     width : mm. font_size : points.
     """
-    found = list(comparisons) if isinstance(comparisons, list | tuple) else [comparisons]
+    given: Any = comparisons if isinstance(comparisons, list | tuple) else [comparisons]
+    found = list(given)
     for one in found or [None]:
         require(one, Comparison, "figure", "type", A_COMPARISON)
     return draw_solutions(found, False, printed(width, font_size))
