@@ -52,7 +52,6 @@ def test_whatever_takes_a_scene_takes_its_file_its_name_and_its_tables(tmp_path)
         assert jw.simulate(given, "lattice").stress.equals(expected.stress)
         assert jw.solvers(given) == jw.solvers(scene)
         assert jw.properties(given).impedance == jw.properties(scene).impedance
-        assert jw.transmission(given).T_p == jw.transmission(scene).T_p
         assert jw.dispersion_theory(given, [50.0]).equals(jw.dispersion_theory(scene, [50.0]))
     assert jw.simulate(TABLES).stress.equals(jw.simulate(jw.load(TABLES)).stress)
     assert "lattice" in jw.compare(TABLES).results
