@@ -28,9 +28,10 @@ from jointwave.numerics import jit
 from jointwave.results.arrays import copied, fill
 
 # The first example compiles a kernel, which no deadline foresees. Every run has the same examples;
-# `make fuzz` looks for others of bad input.
+# `make fuzz` looks for others of bad input, JOINTWAVE_EXAMPLES=night for a thousand of every test.
 settings.register_profile("jointwave", deadline=None, max_examples=50, derandomize=True)
-settings.load_profile("jointwave")
+settings.register_profile("night", deadline=None, max_examples=1000)
+settings.load_profile(os.environ.get("JOINTWAVE_EXAMPLES", "jointwave"))
 # Constants of the project's modules would be among them, of those that are imported by then.
 if providers := sys.modules.get("hypothesis.internal.conjecture.providers"):
     providers.is_local_module_file = lambda file: False

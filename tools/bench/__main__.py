@@ -1,16 +1,18 @@
 """All benchmarks, as ratios and costs of one run on this machine.
 
-usage: python tools/bench [PART ...], of startup, kernels, plane and continuum
+usage: python tools/bench [PART ...], of cutting, startup, kernels, plane and continuum
 """
 
 import sys
 
+import cutting
 import deformable
 import kernels
 import plane
 import startup
 
 PARTS = {
+    "cutting": cutting.main,
     "startup": startup.main,
     "kernels": kernels.main,
     "plane": plane.main,

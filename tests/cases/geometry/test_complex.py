@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from jointwave.cases.geometry.blocks import blocks_of
@@ -58,7 +58,6 @@ def blocks(dim, sets, low=None, high=None):
 
 
 @given(domains())
-@settings(max_examples=50, deadline=None)
 def test_volumes_add_up_to_the_domain(domain):
     dim, sets = domain
     found = blocks(dim, sets)
@@ -73,7 +72,6 @@ def test_volumes_add_up_to_the_domain(domain):
 
 
 @given(domains())
-@settings(max_examples=50, deadline=None)
 def test_every_facet_has_one_owner_or_two_and_every_block_is_closed(domain):
     """The areas of both sides are one array; n A vanishes in sum around each block."""
     dim, sets = domain
@@ -95,7 +93,6 @@ def test_every_facet_has_one_owner_or_two_and_every_block_is_closed(domain):
 
 
 @given(domains(dims=(2, 3)))
-@settings(max_examples=50, deadline=None)
 def test_euler_s_formula_for_the_domain_and_for_each_block(domain):
     dim, sets = domain
     found = blocks(dim, sets)
@@ -110,7 +107,6 @@ def test_euler_s_formula_for_the_domain_and_for_each_block(domain):
 
 
 @given(domains(dims=(3,)))
-@settings(max_examples=50, deadline=None)
 def test_moments_are_those_of_intersected_half_spaces(domain):
     """Against Qhull: the hull of the corners that the planes of a block's faces meet at."""
     from scipy.spatial import ConvexHull, HalfspaceIntersection
@@ -134,7 +130,6 @@ def test_moments_are_those_of_intersected_half_spaces(domain):
 
 
 @given(domains(dims=(2, 3)))
-@settings(max_examples=50, deadline=None)
 def test_moments_of_outlines_are_those_of_their_facets(domain):
     dim, sets = domain
     contacts = blocks(dim, sets).contacts
@@ -145,7 +140,6 @@ def test_moments_of_outlines_are_those_of_their_facets(domain):
 
 
 @given(domains(dims=(2, 3), rows=False), st.integers(0, 1))
-@settings(max_examples=50, deadline=None)
 def test_a_mirrored_domain_is_cut_into_mirrored_blocks(domain, axis):
     dim, sets = domain
     flip, move = np.ones(dim), np.zeros(dim)
@@ -189,7 +183,6 @@ def test_prisms_are_taken_out_of_space():
 
 
 @given(domains(dims=(2, 3)))
-@settings(max_examples=25, deadline=None)
 def test_slivers_are_merged_or_refused_with_place_and_cause(domain):
     dim, sets = domain
     limits = Limits(0.05, 5.0)
