@@ -38,6 +38,15 @@ def picture(
         float | None,
         typer.Option(metavar="T", help="Instant of the map, s (default: where it is strongest)."),
     ] = None,
+    explode: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            max=10.0,
+            metavar="X",
+            help="Of a scene in space: move blocks apart, by X times their distance.",
+        ),
+    ] = None,
     changes: SetOption = [],
     variant: VariantOption = None,
     strict: StrictOption = False,
@@ -60,6 +69,8 @@ def picture(
     if of_results:
         if changes or variant is not None:
             raise SceneError("--set, --variant", "", None, "are of a scene, not of a folder")
+        if explode is not None:
+            raise SceneError("--explode", "", None, "is of a scene in space, not of a folder")
         figure, title = _map(folder, quantity or "ppv", time)
     elif quantity is not None or time is not None:
         allowed = f"is of results: `jointwave run {source} --set record.fields=1e-3 --out FOLDER`"
@@ -70,7 +81,9 @@ def picture(
 
         scenes = load(source, changes, variant, strict, in_space=True)
         title = scenes[0].title
-        figure = scene_figure("scene", [Comparison(one) for one in scenes]).figure
+        if explode is not None and not scenes[0].in_space:
+            raise SceneError("--explode", "", None, f"is of a scene in space, not of {source}")
+        figure = scene_figure("scene", [Comparison(one) for one in scenes], explode or 0.0).figure
     terminal.say(f"wrote {write_drawing(path, figure, title)}")
 
 

@@ -42,11 +42,14 @@ SEEN = (
 )
 
 
-def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
-    """Return the figure of a scene; variants with the same appearance share a drawing."""
+def scene_figure(name: str, comparisons: list[Comparison], explode: float = 0.0) -> SceneFigure:
+    """Return the figure of a scene; variants with the same appearance share a drawing.
+
+    explode : how far blocks in space are moved apart, over their distance from the middle.
+    """
     groups: dict[str, tuple[list[str], AnyScene, Sketch]] = {}
     for words, comparison in zip(variant_names(comparisons), comparisons, strict=True):
-        scene, sketch = comparison.scene, sketch_of(comparison.scene)
+        scene, sketch = comparison.scene, sketch_of(comparison.scene, explode)
         seen = f"{[getattr(scene, key, None) for key in SEEN]} {sketch.table().to_csv()}"
         groups.setdefault(seen, ([], scene, sketch))[0].append(words)
     few = list(groups.values())[:MOST]
@@ -58,12 +61,14 @@ def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
     return SceneFigure(f"{name}-scene", TITLE, CAPTION, figure, numbers)
 
 
-def sketch_of(scene: AnyScene) -> Sketch:
+def sketch_of(scene: AnyScene, explode: float = 0.0) -> Sketch:
     """Return the sketch of a pillar or a rock mass."""
     if isinstance(scene, Scene):
         return pillar.sketch_of(scene)
-    from jointwave.compare.figures.drawing import rock_mass  # imports shapely
+    from jointwave.compare.figures.drawing import rock_mass, space  # import shapely
 
+    if scene.in_space:
+        return space.sketch_of(scene, explode)
     return rock_mass.sketch_of(scene)
 
 

@@ -31,7 +31,8 @@ class Sketch(NamedTuple):
 
     shapes : by the functions below, in drawing order; a name that begins with "_" is not in the
     legend. low, high : the shown rectangle [2]. axes : their names. stretch : of what is up.
-    size : in words.
+    size : in words. ticks : whether the axes are shown. image : of the rectangle [h, w, 4], below
+    all shapes, or None.
     """
 
     shapes: list[Artist]
@@ -40,6 +41,8 @@ class Sketch(NamedTuple):
     axes: tuple[str, str]
     stretch: float = 1.0
     size: str = ""
+    ticks: bool = True
+    image: np.ndarray | None = None
 
     @property
     def ratio(self) -> float:
@@ -53,6 +56,10 @@ class Sketch(NamedTuple):
             ax.add_artist(shape)
         right, up = (f"{name} (m)" for name in self.axes)
         ax.set(xlabel=f"{right}{self.size}", ylabel=up, aspect=self.stretch, anchor="S")
+        if self.image is not None:
+            ax.imshow(self.image, extent=(self.low[0], self.high[0], self.low[1], self.high[1]))
+        if not self.ticks:
+            ax.set(xlabel=self.size, ylabel="", xticks=[], yticks=[], frame_on=False)
         ax.set(xlim=(self.low[0], self.high[0]), ylim=(self.low[1], self.high[1]))
 
     def table(self) -> pd.DataFrame:

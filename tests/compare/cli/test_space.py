@@ -1,11 +1,17 @@
 """Commands on scenes in space: shown by some, refused in one line by all that solve."""
 
 import json
+import re
+from importlib.util import find_spec
+from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
 import jointwave as jw
 from jointwave.cases.errors import SceneError
+from jointwave.compare.figures.drawing import space
 
 WALL = "rock-mass/masonry-wall"
 SAID = "is of a scene in space: no engine solves these yet; jointwave explain and picture show it"
@@ -68,3 +74,38 @@ def test_explain_counts_its_blocks(jointwave):
     facts = json.loads(jointwave("explain", WALL, "--json").out)
     assert facts["joint_sets"]["bed"] == {"contacts": 360, "area": pytest.approx(9 * 3.6)}
     assert facts["effects"]["gravity"]["active"] and "steps" not in facts
+
+
+def test_it_is_drawn(jointwave):
+    """With the names of what is seen: joints where blocks are apart or cut open."""
+    assert jointwave("picture", WALL, "--out", "a.svg").out == "wrote a.svg\n"
+    words = words_of("a.svg")
+    assert {"6 × 0.6 × 3 m, 210 blocks", "9.81 m/s²", "point"} <= words and "bed" not in words
+    jointwave("picture", WALL, "--explode", "0.2", "--out", "b.svg")
+    apart = "6 × 0.6 × 3 m, 210 blocks, moved apart by 0.2 of their distance"
+    assert {"bed", "head", "collar", apart} <= words_of("b.svg")
+    jointwave("picture", "rock-mass/cavern", "--out", "c.svg")
+    assert {"opening", "cut open through the middle of the openings"} <= words_of("c.svg")
+
+
+@pytest.mark.skipif(find_spec("pyvista") is None, reason="PyVista is not installed")
+def test_it_looks_the_same_without_pyvista(jointwave, monkeypatch):
+    """But for the edges of blocks, which are a tenth of their colour in 16 by 16 pixels."""
+    jointwave("picture", WALL, "--explode", "0.2", "--out", "a.png")
+    monkeypatch.setattr(space, "find_spec", lambda name: None)
+    jointwave("picture", WALL, "--explode", "0.2", "--out", "b.png")
+    pictures = (Image.open(name).convert("RGB").reduce(16) for name in ("a.png", "b.png"))
+    one, other = (np.asarray(picture, float) for picture in pictures)
+    assert one.shape == other.shape and np.ptp(one) > 100
+    assert abs(one - other).max() < 40
+
+
+def test_blocks_of_the_plane_are_not_moved_apart(jointwave):
+    error = jointwave("picture", "rock-mass/tunnel", "--explode", "0.2", code=2).err
+    assert error == "jointwave: --explode: is of a scene in space, not of rock-mass/tunnel\n"
+    error = jointwave("picture", ".", "--explode", "0.2", code=2).err
+    assert error == "jointwave: --explode: is of a scene in space, not of a folder\n"
+
+
+def words_of(svg):
+    return set(re.findall(r">([^<>]+)</text>", Path(svg).read_text(encoding="utf-8")))

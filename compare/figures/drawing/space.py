@@ -1,0 +1,159 @@
+"""The drawing of a rock mass in space: its blocks from in front, by PyVista where installed."""
+
+from collections.abc import Iterator
+from importlib.util import find_spec
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import to_rgb
+
+from jointwave.cases.geometry.blocks import Blocks
+from jointwave.cases.geometry.cell_complex import OUTSIDE
+from jointwave.cases.partition.box import SIDES, Box, box_of
+from jointwave.cases.partition.scene import blocks_of_scene
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.compare.figures.drawing.rock_mass import LENGTH, SETS
+from jointwave.compare.figures.drawing.sketch import (
+    INK,
+    ROCKS,
+    Sketch,
+    arrow,
+    gravity,
+    lines,
+    note,
+    receivers,
+    shaking,
+)
+
+TURN, RISE = np.radians([28.0, 24.0])  # of the viewer from the front to the right, and up
+RIGHT = np.array([np.cos(TURN), np.sin(TURN), 0.0])
+TOWARDS = np.array([np.sin(TURN), -np.cos(TURN), np.tan(RISE)]) * np.cos(RISE)  # the viewer
+UP = np.cross(TOWARDS, RIGHT)
+ONTO = np.stack([RIGHT, UP])  # places in the drawing are ONTO @ x
+LIGHT = np.array([0.25, -0.70, 0.67])  # towards its source
+DARKEST = 0.6  # of a face that is turned away from the light
+EDGE, WIDTH = "#2b2820", 0.4  # edges of blocks, and their width (points)
+WALLS = "#7d8794"  # faces of openings
+MARGIN = 0.14  # beside the rock, of its size in the drawing
+PIXELS = 1400  # of an image, in its width
+
+
+def sketch_of(scene: RockMass, explode: float = 0.0) -> Sketch:
+    """Return the sketch of a scene in space, cut open through the middle of its openings.
+
+    explode : how far blocks are moved apart, over their distance from the middle.
+    """
+    blocks, domain = blocks_of_scene(scene), box_of(scene.domain)
+    walls = [corners for one, _ in domain.solids for corners, _ in one.faces()]
+    behind = np.concatenate(walls)[:, 1].mean() if walls else -np.inf
+    shift = explode * (blocks.centroid - domain.high / 2)
+    faces, colours = _faces(scene, blocks, blocks.centroid[:, 1] > behind, shift)
+    places = np.concatenate(faces) @ ONTO.T
+    low, high = places.min(axis=0), places.max(axis=0)
+    margin = MARGIN * float((high - low).max())
+    low, high = low - margin, high + margin
+    by_pyvista, record = find_spec("pyvista") is not None, scene.record
+    named = {one.name: SETS[k % len(SETS)] for k, one in enumerate(scene.joint_sets)}
+    named = named if walls or explode else {}  # else no joint is bare
+    named |= {one.name: ROCKS[(k + 1) % len(ROCKS)] for k, one in enumerate(scene.regions)}
+    named |= {"opening": WALLS} if walls else {}
+    shapes = [
+        *([] if by_pyvista else [_painted(faces, colours)]),
+        *(PolyCollection([], facecolors=colour, label=name) for name, colour in named.items()),
+        *receivers("point", [ONTO @ one for one in record.points], "o"),
+        *receivers("point of a joint", [ONTO @ one for one in record.joints], "^"),
+        *_sources(scene, domain, 1 + explode),
+    ]
+    foot = low + 0.6 * margin
+    for name, axis in zip("xyz", ONTO.T, strict=True):
+        shapes += lines(f"_{name}", [[foot, foot + 0.5 * margin * axis]], INK, 1.0)
+        shapes.append(note(foot + 0.75 * margin * axis, name, "center"))
+    if scene.gravity is not None:
+        at, down = np.array([low[0] + 2 * margin, high[1] - 0.8 * margin]), scene.gravity.direction
+        shapes += gravity(at, ONTO @ down, 0.6 * margin, scene.gravity.acceleration)
+    words = " × ".join(f"{x:g}" for x in domain.high) + f" m, {blocks.count:,} blocks"
+    words += f", moved apart by {explode:g} of their distance" if explode else ""
+    words += "\ncut open through the middle of the openings" if walls else ""
+    image = _rendered(faces, colours, low, high) if by_pyvista else None
+    return Sketch(shapes, low, high, ("right", "up"), size=words, ticks=False, image=image)
+
+
+def _faces(
+    scene: RockMass, blocks: Blocks, kept: np.ndarray, shift: np.ndarray
+) -> tuple[list[np.ndarray], np.ndarray]:
+    """Return the faces [corners, 3] (m) of the blocks that are kept, where they are bare and turned
+    to the viewer, and their colours [n, 3]: of a joint set, of an opening, or of the rock.
+
+    shift : of the blocks, [n, 3], m.
+    """
+    faces, colours = list[np.ndarray](), list[np.ndarray]()
+    rocks = np.array([to_rgb(one) for one in ROCKS])[(blocks.body.region + 1) % len(ROCKS)]
+    sets = np.array([to_rgb(SETS[k % len(SETS)]) for k in range(1 + len(scene.joint_sets))])
+    for facets, k in ((blocks.contacts, 0), (blocks.contacts, 1), (blocks.boundary, 0)):
+        own, other = facets.blocks[:, k], facets.blocks[:, 1 - k]
+        normal, outer = (1 - 2 * k) * facets.normal, other == OUTSIDE
+        seen = kept[own] & (normal @ TOWARDS > 0) & (outer | ~kept[other] | bool(shift.any()))
+        of_joint = ~outer & (facets.joint_set >= 0)
+        found = np.where(of_joint[:, None], sets[facets.joint_set], rocks[own])
+        found[outer & (facets.side >= len(SIDES))] = to_rgb(WALLS)
+        lit = DARKEST + (1 - DARKEST) * np.clip(normal @ LIGHT, 0, 1)
+        colours.append((found * lit[:, None])[seen])
+        pieces = np.split(facets.outlines.corners, facets.outlines.first[1:-1])
+        faces += [pieces[i] + shift[own[i]] for i in np.flatnonzero(seen)]
+    return faces, np.concatenate(colours)
+
+
+def _painted(faces: list[np.ndarray], colours: np.ndarray) -> Artist:
+    """Return faces as polygons, the farthest first."""
+    order = np.argsort([face.mean(axis=0) @ TOWARDS for face in faces])
+    polygons = [faces[i] @ ONTO.T for i in order]
+    found = PolyCollection(polygons, facecolors=colours[order], label="_blocks", zorder=1)
+    found.set(edgecolors=EDGE, linewidths=WIDTH)
+    return found
+
+
+def _rendered(
+    faces: list[np.ndarray], colours: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> np.ndarray:
+    """Return an image [h, w, 4] of faces; low, high : what it shows of the drawing [2], m."""
+    import pyvista
+
+    corners, last = np.concatenate(faces), np.cumsum([len(face) for face in faces])
+    parts = np.split(np.arange(len(corners)), last[:-1])
+    mesh = pyvista.PolyData.from_irregular_faces(corners, parts)
+    (middle_x, middle_y), (width, height) = (low + high) / 2, high - low
+    focus = middle_x * RIGHT + middle_y * UP
+    with pyvista.vtk_verbosity("off"):  # of displays that there are not
+        plotter = pyvista.Plotter(
+            off_screen=True, window_size=[PIXELS, round(PIXELS * height / width)]
+        )
+        style = {"show_edges": True, "edge_color": EDGE, "lighting": False}
+        plotter.add_mesh(mesh, scalars=(255 * colours).astype(np.uint8), rgb=True, **style)
+        plotter.camera_position = [focus + 10 * mesh.length * TOWARDS, focus, UP]
+        plotter.enable_parallel_projection()
+        plotter.camera.parallel_scale = height / 2
+        plotter.reset_camera_clipping_range()
+        return plotter.screenshot(return_img=True, transparent_background=True)
+
+
+def _sources(scene: RockMass, domain: Box, wide: float) -> Iterator[Artist]:
+    """Yield the arrows of waves, and of loads on sides and at points; wide : by how much the blocks
+    are farther apart."""
+    middle, length = domain.high / 2, LENGTH * float(domain.high.max())
+    for wave in scene.waves:
+        n = np.array(wave.direction)
+        with np.errstate(divide="ignore"):
+            tail = middle - (wide * float(np.min(middle / np.abs(n))) + 1.1 * length) * n
+        yield arrow(ONTO @ tail, ONTO @ (tail + length * n))
+        yield note(ONTO @ (tail - 0.3 * length * n), wave.kind, "center")
+        if wave.polarisation is not None:
+            yield shaking(ONTO @ tail, ONTO @ wave.polarisation, length)
+    for load in (one for one in scene.loads if one.opening is None):
+        inwards = -domain.normals()[load.side][0] if load.side else np.array(load.direction)
+        at = middle * (1 - inwards) if load.side else np.array(load.at)
+        at = middle + wide * (at - middle)
+        if load.kind == "base":
+            yield shaking(ONTO @ at, ONTO @ load.direction, 1.5 * length)
+        else:
+            yield arrow(ONTO @ (at - length * inwards), ONTO @ at)
