@@ -58,6 +58,8 @@ def list_scenes(as_json: JsonOption = False) -> None:
         return
     for one in facts:
         terminal.say_wrapped(f"{one['scene']}: {one['title']}", " " * 4)
+        if "remark" in one:
+            terminal.say_wrapped(f"    {one['remark']}", " " * 6)
         if one["variants"]:
             terminal.say_wrapped(f"    variants: {'; '.join(one['variants'])}", " " * 6)
 

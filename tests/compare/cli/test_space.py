@@ -63,6 +63,8 @@ def test_it_is_listed_with_a_remark(jointwave):
         one["scene"] for one in facts if one.get("remark") == "in space: no engine solves these yet"
     }
     assert said == {"rock-mass/cavern", WALL}
+    words = jointwave("list").out
+    assert words.count("    in space: no engine solves these yet\n") == 2
 
 
 def test_explain_counts_its_blocks(jointwave):
