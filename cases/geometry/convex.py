@@ -1,60 +1,13 @@
-"""Convex blocks by their faces: whether they are convex, lie apart, and what faces share."""
-
-from typing import NamedTuple
+"""Convex blocks as half-spaces: whether they are convex, and lie apart."""
 
 import numpy as np
 from scipy.optimize import linprog
 
-from jointwave.cases.geometry.pieces import clipped
+from jointwave.cases.geometry.block_faces import Face, near, near_boxes, vector_areas
 from jointwave.cases.geometry.relations import ranges
 from jointwave.cases.gmsh_file import MeshError
 
 CHUNK = 20_000  # pairs of blocks that are compared at a time
-
-
-class Face(NamedTuple):
-    """A convex piece of a block's surface: corners [k, d], m, around the normal out of the block;
-    the block; the group of joints, or NO_SET; and the plane, numbered over all blocks."""
-
-    corners: np.ndarray
-    cell: int
-    joint: int
-    plane: int
-
-
-def vector_areas(corners: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """Return the normals of polygons, or of edges of the plane to their right, as long as their
-    areas, m2, or lengths, m. corners : of one after the other; sizes : how many each has."""
-    first = np.cumsum(sizes) - sizes
-    if corners.shape[1] == 2:
-        x, y = (corners[first + 1] - corners[first]).T
-        return np.stack([y, -x], axis=1)
-    after = np.arange(1, len(corners) + 1)
-    after[first + sizes - 1] = first
-    away = corners - np.repeat(corners[first], sizes, axis=0)
-    return np.add.reduceat(np.cross(away, away[after]), first) / 2
-
-
-def near(x: np.ndarray) -> str:
-    """Return the place of some points in words."""
-    return " near [{}]".format(", ".join(f"{place:.6g}" for place in x.mean(axis=0)))
-
-
-def off_plane(x: np.ndarray, normal: np.ndarray, point: np.ndarray) -> float:
-    """Return the largest distance of points from a plane, m."""
-    return float(np.abs((x - point) @ normal).max())
-
-
-def _outward(corners: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Return the unit vectors out of a polygon at its edges, in its plane."""
-    out = np.cross(np.roll(corners, -1, axis=0) - corners, normal)
-    return out / np.linalg.norm(out, axis=1)[:, None]
-
-
-def is_convex(corners: np.ndarray, normal: np.ndarray, tolerance: float) -> bool:
-    """Return whether no corner lies beyond any edge."""
-    out = _outward(corners, normal)
-    return bool((out @ corners.T <= (out * corners).sum(axis=1)[:, None] + tolerance).all())
 
 
 class ConvexBlocks:
@@ -125,36 +78,3 @@ class ConvexBlocks:
         places = (self.place[own] - normal @ low) / size  # the solver's accuracy is absolute
         found = linprog([-1.0, *(0.0 * low)], planes, places, bounds=(None, None)).x
         return size * found[0], low + size * found[1:]
-
-
-def near_boxes(low: np.ndarray, high: np.ndarray, slack: float) -> np.ndarray:
-    """Return the pairs of boxes [m, 2] that are less than `slack` (m) apart along every axis."""
-    axis = int(np.argmax(np.ptp(low, axis=0)))
-    order = np.argsort(low[:, axis], kind="stable")
-    after = np.searchsorted(low[order, axis], high[order, axis] + slack)
-    found = [np.empty((0, 2), np.int64)]
-    for k, i in enumerate(order):
-        j = order[k + 1 : after[k]]
-        j = j[((low[j] < high[i] + slack) & (high[j] > low[i] - slack)).all(axis=1)]
-        found.append(np.stack([np.full(len(j), i), j], axis=1))
-    return np.concatenate(found)
-
-
-def overlap(
-    x: np.ndarray, by: np.ndarray, normal: np.ndarray, tolerance: float
-) -> tuple[np.ndarray | None, list[np.ndarray]]:
-    """Return what a convex polygon [k, 3] shares with another one of its plane, and convex pieces
-    of the rest; None and the polygon where they share no area."""
-    inside, rest = x, []
-    for point, out in zip(by, _outward(by, normal), strict=True):
-        away = (inside - point) @ out
-        if away.max() <= tolerance:
-            continue
-        if away.min() >= -tolerance:
-            return None, [x]
-        away[np.abs(away) <= tolerance] = 0.0  # on the line
-        rest.append(clipped(inside, away))
-        inside = clipped(inside, -away)
-    long = float(np.linalg.norm(np.ptp(inside, axis=0)))
-    (area,) = vector_areas(inside, np.array([len(inside)]))
-    return (inside, rest) if np.linalg.norm(area) > long * tolerance else (None, [x])

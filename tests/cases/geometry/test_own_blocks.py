@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from jointwave.cases.geometry.blocks import blocks_of
 from jointwave.cases.geometry.cell_complex import box
 from jointwave.cases.geometry.cut import Planes, cut
-from jointwave.cases.geometry.own_blocks import complex_of_file, outlines_of
+from jointwave.cases.geometry.own_blocks import complex_of_cells, complex_of_file, outlines_of
 from jointwave.cases.gmsh_file import MeshError
 
 TOLERANCE = 1e-9  # m
@@ -397,3 +397,20 @@ def test_groups_that_do_not_fit_are_said_in_a_line(joints, names, words, tmp_pat
     with pytest.raises(MeshError) as error:
         complex_of_file(tmp_path / "a.msh", names, np.eye(2)[: len(names)])
     assert words in str(error.value)
+
+
+def test_cells_of_a_mesh_are_whole_but_at_joints(tmp_path):
+    """Vertices may be there twice along a joint, and nowhere else."""
+    grouped(tmp_path / "a.msh", {"joint Fault": [[4, 5]]})
+    body, names = complex_of_cells(tmp_path / "a.msh")
+    assert names == ["fault"] and body.count == 3 and (body.joint_set == 0).sum() == 1
+    mesh = meshio.gmsh.read(tmp_path / "a.msh")
+    quads = mesh.cells[0].data
+    mesh.points = np.concatenate([mesh.points, mesh.points])
+    quads[2] = [12, 6, 7, 13]
+    meshio.gmsh.write(tmp_path / "b.msh", mesh, "2.2", binary=False)
+    assert (complex_of_cells(tmp_path / "b.msh")[0].joint_set == 0).sum() == 1
+    quads[1] = [10, 12, 13, 11]
+    meshio.gmsh.write(tmp_path / "c.msh", mesh, "2.2", binary=False)
+    with pytest.raises(MeshError, match=r"1 edges coincide .* the first near \[1, 0.5\]"):
+        complex_of_cells(tmp_path / "c.msh")
