@@ -28,13 +28,14 @@ LENGTH, SHORT = 0.12, 0.05  # of the domain's size: arrows of waves, and other a
 MOST = 12  # arrows of a pressure on one edge
 FEW = 4  # receivers that are listed with their coordinates
 DENSE = 3000  # contacts above which their lines are thin
+SLENDER = 0.6  # of the length of a slender rock mass, that sizes its arrows instead of its width
 
 
 def sketch_of(scene: RockMass) -> Sketch:
     """Return the sketch of a rock mass, cut into blocks."""
     partition, record = partition_of(scene), scene.record
     low, high = partition.corners.min(axis=0), partition.corners.max(axis=0)
-    size = float((high - low).min())
+    size = float(max((high - low).min(), SLENDER * (high - low).max()))
     shapes = [
         *_blocks(scene, partition),
         *_joints(partition),
@@ -52,7 +53,7 @@ def sketch_of(scene: RockMass) -> Sketch:
         stress = [scene.prestress.xx / 1e6, scene.prestress.yy / 1e6, scene.prestress.xy / 1e6]
         words = f"prestress {', '.join(f'{part:g}' for part in stress)} MPa"
         shapes.append(note(np.array([high[0], above]), words, "right"))
-    margin = OVER * (high - low)
+    margin = OVER * np.maximum(high - low, size)
     places = _listed("points", record.points) + _listed("points of joints", record.joints)
     return Sketch(shapes, low - margin, high + margin, ("x", "y"), size=places)
 
