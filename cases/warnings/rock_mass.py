@@ -153,10 +153,11 @@ def _of_wavelength(scene: RockMass) -> Iterator[str]:
     size, given = scene.numerics.continuum.size, scene.numerics.dem.block
     block = given or _block_size(scene)
     if block is not None and wave / block < LEAST_BLOCKS:
+        key = "domain.blocks of" if scene.domain.blocks else "numerics.dem.block ="
         yield (
             f"{f'numerics.dem.block = {given:g} m gives' if given else 'the joint sets give'} "
             f"{wave / block:.3g} rigid blocks {where}; at least {LEAST_BLOCKS:g} "
-            f"resolve it: numerics.dem.block = {wave / LEAST_BLOCKS:.2g} m"
+            f"resolve it: {key} {wave / LEAST_BLOCKS:.2g} m"
         )
     if size is not None and wave / size < LEAST_BLOCKS:
         yield (
