@@ -5,7 +5,9 @@ from typing import Any
 import numpy as np
 import shapely
 
+from jointwave.cases.geometry.cell_complex import PARALLEL
 from jointwave.cases.geometry.measure import cell_moments
+from jointwave.cases.partition.joints import attitude
 from jointwave.cases.partition.outline import Outline
 from jointwave.cases.partition.regions import rocks_beside, shapes
 from jointwave.cases.partition.scene import rock_of
@@ -75,8 +77,11 @@ def _check_damping(scene: RockMass) -> None:
 def _check_periodic(scene: RockMass) -> None:
     """Refuse boundaries that do not run from one periodic side to the other."""
     for i, one in enumerate(scene.regions):
-        for side, along in (("left", 0.0), ("bottom", 90.0)) if not scene.in_space else ():
-            held = getattr(scene.boundaries, side)
-            if one.outline is None and held == "periodic" and (one.dip - along) % 180 != 0:
-                allowed = f"must be {along:g} or opposite: boundaries.{side} is periodic"
+        if one.outline is not None:
+            continue
+        normal = attitude(one, scene.domain.dimension)[0]
+        sides = ("left", "front", "bottom") if scene.in_space else ("left", "bottom")
+        for axis, side, across in zip("xyz", sides, normal, strict=False):
+            if getattr(scene.boundaries, side) == "periodic" and abs(across) > PARALLEL:
+                allowed = f"must be parallel to the {axis} axis: boundaries.{side} is periodic"
                 raise contradiction(f"regions[{i}].dip", one.dip, allowed)

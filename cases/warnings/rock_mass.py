@@ -108,9 +108,10 @@ def _of_directions(scene: RockMass) -> Iterator[str]:
     for key in ("size", "outline"):
         for value in np.ravel(getattr(scene.domain, key) or []):
             yield from of_value(f"domain.{key}", abs(float(value)), LENGTH)
-    if scene.gravity is not None and scene.gravity.direction[1] > 0:
-        x, y = scene.gravity.direction
-        yield f"gravity.direction = [{x:g}, {y:g}] pulls upwards: y points up"
+    if scene.gravity is not None and scene.gravity.direction[-1] > 0:
+        direction = ", ".join(f"{x:g}" for x in scene.gravity.direction)
+        up = "z" if scene.in_space else "y"
+        yield f"gravity.direction = [{direction}] pulls upwards: {up} points up"
 
 
 def _of_half_a_load(scene: RockMass) -> Iterator[str]:
@@ -277,7 +278,10 @@ def _of_contact_points(scene: RockMass) -> Iterator[str]:
 
 
 Rules = tuple[Callable[[RockMass], Iterator[str]], ...]
-IN_SPACE: Rules = (_of_half_a_load,)  #: of scenes in space
+IN_SPACE: Rules = (
+    _of_half_a_load,
+    _of_directions,
+)  #: of scenes in space
 RULES: Rules = (
     _of_joints_given_twice,
     _of_half_a_load,

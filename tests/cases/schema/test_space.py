@@ -164,6 +164,15 @@ MISTAKES = {
         {"boundaries": {"front": "periodic"}},
         "boundaries.front = 'periodic': needs boundaries.back = 'periodic', too",
     ),
+    "a region across periodic sides": (
+        {
+            "boundaries": {"front": "periodic", "back": "periodic"},
+            "regions": [
+                {"name": "cap", "dip": 10.0, "dip_direction": 0.0, "through": [0.0, 0.0, 2.0]}
+            ],
+        },
+        "regions[0].dip = 10.0: must be parallel to the y axis: boundaries.front is periodic",
+    ),
     "a joint outside": (
         {"joint_sets": [STIFF | {"name": "one", "dip": 0.0, "through": [0.0, 0.0, 7.0]}]},
         "joint_sets[0].through: must lie in the domain, near [0, 0, 7]",
@@ -226,3 +235,10 @@ def test_more_blocks_than_memory_are_refused_before_they_are_cut():
         blocks_of_scene(
             scene(joint_sets=[*small, EAST | {"name": "n", "dip_direction": 0.0, "spacing": 1e-3}])
         )
+
+
+def test_probable_mistakes_are_warned_of():
+    up = {"direction": [0.0, 0.0, 1.0], "static": False}
+    assert warnings(scene(gravity=up)) == [
+        "gravity.direction = [0, 0, 1] pulls upwards: z points up"
+    ]

@@ -79,7 +79,7 @@ def test_waves_need_the_field_of_layers(rock_mass, wave):
 
 
 def test_periodic_sides_need_boundaries_from_one_to_the_other(rock_mass, wave):
-    with pytest.raises(SceneError, match=r"regions\[0\].dip = 10.0: must be 0 or opposite"):
+    with pytest.raises(SceneError, match=r"regions\[0\].dip = 10.0: must be parallel to the x"):
         layers(rock_mass, wave, "P", 1.0, regions=[SOFT | {"dip": 10.0}])
 
 
