@@ -9,10 +9,11 @@ import pandas as pd
 from jointwave.cases.size import spoken
 from jointwave.compare.cli.frames import show_frame
 from jointwave.compare.cli.terminal import print_json, progress, say
+from jointwave.compare.runs.timings import each
 from jointwave.compare.studies.forecast import Run, forecasts
 from jointwave.compare.text import in_seconds
 
-UNKNOWN = "no estimate"
+SPARE = 5.0  # s, in which kinds of runs that were never timed are tried
 HEADS = {
     **{name: name for name in ("point", "variant", "engine", "scheme", "steps", "size")},
     **{"times": "runs", "seconds": "time", "bytes": "memory"},
@@ -20,7 +21,7 @@ HEADS = {
 WORDS: dict[str, Callable[[Any], str]] = {
     "steps": "{:,}".format,
     "times": "{:,.0f}".format,
-    "seconds": lambda x: UNKNOWN if pd.isna(x) else in_seconds(x),
+    "seconds": in_seconds,
     "bytes": spoken,
 }
 MOST = 25  # rows; more are summed by the part of the command and the engine
@@ -29,24 +30,26 @@ MOST = 25  # rows; more are summed by the part of the command and the engine
 def show_forecasts(
     wanted: Sequence[Run],
     as_json: bool,
-    failing: Mapping[str, str] | None = None,
-    drawing: Mapping[str, float] = {},
+    parts: Mapping[str, float] = {},
+    failing: Mapping[str, str] = {},
 ) -> None:
     """Print the estimated cost of each run, and of the whole command.
 
-    failing : points of a sweep that would not run, with the reason; more are found here. drawing :
-    seconds of it, by what is drawn. Raises SceneError for a run that is not possible and no point
-    of a sweep.
+    failing : points of a sweep that would not run, with the reason; more are found here. parts :
+    how many of what else the command does, see `timings.OTHERWISE`. Raises SceneError for a run
+    that is not possible and no point of a sweep.
     """
     begun = process_time()  # the command begins as this one has begun
     with progress(f"{len(wanted)} runs") as advance:
-        table, failed = forecasts(wanted, advance, True)
-    failed, count = {**(failing or {}), **failed}, table.times.sum()
+        table, failed = forecasts(wanted, advance, SPARE)
+    failed, count = {**failing, **failed}, table.times.sum()
     total, read = begun + table.seconds.sum(), sum(run.is_read for run in wanted)
-    total, untimed = total + sum(drawing.values()), int(table.seconds.isna().sum())
+    kind = wanted[0].scene.kind if wanted else ""
+    others = {what: n * each(what, kind) for what, n in parts.items() if n}
+    total, untimed = total + sum(others.values()), int(table.stepping.isna().sum())
     if as_json:
         facts: dict[str, Any] = {"runs": table.to_dict("records"), "seconds": total, "read": read}
-        facts |= {"drawing": drawing, "untimed": untimed}
+        facts |= {"parts": others, "untimed": untimed}
         failures = [{"point": point, "message": text} for point, text in failed.items()]
         print_json(facts | {"failing": failures})
         return
@@ -57,7 +60,7 @@ def show_forecasts(
     for point, message in failed.items():
         say(f"would fail: {point}: {message}", "red")
     said = [f"{read} would be read"] * bool(read)
-    said += [f"{what} drawn in {in_seconds(seconds)}" for what, seconds in drawing.items()]
+    said += [f"{what}: {parts[what]:,} in {in_seconds(s)}" for what, s in others.items()]
     said += [f"about {in_seconds(total)} of CPU time"]
     said += [f"{untimed} not timed on this machine"] * bool(untimed)
     say(f"{count:,.0f} would run, {', '.join(said)}; nothing was written")

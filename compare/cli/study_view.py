@@ -60,11 +60,12 @@ def sweep(
     dry: bool,
     as_json: bool,
     strict: bool = False,
+    parts: Iterable[str] = (),
 ) -> None:
     """Run every case of a sweep and show its table; dry : only print estimates.
 
-    solvers : returns the names of a scene's solvers. strict : treat warnings as errors. Raises
-    SceneError if all cases fail.
+    solvers : returns the names of a scene's solvers. strict : treat warnings as errors. parts :
+    what else each case does, see `show_forecasts`. Raises SceneError if all cases fail.
     """
     warn(asked.scenes, strict)
     if dry:
@@ -74,7 +75,8 @@ def sweep(
                 stored = ResultFolder(case.folder, asked.fresh)
                 runs += runs_of(solvers(case.scene), case.scene, stored, point=case.point)
         failing = {case.point: case.message for case in asked.cases if case.scene is None}
-        show_forecasts(runs, as_json, failing)
+        others = {"processes": workers * (workers > 1)} | dict.fromkeys(parts, len(asked.scenes))
+        show_forecasts(runs, as_json, others, failing)
         return
 
     def done(pool: Pool | None, advance: Progress) -> Summary:

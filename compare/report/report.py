@@ -18,7 +18,6 @@ from jointwave.compare.report import peers
 from jointwave.compare.report.overview import lead
 from jointwave.compare.report.page import render
 from jointwave.compare.report.scenes import (
-    DRAWING,
     ROCK_MASSES,
     SceneRequest,
     SolvedScene,
@@ -26,9 +25,8 @@ from jointwave.compare.report.scenes import (
     solve,
 )
 from jointwave.compare.report.scenes import planned as planned_of_scene
+from jointwave.compare.report.sections import DIAGRAMS, sections
 from jointwave.compare.report.sections import planned as planned_of_sections
-from jointwave.compare.report.sections import sections
-from jointwave.compare.runs import timings
 from jointwave.compare.runs.output import write_text
 from jointwave.compare.runs.reuse import NOWHERE, ResultFolder
 from jointwave.compare.runs.timings import measured_on
@@ -37,8 +35,8 @@ from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.store import DIED, Pool, alone, in_processes
 from jointwave.compare.text import percent
 
+WORKERS = 2  # processes
 SCENES = 0.4  # of the progress of the paper's page; studies and hard cases are the rest
-UNTIMED = 2.0  # s, the drawing of a variant where none was timed on this machine
 LONG = 0.5  # s: a run that has taken so long is not repeated
 PAPERS = (
     "Figures 2 to 10 of Guo & Li (2002), Chin. J. Rock Mech. Eng. 21(8), 1124–1129, by rigid "
@@ -64,7 +62,7 @@ class Report(NamedTuple):
 def build(
     out: Path,
     progress: Progress | None = None,
-    workers: int = 2,
+    workers: int = WORKERS,
     scenes: Sequence[str] = (),
     peers_table: Path | None = None,
     hard: bool = True,
@@ -101,12 +99,14 @@ def build(
 def planned(
     out: Path, scenes: Sequence[str], stored: ResultFolder
 ) -> tuple[list[Run], dict[str, float]]:
-    """Return the runs of `build`, and the seconds of drawing the variants."""
+    """Return the runs of `build` by two processes, and how many of what else it does."""
     requests = asked_for(scenes) + ([] if scenes else asked_for(ROCK_MASSES))
     found = [run for one in requests for run in planned_of_scene(one, stored)]
     count = sum(len(load_variants(one.file)) for one in requests)
-    drawing = {f"{count} variants": count * timings.each(DRAWING, UNTIMED)}
-    return found if scenes else found + planned_of_sections(out), drawing
+    parts = {"pages": count, "distances": count, "processes": WORKERS}
+    if scenes:
+        return found, parts
+    return found + planned_of_sections(out), parts | {"diagrams": DIAGRAMS}
 
 
 def _solve(

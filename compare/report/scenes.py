@@ -6,7 +6,6 @@ import shlex
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from time import process_time
 from typing import NamedTuple
 
 import pandas as pd
@@ -34,7 +33,6 @@ from jointwave.compare.scenes import find, load_variants
 from jointwave.compare.studies.forecast import Run, runs_of
 
 PAPER = Path(cases.__file__).parent / "guo-li-2002"
-DRAWING = "drawing of a variant"
 FREE_PILLAR = 3  # the figure that says what the paper's own comparison is made of
 #: The shipped scenes of rock masses that the page shows beside the paper's figures.
 ROCK_MASSES = ("rock-mass/one-joint",)
@@ -172,14 +170,13 @@ def _draw(
     """Return the picture at the head, a map or else the waveform that is furthest from its
     reference in the first variant, and all figures."""
     fields = [along_pillar(one.scene, stored) for one in comparisons]
-    began = process_time()
-    figures = figures_of(request.name, comparisons, fields)
-    shown = {one.name: _save(one, folder) for one in figures}
-    lead = shown.get(f"{request.name}-peak-velocity-0")
-    if lead is None and (moving := panels(comparisons)[0]):
-        panel = max(moving, key=lambda one: one.largest_residual)
-        lead = _save(lead_figure(request.name, panel), folder)
-    timings.note_each(DRAWING, (process_time() - began) / len(comparisons))
+    with timings.measured("pages", comparisons[0].scene.kind, len(comparisons)):
+        figures = figures_of(request.name, comparisons, fields)
+        shown = {one.name: _save(one, folder) for one in figures}
+        lead = shown.get(f"{request.name}-peak-velocity-0")
+        if lead is None and (moving := panels(comparisons)[0]):
+            panel = max(moving, key=lambda one: one.largest_residual)
+            lead = _save(lead_figure(request.name, panel), folder)
     return lead, list(shown.values())
 
 

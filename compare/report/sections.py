@@ -34,6 +34,7 @@ from jointwave.results.snapshots import snapshots_of
 APPENDIX = ("convergence", "uniform-chain")  # the studies of steps and elements alone
 BLOW = "beyond/eccentric-blow"  # the scene of the snapshots, and its changes
 SEEN = {"record.fields": 5e-3, "time.duration": 0.035, "record.energy": False}
+DIAGRAMS = len(scattering.TITLES) + len(REPORTED) + 3  # effects, hard cases, snapshots
 HARD = 0.5  # of the progress, where the hard cases are asked for
 
 

@@ -9,7 +9,6 @@ import logging
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +16,7 @@ import xarray as xr
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import Progress, solve
+from jointwave.compare.engines import Progress
 from jointwave.compare.runs import timings
 from jointwave.compare.runs.checkpoint.signature import (
     PROCESSES,
@@ -142,8 +141,7 @@ class ResultFolder:
             else:
                 log_reading(read)
                 read = {}
-                result, seconds, ran = timings.timed(partial(solve, name, scene, part))
-                timings.note(name, scene, result.attrs, seconds, ran)
+                result, seconds = timings.solved(name, scene, part)
                 if path and not _is_stored(path, signed(result, about, seconds)):
                     folder = None
             part(1.0)

@@ -1,5 +1,6 @@
 """Rates measured on this machine: the seconds of a step of one block or freedom, by kind of run;
-of a byte of the waveforms of an exact solution, by its kind; and of what precedes the first step.
+of a byte of the waveforms of an exact solution, by its kind; of what precedes the first step; and
+of what a command does beside its runs.
 
 They are saved beside the compiled kernels, so that rates of other versions of the program are not
 used. `--dry-run` estimates the time of runs by them.
@@ -8,17 +9,20 @@ used. `--dry-run` estimates the time of runs by them.
 import json
 import os
 import platform
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any, TypeVar
+
+import xarray as xr
 
 from jointwave.cases.effects import active_effects
 from jointwave.cases.files import read_json
 from jointwave.cases.run_memory import waveform_bytes
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import ENGINES
+from jointwave.compare.engines import ENGINES, Progress, solve
 from jointwave.compare.runs.output import write_text
 from jointwave.compare.runs.processes import started
 from jointwave.compare.solvers.record import Prepared
@@ -30,6 +34,24 @@ T = TypeVar("T")
 LARGEST_FILE = 10_000_000  # bytes
 SHORTEST = 0.01  # s: shorter runs do not replace a known rate
 CHANGED = 1.2  # a rate that has changed by this factor is rewritten
+#: Seconds of one of something, where none was timed on this machine.
+OTHERWISE = {
+    "exact": 0.3,  # solutions
+    "kernels": 3.0,  # compiled, for a kind of run
+    "explicit": 2e-8,  # steps of one block or freedom, also of schemes not named here
+    "implicit": 5e-7,
+    "blocks": 5e-6,  # of a snapshot
+    "freedoms": 3e-7,
+    "blocks for ParaView": 1.7e-5,  # of a snapshot that is also written so
+    "freedoms for ParaView": 2.3e-6,
+    "processes": 1.5,  # started, with their imports
+    "diagrams": 4.0,  # of a study or of effects
+    "frames": 0.05,  # of an animation
+    "figures": 1.0,  # for a variant, as are all below
+    "distances": 0.5,
+    "tables": 1.5,  # of `compare --out`, with its figure
+    "pages": 2.5,  # of a report
+}
 
 
 def timed(work: Callable[[], T]) -> tuple[T, float, float]:
@@ -41,6 +63,15 @@ def timed(work: Callable[[], T]) -> tuple[T, float, float]:
     return result, wall, min(1.0, cpu / wall)
 
 
+def solved(
+    name: str, scene: AnyScene, progress: Progress | None = None
+) -> tuple[xr.Dataset, float]:
+    """Return the result of an engine or exact solution and its seconds, and store its rate."""
+    result, seconds, part = timed(partial(solve, name, scene, progress))
+    note(name, scene, result.attrs, seconds, part)
+    return result, seconds
+
+
 def note(
     name: str,
     scene: AnyScene,
@@ -48,7 +79,7 @@ def note(
     seconds: float | None = None,
     part: float = 1.0,
 ) -> None:
-    """Store the rate of a run.
+    """Store the rate of a run, unless it takes snapshots.
 
     about : attributes of its result. seconds : in total, of which the steps are a part. part : of
     all seconds that count, see `timed`.
@@ -62,7 +93,7 @@ def note(
     units = ENGINES[name].units(scene, about["degrees_of_freedom"])
     count, spent = about["steps"] * units, part * float(about["seconds_stepping"])
     key = _key(name, scene, about)
-    if count and (spent > SHORTEST or key not in _known()):
+    if count and (spent > SHORTEST or key not in _known()) and scene.record.fields is None:
         _keep(key, spent / count)
     if seconds is not None:
         _keep(_of_scene(name, scene), seconds - spent - part * float(about["seconds_compile"]))
@@ -74,7 +105,8 @@ def setup(name: str, scene: AnyScene) -> float | None:
 
 
 def stepping(name: str, scene: AnyScene, run: Prepared) -> float | None:
-    """Return the expected seconds of a run's steps; None if no such run was ever timed here."""
+    """Return the expected seconds of a run's steps, without those of its snapshots; None if no such
+    run was ever timed here."""
     if name not in ENGINES:
         rate = _known().get(_key(name, scene, {}))
         likely = None if rate is None else rate * waveform_bytes(scene)
@@ -83,19 +115,23 @@ def stepping(name: str, scene: AnyScene, run: Prepared) -> float | None:
     return None if rate is None else rate * run.steps * ENGINES[name].units(scene, run.freedoms)
 
 
-def note_each(what: str, seconds: float) -> None:
-    """Store what it takes to draw one of something."""
-    _keep(what, seconds)
+@contextmanager
+def measured(what: str, kind: str, count: float = 1) -> Iterator[None]:
+    """Store what one of `count` takes that this process does within; kind : of the scene."""
+    began = process_time()
+    yield
+    _keep(f"{what} {kind}", (process_time() - began) / count)
 
 
-def each(what: str, otherwise: float) -> float:
-    """Return what it takes to draw one of something, s; `otherwise` if it was never timed."""
-    return _known().get(what, otherwise)
+def each(what: str, kind: str) -> float:
+    """Return the seconds of one of something of `OTHERWISE`, as it was last timed here."""
+    return _known().get(f"{what} {kind}", OTHERWISE[what])
 
 
 def _key(name: str, scene: AnyScene, about: Mapping[str, Any]) -> str:
     settings = (about[key] for key in (ENGINES[name].cost if name in ENGINES else ()))
-    return " ".join(map(str, (name, *settings, scene.kind, *sorted(active_effects(scene)))))
+    effects = sorted({*active_effects(scene)} - {"field output"})
+    return " ".join(map(str, (name, *settings, scene.kind, *effects)))
 
 
 def _of_scene(name: str, scene: AnyScene) -> str:

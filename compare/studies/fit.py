@@ -23,7 +23,9 @@ from jointwave.compare.scenes import AnySource, load
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies.fit_keys import CLOCK, FreeKey, changed, free_keys
 from jointwave.compare.studies.fit_trials import started, trials_of
+from jointwave.compare.studies.forecast import Run
 
+STEPS = 6
 SHORT = 200  # blocks, up to which matrix exponentials are cheap
 POOR = 0.2  # misfit above which another start may fit better
 NEAR = 1e-6  # of an unknown to its bound
@@ -104,6 +106,15 @@ def fit(
     fitted = changed(scene, {k: v for k, v in values.value.items() if k != CLOCK})
     notes = _notes(values, correlation, float(max(after)))
     return Fit(fitted, name, values, correlation, waveforms, trials.count, notes)
+
+
+def planned(scene: AnyScene, free: Sequence[str], solver: str | None = None) -> Run:
+    """Return the runs of a fit: usually some `STEPS` of its search for each key, with derivatives
+    from both sides."""
+    keys = free_keys(list(free), scene)
+    first = changed(scene, {k.key: k.start for k in keys if k.key != CLOCK})
+    count = 2 + STEPS * len(keys) * (2 * len(keys) + 1)
+    return Run("", first, _solver_of(first, solver), count)
 
 
 def _solver_of(scene: AnyScene, asked: str | None) -> str:

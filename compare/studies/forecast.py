@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import pandas as pd
 
+from jointwave.cases.effects import active_effects
 from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import ENGINES, Progress, applies, solve, solver
@@ -24,7 +25,7 @@ class Run(NamedTuple):
 
     point : of a sweep, or the part of a study or page, "" without. times : how often. again : how
     often more where its steps take so little time that they are timed anew. is_read : whether an
-    earlier result is read instead.
+    earlier result is read instead. for_paraview : whether snapshots become files of their own.
     """
 
     point: str
@@ -33,6 +34,7 @@ class Run(NamedTuple):
     times: float = 1.0
     again: int = 0
     is_read: bool = False
+    for_paraview: bool = False
 
 
 def runs_of(
@@ -52,8 +54,9 @@ class Forecast(NamedTuple):
 
     steps : of time, exactly; 0 for exact solutions. size : blocks or freedoms, in words. stepping :
     seconds of it, at the rate last measured here; None if never measured. setup : seconds before
-    the first step. seconds : of all its `times`. bytes : of memory, as the run itself estimates it
-    at its start; for exact solutions that of their waveforms, a lower bound.
+    the first step. seconds : of all its `times`, with snapshots. bytes : of memory,
+    as the run itself estimates it at its start; for exact solutions that of their waveforms, a
+    lower bound.
     """
 
     point: str
@@ -65,7 +68,7 @@ class Forecast(NamedTuple):
     stepping: float | None
     setup: float
     times: float
-    seconds: float | None
+    seconds: float
     bytes: float
 
 
@@ -79,35 +82,44 @@ def forecast(run: Run) -> Forecast:
     setup = timings.setup(run.name, run.scene)
     if setup is None:
         setup = process_time() - began if found.steps else 0.0
-    size = f"{one.units(run.scene, found.freedoms):,} {one.unit}" if found.steps else "-"
+    units = one.units(run.scene, found.freedoms)
+    size = f"{units:,} {one.unit}" if found.steps else "-"
     stepping = timings.stepping(run.name, run.scene, found)
     times = run.times + (run.again if stepping is not None and stepping <= LONG else 0)
-    seconds = None if stepping is None else times * (setup + stepping)
-    cost = stepping, setup, times, seconds, found.bytes
+    guess = timings.OTHERWISE.get(found.scheme, timings.OTHERWISE["explicit"])
+    each = setup + (guess * max(found.steps * units, 1) if stepping is None else stepping)
+    if found.steps and (interval := run.scene.record.fields):
+        taken = timings.OTHERWISE[one.unit + " for ParaView" * run.for_paraview]
+        each += (run.scene.time.duration / interval + 1) * units * taken
+    cost = stepping, setup, times, times * each, found.bytes
     return Forecast(run.point, run.scene.name, run.name, found.scheme, found.steps, size, *cost)
 
 
 def forecasts(
     wanted: Sequence[Run],
     progress: Progress = lambda fraction: None,
-    measured: bool = False,
+    spare: float = 0.0,
 ) -> tuple[pd.DataFrame, dict[str, str]]:
     """Return the table of estimates of what is not read, a `Forecast` a row, and why points would
     fail.
 
-    measured : time the first steps of a run of a kind that was never timed on this machine.
-    Raises SceneError for a run that is not possible and has no point.
+    spare : seconds of CPU time, within which the first steps of kinds of runs that were never timed
+    on this machine are run. Raises SceneError for a run that is not possible and has no point.
     """
     found: list[Forecast] = []
-    failing = {}
+    failing, kinds, began = {}, set(), process_time()
     for i, run in enumerate(wanted):
         if run.is_read:
             continue
         try:
             one = forecast(run)
-            if measured and one.stepping is None:
+            if one.stepping is None and process_time() < began + spare:
                 _time(run)
                 one = forecast(run)
+            kind = one.engine, one.scheme, *active_effects(run.scene)
+            if one.stepping is None and one.steps and kind not in kinds:
+                one = one._replace(seconds=one.seconds + timings.OTHERWISE["kernels"])
+                kinds.add(kind)
             found.append(one)
         except SceneError as error:
             if not run.point:

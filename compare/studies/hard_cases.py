@@ -27,9 +27,10 @@ from jointwave.cases.effects import active_effects
 from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import shortest_period
-from jointwave.compare.engines import ENGINES, Progress, applies, label_of, solve, solver
+from jointwave.compare.engines import ENGINES, Progress, applies, label_of, solver
 from jointwave.compare.figures.export import save
 from jointwave.compare.misfit.metrics import misfit
+from jointwave.compare.runs.timings import solved
 from jointwave.compare.scenes import find, shipped
 from jointwave.compare.studies import store
 from jointwave.compare.studies.forecast import Run
@@ -147,7 +148,7 @@ def run(row: HardRow) -> HardRow:
         scene = scene_of(row)
         if reason := applies(row.engine, scene).reason:
             return row._replace(ended=NONE, message=reason)
-        result = solve(row.engine, scene)
+        result, _ = solved(row.engine, scene)
     except UnstableError as error:
         return row._replace(ended=STOPPED, message=str(error).partition(": ")[2])
     except SceneError as error:
@@ -176,7 +177,7 @@ def _of_misfit(row: HardRow, scene: AnyScene, result: xr.Dataset) -> dict[str, A
             if row.scheme == "implicit":  # nan for a jump, which has no shortest period
                 omega, end = 2 * pi / (shortest_period(scene.pulses) or nan), scene.time.duration
                 bound += (omega * end / result.attrs["steps"]) ** 2 / 6 * CUBES * omega * end
-            found = misfit(result, solve(other, scene))
+            found = misfit(result, solved(other, scene)[0])
             return {"misfit": found, "misfit_bound": bound, "reference": other}
     return {}
 

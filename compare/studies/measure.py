@@ -2,13 +2,13 @@
 
 from math import nan
 from statistics import median
-from time import perf_counter
 from typing import Any, NamedTuple
 
 import xarray as xr
 
 from jointwave.cases.errors import SceneError
-from jointwave.compare.engines import applies, solve
+from jointwave.compare.engines import applies
+from jointwave.compare.runs.timings import solved
 from jointwave.compare.studies.reference import errors
 from jointwave.compare.studies.store import FAILURES
 from jointwave.compare.studies.study import StudyPoint
@@ -71,9 +71,8 @@ def measure(point: StudyPoint) -> PointRow:
 
 def _run(point: StudyPoint) -> xr.Dataset:
     """Return the result of a point; raises SceneError if its method does not apply."""
-    scene, began = point.scene, perf_counter()
-    result = solve(point.curve.method, scene)
-    result.attrs.setdefault("seconds_stepping", perf_counter() - began)  # of exact solutions
+    result, seconds = solved(point.curve.method, point.scene)
+    result.attrs.setdefault("seconds_stepping", seconds)  # of exact solutions
     return result
 
 

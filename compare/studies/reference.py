@@ -8,9 +8,10 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import ENGINES, EXACT, applies, solve, solver
+from jointwave.compare.engines import ENGINES, EXACT, applies, solver
 from jointwave.compare.misfit.metrics import Pairing, pairings, relative_l2, worst
 from jointwave.compare.misfit.ranking import applicable, finest, own_exact
+from jointwave.compare.runs.timings import solved
 from jointwave.compare.studies.study import FINEST, NONE, FineRun, Study, StudyPoint
 from jointwave.results.dataset import scene_hash
 
@@ -128,7 +129,7 @@ def _solved(name: str, scene: AnyScene) -> xr.Dataset:
     """Return a solution, computed once per process."""
     key = name, scene_hash(scene)
     if key not in _solutions:
-        _solutions[key] = solve(name, scene)
+        _solutions[key], _ = solved(name, scene)
     return _solutions[key]
 
 

@@ -5,7 +5,6 @@ import sys
 from importlib.util import find_spec
 from math import inf
 from pathlib import Path
-from time import process_time
 from typing import Annotated, Any
 
 import typer
@@ -42,7 +41,6 @@ MapOption = Annotated[
 ]
 OneVariantOption = Annotated[str, typer.Option(help="Use this variant instead of the base scene.")]
 FRAMES, SECONDS = 201, 10.0
-FRAME = "frames"  # among the rates of this machine
 
 
 @app.command()
@@ -78,27 +76,18 @@ def animate(
     from jointwave.compare.figures.animation.video import write_video
     from jointwave.compare.runs import timings
     from jointwave.compare.runs.output import FILMS, check_out
-    from jointwave.compare.runs.reuse import SNAPSHOTS, ResultFolder
+    from jointwave.compare.runs.reuse import ResultFolder
 
     (one,) = load(scene, changes, variant, strict)
     quantity, path = _quantity(one, shown), out or Path(f"{_name(scene, one)}.mp4")
     check_out(path, FILMS)
     stored, interval = ResultFolder(results_of(scene, results), fresh), interval_of(one, frames)
     if dry:
-        from jointwave.compare.cli.forecast_view import show_forecasts
-        from jointwave.compare.figures.animation.snapshots import shown_engines, with_snapshots
-        from jointwave.compare.studies.forecast import runs_of
-
-        seen = one if interval is None else with_snapshots(one, interval)
-        suffix = "" if interval is None else SNAPSHOTS
-        count = round(one.time.duration / (seen.record.fields or inf)) + 1
-        runs = runs_of(shown_engines(seen), seen, stored, suffix)
-        costs = {f"{count} {FRAME}": count * timings.each(FRAME, 0.05)}
-        show_forecasts(runs, as_json, drawing=costs)
+        _show_forecast(one, interval, stored, as_json)
         return
     frame = _frame(one, interval, (scale, quantity), stored)
-    count, began = len(frame.time), process_time()
-    with terminal.progress("pictures") as advance:
+    count = len(frame.time)
+    with timings.measured("frames", one.kind, count), terminal.progress("pictures") as advance:
 
         def images():
             for i in range(count):
@@ -106,7 +95,6 @@ def animate(
                 advance((i + 1) / count)
 
         write_video(path, images(), PIXELS, count / seconds)
-    timings.note_each(FRAME, (process_time() - began) / count)
     if not as_json:
         _say(path, frame)
         return
@@ -132,6 +120,7 @@ def view(
     scale: ScaleOption = None,
     results: ResultsOption = None,
     fresh: FreshOption = False,
+    dry: DryOption = False,
     strict: StrictOption = False,
 ) -> None:
     """Show a scene by both engines, displaced and coloured by the wave.
@@ -150,6 +139,9 @@ def view(
         raise SceneError("--time", "", None, f"{allowed}, not {at:g}")
     quantity = _quantity(one, shown)
     stored = ResultFolder(results_of(scene, results), fresh)
+    if dry:
+        _show_forecast(one, interval_of(one), stored, False, 0)
+        return
     if out is None and _has_display() and find_spec("pyvista") is not None:
         from jointwave.compare.figures.animation.window import open_window
 
@@ -177,6 +169,23 @@ def _quantity(scene: AnyScene, name: str | None) -> Any:
     if name not in known:
         raise SceneError("--map", "", None, f"must be one of {', '.join(known)}, not {name}")
     return known[name]
+
+
+def _show_forecast(
+    scene: AnyScene, interval: float | None, stored: Any, as_json: bool, frames: int | None = None
+) -> None:
+    """Print the estimated cost of both engines' snapshots and of frames; None: of all instants."""
+    from jointwave.compare.cli.forecast_view import show_forecasts
+    from jointwave.compare.figures.animation.snapshots import shown_engines, with_snapshots
+    from jointwave.compare.runs.reuse import SNAPSHOTS
+    from jointwave.compare.studies.forecast import runs_of
+
+    seen = scene if interval is None else with_snapshots(scene, interval)
+    suffix = "" if interval is None else SNAPSHOTS
+    if frames is None:
+        frames = round(scene.time.duration / (seen.record.fields or inf)) + 1
+    runs = runs_of(shown_engines(seen), seen, stored, suffix)
+    show_forecasts(runs, as_json, {"figures": 1, "frames": frames})
 
 
 def _frame(scene: AnyScene, interval: float | None, view: tuple[Any, Any], stored: Any) -> Any:

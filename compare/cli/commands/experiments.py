@@ -27,8 +27,6 @@ from jointwave.compare.cli.options import (
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.scenes import shipped
 
-DIAGRAM = {"a diagram": 4.0}  # s, with what is imported for it
-
 
 @app.command()
 def effects(
@@ -55,7 +53,7 @@ def effects(
 
     wanted = [Variant(scene, one) for one in load(scene, changes, variant or "", strict)]
     if dry:
-        show_forecasts(planned(wanted, out), as_json, drawing=DIAGRAM)
+        show_forecasts(planned(wanted, out), as_json, {"diagrams": 1})
         return
     run_and_show(
         wanted[0].scene.title,
@@ -123,6 +121,7 @@ def study(
         show_studies(as_json)
         return
     folder = out / Path(name).stem
+    shared = workers > 1
     work: Callable[[Any, Any], Any]
     runs: Callable[[], list[Any]]
     if name == "stability":
@@ -142,6 +141,7 @@ def study(
         from jointwave.compare.studies.work_precision import run, summarise
 
         asked = load(name)
+        shared = shared and not asked.timed
         title, work = (
             asked.title,
             lambda pool, tell: summarise(out, folder.name, asked, run(asked, folder, pool, tell)),
@@ -149,7 +149,7 @@ def study(
         runs = partial(planned_points, asked, folder)
 
     if dry:
-        show_forecasts(runs(), as_json, drawing=DIAGRAM)
+        show_forecasts(runs(), as_json, {"diagrams": 1, "processes": workers * shared})
         return
     run_and_show(title, folder, workers, work, as_json)
 
@@ -188,14 +188,13 @@ def report(
 
     stored = ResultFolder(RESULTS, fresh)
     if dry:
-        runs, drawing = planned(out, scenes, stored)
-        show_forecasts(runs, as_json, drawing=drawing)
+        show_forecasts(*planned(out, scenes, stored), as_json)
         return
     with (
         locked(out, out / "figures", out / "studies"),
         terminal.progress("report") as advance,
     ):
-        found = build(out, advance, 2, scenes, peers, stored=stored)
+        found = build(out, advance, scenes=scenes, peers_table=peers, stored=stored)
     show_report(found, as_json)
 
 

@@ -10,6 +10,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli import terminal
 from jointwave.compare.cli.options import (
+    DryOption,
     Engine,
     JsonOption,
     ModelOption,
@@ -46,6 +47,7 @@ def fit(
     changes: SetOption = [],
     variant: VariantOption = "",
     out: Annotated[Path | None, typer.Option(help="Folder for the table fit.csv.")] = None,
+    dry: DryOption = False,
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
@@ -67,16 +69,22 @@ def fit(
     --out writes fit.csv: values, intervals and correlations. The last line printed is a command
     that compares the fitted scene with the same files.
     """
+    from jointwave.compare.cli.forecast_view import show_forecasts
     from jointwave.compare.misfit.external import doubts, read_curves
     from jointwave.compare.runs.output import write_csv
     from jointwave.compare.studies.fit import fit as fitted
+    from jointwave.compare.studies.fit import planned
     from jointwave.compare.studies.fit_keys import unit_of
 
     (one,) = load(scene, changes, variant or "", strict)
     curves = read_curves(given, [one])
     warn([one], strict, lambda scene: doubts(curves, scene))
+    solver = _solver(one, engine, model)
+    if dry:
+        show_forecasts([planned(one, free, solver)], as_json)
+        return
     with terminal.progress(one.name or one.title) as advance:
-        found = fitted(one, curves, free, _solver(one, engine, model), advance)
+        found = fitted(one, curves, free, solver, advance)
     files = [write_csv(out / "fit.csv", found.table.reset_index(), 12)] if out is not None else []
     values, waveforms = found.values.reset_index(), found.waveforms.astype({"place": str})
     values.insert(1, "unit", [unit_of(key, one) for key in values.key])

@@ -139,7 +139,7 @@ def run(
 
         stored = ResultFolder(out, fresh)
         found = [run for job in asked for run in runs_of([job.name], job.scene, stored)]
-        show_forecasts(found, as_json)
+        show_forecasts([run._replace(for_paraview=True) for run in found], as_json)
         return
     processes = started()
     folders = {job.path.parent for job in asked}

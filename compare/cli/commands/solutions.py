@@ -94,7 +94,7 @@ def compare(
         asked = sweep_of(scene, changes, variant, swept, out, members, fresh)
         curves = _read_curves(given, asked.scenes, align, strict)
         work = partial(compare_scene, spectral=spectral, curves=curves, align=align)
-        sweep(asked, work, applicable, workers, dry, as_json, strict)
+        sweep(asked, work, applicable, workers, dry, as_json, strict, ("distances", "tables"))
         return
     scenes = load(scene, changes, variant, strict)
     curves = _read_curves(given, scenes, align, strict)
@@ -106,7 +106,8 @@ def compare(
 
         wanted = applicable if shows_all else deciding
         runs = [run for one in scenes for run in runs_of(wanted(one), one, stored)]
-        show_forecasts(runs, as_json)
+        parts = {"distances": len(scenes) * shows_all, "tables": len(scenes) * bool(out)}
+        show_forecasts(runs, as_json, parts)
         return
     found = []
     for one in scenes:
@@ -135,6 +136,7 @@ def figure(
     font_size: Annotated[float, typer.Option(min=4, max=40, help="Size of letters, pt.")] = 8.0,
     results: ResultsOption = None,
     fresh: FreshOption = False,
+    dry: DryOption = False,
     strict: StrictOption = False,
 ) -> None:
     """Draw the waveforms of a scene as a figure for a paper.
@@ -156,6 +158,17 @@ def figure(
     runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []
     curves = _read_curves(given, scenes, False, strict)
     stored, found = ResultFolder(results_of(scene, results), fresh), []
+    if dry:
+        from jointwave.compare.cli.forecast_view import show_forecasts
+        from jointwave.compare.misfit.ranking import applicable
+        from jointwave.compare.studies.forecast import runs_of
+
+        wanted = []
+        for one in scenes:
+            names = [name for run in runs for name in jobs.names_of(*run, one)]
+            wanted += runs_of(names or applicable(one), one, stored)
+        show_forecasts(wanted, False, {"figures": len(scenes)})
+        return
     for one in scenes:
         with terminal.progress(one.name or one.title) as advance:
             found.append(paper.solve(one, runs, curves, advance, stored))

@@ -41,7 +41,7 @@ def test_steps_and_size_are_those_of_the_run(pillar, name):
     scene = pillar(**SHORT, **changes)
     found, result = forecast(Run("", scene, engine)), solve(engine, scene)
     assert found.steps == result.attrs.get("steps", 0)
-    assert found.bytes > 0 and found.seconds is None and found.stepping is None
+    assert found.bytes > 0 and found.seconds > 0 and found.stepping is None
     if engine == "dem":
         assert found.size == "100 blocks"
     elif engine.startswith("continuum-"):
@@ -117,14 +117,24 @@ def test_an_exact_solution_has_the_time_of_its_own_scene(pillar):
     assert stepping(longer, "lattice") == pytest.approx(1.0, rel=0.01)
     assert stepping(pillar(**SHORT, ends__end="quiet"), "lattice") is None
     table, _ = forecasts([Run("", scene, "lattice"), Run("", scene, "images")])
-    assert table.seconds.sum() == 0.5 and table.seconds.isna().sum() == 1
+    assert table.seconds[0] == 0.5 and table.stepping.isna().sum() == 1
 
 
 def test_what_was_never_timed_is_timed_on_its_first_steps(pillar):
     scene = pillar(**SHORT)
     runs = [Run("", scene, name) for name in ("dem", "continuum-jointed", "lattice")]
-    table, _ = forecasts(runs, measured=True)
-    assert (table.seconds > 0).all() and (table.seconds < 60).all()
+    table, _ = forecasts(runs, spare=60.0)
+    assert table.stepping.notna().all() and (table.seconds < 60).all()
+    table, _ = forecasts([Run("", pillar(**SHORT, ends__end="quiet"), "dem")])
+    assert table.stepping.isna().all() and (table.seconds > 0).all()
+
+
+def test_snapshots_take_longer_and_their_files_more(pillar):
+    scene = pillar(**SHORT, record__fields=1e-3)
+    plain, shown = forecast(Run("", pillar(**SHORT), "dem")), forecast(Run("", scene, "dem"))
+    assert plain.stepping == shown.stepping
+    filed = forecast(Run("", scene, "dem", for_paraview=True))
+    assert plain.seconds - plain.setup < shown.seconds - shown.setup < filed.seconds - filed.setup
 
 
 def test_what_is_read_costs_nothing(pillar):
@@ -168,6 +178,18 @@ def test_nothing_is_run_or_written(dry):
     assert "12 would run" in said and "7,200" in said and "100 blocks" in said
     said = dry("compare", SCENE, "--variant", "").out
     assert "8 would run" in said and "rigid blocks, exact" in said
+    assert "figures: 1 in" in dry("figure", SCENE, "--variant", "", "--out", "a.pdf").out
+    assert "frames: 201 in" in dry("animate", SCENE).out
+    assert "2 would run" in dry("view", SCENE).out
+
+
+def test_a_fit_is_told_before_its_search(command, tmp_path):
+    curve = tmp_path / "curve.csv"
+    rows = "".join(f"{i / 100},{i % 5}\n" for i in range(12))
+    curve.write_text(f"time [s],stress@20 [MPa]\n{rows}")
+    options = ("--with", curve, "--free", "load.amplitude", "--dry-run")
+    assert "20 would run" in command("fit", SCENE, *options).out
+    assert list(tmp_path.iterdir()) == [curve]
 
 
 def test_every_point_of_a_sweep_is_told_and_which_would_fail(dry):
