@@ -98,7 +98,7 @@ def build(
 
 def planned(
     out: Path, scenes: Sequence[str], stored: ResultFolder
-) -> tuple[list[Run], dict[str, float]]:
+) -> tuple[list[Run], dict[str, int]]:
     """Return the runs of `build` by two processes, and how many of what else it does."""
     requests = asked_for(scenes) + ([] if scenes else asked_for(ROCK_MASSES))
     found = [run for one in requests for run in planned_of_scene(one, stored)]

@@ -188,7 +188,8 @@ def report(
 
     stored = ResultFolder(RESULTS, fresh)
     if dry:
-        show_forecasts(*planned(out, scenes, stored), as_json)
+        runs, parts = planned(out, scenes, stored)
+        show_forecasts(runs, as_json, parts)
         return
     with (
         locked(out, out / "figures", out / "studies"),

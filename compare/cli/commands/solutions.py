@@ -94,8 +94,8 @@ def compare(
         asked = sweep_of(scene, changes, variant, swept, out, members, fresh)
         curves = _read_curves(given, asked.scenes, align, strict)
         work = partial(compare_scene, spectral=spectral, curves=curves, align=align)
-        parts = ("distances", "tables")[: 1 if out is None else 2]
-        sweep(asked, work, applicable, workers, dry, as_json, strict, parts)
+        writes = ("distances", "tables")[: 1 if out is None else 2]
+        sweep(asked, work, applicable, workers, dry, as_json, strict, writes)
         return
     scenes = load(scene, changes, variant, strict)
     curves = _read_curves(given, scenes, align, strict)
