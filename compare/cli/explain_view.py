@@ -6,7 +6,7 @@ from jointwave.cases.size import spoken
 from jointwave.compare.cli.terminal import say, show_facts
 from jointwave.compare.engines import ENGINES, in_words, label_of, solver
 from jointwave.compare.runs.jobs import options_of
-from jointwave.compare.text import in_seconds
+from jointwave.compare.text import in_seconds, percent
 
 #: The units of facts, and what facts are called whose names do not say it.
 UNITS = {
@@ -94,11 +94,12 @@ def _show(rest: str, rows: list[dict[str, Any]], key: str, every: bool) -> None:
         say(f"{left} other {rest}; which, and why: --all", "dim")
 
 
-def _limit(engine: str, at: list[float], size: float, longer_step: float) -> str:
-    """Return what limits a step as a sentence."""
+def _limit(engine: str, at: list[float], size: float, longer_step: float, mass_added: float) -> str:
+    """Return what limits a step, and what lifting it costs, as a sentence."""
     part = "block" if solver(engine).has_rigid_blocks else "element"
     place = ", ".join(f"{round(x, 9) + 0.0:.4g}" for x in at)
     return (
         f"the step of {label_of(engine)} is limited by the {part} at {place} m, {size:.3g} m in "
-        f"size: without the worst 5 % of the {part}s it would be {longer_step:.3g} times as long"
+        f"size: {percent(mass_added)} % more mass, on the stiffest 5 % of the {part}s, would make it "
+        f"{longer_step:.3g} times as long"
     )
