@@ -100,6 +100,6 @@ def _limit(engine: str, at: list[float], size: float, longer_step: float, mass_a
     place = ", ".join(f"{round(x, 9) + 0.0:.4g}" for x in at)
     return (
         f"the step of {label_of(engine)} is limited by the {part} at {place} m, {size:.3g} m in "
-        f"size: {percent(mass_added)} % more mass, on the stiffest 5 % of the {part}s, would make it "
+        f"size: {percent(mass_added)} % more mass, on at most 5 % of the {part}s, would make it "
         f"{longer_step:.3g} times as long"
     )
