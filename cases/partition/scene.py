@@ -33,7 +33,7 @@ THIN = 1e-2
 #: wave's error does not fall with the blocks, with 0.03 it does and steps are three times as many.
 LATTICE = (0.03, THIN)
 #: Bytes of memory for each block while a domain of two or three dimensions is cut.
-OF_BLOCK = {2: 2500, 3: 30_000}
+OF_BLOCK = {2: 2500, 3: 16_000}
 
 
 def shape_of(domain: Domain) -> Outline | Box:
