@@ -1,6 +1,5 @@
 """The facts of `jointwave explain`: a scene before any run."""
 
-from collections.abc import Iterable
 from itertools import pairwise
 from math import isfinite, sqrt
 from typing import Any
@@ -31,47 +30,37 @@ def explanation(scene: AnyScene) -> Facts:
 
     Raises SceneError where no engine that applies can run.
     """
+    about: Facts = {"title": scene.title, "variant": scene.name}
+    active = {e.name: {"active": e.active, "why": e.reason} for e in effects(scene)}
     if isinstance(scene, RockMass) and scene.in_space:
-        return _in_space(scene)
+        return about | block_summary(scene) | {"effects": active, "in_space": NOT_SOLVED}
     answers = applicable(scene)
     able = [name for name, answer in answers.items() if answer]
     engines = [name for name in ENGINES if name in able]
     runs, failures = _prepared(scene, engines)
     references = {name: reference_of(name, able, scene) or UNCHECKED for name in engines}
-    return {
-        "title": scene.title,
-        "variant": scene.name,
-        **(_pillar(scene) if isinstance(scene, Scene) else _rock_mass(scene, runs)),
+    if isinstance(scene, Scene):
+        about |= _pillar(scene)
+    else:
+        found = {name: speeds(scene, ENGINES[name].rock) for name in runs}
+        about |= block_summary(scene) | {"speeds": found}
+    limits = {
+        name: limiting(name, ENGINES[name].model, scene)
+        for name, run in runs.items()
+        if run.scheme != "implicit"
+    }
+    return about | {
         "enters": [wave._asdict() for wave in entering_waves(scene)],
-        "effects": {e.name: {"active": e.active, "why": e.reason} for e in effects(scene)},
+        "effects": active,
         "steps": [
             {"engine": name, "critical": r.critical, "dt": r.dt, "steps": r.steps, "bytes": r.bytes}
             for name, r in runs.items()
         ],
-        "limits_the_step": _limits(
-            scene, [name for name, run in runs.items() if run.scheme != "implicit"]
-        ),
+        "limits_the_step": [{"engine": name, **facts} for name, facts in limits.items() if facts],
         "cannot_run": failures,
         "solutions": {k: {"applies": bool(a), "why_not": a.reason} for k, a in answers.items()},
         "references": {name: r._asdict() for name, r in references.items()},
     }
-
-
-def _in_space(scene: RockMass) -> Facts:
-    """Return the blocks and the effects of a scene in space."""
-    return {
-        "title": scene.title,
-        "variant": scene.name,
-        **block_summary(scene),
-        "effects": {e.name: {"active": e.active, "why": e.reason} for e in effects(scene)},
-        "in_space": NOT_SOLVED,
-    }
-
-
-def _limits(scene: AnyScene, engines: Iterable[str]) -> list[Facts]:
-    """Return the block or the element that limits the explicit step of each engine, if any does."""
-    found = ((name, limiting(name, ENGINES[name].model, scene)) for name in engines)
-    return [{"engine": name, **facts} for name, facts in found if facts]
 
 
 def _prepared(scene: AnyScene, engines: list[str]) -> tuple[dict[str, Prepared], dict[str, str]]:
@@ -114,9 +103,3 @@ def _pillar(scene: Scene) -> Facts:
         for (start, stop), one, other in zip(pairwise(ends), p.each, before, strict=False)
     ]
     return {"segments": segments}
-
-
-def _rock_mass(scene: RockMass, engines: Iterable[str]) -> Facts:
-    """Return the blocks of a rock mass, and the speeds of its waves in engines."""
-    found = {name: speeds(scene, ENGINES[name].rock) for name in engines}
-    return block_summary(scene) | {"speeds": found}

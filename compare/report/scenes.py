@@ -21,9 +21,8 @@ from jointwave.compare.figures.tables import distance_frame, reading_frame
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import applicable
 from jointwave.compare.report import tables
-from jointwave.compare.report.claims.claim import Claim
-from jointwave.compare.report.claims.figures import claims_of
-from jointwave.compare.report.claims.pillar import mostly_dispersion
+from jointwave.compare.report.claims import joints, pillar, travel  # noqa: F401 (add theirs)
+from jointwave.compare.report.claims.claim import CLAIMS, Claim
 from jointwave.compare.report.verdict import EngineScore, engine_scores
 from jointwave.compare.runs import timings
 from jointwave.compare.runs.comparison import compare
@@ -146,7 +145,7 @@ def solve(request: SceneRequest, folder: Path, stored: ResultFolder = NOWHERE) -
         comparisons[0].scene,
         {engine: float(results[engine].attrs["seconds_stepping"]) for engine in scores},
         *_draw(request, comparisons, folder, own),
-        claims_of(request.number, comparisons),
+        [measure(comparisons) for measure in CLAIMS.get(request.number or 0, [])],
         {
             "verdicts": tables.verdict_table(scores),
             "misfits": tables.misfit_table(comparisons),
@@ -159,7 +158,7 @@ def solve(request: SceneRequest, folder: Path, stored: ResultFolder = NOWHERE) -
         scores,
         tables.worst_misfits(comparisons),
         {name: number for one in versions for name, number in one.items()},
-        mostly_dispersion(comparisons) if request.number == FREE_PILLAR else None,
+        pillar.mostly_dispersion(comparisons) if request.number == FREE_PILLAR else None,
         [s for one in comparisons for s in seconds_read(one.results)],
     )
 

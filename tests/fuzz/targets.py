@@ -188,7 +188,7 @@ SOLVERS = (
     "jointwave.compare.studies.work_precision.run",
     "jointwave.compare.studies.hard_cases.make_study",
     "jointwave.compare.report.report.build",
-    "jointwave.compare.figures.paper.solve",
+    "jointwave.compare.runs.comparison.solved",
     "jointwave.compare.figures.animation.snapshots.take",
     "jointwave.compare.cli.explain.explanation",
     "jointwave.compare.cli.doctor.examine",

@@ -1,6 +1,6 @@
 """The commands: the import of each module puts its own into the app."""
 
-from jointwave.compare.cli.commands import (
+from jointwave.compare.cli.commands import (  # noqa: F401 (each adds its own)
     animation,
     experiments,
     fit,
@@ -9,15 +9,4 @@ from jointwave.compare.cli.commands import (
     scenes,
     solutions,
 )
-from jointwave.compare.cli.options import app
-
-__all__ = [
-    "animation",
-    "app",
-    "experiments",
-    "fit",
-    "installation",
-    "picture",
-    "scenes",
-    "solutions",
-]
+from jointwave.compare.cli.options import app as app

@@ -146,7 +146,7 @@ def view(
         from jointwave.compare.figures.animation.window import open_window
 
         frame = _frame(one, interval_of(one), (scale, quantity), stored)
-        open_window(frame, _nearest(frame, at))
+        open_window(frame, abs(frame.time - at).argmin())
         return
     from jointwave.compare.figures.export import write_drawing
     from jointwave.compare.runs.output import check_out
@@ -154,7 +154,7 @@ def view(
     path = out or Path(f"{_name(scene, one)}.png")
     check_out(path, (".png",))
     frame = _frame(one, interval_of(one), (scale, quantity), stored)
-    frame.show(_nearest(frame, at))
+    frame.show(abs(frame.time - at).argmin())
     write_drawing(path, frame.figure, one.title, {"savefig.dpi": "figure"})
     _say(path, frame)
 
@@ -208,11 +208,6 @@ def interval_of(scene: AnyScene, frames: int | None = None) -> float | None:
     if frames is None and scene.record.fields is not None:
         return None
     return scene.time.duration / ((frames or FRAMES) - 1)
-
-
-def _nearest(frame: Any, time: float) -> int:
-    """Return the instant nearest to a time, s."""
-    return min(range(len(frame.time)), key=lambda i: abs(frame.time[i] - time))
 
 
 def _require_positive(key: str, value: float | None) -> None:

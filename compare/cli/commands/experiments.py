@@ -182,7 +182,7 @@ def report(
     """
     scenes = _solved(scenes or [], strict)
     from jointwave.compare.cli.forecast_view import show_forecasts
-    from jointwave.compare.cli.report_view import show_report
+    from jointwave.compare.cli.frames import show_frame
     from jointwave.compare.report.report import build, planned
     from jointwave.compare.runs.reuse import ResultFolder
 
@@ -196,7 +196,21 @@ def report(
         terminal.progress("report") as advance,
     ):
         found = build(out, advance, scenes=scenes, peers_table=peers, stored=stored)
-    show_report(found, as_json)
+    page, summary = found.page, found.summary
+    if as_json:
+        rows, columns = summary.reset_index().values.tolist(), ["what", "pair", *summary]
+        terminal.print_json({"page": str(found.file), "columns": columns, "rows": rows})
+        return
+    for sentence in page["lead"].values():
+        terminal.say(sentence)
+    if page["about"]:
+        terminal.say(f"\n{page['about'].sentence}")
+    terminal.say("\nLargest relative L2 misfit over the variants of each scene, in %:")
+    show_frame(summary)
+    if claims := page["claims"]:
+        holding = sum(claim.holds for _, claim in claims)
+        terminal.say(f"{holding} of {len(claims)} claims of the paper's figures hold.")
+    terminal.say(f"report: {found.file}")
 
 
 def _solved(names: list[str], strict: bool) -> list[str]:

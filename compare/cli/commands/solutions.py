@@ -145,11 +145,13 @@ def figure(
     A panel for each variant and receiver, two side by side from a width of 170 mm. Files need no
     installed fonts. Without --engine, all solvers that apply are drawn.
     """
-    from jointwave.compare.figures import paper
+    from jointwave.compare.engines import applies
     from jointwave.compare.figures.charts import waveforms
     from jointwave.compare.figures.export import write_drawing
     from jointwave.compare.figures.style import printed
-    from jointwave.compare.runs import jobs
+    from jointwave.compare.misfit.alignment import align_curve
+    from jointwave.compare.misfit.ranking import applicable
+    from jointwave.compare.runs import comparison, jobs
     from jointwave.compare.runs.output import check_out
     from jointwave.compare.runs.reuse import ResultFolder
 
@@ -159,22 +161,23 @@ def figure(
     runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []
     curves = _read_curves(given, scenes, False, strict)
     stored, found = ResultFolder(results_of(scene, results), fresh), []
+    named = [[name for run in runs for name in jobs.names_of(*run, one)] for one in scenes]
     if dry:
         from jointwave.compare.cli.forecast_view import show_forecasts
-        from jointwave.compare.misfit.ranking import applicable
         from jointwave.compare.studies.forecast import runs_of
 
-        wanted = []
-        for one in scenes:
-            names = [name for run in runs for name in jobs.names_of(*run, one)]
-            wanted += runs_of(names or applicable(one), one, stored)
+        both = zip(scenes, named, strict=True)
+        wanted = [run for one, of in both for run in runs_of(of or applicable(one), one, stored)]
         show_forecasts(wanted, False, {"figures": len(scenes)})
         return
-    for one in scenes:
+    for one, names in zip(scenes, named, strict=True):
         with terminal.progress(one.name or one.title) as advance:
-            found.append(paper.solve(one, runs, curves, advance, stored))
-    drawn = waveforms.figure(found, width, font_size)
-    terminal.say(f"wrote {write_drawing(out, drawn, scenes[0].title, rc)}")
+            asked = {name: applies(name, one) for name in names} or applicable(one)
+            drawn = comparison.solved(one, asked, advance, stored)
+            drawn.besides += [align_curve(x, one, drawn.results, False) for x in curves]
+            found.append(drawn)
+    whole = waveforms.figure(found, width, font_size)
+    terminal.say(f"wrote {write_drawing(out, whole, scenes[0].title, rc)}")
 
 
 def _read_curves(given: list[str], scenes: list[AnyScene], align: bool, strict: bool) -> list[Any]:

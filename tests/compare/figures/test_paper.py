@@ -11,9 +11,10 @@ from matplotlib.text import Text
 from jointwave.compare.exact.blocks import lattice
 from jointwave.compare.figures.charts.waveforms import draw_solutions
 from jointwave.compare.figures.export import write_drawing
-from jointwave.compare.figures.paper import solve
 from jointwave.compare.figures.style import printed
 from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.misfit.ranking import applicable
+from jointwave.compare.runs.comparison import solved
 
 SCENE = "guo-li-2002/fig-03"
 SHORT = {"time__duration": 0.01, "record__velocity": [20.25]}
@@ -74,8 +75,8 @@ def test_a_pdf_holds_its_fonts_as_true_type_and_an_svg_outlines(drawn, tmp_path)
 def test_what_is_asked_for_is_drawn(pillar):
     """By engines and models, and every curve is that of its solution."""
     scene, done = pillar(**SHORT), []
-    runs = [("dem", None), ("exact", "lattice")]
-    figure = draw_solutions([solve(scene, runs, [], done.append)], False, printed(190.0, 8.0))
+    asked = {name: applicable(scene)[name] for name in ("dem", "lattice")}
+    figure = draw_solutions([solved(scene, asked, done.append)], False, printed(190.0, 8.0))
     lines = {line.get_label(): line for line in figure.axes[0].lines}
     assert {"rigid blocks", "rigid blocks, exact"} < set(lines)
     assert not any("jointed" in label for label in lines)
