@@ -1,29 +1,20 @@
 """The output of `jointwave plan`: the choice among its runs, and whether it meets the misfit."""
 
 import shlex
-from typing import Any
 
-from jointwave.compare.cli.terminal import print_json, say, show_table
+from jointwave.compare.cli.terminal import say, show_table
 from jointwave.compare.engines import label_of
 from jointwave.compare.runs.jobs import options_of
-from jointwave.compare.studies.plan import Plan, PlannedRun
+from jointwave.compare.studies.plan import Plan
 from jointwave.compare.studies.reference import Reference
 from jointwave.compare.text import percent
 
 
-def show_plans(found: list[Plan], path: str, changes: list[str], as_json: bool) -> None:
-    """Print the choice for each scene, with the command that runs it.
+def show_plan(one: Plan, path: str, changes: list[str]) -> None:
+    """Print the choice for a scene, with the command that runs it.
 
     path, changes : of the scene, as the user gives them.
     """
-    if as_json:
-        print_json([_facts(one) for one in found])
-        return
-    for one in found:
-        _show(one, path, changes)
-
-
-def _show(one: Plan, path: str, changes: list[str]) -> None:
     say(", ".join(filter(None, [one.scene.title, one.scene.name])))
     why = "" if one.finest.settings else f" ({one.reason})"
     say(f"modelling error: against {_named(one.finest)}{why}")
@@ -53,26 +44,3 @@ def _named(reference: Reference) -> str:
         words += f", accurate to {percent(reference.error)} %"
     until = reference.result.attrs.get("known_until")
     return words if until is None else f"{words}, valid until {float(until):.3g} s"
-
-
-def _facts(one: Plan) -> dict[str, Any]:
-    return {
-        "variant": one.scene.name,
-        "reference": _reference_facts(one.finest) | {"reason": one.reason},
-        "planning_seconds": one.planning,
-        "runs": [_run_facts(run) for run in one.runs],
-        "skipped": one.skipped,
-        "met": one.is_met,
-        **(_run_facts(one.chosen) if one.chosen else {"engine": None}),
-    }
-
-
-def _reference_facts(reference: Reference) -> dict[str, Any]:
-    about = {"error": reference.error, "settings": reference.settings}
-    return {"name": reference.name, "exact": not reference.settings, **about}
-
-
-def _run_facts(run: PlannedRun) -> dict[str, Any]:
-    numbers = {key: getattr(run, key) for key in ("numerical", "modelling", "misfit", "seconds")}
-    about = {"engine": run.elements.name, "set": run.options, **numbers}
-    return about | {"own": _reference_facts(run.reference)}

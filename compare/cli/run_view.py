@@ -36,13 +36,9 @@ def show_runs(done: Sequence[Done], as_json: bool) -> None:
         row["engine"] = label_of(str(row["engine"]))
     show_facts({"runs": rows}, LABELS)
     for one in done:
-        name, still, pieces = (
-            one.job.scene.name or label_of(one.job.name),
-            one.out_of_balance,
-            one.fragments,
-        )
-        if still is not None:
-            say(f"{name}: starts at rest, out-of-balance force ratio {still:.1e}")
+        name, pieces = one.job.scene.name or label_of(one.job.name), one.fragments
+        if one.out_of_balance is not None:
+            say(f"{name}: starts at rest, out-of-balance force ratio {one.out_of_balance:.1e}")
         if pieces is not None:
             say(f"{name}: {len(pieces) - 1 or 'no'} joints broke")
             show_facts({"fragments": pieces[1:] and pieces}, LABELS)

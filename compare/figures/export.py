@@ -35,6 +35,22 @@ def blank(height: float, rc: dict[Any, Any] = RC) -> Iterator[Figure]:
         yield figure
 
 
+class SceneFigure(NamedTuple):
+    """A figure of a scene and its solutions.
+
+    name : stem of its files, unique on the page ("fig-03-spectra"). title : a heading. caption :
+    contents and method in one or two sentences. table : the drawn data, tidy; columns carry their
+    units, no index. folded : whether it is in a section of the page that is closed at first.
+    """
+
+    name: str
+    title: str
+    caption: str
+    figure: Figure
+    table: DataFrame
+    folded: bool = False
+
+
 class Drawn(NamedTuple):
     """A written figure: NAME.svg, NAME.pdf and, if requested, NAME.png; its numbers NAME.csv.
 

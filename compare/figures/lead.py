@@ -2,8 +2,7 @@
 
 from jointwave.compare.figures.charts.waveforms import STYLES, by_solution, draw_waveforms
 from jointwave.compare.figures.drawing.scene import sketch_of
-from jointwave.compare.figures.export import blank
-from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.export import SceneFigure, blank
 from jointwave.compare.figures.receivers import Panel
 
 HEIGHT, WIDTHS = 3.2, (1.0, 1.3)  # inches, and shares of the scene and of the waveform

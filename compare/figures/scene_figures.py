@@ -1,7 +1,5 @@
 """All figures of one scene, in the order of the page, and the additional runs that they need."""
 
-from dataclasses import replace
-
 import xarray as xr
 
 from jointwave.cases.material.calibrate import calibrate
@@ -15,7 +13,7 @@ from jointwave.compare.figures.charts.spacetime import diagrams_of, space_time
 from jointwave.compare.figures.charts.spectra import spectra
 from jointwave.compare.figures.charts.waveforms import waveforms
 from jointwave.compare.figures.drawing.scene import scene_figure
-from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.export import SceneFigure
 from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import own_exact
@@ -52,7 +50,7 @@ def _space_time(
         for k, (comparison, variant, found) in enumerate(variants)
         for shown in diagrams_of(comparison.scene, found)
     ]
-    return figures[:1] + [replace(one, folded=True) for one in figures[1:]]
+    return figures[:1] + [one._replace(folded=True) for one in figures[1:]]
 
 
 SECTIONS, TIMES = 60, 240  # largest numbers of intervals between sections and between samples

@@ -12,8 +12,7 @@ import pandas as pd
 
 from jointwave import cases
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.figures.export import Drawn, save
-from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.export import Drawn, SceneFigure, save
 from jointwave.compare.figures.lead import lead_figure
 from jointwave.compare.figures.receivers import panels
 from jointwave.compare.figures.scene_figures import ALONG, along_pillar, figures_of, runs_along

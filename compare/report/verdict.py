@@ -5,7 +5,7 @@ from math import isfinite, isnan, nan
 from typing import Any, NamedTuple
 
 from jointwave.cases.errors import require
-from jointwave.compare.engines import ENGINES, label_of
+from jointwave.compare.engines import ENGINES
 from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.differences import (
     STRESS,
@@ -104,11 +104,6 @@ class EngineScore(NamedTuple):
     variants: tuple[VariantScore, ...]
 
     @property
-    def own(self) -> Worst:
-        """The largest error from its own model; nan if none is known."""
-        return max((one.own for one in self.variants), key=_resolved)
-
-    @property
     def total(self) -> Worst:
         """The largest misfit; nan if nothing has checked any variant."""
         return max((one.total for one in self.variants), key=_resolved)
@@ -127,17 +122,6 @@ class EngineScore(NamedTuple):
     def verdict(self) -> Verdict:
         """That of the worst variant."""
         return max((one.verdict for one in self.variants), key=lambda v: ORDER.index(v.grade))
-
-    @property
-    def explanation(self) -> str:
-        """The references, variants that nothing checks, and bounds that are not met."""
-        against = dict.fromkeys(label_of(one.against) for one in self.variants if one.against)
-        said = [f"compared with {' and '.join(against)}: {self.total.where}"] if against else []
-        if self.unchecked:
-            said.append(f"{NOT_CHECKED.word}: {', '.join(self.unchecked)}".removesuffix(": "))
-        if self.broken:
-            said.append(f"exceeds the scene's bound: {', '.join(self.broken)}")
-        return "; ".join(said)
 
 
 def engine_scores(comparisons: list[Comparison]) -> dict[str, EngineScore]:

@@ -15,7 +15,6 @@ from jointwave.compare.cli import terminal
 from jointwave.compare.cli.options import (
     DryOption,
     FreshOption,
-    JsonOption,
     ResultsOption,
     SceneArgument,
     SetOption,
@@ -62,7 +61,6 @@ def animate(
     fresh: FreshOption = False,
     dry: DryOption = False,
     strict: StrictOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Animate the blocks and the wave of both engines as MP4 or GIF.
 
@@ -83,7 +81,7 @@ def animate(
     check_out(path, FILMS)
     stored, interval = ResultFolder(results_of(scene, results), fresh), interval_of(one, frames)
     if dry:
-        _show_forecast(one, interval, stored, as_json)
+        _show_forecast(one, interval, stored)
         return
     frame = _frame(one, interval, (scale, quantity), stored)
     count = len(frame.time)
@@ -95,12 +93,7 @@ def animate(
                 advance((i + 1) / count)
 
         write_video(path, images(), PIXELS, count / seconds)
-    if not as_json:
-        _say(path, frame)
-        return
-    drawn = frame.simulated
-    facts = {"file": str(path), "engines": list(drawn.found), "not_shown": drawn.reasons}
-    terminal.print_json(facts | {"scale": frame.settings.scale})
+    _say(path, frame)
 
 
 @app.command()
@@ -140,7 +133,7 @@ def view(
     quantity = _quantity(one, shown)
     stored = ResultFolder(results_of(scene, results), fresh)
     if dry:
-        _show_forecast(one, interval_of(one), stored, False, 0)
+        _show_forecast(one, interval_of(one), stored, 0)
         return
     if out is None and _has_display() and find_spec("pyvista") is not None:
         from jointwave.compare.figures.animation.window import open_window
@@ -172,7 +165,7 @@ def _quantity(scene: AnyScene, name: str | None) -> Any:
 
 
 def _show_forecast(
-    scene: AnyScene, interval: float | None, stored: Any, as_json: bool, frames: int | None = None
+    scene: AnyScene, interval: float | None, stored: Any, frames: int | None = None
 ) -> None:
     """Print the estimated cost of both engines' snapshots and of frames; None: of all instants."""
     from jointwave.compare.cli.forecast_view import show_forecasts
@@ -185,7 +178,7 @@ def _show_forecast(
     if frames is None:
         frames = round(scene.time.duration / (seen.record.fields or inf)) + 1
     runs = runs_of(shown_engines(seen), seen, stored, suffix)
-    show_forecasts(runs, as_json, {"figures": 1, "frames": frames})
+    show_forecasts(runs, False, {"figures": 1, "frames": frames})
 
 
 def _frame(scene: AnyScene, interval: float | None, view: tuple[Any, Any], stored: Any) -> Any:

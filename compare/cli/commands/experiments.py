@@ -78,21 +78,19 @@ def plan(
     changes: SetOption = [],
     variant: VariantOption = None,
     strict: StrictOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Find the cheapest engine, elements and step that meet a misfit.
 
     Runs from the cheapest one on, until one meets the misfit, and prints the command for that run.
     """
     scenes = load(scene, changes, variant or "", strict)
-    from jointwave.compare.cli import plan_view
+    from jointwave.compare.cli.plan_view import show_plan
     from jointwave.compare.studies import plan as plans
 
-    found = []
     for one in scenes:
         with terminal.progress(one.name or one.title) as advance:
-            found.append(plans.plan(one, misfit, seconds, advance))
-    plan_view.show_plans(found, scene, changes, as_json)
+            found = plans.plan(one, misfit, seconds, advance)
+        show_plan(found, scene, changes)
 
 
 @app.command()

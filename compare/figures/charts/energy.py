@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from jointwave.compare.engines import ENGINES, in_order, label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading, share
-from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.export import SceneFigure
 from jointwave.compare.figures.style import TERMS, Style, style
 from jointwave.compare.figures.units import Unit, unit_for
 from jointwave.compare.figures.variants import variant_names

@@ -7,7 +7,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.engines import in_order
 from jointwave.compare.figures.body_maps import Map, maps_of
 from jointwave.compare.figures.charts.maps import draw_maps
-from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.export import SceneFigure
 from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison
 

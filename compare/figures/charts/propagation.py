@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import in_order, label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading
-from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.export import SceneFigure
 from jointwave.compare.figures.style import style
 from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison

@@ -12,8 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import ENGINES, in_order, label_of
-from jointwave.compare.figures.export import blank
-from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.export import SceneFigure, blank
 from jointwave.compare.figures.receivers import FORCES, MOTION, ROTATION, by_component, peaks
 from jointwave.compare.figures.style import DIFFERENCE, FIELD
 from jointwave.compare.figures.units import UNITS, Unit, unit_for

@@ -13,7 +13,7 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading
-from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.export import SceneFigure
 from jointwave.compare.figures.receivers import Panel, in_rows
 from jointwave.compare.figures.style import GREY, style
 from jointwave.compare.figures.units import DRAWN

@@ -74,13 +74,9 @@ def sketch_of(scene: Scene) -> Sketch:
 def block_edges(scene: Scene) -> list[float]:
     """Return y of the edges of drawn blocks, m: of all, or a single one for a pillar with many; one
     per segment for segments without joints or with many blocks."""
-    if not scene.is_uniform:
-        every = contacts(scene)
-        edges = every[np.r_[True, ~welds(scene), True]]
-        starts = [one.start for one in scene.parts]
-        return np.union1d(edges if len(edges) <= MOST else every[[0, -1]], starts).tolist()
-    count, length = scene.block_count, scene.pillar.length
-    return np.linspace(0, length, (count if count <= MOST else 1) + 1).tolist()
+    every, starts = contacts(scene), [one.start for one in scene.parts]
+    edges = every[np.r_[True, ~welds(scene), True]]
+    return np.union1d(edges if len(edges) <= MOST else every[[0, -1]], starts).tolist()
 
 
 def _across(places: list[float], half: float) -> np.ndarray:

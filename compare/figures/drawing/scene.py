@@ -13,8 +13,7 @@ from jointwave.cases.schema.pulse import Pulse
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.figures.drawing import pillar
 from jointwave.compare.figures.drawing.sketch import LOAD, Sketch
-from jointwave.compare.figures.export import blank
-from jointwave.compare.figures.figure import SceneFigure
+from jointwave.compare.figures.export import SceneFigure, blank
 from jointwave.compare.figures.style import WIDTH
 from jointwave.compare.figures.units import unit_for
 from jointwave.compare.figures.variants import variant_names
