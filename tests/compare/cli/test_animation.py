@@ -54,7 +54,7 @@ BAD = [
     (("animate", SCENE, "--scale", "nan"), "--scale: must be a positive number, not nan"),
     (("animate", SCENE, "--seconds", "-1"), "--seconds: must be a positive number, not -1"),
     (("animate", SCENE, "--frames", "1"), "'--frames'"),
-    (("animate", "no-such-scene"), "cannot be read"),
+    (("animate", "no-such-scene"), "is neither a file nor a shipped scene"),
     (("animate", SCENE, "--variant", "none"), "variants.name"),
     (("view", SCENE, "--out", "wave.jpg"), "--out: wave.jpg: must end in .png"),
     (("view", SCENE, "--map", "slip"), "--map: must be one of stress, speed, across, not slip"),
