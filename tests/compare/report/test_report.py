@@ -114,9 +114,8 @@ def test_the_overview_is_measured(report):
             summary.loc["dem ~ jointed-bar", label],
             summary.loc["dem ~ continuum-jointed", label],
         )
-        assert (
-            percent(bar.own.judged) == summary.loc["continuum-equivalent ~ equivalent-bar", label]
-        )
+        own = np.nanmax([one.own.judged for one in bar.variants])
+        assert percent(own) == summary.loc["continuum-equivalent ~ equivalent-bar", label]
         assert {dem.verdict.word, bar.verdict.word} <= {"agrees", "close", "differs"}
         unchecked = scene.request.number in (9, 10)  # without tension nothing else resolves rock
         assert jointed.verdict.word == (NOT_CHECKED.word if unchecked else "agrees")

@@ -43,7 +43,7 @@ def test_an_engine_is_held_to_its_own_model_and_to_the_finest(compared):
         [compared(dem=0.03, lattice=0.029, continuum_jointed=1e-4, jointed_bar=0.0)]
     )
     assert found["dem"].total.judged == pytest.approx(0.03)
-    assert found["dem"].own.judged == pytest.approx(0.001 / 1.029)
+    assert found["dem"].variants[0].own.judged == pytest.approx(0.001 / 1.029)
     assert found["dem"].variants[0].against == "jointed-bar"
     assert found["dem"].verdict.word == "close"
     assert found["continuum-jointed"].verdict.word == "agrees"
@@ -54,7 +54,7 @@ def test_the_largest_misfit_of_the_variants_counts(compared):
     found = engine_scores([compared(dem=x, jointed_bar=0.0) for x in (0.3, 0.01, 0.06)])
     assert found["dem"].total.judged == pytest.approx(0.3)
     assert found["dem"].verdict.word == "far off"
-    assert np.isnan(found["dem"].own.judged)
+    assert np.isnan(found["dem"].variants[0].own.judged)
 
 
 def test_without_an_exact_solution_the_resolved_joints_are_the_finest(compared):
