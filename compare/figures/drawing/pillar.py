@@ -76,7 +76,7 @@ def block_edges(scene: Scene) -> list[float]:
     per segment for segments without joints or with many blocks."""
     every, starts = contacts(scene), [one.start for one in scene.parts]
     edges = every[np.r_[True, ~welds(scene), True]]
-    return np.union1d(edges if len(edges) <= MOST else every[[0, -1]], starts).tolist()
+    return np.union1d(edges if len(edges) <= MOST + 1 else every[[0, -1]], starts).tolist()
 
 
 def _across(places: list[float], half: float) -> np.ndarray:
