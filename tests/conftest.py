@@ -1,5 +1,6 @@
 """What the tests share: the paper's pillar with any key changed, and a look at compiled code."""
 
+import atexit
 import ctypes
 import fcntl
 import gc
@@ -23,7 +24,6 @@ from hypothesis import settings
 
 from jointwave import cases
 from jointwave.cases.errors import InterruptedRun
-from jointwave.compare.runs.memory import collect_rarely
 from jointwave.numerics import jit
 from jointwave.results.arrays import copied, fill
 
@@ -44,7 +44,8 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
 
 # As in the command: most of what would be looked through has been imported, and stays.
-collect_rarely()
+gc.set_threshold(100_000)
+atexit.register(gc.freeze)
 
 # Nor does a test how long it takes: no command that it runs speaks of its progress.
 os.environ["JOINTWAVE_PROGRESS"] = "0"

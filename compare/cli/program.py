@@ -1,5 +1,7 @@
 """The entry of `jointwave`: whatever goes wrong is one line and an exit code, never a traceback."""
 
+import atexit
+import gc
 import os
 import sys
 import traceback
@@ -8,8 +10,7 @@ from io import TextIOWrapper
 from pathlib import Path
 
 from jointwave.cases.errors import InterruptedRun, SceneError, UnstableError, printable
-from jointwave.compare.runs.checkpoint.signals import Ended, exit_code, watched
-from jointwave.compare.runs.memory import collect_rarely
+from jointwave.compare.runs.checkpoint.signals import Ended, watched
 from jointwave.compare.runs.processes import Processes, started
 
 SHOWN = "JOINTWAVE_TRACEBACK"  # in the environment: whether a fault of the program is traced back
@@ -23,7 +24,9 @@ def main() -> None:
     # With colorama there numba ends all that goes to a terminal, JSON too, by an escape sequence.
     os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")
     _open_streams()
-    collect_rarely()  # a third of a short run
+    # Most of what a search would see has been imported, and stays: it took a third of a short run.
+    gc.set_threshold(100_000)
+    atexit.register(gc.freeze)
     processes = Processes()
     try:
         signals = watched()
@@ -63,7 +66,7 @@ def _told(error: BaseException) -> tuple[list[str], int]:
         case UnstableError():
             return [str(error)], 3
         case Ended():
-            return [str(error)], exit_code(error.number)
+            return [str(error)], error.code
         case KeyboardInterrupt():  # before the program has begun to watch for signals
             return ["interrupted"], 130
         case OSError():

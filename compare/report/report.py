@@ -29,7 +29,7 @@ from jointwave.compare.report.sections import DIAGRAMS, sections
 from jointwave.compare.report.sections import planned as planned_of_sections
 from jointwave.compare.runs.output import write_text
 from jointwave.compare.runs.reuse import NOWHERE, ResultFolder
-from jointwave.compare.runs.timings import measured_on
+from jointwave.compare.runs.timings import machine
 from jointwave.compare.scenes import load_variants
 from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.store import DIED, Pool, alone, in_processes
@@ -173,6 +173,6 @@ def _page(
         "rock_masses": rock,
         "studies": studies,
         "contents": {heading: found for heading, found in links.items() if found},
-        "machine": measured_on(),
+        "machine": "{processor}, {cores} cores, numba {numba}".format_map(machine()),
         "versions": {"Python": platform.python_version()} | versions,
     }

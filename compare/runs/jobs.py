@@ -27,14 +27,10 @@ def wanted(engines: list[str], models: list[str]) -> list[tuple[str, str | None]
         left = [m for m in left if m not in mine]
         found += [(engine, m) for m in mine] or [(engine, None)]
     if left:
-        allowed_text = f"must be a model of a selected --engine: {', '.join(models_known())}"
-        raise SceneError("--model", left[0], None, allowed_text)
+        every = ", ".join(model for of in known.values() for model in of if model)
+        allowed = f"must be a model of a selected --engine: {every}"
+        raise SceneError("--model", left[0], None, allowed)
     return found
-
-
-def models_known() -> list[str]:
-    """Return all models of engines and all exact solutions."""
-    return [model for models in selection().values() for model in models if model]
 
 
 def engine_of(model: str) -> str:

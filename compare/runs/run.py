@@ -21,6 +21,7 @@ from jointwave.compare.runs.reuse import log_reading, signed
 from jointwave.results.dataset import energy_residual, open_ledger
 
 T = TypeVar("T")
+STOPPED = ".stopped.nc"  # the end of the name of a partial result
 
 
 class Done(NamedTuple):
@@ -112,7 +113,7 @@ def _write_stopped(job: Job, error: StoppedError) -> None:
     result, error.result = error.result, None
     if result is None:
         return
-    path = _stopped(job)
+    path = job.path.with_suffix(STOPPED)
     try:
         write_dataset(path, result)
     except OSError as problem:
@@ -121,17 +122,13 @@ def _write_stopped(job: Job, error: StoppedError) -> None:
         error.args = (f"{error}; what was computed is in {path}",)
 
 
-def _stopped(job: Job) -> Path:
-    return job.path.with_suffix(".stopped.nc")
-
-
 def _write(
     job: Job, keeper: RunCheckpointer, result: xr.Dataset, seconds: float, part: float
 ) -> None:
     """Write a result and note its cost, unless it was continued: only a part of it was timed."""
     write_dataset(job.path, signed(result, keeper.signature, seconds))
     if keeper.done:
-        _stopped(job).unlink(missing_ok=True)
+        job.path.with_suffix(STOPPED).unlink(missing_ok=True)
     else:
         timings.note(job.name, job.scene, result.attrs, seconds, part)
 

@@ -173,12 +173,6 @@ def machine() -> dict[str, str]:
     }
 
 
-def measured_on() -> str:
-    """Return the machine in words."""
-    about = machine()
-    return f"{about['processor']}, {about['cores']} cores, numba {about['numba']}"
-
-
 def processor() -> str:
     """Return the processor's name."""
     with suppress(OSError):

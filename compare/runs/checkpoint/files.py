@@ -12,7 +12,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -26,14 +26,6 @@ from jointwave.results.arrays import arrays, fill
 COPIES = 2  # of a file: its arrays, and one of them as bytes
 ABOUT = "about"  # the first array, the signature as JSON
 ANEW = "remove it, or run without --resume"
-
-
-class Name(NamedTuple):
-    """The parts of a checkpoint's file name."""
-
-    path: Path
-    run: str
-    samples: int
 
 
 class Checkpoints:
@@ -63,7 +55,8 @@ class Checkpoints:
 
         def read() -> None:
             _, *values = _read(path).values()
-            if [_kind(a) for a in values] != [_kind(a) for a in arrays(parts)]:
+            kinds = [[(a.dtype.str, a.shape) for a in some] for some in (values, arrays(parts))]
+            if kinds[0] != kinds[1]:
                 raise SceneError(str(path), "", None, f"does not fit this run: {ANEW}")
             fill(parts, values)
 
@@ -95,19 +88,19 @@ class Checkpoints:
         stem, rank = self.result.stem, self.processes.rank
         return self.result.with_name(f".{stem}.checkpoint-{self.run}-{samples}-{rank}.npz")
 
-    def _found(self) -> Iterator[Name]:
-        """Yield the checkpoints of this result, of any run."""
+    def _found(self) -> Iterator[tuple[Path, str, int]]:
+        """Yield the checkpoints of this result, their runs and samples."""
         stem = re.escape(self.result.stem)
         pattern = re.compile(rf"\.{stem}\.checkpoint-([0-9a-f]+)-(\d+)-\d+\.npz")
         for path in self.result.parent.glob(".*.npz"):
             if match := pattern.fullmatch(path.name):
-                yield Name(path, match[1], int(match[2]))
+                yield path, match[1], int(match[2])
 
     def _newest(self) -> int:
         found = list(self._found())
-        counts = Counter(name.samples for name in found if name.run == self.run)
+        counts = Counter(samples for _, run, samples in found if run == self.run)
         complete = [samples for samples, n in counts.items() if n == self.processes.size]
-        others = [name.path for name in found if name.run != self.run]
+        others = [path for path, run, _ in found if run != self.run]
         if others and not complete:
             self._refuse(others[0])
         return max(complete, default=0)
@@ -142,7 +135,3 @@ def _read(path: Path) -> dict[str, np.ndarray]:
     except Exception:  # numpy and zipfile raise many kinds
         raise SceneError(str(path), "", None, f"is damaged: {ANEW}") from None
     return found
-
-
-def _kind(array: np.ndarray) -> tuple:
-    return array.dtype.str, array.shape

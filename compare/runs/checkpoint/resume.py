@@ -13,7 +13,7 @@ from jointwave.cases.sampling import sample_times
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import ENGINES
 from jointwave.compare.runs.checkpoint.files import Checkpoints
-from jointwave.compare.runs.checkpoint.signals import Signals, exit_code, word
+from jointwave.compare.runs.checkpoint.signals import WORDS, Ended, Signals
 from jointwave.compare.runs.checkpoint.signature import signature
 from jointwave.compare.runs.processes import Processes
 from jointwave.compare.runs.reuse import read_result, unlike
@@ -83,9 +83,9 @@ class RunCheckpointer:
         asked, is_due = max(self.processes.all_of((signals.asked, is_due)))
         saved = (is_due or (asked and every > 0)) and self._save(samples, parts)
         if asked:
-            message = f"{word(asked)} at t = {self._time(samples):.4g} s"
+            message = f"{WORDS[asked]} at t = {self._time(samples):.4g} s"
             error = InterruptedRun(message + ", --resume continues from there" * bool(saved))
-            error.code = exit_code(asked)
+            error.code = Ended(asked).code
             raise error
 
     def finished(self) -> xr.Dataset | None:

@@ -4,7 +4,8 @@ import signal
 from functools import cache
 from types import FrameType
 
-WORDS = {
+#: In words, the effect of a signal on this program.
+WORDS: dict[int, str] = {
     signal.SIGINT: "interrupted",
     signal.SIGTERM: "terminated",
     signal.SIGHUP: "ended with its terminal",
@@ -14,12 +15,12 @@ WORDS = {
 class Ended(BaseException):
     """Request to end this program. Not an Exception nor KeyboardInterrupt, which libraries catch.
 
-    number : of the signal.
+    number : of the signal. code : of the program's exit.
     """
 
     def __init__(self, number: int) -> None:
-        super().__init__(word(number))
-        self.number = number
+        super().__init__(WORDS[number])
+        self.code = 128 + number  # as shells have it
 
 
 class Signals:
@@ -58,13 +59,3 @@ def watched() -> Signals:
     signals = Signals()
     signals.install()
     return signals
-
-
-def word(number: int) -> str:
-    """Return in words the effect of a signal on this program."""
-    return WORDS[signal.Signals(number)]
-
-
-def exit_code(number: int) -> int:
-    """Return the exit code that shells give to a program ended by a signal."""
-    return 128 + number
