@@ -28,15 +28,9 @@ class Rock(IntEnum):
     @property
     def words(self) -> str:
         """The rock in words."""
-        return _ROCK[self]
-
-
-_ROCK = {
-    Rock.ONE_BODY: "one rigid body",
-    Rock.HOMOGENISED: "homogenised rock",
-    Rock.RIGID_BLOCKS: "rigid blocks with every joint",
-    Rock.JOINTED: "deformable rock with every joint",
-}
+        joints = "with every joint"
+        blocks, rock = f"rigid blocks {joints}", f"deformable rock {joints}"
+        return ("one rigid body", "homogenised rock", blocks, rock)[self - 1]
 
 
 class Form(IntEnum):
