@@ -40,14 +40,11 @@ def left_out(scene: Either, name: str) -> Either:
         raise SceneError(scene.where, name, None, "is the subject of the scene")
     changes = dict(WITHOUT[name])
     if law := changes.pop("joints", None):
-        changes |= dict.fromkeys(_joints(scene), law)
+        joints = ("joints", "soft_layers") if isinstance(scene, Scene) else ("joint_sets",)
+        changes |= dict.fromkeys(joints, law)
     tables = {key: _changed(getattr(scene, key), change) for key, change in changes.items()}
     changed: Any = scene.model_copy(update=tables)
     return checked(changed)
-
-
-def _joints(scene: Any) -> tuple[str, ...]:
-    return ("joints", "soft_layers") if isinstance(scene, Scene) else ("joint_sets",)
 
 
 def _changed(table: Any, change: Any) -> Any:

@@ -9,8 +9,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from jointwave.compare.figures.export import blank, save
+from jointwave.compare.runs.output import write_csv
 from jointwave.compare.studies.effects import BLOCKS
-from jointwave.compare.studies.summary import Summary, write_tables
+from jointwave.compare.studies.summary import Summary
 from jointwave.compare.text import percent
 
 NAME, TITLE = "effects", "Cost and influence of each effect"
@@ -23,7 +24,7 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#56b4e9", "#0
 def summarise(folder: Path, found: pd.DataFrame) -> Summary:
     """Return the summary of `EffectRow`s; write effects.csv and the diagram into `folder`."""
     figure = save(draw(found), folder, NAME, TITLE)
-    files = [*write_tables(folder, NAME, found), *figure.drawings]
+    files = [write_csv(folder / f"{NAME}.csv", found), *figure.drawings]
     said, about = sentences(found), "; ".join(_labels(found).unique())
     facts = {"rows": found.to_dict("records"), "sentences": said, "files": list(map(str, files))}
     shown = table(found)

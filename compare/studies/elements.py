@@ -63,7 +63,7 @@ class Elements(NamedTuple):
         """The keys of the engine's table, with the step."""
         dt = self.scene.interval / self.per_sample
         if self.run.scheme == "implicit":
-            key, value = "steps_per_period", _period(self.scene) / dt * (1 - 1e-6)
+            key, value = "steps_per_period", period_of(self.scene) / dt * (1 - 1e-6)
         else:
             key, value = "step_fraction", dt / self.run.critical * (1 + 1e-6)
         return self.changes | {key: float(f"{value:.7g}")}
@@ -143,10 +143,11 @@ def halved(changes: dict[str, Any]) -> dict[str, Any]:
 
 def _part(scene: AnyScene, count: int) -> float:
     """Return a part of the length of a rock mass's slowest waves of the shortest period, m."""
-    return float(f"{slowest(scene) * _period(scene) / count:.3g}")  # type: ignore[arg-type]
+    return float(f"{slowest(scene) * period_of(scene) / count:.3g}")  # type: ignore[arg-type]
 
 
-def _period(scene: AnyScene) -> float:
+def period_of(scene: AnyScene) -> float:
+    """Return the shortest period of a scene's pulses, s; without one a tenth of its duration."""
     return shortest_period(scene.pulses) or scene.time.duration / 10
 
 

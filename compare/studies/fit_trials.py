@@ -11,12 +11,12 @@ from scipy.interpolate import CubicSpline
 
 from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.pulse import shortest_period
 from jointwave.compare.engines import ENGINES, Progress, solve
 from jointwave.compare.misfit.alignment import INSTANT, align_curve, static_level
 from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.metrics import rms
 from jointwave.compare.misfit.places import Place
+from jointwave.compare.studies.elements import period_of
 from jointwave.compare.studies.fit_keys import CLOCK, ORIGIN, FreeKey, changed
 
 FINER = 4  # samples of the solution per sample of the scene, if the clock is free
@@ -97,18 +97,13 @@ class Trials:
 
 def started(clock: FreeKey, scene: AnyScene, solver: str, curve: Curves) -> FreeKey:
     """Return the clock with its start, unless given the shift with the best correlation of a file
-    to the solution, and with bounds within its reach."""
-    start, reach = clock.start, _clock_reach(scene)
+    to the solution, and with bounds a period of the load away at most."""
+    start, reach = clock.start, period_of(scene)
     if isnan(start):
         found = align_curve(curve, scene, {solver: solve(solver, scene)}, align=True).shift
         start = found.seconds if found else 0.0
     low, high = max(clock.low, start - reach), min(clock.high, start + reach)
     return clock._replace(start=start, low=low, high=high)
-
-
-def _clock_reach(scene: AnyScene) -> float:
-    """Return the largest shift of a clock from its start, s: a period of the load."""
-    return shortest_period(scene.pulses) or scene.time.duration / 10
 
 
 def trials_of(
@@ -122,7 +117,7 @@ def trials_of(
     shift = next((key.start for key in keys if key.key == CLOCK), None)
     interval = scene.interval / (FINER if shift is not None else 1)
     record = scene.record.model_copy(update={"interval": interval, "energy": False, "fields": None})
-    longer = scene.time.duration + (0.0 if shift is None else _clock_reach(scene))
+    longer = scene.time.duration + (0.0 if shift is None else period_of(scene))
     clock = scene.time.model_copy(update={"duration": longer})
     base = scene.model_copy(update={"record": record, "time": clock, "expect": {}})
     result, end = solve(solver, base), scene.time.duration + 1e-6 * scene.interval

@@ -30,6 +30,7 @@ from jointwave.cases.schema.pulse import shortest_period
 from jointwave.compare.engines import ENGINES, Progress, applies, label_of, solver
 from jointwave.compare.figures.export import save
 from jointwave.compare.misfit.metrics import misfit
+from jointwave.compare.runs.output import write_csv
 from jointwave.compare.runs.timings import solved
 from jointwave.compare.scenes import find, shipped
 from jointwave.compare.studies import store
@@ -44,7 +45,7 @@ from jointwave.compare.studies.hard_map import (
     draw_maps,
 )
 from jointwave.compare.studies.store import Pool, Store
-from jointwave.compare.studies.summary import Summary, write_tables
+from jointwave.compare.studies.summary import Summary
 from jointwave.results.dataset import energy_residual, scene_hash
 
 NAME = "stability"
@@ -222,9 +223,8 @@ def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = 
     cells = cells_of(Store[Column](Column, folder).compute(columns(), store.key, computed, pool))
     rows = Store[HardRow](HardRow, folder).compute(hard_cases(), key, run, pool, progress)
     drawn = save(draw_maps(cells), out, NAME, TITLE)
-    files = write_tables(out, NAME, pd.DataFrame(rows, columns=HardRow._fields)) + write_tables(
-        out, f"{NAME}-map", cells
-    )
+    tables = {NAME: pd.DataFrame(rows, columns=HardRow._fields), f"{NAME}-map": cells}
+    files = [write_csv(out / f"{name}.csv", table) for name, table in tables.items()]
     files.append(drawn.file("svg"))
     said = sentences(rows, cells)
     failed = [f"{row.name}: {row.ended} {row.message}" for row in rows if not row.holds]

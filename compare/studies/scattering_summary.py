@@ -11,12 +11,13 @@ from jointwave.compare.engines import Progress, solver
 from jointwave.compare.exact.plane.waves import KINDS, Kind
 from jointwave.compare.figures.export import blank, save
 from jointwave.compare.figures.style import style
+from jointwave.compare.runs.output import write_csv, write_dataset
 from jointwave.compare.runs.timings import machine
 from jointwave.compare.studies import scattering
 from jointwave.compare.studies.joint_waves import closed_form
 from jointwave.compare.studies.scattering import AT, COUNTS, TITLES, JointsRow, joints_of
 from jointwave.compare.studies.store import Pool, Store, alone
-from jointwave.compare.studies.summary import Summary, write_tables
+from jointwave.compare.studies.summary import Summary
 from jointwave.compare.text import percent
 
 WAVES = {"R_p": ("o", "-"), "R_s": ("s", "--"), "T_p": ("^", "-."), "T_s": ("v", ":")}
@@ -56,7 +57,8 @@ def make_study(
     rows, title = pd.DataFrame(found), TITLES[name]
     data = rows.rename_axis("row").to_xarray().assign_attrs(title=title, **machine())
     figure = save(draw(name, rows), out, name, title)
-    files, said = [*write_tables(out, name, rows, data), *figure.drawings], sentences(rows)
+    tables = write_csv(out / f"{name}.csv", rows), write_dataset(out / f"{name}.nc", data)
+    files, said = [*tables, *figure.drawings], sentences(rows)
     facts = {"rows": rows.to_dict("records"), "sentences": said, "files": list(map(str, files))}
     shown = table(name, rows)
     return Summary(name, title, shown, said, [], files, facts, figure, NOTE, LEGEND, timed=True)

@@ -1,15 +1,12 @@
-"""The summary of a study, the same for the terminal, the page and JSON; the files of its table."""
+"""The summary of a study, the same for the terminal, the page and JSON."""
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import pandas as pd
-import xarray as xr
 
 from jointwave.compare.figures.export import Drawn
-from jointwave.compare.runs.output import write_csv, write_dataset
 
 
 class Summary(NamedTuple):
@@ -34,18 +31,3 @@ class Summary(NamedTuple):
     legend: str = ""
     about: str = ""
     timed: bool = False
-
-
-def cell(value: Any) -> Any:
-    """Return a value for a file's table: lists and dictionaries as JSON."""
-    return json.dumps(value, default=str) if isinstance(value, list | dict) else value
-
-
-def write_tables(
-    folder: Path, name: str, table: pd.DataFrame, data: xr.Dataset | None = None
-) -> list[Path]:
-    """Write NAME.csv and, for a dataset, NAME.nc into a folder; return the files."""
-    files = [write_csv(folder / f"{name}.csv", table)]
-    if data is not None:
-        files.append(write_dataset(folder / f"{name}.nc", data))
-    return files

@@ -6,6 +6,7 @@ Each point has a folder named by its values, with the files that the command wri
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product
@@ -35,7 +36,6 @@ from jointwave.compare.scenes import find, load, load_variants
 from jointwave.compare.studies import ensemble, store
 from jointwave.compare.studies.ensemble import MEMBER
 from jointwave.compare.studies.store import DIED, FAILURES, Pool, Store
-from jointwave.compare.studies.summary import cell
 from jointwave.compare.studies.sweep_keys import axes
 from jointwave.results.dataset import scene_hash
 from jointwave.results.netcdf import load_netcdf
@@ -143,7 +143,7 @@ def run(
     about, outcome = partial(_key, work=work), partial(_outcome, work=work, fresh=asked.fresh)
     found = saved.compute(asked.cases, about, outcome, pool, progress, lambda one: _failed(DIED))
     return pd.DataFrame(
-        {key: cell(value) for key, value in case.settings.items()}
+        {key: _cell(value) for key, value in case.settings.items()}
         | {
             "variant": case.variant,
             "folder": str(case.folder / case.variant if case.folder else ""),
@@ -152,6 +152,10 @@ def run(
         for case, rows in zip(asked.cases, found, strict=True)
         for row in rows
     )
+
+
+def _cell(value: Any) -> Any:
+    return json.dumps(value, default=str) if isinstance(value, list | dict) else value
 
 
 def _has_files(rows: Rows) -> bool:

@@ -17,6 +17,7 @@ from matplotlib.ticker import NullFormatter
 from jointwave.compare.engines import Progress
 from jointwave.compare.figures.export import blank, save
 from jointwave.compare.figures.style import style
+from jointwave.compare.runs.output import write_csv, write_dataset
 from jointwave.compare.runs.timings import machine
 from jointwave.compare.studies.findings import done, floor, judged, orders, sentences
 from jointwave.compare.studies.forecast import Run
@@ -25,7 +26,7 @@ from jointwave.compare.studies.reference import references
 from jointwave.compare.studies.store import Pool, Store, alone
 from jointwave.compare.studies.store import key as store_key
 from jointwave.compare.studies.study import Study, StudyPoint
-from jointwave.compare.studies.summary import Summary, write_tables
+from jointwave.compare.studies.summary import Summary
 
 #: The studies of the report, in its order.
 REPORTED = ("free-pillar", "convergence", "uniform-chain", "one-joint")
@@ -94,7 +95,8 @@ def summarise(folder: Path, name: str, study: Study, rows: list[PointRow]) -> Su
     written = table.assign(settings=table["settings"].map(json.dumps))
     data = written.rename_axis("point").to_xarray()
     data = data.assign_attrs(title=study.title, study=study.model_dump_json(), **machine())
-    files = write_tables(folder, name, written, data)
+    csv, nc = folder / f"{name}.csv", folder / f"{name}.nc"
+    files = [write_csv(csv, written), write_dataset(nc, data)]
     figure = None
     if any(len(done(table, error, "work")) for error in ERRORS):
         costs = {k: words for k, words in COSTS.items() if study.timed or k != "seconds"}
