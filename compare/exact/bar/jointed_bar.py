@@ -15,20 +15,13 @@ import xarray as xr
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.bar import equivalent_bar
 from jointwave.compare.exact.bar.laplace import solved
 from jointwave.compare.exact.bar.transfer import Bar, End, end_of, rocks
-from jointwave.compare.exact.conditions import DAMPED, holds
+from jointwave.compare.exact.conditions import holds
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 
-HELD = (
-    "prestress",
-    "soft layers",
-    "stiff layers",
-    "segments",
-    "scatter",
-    "quality factor",
-    *DAMPED,
-)
+HELD = (*equivalent_bar.HELD, "stiff layers")
 
 
 def applies(scene: Scene) -> Answer:

@@ -192,12 +192,8 @@ def response(scene: Scene, freedoms: tuple[int, ...]) -> list[np.ndarray]:
     """Return the forces (N, N m), velocities and displacements (m, rad) at the receivers
     [2, receivers, c, n] of a linear plane and of its twin (`linear.twins`): the response to the
     drive, that to sudden gravity, and the initial state."""
-    one, times, signal, c = (
-        system(scene, freedoms),
-        sample_times(scene),
-        drive(scene),
-        len(freedoms),
-    )
+    one, times = system(scene, freedoms), sample_times(scene)
+    signal, c = drive(scene), len(freedoms)
     sections, points = _read(scene, c)
     rows = np.concatenate([sections @ one.forces, points @ one.velocity, points @ one.displacement])
     out, force = np.zeros((2, len(times), len(rows))), slice(len(sections))

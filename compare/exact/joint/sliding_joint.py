@@ -110,9 +110,10 @@ def _waveforms(scene: Scene, p: Properties, which: int) -> dict[str, Any]:
         return enters * around(joint.y, p.shear_speed, passed, load, times, places)
 
     (there, _), (back, _) = waves(scene.record.stress)
-    shear = (there + back)[..., None] * load_axis(scene)[[0, 2]]
+    axis = np.array(scene.load.direction)
+    shear = (there + back)[..., None] * axis[[0, 2]]
     there, back = waves(scene.record.velocity)
-    velocity, displacement = (there - back)[..., None] / Z * load_axis(scene)
+    velocity, displacement = (there - back)[..., None] / Z * axis
     own = {"shear": shear, "velocity": velocity, "displacement": displacement}
     if isinstance(passed, Passed) and (joint.dilation or isfinite(joint.distance)):
         return own | _lifted(scene, p, joint.y, passed, enters, own)
@@ -143,11 +144,6 @@ def _bound(one: np.ndarray, twin: np.ndarray) -> np.ndarray:
     peak = np.abs(one).max(initial=0.0)
     own, other = (np.moveaxis(x, 1, -1) for x in (one, twin))
     return bound(own, other) + ROUND_OFF * peak
-
-
-def load_axis(scene: Scene) -> np.ndarray:
-    """Return the unit vector along which the load acts, float array [3]."""
-    return np.array(scene.load.direction)
 
 
 def the_joint(scene: Scene, p: Properties) -> SlipJoint:

@@ -69,9 +69,16 @@ def inverse(
     transfer : H [..., k] at complex omega [k] (rad/s). pulse : f, which no arrival precedes, taken
     as zero before the first of the times.
     """
-    window = window_of(times, how.window)
-    found = _inverse(transfer, pulse, window, len(times), causal, how)
-    return found[..., :: window.stride]
+    window, skip, least = window_of(times, how.window), how.skip, how.least
+    signal = pulse(window.times)[::skip]
+    keep = slice(0, len(times) * window.stride, window.stride)
+    if causal:
+        return _level(transfer, signal, window, skip, 0.5, 0, least)[..., keep]
+    bins = (
+        weight * _level(transfer, signal, window, skip, node, SLOPE, least)[..., keep]
+        for node, weight in zip(*_gauss(GAUSS), strict=True)
+    )
+    return sum(bins) + _climb(transfer, signal, window, skip, keep)
 
 
 def window_of(times: np.ndarray, size: float) -> Window:
@@ -84,20 +91,6 @@ def window_of(times: np.ndarray, size: float) -> Window:
     count = 4 * next_fast_len(int(np.ceil(size * stride * n / 4)))
     decay = -np.log(WRAPPED) / (count * step)
     return Window(times[0] + step * np.arange(count), step, stride, float(decay))
-
-
-def _inverse(transfer, pulse, window, n, causal, how) -> np.ndarray:
-    """Return the complex motion whose real part is u, at the fine steps of n samples, from every
-    `skip`-th fine sample of the pulse."""
-    skip, least = how.skip, how.least
-    signal, keep = pulse(window.times)[::skip], slice(0, n * window.stride)
-    if causal:
-        return _level(transfer, signal, window, skip, 0.5, 0, least)[..., keep]
-    bins = (
-        weight * _level(transfer, signal, window, skip, node, SLOPE, least)[..., keep]
-        for node, weight in zip(*_gauss(GAUSS), strict=True)
-    )
-    return sum(bins) + _climb(transfer, signal, window, skip, keep)
 
 
 def _level(

@@ -21,7 +21,7 @@ import numpy as np
 
 from jointwave.cases.material.rock import ElasticRock, Values
 from jointwave.compare.exact.plane.pulse import Axes, Layers
-from jointwave.compare.exact.plane.waves import KINDS, Kind, face, is_evanescent
+from jointwave.compare.exact.plane.waves import face, is_evanescent
 
 
 @dataclass(frozen=True)
@@ -41,12 +41,6 @@ class Coefficients(NamedTuple):
     R_s: np.ndarray
     T_p: np.ndarray
     T_s: np.ndarray
-
-
-def picked(R: np.ndarray, T: np.ndarray, incidence: Kind) -> Coefficients:
-    """Return the column of one incidence of matrices [..., out, in]."""
-    i = KINDS.index(incidence)
-    return Coefficients(R[..., 0, i], R[..., 1, i], T[..., 0, i], T[..., 1, i])
 
 
 def scattering(
@@ -99,17 +93,11 @@ def layers_at_once(rocks: Sequence[ElasticRock], first: Joint, axes: Axes) -> La
     down, up = np.zeros((2, len(rocks), 2))
     down[0] = axes.incident
     if not is_evanescent(rocks[0], axes.slowness):
-        bare = without_springs(first)
+        springs = first.normal_stiffness, first.shear_stiffness
+        K_n, K_s = (np.where(np.isinf(K), K, 0.0) for K in springs)
+        bare = Joint(K_n, K_s, first.normal_viscosity, first.shear_viscosity)
         acts = bool(bare.normal_stiffness or bare.normal_viscosity)
         behind = rocks[1] if acts else rocks[0]
         R, T = scattering(rocks[0], bare, axes.slowness, 1.0, behind)
         up[0], down[1] = (R @ axes.incident).real, (T @ axes.incident).real
     return Layers(down, up)
-
-
-def without_springs(joint: Joint) -> Joint:
-    """Return a joint with its dashpots only; infinite stiffness is kept."""
-    K_n, K_s = (
-        np.where(np.isinf(K), K, 0.0) for K in (joint.normal_stiffness, joint.shear_stiffness)
-    )
-    return Joint(K_n, K_s, joint.normal_viscosity, joint.shear_viscosity)

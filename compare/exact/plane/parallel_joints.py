@@ -22,11 +22,10 @@ from jointwave.compare.exact.plane.oblique_joint import (
     Coefficients,
     Joint,
     layers_at_once,
-    picked,
     scattering,
 )
 from jointwave.compare.exact.plane.pulse import Layers, PulseStack, axes_of
-from jointwave.compare.exact.plane.waves import Kind, slowness_along, slownesses_across
+from jointwave.compare.exact.plane.waves import KINDS, Kind, slowness_along, slownesses_across
 
 
 def coefficients(
@@ -49,7 +48,8 @@ def coefficients(
     E, T = _phases(rocks, spacings, slowness, omega), behind[0]
     for e, Y in zip(E, behind[1:], strict=True):
         T = Y @ (e[..., :, None] * T)
-    return picked(R[0], T, incidence)
+    R_p, R_s, T_p, T_s = (x[..., k, KINDS.index(incidence)] for x in (R[0], T) for k in (0, 1))
+    return Coefficients(R_p, R_s, T_p, T_s)
 
 
 def march(

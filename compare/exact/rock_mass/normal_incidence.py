@@ -50,10 +50,8 @@ class ClosingField:
     def __init__(self, scene: RockMass, tolerance: float = TOLERANCES[0]) -> None:
         wave, one = scene.waves[0], scene.joint_sets[0]
         stack, rock = stack_of(scene), elastic_rock(scene.rock)
-        self.wave, self.share = (
-            plane_wave(scene, wave),
-            float(rock.lame / (rock.p_impedance * rock.p_speed)),
-        )
+        self.wave = plane_wave(scene, wave)
+        self.share = float(rock.lame / (rock.p_impedance * rock.p_speed))
         n, (xx, yy, xy) = self.wave.direction, prestress_of(scene)
         assert one.normal_stiffness and one.maximum_closure
         self.joint = ClosingJoint(

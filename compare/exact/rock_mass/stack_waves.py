@@ -12,7 +12,6 @@ which waves leave, and any number of plane waves that meet them after the start 
 
 from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -45,14 +44,6 @@ BESIDE = 1e-13  #: relative to the domain's size: far above round-off, far below
 Motion = Callable[["RockMass", JointStack, np.ndarray, np.ndarray], PlaneMotion]
 
 
-class JointReceivers(NamedTuple):
-    """Places on joints [m, 2] (m), and the axes there [m, (n, s), 2]: the outward normal of the
-    block with the smaller number, and the direction to its left."""
-
-    places: np.ndarray
-    axes: np.ndarray
-
-
 def holds(scene: RockMass, one: bool) -> Answer:
     """Return whether a scene has plane waves at one joint or, if not `one`, at several."""
     if reason := against(scene):
@@ -63,23 +54,20 @@ def holds(scene: RockMass, one: bool) -> Answer:
         return Answer("regions differ in rock: see parallel-joints")
     if one and stack.has_face:
         return Answer("a side is free: see parallel-joints")
-    if (count == 1 and not scene.regions and not stack.has_face) != one:
-        return Answer(
-            f"there are {count} joints: see parallel-joints" if one else "there is one joint"
-        )
-    reason = begun(scene, stack)
-    return Answer(reason or "")
+    if one and count != 1:
+        return Answer(f"there are {count} joints: see parallel-joints")
+    if not one and count == 1 and not scene.regions and not stack.has_face:
+        return Answer("there is one joint")
+    return Answer(begun(scene, stack) or "")
 
 
 def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Dataset:
     """Return the records of a scene's receivers; motion : in place of `motion_at`."""
     stack, times = stack_of(scene), sample_times(scene)
-    joints, (points, on_joint, beyond) = (
-        joint_receivers(scene, stack),
-        point_receivers(scene, stack),
-    )
-    beside = _beside(stack) * joints.axes[:, 0]
-    places = [points, beyond, joints.places - beside, joints.places + beside]
+    joints, axes = joint_receivers(scene, stack)
+    points, on_joint, beyond = point_receivers(scene, stack)
+    beside = _beside(stack) * axes[:, 0]
+    places = [points, beyond, joints - beside, joints + beside]
     found = (motion or motion_at)(scene, stack, np.concatenate(places), times)
     ends = np.cumsum([len(part) for part in places])[:-1]
     at_points, behind, here, there = map(
@@ -88,9 +76,9 @@ def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Datase
     for one, other in zip(at_points, behind, strict=True):
         one[on_joint] = (one[on_joint] + other) / 2
     pressed = prestress_of(scene)[:, None]
-    jump = joints.axes @ (there.displacement - here.displacement)
-    traction = joints.axes @ on_face(pressed - here.stress, joints.axes[:, 0])
-    off, size = here.displacement_error + there.displacement_error, np.abs(joints.axes)
+    jump = axes @ (there.displacement - here.displacement)
+    traction = axes @ on_face(pressed - here.stress, axes[:, 0])
+    off, size = here.displacement_error + there.displacement_error, np.abs(axes)
     slipped = (size @ off[..., None])[..., 0]
     pulled = (size @ on_face(here.stress_error[..., None], size[:, 0]))[..., 0]
     values = {
@@ -160,15 +148,16 @@ def point_receivers(
     return np.where(near, here, points), on_joint, there[on_joint]
 
 
-def joint_receivers(scene: RockMass, stack: JointStack) -> JointReceivers:
-    """Return the places on joints nearest to those given by a scene."""
+def joint_receivers(scene: RockMass, stack: JointStack) -> tuple[np.ndarray, np.ndarray]:
+    """Return the places on joints [m, 2] (m) nearest to those given by a scene, and the axes there
+    [m, (n, s), 2]: the outward normal of the block with the smaller number, and its left."""
     asked, contacts = np.array(scene.record.joints).reshape(-1, 2), stack.partition.contacts
     chosen = contact_at(stack.partition, asked) if len(asked) else np.zeros(0, dtype=int)
     start, normal = contacts.start[chosen], contacts.normal[chosen]
     way = contacts.end[chosen] - start
     share = ((asked - start) * way).sum(axis=1) / contacts.length[chosen] ** 2
     axes = np.stack([normal, np.stack([-normal[:, 1], normal[:, 0]], axis=1)], axis=1)
-    return JointReceivers(start + np.clip(share, 0, 1)[:, None] * way, axes)
+    return start + np.clip(share, 0, 1)[:, None] * way, axes
 
 
 def on_face(stress: np.ndarray, normal: np.ndarray) -> np.ndarray:
