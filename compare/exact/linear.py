@@ -61,7 +61,7 @@ def twins(
     P = P if size < SMALL else csr_array(P)
     driven = []
     for points in (count, count + MORE_POINTS):
-        nodes, weights = _gauss(h, points)
+        nodes, weights = gauss(h, points)
         driven.append(
             (_moved(A, vector, h - nodes), _load_on_nodes(load, times[:-1], h, nodes, weights))
         )
@@ -110,7 +110,8 @@ def _moved(A, vector: np.ndarray, times: np.ndarray) -> np.ndarray:
     return found
 
 
-def _gauss(h: float, count: int) -> tuple[np.ndarray, np.ndarray]:
+def gauss(h: float, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return Gauss-Legendre points and weights of [0, h]."""
     x, w = _points(count)
     return h * (x + 1) / 2, h * w / 2
 
@@ -123,7 +124,7 @@ def _load_on_nodes(load, starts, h, nodes, weights) -> np.ndarray:
     for n, cuts in _cut_intervals(load, starts, h):
         shares[n] = 0
         for a, b in pairwise(cuts):
-            s, w = _gauss(b - a, count)
+            s, w = gauss(b - a, count)
             basis = legvander(2 * (a + s) / h - 1, count - 1) @ to_lagrange.T * (weights / h)
             shares[n] += (w * load.value(starts[n] + a + s)) @ basis
     return shares

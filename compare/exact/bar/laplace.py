@@ -17,7 +17,7 @@ twice the largest difference of the two within some fine steps of each sample.
 
 from dataclasses import replace
 from math import ceil, log
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -191,17 +191,9 @@ def _front(bar: Bar, duration: float) -> Front | None:
     if duration * z / first.density > 2 * length * MOST_TRIPS:
         return None
     near, far = (End(0.0) if end.compliance else end for end in (bar.start, far))
-    none = np.zeros(0)
-    rock = replace(
-        bar,
-        length=length,
-        joint_y=none,
-        joint_compliance=none,
-        joint_time_constant=none,
-        start=near,
-        end=far,
-        rocks=(first,),
-    )
+    names = "joint_y", "joint_compliance", "joint_time_constant"
+    alone: dict[str, Any] = {"rocks": (first,), **dict.fromkeys(names, np.zeros(0))}
+    rock = replace(bar, length=length, start=near, end=far, **alone)
     start, end = (
         1.0 if np.isinf(e.dashpot) else (e.dashpot - z) / (e.dashpot + z) for e in (near, far)
     )

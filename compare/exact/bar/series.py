@@ -92,13 +92,8 @@ def amplitudes(
     share = weights * np.where(resonant, 0.0, factor)
     # e^{i m t} - e^{i m (t - end)}; without the second term while the load lasts.
     after = share * (1 - np.exp(-1j * mode * load.end))
-    turned = np.concatenate(
-        [
-            exponentials(share, 1j * mode, times[:on]),
-            exponentials(after, 1j * mode, times[on:]),
-        ],
-        axis=1,
-    )
+    parts = ((share, times[:on]), (after, times[on:]))
+    turned = np.concatenate([exponentials(k, 1j * mode, some) for k, some in parts], axis=1)
     g, rate = turned.imag.copy(), turned.real.copy()
     g[:, :on] -= np.outer(share @ mode / omega, np.sin(omega * times[:on]))
     rate[:, :on] -= np.outer(share.sum(axis=1), np.cos(omega * times[:on]))

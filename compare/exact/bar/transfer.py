@@ -125,7 +125,8 @@ def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, n
     """
     zs = [rock.impedance(s) for rock in bar.rocks]
     slowness = [s * rock.density / z for rock, z in zip(bar.rocks, zs, strict=True)]
-    R = _end_reflection(bar.end, s, zs[-1])
+    z, Z = zs[-1], bar.end.impedance(s)
+    R = np.ones_like(z) if np.isinf(bar.end.dashpot) else (Z - z) / (Z + z)
     stress, velocity = np.zeros((2, len(places), len(s)), dtype=complex)
     # Places from the far end on, each with the transmission from it to those farther on, and the
     # transmission to the last of them.
@@ -187,13 +188,6 @@ def _kinds(bar: Bar, nodes: np.ndarray, joint_of: dict[int, int]) -> Iterator[tu
         C, eta = (0.0, 0.0) if j is None else (bar.joint_compliance[j], bar.joint_time_constant[j])
         rocks = int(before[i]), int(behind[i])
         yield i, Kind(float(C), float(eta), float(h[i]), *rocks)
-
-
-def _end_reflection(end: End, s: np.ndarray, z: np.ndarray) -> np.ndarray:
-    if np.isinf(end.dashpot):
-        return np.ones_like(z)
-    Z = end.impedance(s)
-    return (Z - z) / (Z + z)
 
 
 def nodes_of(bar: Bar, places: np.ndarray) -> tuple[np.ndarray, dict[int, int]]:

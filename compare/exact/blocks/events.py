@@ -54,20 +54,6 @@ class ChainMotion:
     steps: int
 
 
-@dataclass
-class _Contacts:
-    """The tension-free joints: which are closed, and which have changed at the current time.
-
-    closed : bool array [barred].
-    changed : number of changes of each since the last advance in time.
-    zero : bool arrays [2, barred], whether the force of spring, or spring and dashpot, is now zero.
-    """
-
-    closed: np.ndarray
-    changed: np.ndarray
-    zero: np.ndarray
-
-
 def integrate(
     chain: BlockSystem,
     load: LoadHistory,
@@ -95,7 +81,11 @@ def integrate(
 
 
 class _Walk:
-    """The state of an integration: time, motion and contacts."""
+    """The state of an integration: time, motion and tension-free joints.
+
+    closed, changed : which are, and how often each has changed at the current time. zero : [2,
+    joints], whether the force of spring, or spring and dashpot, is now zero.
+    """
 
     def __init__(self, chain, load, times, period, noise, seed) -> None:
         self.chain, self.load, self.times, self.noise = chain, load, times, noise
@@ -110,14 +100,14 @@ class _Walk:
             self.pulse = (period * LOAD_STEP, SETTLED * load.end)
         joints, count = chain.one_sided, len(chain.one_sided)
         self.at_rest = chain.initial[joints]
-        none = np.zeros((2, count), dtype=bool)
-        self.contacts = _Contacts(self.at_rest >= 0, np.zeros(count, int), none)
+        self.closed, self.changed = self.at_rest >= 0, np.zeros(count, int)
+        self.zero = np.zeros((2, count), dtype=bool)
         self._release()
 
     def _release(self) -> None:
         """Take the forces of open joints from the chain's equations of motion."""
         chain, held = self.chain, np.ones(len(self.chain.initial))
-        held[chain.one_sided[~self.contacts.closed]] = 0.0
+        held[chain.one_sided[~self.closed]] = 0.0
         self.resists = csr_array(chain.resists.multiply(held[:, None]))
         self.steady = chain.steady - chain.moves @ ((1 - held) * chain.initial)
 
@@ -169,20 +159,20 @@ class _Walk:
 
     def _first_event(self, X: np.ndarray) -> tuple[float, tuple[int, int] | None]:
         """Return the fraction of the step at the first change of a joint, that joint and force."""
-        contacts, count = self.contacts, len(self.chain.initial)
+        count = len(self.chain.initial)
         strains, resists = self.chain.strains @ X.T, self.chain.resists[self.chain.one_sided]
         springs = resists[:, :count] @ strains[:count]
         forces = np.array([springs.T, (resists @ strains).T])
         forces[:, 0] += self.at_rest
-        forces[:, 0][contacts.zero] = 0.0
+        forces[:, 0][self.zero] = 0.0
         bounds = _BERNSTEIN @ forces  # [2, ORDER + 1, barred]
         stays = np.where(
-            contacts.closed, (bounds >= 0).all(axis=(0, 1)), (bounds <= 0).all(axis=1).any(axis=0)
+            self.closed, (bounds >= 0).all(axis=(0, 1)), (bounds <= 0).all(axis=1).any(axis=0)
         )
         best, event = 1.0, None
         for i in np.flatnonzero(~stays):
-            least = LEAST if contacts.changed[i] > 1 else 0.0
-            now = contacts.closed[i]
+            least = LEAST if self.changed[i] > 1 else 0.0
+            now = self.closed[i]
             crosses = (bounds[:, :, i].min(axis=1) < 0) & (bounds[:, :, i].max(axis=1) > 0)
             found = _change_of(forces[:, :, i], crosses, now, least, best)
             if found is not None and (found[0] < best or event is None):
@@ -191,15 +181,14 @@ class _Walk:
 
     def _change(self, share: float, event: tuple[int, int] | None) -> None:
         """Open or close the joint of an event; if time has advanced, clear old changes."""
-        contacts = self.contacts
         if share > 0:
-            contacts.changed[:] = 0
-            contacts.zero[:] = False
+            self.changed[:] = 0
+            self.zero[:] = False
         if event is not None:
             i, kind = event
-            contacts.closed[i] = not contacts.closed[i]
-            contacts.changed[i] += 1
-            contacts.zero[kind, i] = True
+            self.closed[i] = not self.closed[i]
+            self.changed[i] += 1
+            self.zero[kind, i] = True
             self.events += 1
             self._release()
 

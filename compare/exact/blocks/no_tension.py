@@ -53,16 +53,10 @@ def solve(scene: Scene) -> xr.Dataset:
     found, twin = (receivers(scene, model, m.states, signal.value(times)) for m in (own, other))
     known = _known(model, own.states, other.states)
     bounds = errors([x[:, :known] for x in found], [x[:, :known] for x in twin])
-    until: dict[str, Any] = {} if known == len(times) else {"known_until": float(times[known - 1])}
-    return dataset(
-        scene,
-        SOLVER.name,
-        times,
-        *found,
-        errors=bounds,
-        events=own.events,
-        **until,
-    )
+    about: dict[str, Any] = {"errors": bounds, "events": own.events}
+    if known < len(times):
+        about["known_until"] = float(times[known - 1])
+    return dataset(scene, SOLVER.name, times, *found, **about)
 
 
 def _motions(scene: Scene) -> list[ChainMotion]:

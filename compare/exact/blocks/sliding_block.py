@@ -77,16 +77,9 @@ def solve(scene: Scene) -> xr.Dataset:
     fall = (total - held) * first[:, None] * np.array([times, times**2 / 2])[:, None]
     velocity, displacement = fall[..., None] * axis
     still = np.ones_like(times)
-    return dataset(
-        scene,
-        SOLVER.name,
-        times,
-        np.outer(normal, still),
-        velocity,
-        displacement,
-        shear=np.outer(shear, still)[..., None] * down,
-        rotation=np.zeros_like(velocity),
-    )
+    stress, shear = np.outer(normal, still), np.outer(shear, still)[..., None] * down
+    found = {"shear": shear, "velocity": velocity, "displacement": displacement}
+    return dataset(scene, SOLVER.name, times, stress, **found, rotation=np.zeros_like(velocity))
 
 
 def _gravity(scene: Scene) -> tuple[np.ndarray, float]:

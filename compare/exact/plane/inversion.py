@@ -22,7 +22,8 @@ from math import isqrt
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
+
+from jointwave.compare.exact.linear import gauss
 
 WRAPPED = 1e-11
 STEPS = 4096  # least number in the requested duration
@@ -76,7 +77,7 @@ def inverse(
         return _level(transfer, signal, window, skip, 0.5, 0, least)[..., keep]
     bins = (
         weight * _level(transfer, signal, window, skip, node, SLOPE, least)[..., keep]
-        for node, weight in zip(*_gauss(GAUSS), strict=True)
+        for node, weight in zip(*gauss(1.0, GAUSS), strict=True)
     )
     return sum(bins) + _climb(transfer, signal, window, skip, keep)
 
@@ -116,7 +117,7 @@ def _level(
 
 def _climb(transfer, signal, window: Window, skip: int, keep: slice) -> np.ndarray:
     """Return the integral over the slope from 0 to the level path, at the fine steps `keep`."""
-    nodes, weights = _gauss(CLIMB)
+    nodes, weights = gauss(1.0, CLIMB)
     end = SLOPE * window.bin_width + 1j * window.decay
     turn = 1j * end * nodes * window.step
     long, short = _powers(turn * skip, len(signal))
@@ -133,9 +134,3 @@ def _powers(x: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     `count`, whose own exponentials would take most of the time."""
     n = np.arange(isqrt(count) + 1)[:, None]
     return np.exp(len(n) * n * x), np.exp(n * x)
-
-
-def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return Gauss-Legendre points and weights of [0, 1]."""
-    x, w = leggauss(count)
-    return (x + 1) / 2, w / 2

@@ -199,7 +199,8 @@ def _amplitudes(
 def _read(series: np.ndarray, offset: float, stride: int, count: int) -> np.ndarray:
     """Return a series at offset + k stride, k = 0 .. count - 1; zero before it begins."""
     first = int(np.floor(offset))
-    weights = _lagrange(offset - first)
+    x = offset - first
+    weights = np.array([prod([(x - m) / (k - m) for m in NODES if m != k]) for k in NODES])
     low, high = first + NODES[0], first + NODES[-1] + stride * (count - 1) + 1
     window = series[max(low, 0) : max(high, 0)]
     if len(window) < high - low:
@@ -207,8 +208,3 @@ def _read(series: np.ndarray, offset: float, stride: int, count: int) -> np.ndar
         known, window = window, np.zeros(high - low, dtype=series.dtype)
         window[before : before + len(known)] = known
     return sum(w * window[k : k + stride * (count - 1) + 1 : stride] for k, w in enumerate(weights))
-
-
-def _lagrange(x: float) -> np.ndarray:
-    """Return the weights of the samples at `NODES` for x in [0, 1)."""
-    return np.array([prod([(x - m) / (k - m) for m in NODES if m != k]) for k in NODES])

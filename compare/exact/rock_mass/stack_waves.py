@@ -89,14 +89,9 @@ def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Datase
         "gap": jump[:, 0],
         "slip": jump[:, 1],
     }
-    errors = {
-        "velocity": at_points.velocity_error,
-        "displacement": at_points.displacement_error,
-        "stress": at_points.stress_error,
-        "traction": pulled,
-        "gap": slipped[:, 0],
-        "slip": slipped[:, 1],
-    }
+    names = "velocity", "displacement", "stress"
+    errors = {name: getattr(at_points, f"{name}_error") for name in names}
+    errors |= {"traction": pulled, "gap": slipped[:, 0], "slip": slipped[:, 1]}
     return plane_dataset(scene, name, times, values, errors=errors)
 
 
