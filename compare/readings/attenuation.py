@@ -126,9 +126,8 @@ def quality_factor(
     heard[0] = False
     omega = 2 * np.pi * frequency.values[heard]
     ratio = last[heard] / first[heard]
-    lag = omega * late - np.angle(
-        ratio * np.exp(1j * omega * late)
-    )  # the rest is below half a turn
+    rest = np.angle(ratio * np.exp(1j * omega * late))  # below half a turn
+    lag = omega * late - rest
     loss = -np.log(np.abs(ratio))
     with np.errstate(divide="ignore"):  # nothing is lost
         quality = lag / (2 * loss)

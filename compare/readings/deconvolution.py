@@ -53,7 +53,9 @@ def deconvolve(scene: AnySource, surface: xr.DataArray, water_level: float = 1e-
     bar, impedance = _column(pillar_of(load(scene), "deconvolve"))
     n, time = surface.sizes["time"], surface.time.values
     dt = (time[-1] - time[0]) / (n - 1)
-    lead = ceil(_crossing(bar) / dt)
+    lengths = np.diff([*(rock.y for rock in bar.rocks), bar.length])
+    slowness = [sqrt(rock.density / rock.modulus) for rock in bar.rocks]
+    lead = ceil(float(lengths @ slowness) / dt)
     count = next_fast_len(2 * (n + 2 * lead))
     s = 2j * np.pi * np.fft.rfftfreq(count, dt)
     H = 2 * impedance * transfer(bar, s, np.array([bar.length]))[1][0]
@@ -95,13 +97,6 @@ def _column(scene: Scene) -> tuple[Bar, float]:
         end=end_of("free", impedance),
     )
     return bar, impedance
-
-
-def _crossing(bar: Bar) -> float:
-    """Return the travel time of a wave through the rock of a bar, from end to end, s."""
-    lengths = np.diff([*(rock.y for rock in bar.rocks), bar.length])
-    slowness = [sqrt(rock.density / rock.modulus) for rock in bar.rocks]
-    return float(lengths @ slowness)
 
 
 def _stretched(p: Properties) -> tuple[float, np.ndarray]:
