@@ -107,11 +107,8 @@ def draw(name: str, rows: pd.DataFrame) -> Figure:
                     own = rows[(rows.incidence == kind) & (rows.solver == one)]
                     look: dict[str, Any] = {"color": style(one).colour, "markersize": 8 - 2 * j}
                     look |= {"markerfacecolor": "none"} if j else {}
-                    gid, label = (
-                        f"{name}-{k}-{j}-{w}",
-                        None if w else f"{solver(one).label}: points",
-                    )
-                    ax.plot(own[varied], own[wave], marker, label=label, gid=gid, **look)
+                    look["label"] = None if w else f"{solver(one).label}: points"
+                    ax.plot(own[varied], own[wave], marker, gid=f"{name}-{k}-{j}-{w}", **look)
             ax.set(ylim=(-0.03, 1.1), xlabel=heading, title=f"{kind} wave")
             ax.margins(x=0.03)  # so that no marker is cut
             ax.grid(color="#e4e7ea", linewidth=0.6)

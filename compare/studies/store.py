@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -178,8 +178,6 @@ def on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]
         return None if executor is None else work(partial(on_executor, executor))
 
 
-@contextmanager
-def alone() -> Iterator[None]:
+def alone() -> AbstractContextManager[None]:
     """Wait until no other timed study is running on this machine."""
-    with exclusive(Path(gettempdir()), wait=True):
-        yield
+    return exclusive(Path(gettempdir()), wait=True)
