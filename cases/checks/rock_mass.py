@@ -12,7 +12,7 @@ from jointwave.cases.checks.shared import check_fields, check_quality, check_tim
 from jointwave.cases.geometry.cell_complex import GeometryError
 from jointwave.cases.geometry.sets import cut_by_sets
 from jointwave.cases.partition.box import Box
-from jointwave.cases.partition.joints import direction_of, plane_sets
+from jointwave.cases.partition.joints import attitude, plane_sets
 from jointwave.cases.partition.outline import Outline
 from jointwave.cases.partition.scene import rock_of, shape_of
 from jointwave.cases.schema.rock_mass import RockMass
@@ -33,7 +33,7 @@ def contradictions(scene: RockMass) -> list[PydanticCustomError]:
         outline = shape_of(scene.domain)
     except GeometryError as error:
         return [contradiction(error.key, None, str(error))]
-    cuts = _check_cuts if scene.domain.given is None else _check_mesh
+    cuts = _check_cuts if scene.domain.given is None else _join
     of_shape = (check_regions, cuts, _check_receivers, _check_boundaries, _check_waves)
     of_loads = ((f"loads[{i}]", load) for i, load in enumerate(scene.loads))
     return found_by(
@@ -60,23 +60,10 @@ def _check_support(scene: RockMass, outline: Outline | Box) -> None:
         raise contradiction(f"boundaries.{quiet[0]}", "quiet", allowed)
 
 
-def _check_mesh(scene: RockMass, outline: Outline | Box) -> None:
-    """Check that the joints of a mesh are those of the joint sets; let those of blocks be."""
-    if scene.domain.blocks is not None:
-        normals = [direction_of(one.dip)[::-1] * [-1, 1] for one in scene.joint_sets]
-        scene.domain.join([one.name for one in scene.joint_sets], np.array(normals))
-        return
-    rock, key = scene.domain.given, "domain.mesh"
-    assert rock is not None
-    names = [one.name.lower() for one in scene.joint_sets]
-    lost = [name for name in rock.joints if name not in names]
-    if lost:
-        allowed = f"has a group 'joint {lost[0]}', but no joint set has this name"
-        raise contradiction(key, scene.domain.mesh, allowed)
-    for i, name in enumerate(names):
-        if name not in rock.joints:
-            allowed = f"must have a group 'joint {name}' for joint_sets[{i}]"
-            raise contradiction(key, scene.domain.mesh, allowed)
+def _join(scene: RockMass, _: Outline | Box) -> None:
+    """Let the contacts of a file be those of the joint sets."""
+    normals = [attitude(one, 2)[0] for one in scene.joint_sets]
+    scene.domain.join([one.name for one in scene.joint_sets], np.array(normals))
 
 
 def _check_cuts(scene: RockMass, outline: Any) -> None:

@@ -56,6 +56,13 @@ def complex_of(given: Given, tolerance: float | None = None) -> Complex:
     return _with_sides(assembled(faces, x, given.names, tolerance))
 
 
+def complex_of_blocks(path: Path) -> tuple[Complex, list[str] | None]:
+    """Return the blocks of a file as a complex, and the names of its groups of joints, which are
+    its joint sets; None of a file without groups. Raises MeshError, in one phrase."""
+    given = read_blocks(path)
+    return complex_of(given), None if given.joints is None else list(given.joints)
+
+
 def complex_of_cells(path: Path) -> tuple[Complex, list[str]]:
     """Return the cells of a gmsh file in the plane as a complex, and the names of its groups of
     joints, which are its joint sets. Raises MeshError, where rock is cut without a joint, too."""

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.geometry.cell_complex import OUTSIDE
+from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.material import effective_medium
 from jointwave.cases.material.effective_medium import compliant, intact, joints_alone
 from jointwave.cases.material.elastic import shear_modulus
@@ -196,7 +196,7 @@ def _against_blocks(scene: RockMass) -> str | None:
         return "has no effect on domain.blocks, which are rigid as they are"
     if scene.boundaries.sides("periodic"):
         return "cannot be cut along periodic sides where domain.blocks are given"
-    if sum(map(len, rock.joints.values())) < (rock.cells != OUTSIDE).all(axis=1).sum():
+    if (rock.joint_set[rock.inner] == NO_SET).any():
         return "cannot join domain.blocks at their contacts that belong to no joint set"
     return None
 

@@ -15,7 +15,6 @@ from jointwave.cases.geometry.slivers import Limits, without_slivers
 from jointwave.cases.geometry.solids import check_convex, cut_into_regions, taken_out
 from jointwave.cases.partition.blocks import Partition, plane_partition
 from jointwave.cases.partition.box import Box, box_of
-from jointwave.cases.partition.given import complex_of
 from jointwave.cases.partition.joints import attitude, plane_sets
 from jointwave.cases.partition.outline import Outline, outline_of
 from jointwave.cases.partition.periodic import across_periodic
@@ -63,7 +62,7 @@ def blocks_of_domain(
     """
     shape = shape_of(domain)
     if domain.given is not None:
-        body = complex_of(domain.given, [one.name for one in sets])
+        body = domain.given
     else:
         body = _body(domain, shape, sets, further, regions)
     found = blocks_of(body, shape.tolerance)
@@ -158,7 +157,7 @@ def block_count(domain: Domain, sets: Sequence[JointSet]) -> float:
     """Return about how many blocks a domain is cut into: one more than there are joints, and
     crossings of two joints and of three, openings and ends of joints left out."""
     if domain.given is not None:
-        return float(domain.given.number)
+        return float(domain.given.count)
     corners, dim, count = np.array(domain.corners), domain.dimension, 1.0
     volume, normals = shape_of(domain).volume, [attitude(one, dim)[0] for one in sets]
     joints = [

@@ -2,11 +2,12 @@
 
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
+from jointwave.cases.geometry.cell_complex import Complex
 from jointwave.cases.schema.values import (
     Number,
     Offset,
@@ -17,10 +18,6 @@ from jointwave.cases.schema.values import (
     contradiction,
     named_file,
 )
-
-if TYPE_CHECKING:
-    from jointwave.cases.geometry.cell_complex import Complex
-    from jointwave.cases.partition.given import GivenRock
 
 
 class Prism(Table):
@@ -59,7 +56,8 @@ class Domain(Table):
     least_angle: Annotated[float, Field(ge=0, le=30)] = 1.0  #: degrees, in a block
 
     _mesh_path: Path | None = PrivateAttr(default=None)
-    _given: Any = PrivateAttr(default=None)
+    _outlines: Any = PrivateAttr(default=None)
+    _joined: bool = PrivateAttr(default=False)
     _groups: Any = PrivateAttr(default=None)
     _body: Any = PrivateAttr(default=None)
 
@@ -85,39 +83,40 @@ class Domain(Table):
         return "domain.blocks" if self.mesh is None else "domain.mesh"
 
     def _read(self, path: Path) -> None:
-        from jointwave.cases.geometry.own_blocks import complex_of
-        from jointwave.cases.geometry.read_blocks import read_blocks
+        from jointwave.cases.geometry import own_blocks
         from jointwave.cases.gmsh_file import MeshError
-        from jointwave.cases.partition.given import read_rock
 
         try:
-            if self.mesh is not None:
-                self._given = read_rock(path)
-                return
-            given = read_blocks(path)
-            self._body, self._groups = complex_of(given), given.joints
-            self._given = _plane_rock(self._body, [])
+            read = (
+                own_blocks.complex_of_blocks if self.mesh is None else own_blocks.complex_of_cells
+            )
+            self._body, self._groups = read(path)
+            if self._body.dim != 2:
+                raise MeshError("has blocks in space, must have polygons in the plane z = const")
+            self._outlines = [one.tolist() for one in own_blocks.outlines_of(self._body)]
         except MeshError as error:
             assert self.file_key is not None
             raise contradiction(self.file_key, self.mesh or self.blocks, str(error)) from None
 
     def join(self, names: list[str], normals: np.ndarray) -> None:
-        """Let the contacts of `blocks` belong to joint sets, once: scenes that are made of this one
+        """Let the contacts of a file belong to joint sets, once: scenes that are made of this one
         share its domain. normals : of the sets [sets, 2]. Raises a contradiction."""
         from jointwave.cases.geometry.own_blocks import with_sets
         from jointwave.cases.gmsh_file import MeshError
 
+        if self._joined:
+            return
         try:
-            if self._body is not None:
-                body = with_sets(self._body, self._groups, names, normals)
-                self._given, self._body = _plane_rock(body, names), None
+            self._body = with_sets(self._body, self._groups, names, normals)
+            self._joined = True
         except MeshError as error:
-            raise contradiction("domain.blocks", self.blocks, str(error)) from None
+            assert self.file_key is not None
+            raise contradiction(self.file_key, self.mesh or self.blocks, str(error)) from None
 
     @property
-    def given(self) -> "GivenRock | None":
-        """The rock of the file `mesh` or `blocks`; None where joint sets cut the domain."""
-        return self._given
+    def given(self) -> Complex | None:
+        """The blocks of the file `mesh` or `blocks`; None where joint sets cut the domain."""
+        return self._body
 
     @property
     def mesh_path(self) -> Path | None:
@@ -133,13 +132,13 @@ class Domain(Table):
     def holes(self) -> list[Any]:
         """All openings: corners of polygons or boxes, m, and prisms."""
         own = [*self.openings, *self.prisms]
-        return own if self.given is None else self.given.outlines[1:]
+        return own if self.given is None else self._outlines[1:]
 
     @property
     def corners(self) -> list[list[float]]:
         """Corners of the domain, m, without its openings."""
         if self.given is not None:
-            return self.given.outlines[0]
+            return self._outlines[0]
         if self.outline is not None:
             return self.outline
         assert self.size is not None
@@ -147,16 +146,3 @@ class Domain(Table):
             return [list(one) for one in product(*((0.0, x) for x in self.size))]
         x, y = self.size
         return [[0.0, 0.0], [x, 0.0], [x, y], [0.0, y]]
-
-
-def _plane_rock(body: "Complex", names: list[str]) -> "GivenRock":
-    """Return blocks in the plane as the cells of a file; names : of the joint sets."""
-    from jointwave.cases.geometry.own_blocks import around_rock
-    from jointwave.cases.gmsh_file import MeshError
-    from jointwave.cases.partition.given import GivenRock
-
-    if body.dim != 2:
-        raise MeshError("has blocks in space, must have polygons in the plane z = const")
-    ends, cells, loops = around_rock(body)
-    joints = {name.lower(): np.flatnonzero(body.joint_set == k) for k, name in enumerate(names)}
-    return GivenRock(body.vertices, ends, cells, body.count, loops, joints)
