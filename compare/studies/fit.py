@@ -109,11 +109,11 @@ def fit(
 
 
 def planned(scene: AnyScene, free: Sequence[str], solver: str | None = None) -> Run:
-    """Return the runs of a fit: usually some `STEPS` of its search for each key, with derivatives
+    """Return the runs of a fit: usually some `STEPS` of its search, with derivatives of each key
     from both sides."""
     keys = free_keys(list(free), scene)
     first = changed(scene, {k.key: k.start for k in keys if k.key != CLOCK})
-    count = 2 + STEPS * len(keys) * (2 * len(keys) + 1)
+    count = 2 + STEPS * (2 * len(keys) + 1)
     return Run("", first, _solver_of(first, solver), count)
 
 
