@@ -22,8 +22,8 @@ def sets(dim: int, **keys: object) -> list[JointSet]:
             {"dip": dip, "dip_direction": turn} for dip, turn in ((8, 40), (85, 95), (82, 5))
         ]
     tables = [{"name": str(k), **LAW, **one} for k, one in enumerate(attitudes)]
-    found = [JointSet.model_validate(one, context={"dimension": dim}) for one in tables]
-    return [*found[:-1], found[-1].model_copy(update=keys)]
+    tables[-1] |= keys
+    return [JointSet.model_validate(one, context={"dimension": dim}) for one in tables]
 
 
 def main() -> None:
