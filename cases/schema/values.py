@@ -110,9 +110,10 @@ def check_dimension(
     whether the scene is in space."""
     in_space = dimension(info) == 3
     for key in plane if in_space else space:
-        if key in table.model_fields_set:
+        value, field = getattr(table, key), type(table).model_fields[key]
+        if value != field.get_default(call_default_factory=True):
             allowed = f"has no meaning in {'space' if in_space else 'the plane'}"
-            raise contradiction_here(key, getattr(table, key), allowed)
+            raise contradiction_here(key, value, allowed)
     return in_space
 
 
