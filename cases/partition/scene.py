@@ -62,7 +62,7 @@ def blocks_of_domain(
     """
     shape = shape_of(domain)
     if domain.given is not None:
-        body = domain.given
+        body = domain.cells([one.name for one in sets])
     else:
         body = _body(domain, shape, sets, further, regions)
     found = blocks_of(body, shape.tolerance)

@@ -1,5 +1,6 @@
 """The domain of a rock mass, and how it is cut into blocks."""
 
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -7,7 +8,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
-from jointwave.cases.geometry.cell_complex import Complex
+from jointwave.cases.geometry.cell_complex import NO_SET, Complex
 from jointwave.cases.schema.values import (
     Number,
     Offset,
@@ -57,7 +58,7 @@ class Domain(Table):
 
     _mesh_path: Path | None = PrivateAttr(default=None)
     _outlines: Any = PrivateAttr(default=None)
-    _joined: bool = PrivateAttr(default=False)
+    _sets: list[str] | None = PrivateAttr(default=None)  # names of all joint sets
     _groups: Any = PrivateAttr(default=None)
     _body: Any = PrivateAttr(default=None)
 
@@ -104,11 +105,11 @@ class Domain(Table):
         from jointwave.cases.geometry.own_blocks import with_sets
         from jointwave.cases.gmsh_file import MeshError
 
-        if self._joined:
+        if self._sets is not None:
             return
         try:
             self._body = with_sets(self._body, self._groups, names, normals)
-            self._joined = True
+            self._sets = names
         except MeshError as error:
             assert self.file_key is not None
             raise contradiction(self.file_key, self.mesh or self.blocks, str(error)) from None
@@ -117,6 +118,13 @@ class Domain(Table):
     def given(self) -> Complex | None:
         """The blocks of the file `mesh` or `blocks`; None where joint sets cut the domain."""
         return self._body
+
+    def cells(self, names: list[str]) -> Complex:
+        """Return the blocks of the file with the joints of some of the scene's sets."""
+        assert self._body is not None
+        known = {name: k for k, name in enumerate(names)}
+        number = np.array([*(known.get(name, NO_SET) for name in self._sets or []), NO_SET])
+        return replace(self._body, joint_set=number[self._body.joint_set])
 
     @property
     def mesh_path(self) -> Path | None:

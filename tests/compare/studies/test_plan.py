@@ -308,7 +308,7 @@ def test_a_reference_that_does_not_know_itself_well_enough_judges_nothing(monkey
     exact = solve("jointed-bar", plain(scene))
     rms = float(np.sqrt((exact.stress**2).mean()))
     bounded = exact.assign(stress_error=("stress_y", [2e-4 * rms]))
-    monkeypatch.setattr(references, "solve", lambda name, asked: bounded)
+    monkeypatch.setattr(references, "solved", lambda name, asked: (bounded, 0.0))
     monkeypatch.setattr(references, "_solutions", {})
     with pytest.raises(SceneError, match=r"jointed-bar is known to 0.02 %, not to 0.01 %"):
         plan(scene, 1e-3)
