@@ -122,8 +122,9 @@ class Domain(Table):
     def cells(self, names: list[str]) -> Complex:
         """Return the blocks of the file with the joints of some of the scene's sets."""
         assert self._body is not None
-        known = {name: k for k, name in enumerate(names)}
-        number = np.array([*(known.get(name, NO_SET) for name in self._sets or []), NO_SET])
+        known = {name.lower(): k for k, name in enumerate(names)}
+        joints = self._sets if self._sets is not None else self._groups or []
+        number = np.array([*(known.get(name.lower(), NO_SET) for name in joints), NO_SET])
         return replace(self._body, joint_set=number[self._body.joint_set])
 
     @property
