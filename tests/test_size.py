@@ -187,7 +187,9 @@ def test_a_large_file_of_curves_is_refused(tmp_path, limit):
     """By what its header says, before its numbers are read."""
     path = tmp_path / "run.nc"
     time = np.arange(20_000.0)
-    xr.Dataset({"stress": ("time", time)}, {"time": time}).to_netcdf(path, engine="scipy")
+    held = {"stress": (("stress_y", "time"), time[None])}
+    one = xr.Dataset(held, {"time": time, "stress_y": [1.0]})
+    one.to_netcdf(path, engine="scipy")
     assert read_netcdf(path, 3).time.values.size == 20_000
     limit(1e-4)
     with pytest.raises(ValueError, match=r"cannot be read as NetCDF: .*would need"):

@@ -1,5 +1,6 @@
 """Whole processes, timed in turns: misfits, stepping rates, and ratios to ours by round."""
 
+import json
 import os
 import platform
 import subprocess
@@ -13,7 +14,6 @@ from job import Job, environment_of
 
 from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.compare.runs.timings import processor
-from jointwave.compare.studies.summary import cell
 
 FINEST = "jointed-bar"  # intact rock with every joint resolved
 LONGEST = 600  # s
@@ -130,7 +130,10 @@ def missing_row(curve: str, solves: str, reason: str) -> dict:
 
 def frame(rows: list[dict]) -> pd.DataFrame:
     """Return the rows as a table; a value that a row does not have stays empty."""
-    cells = [{key: cell(value) for key, value in row.items()} for row in rows]
+    cells = [
+        {k: json.dumps(v) if isinstance(v, list | dict) else v for k, v in row.items()}
+        for row in rows
+    ]
     return pd.DataFrame(cells, columns=list(COLUMNS))
 
 
