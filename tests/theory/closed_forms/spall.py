@@ -25,7 +25,7 @@ from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.blocks.system import chain, contact_forces
 from jointwave.compare.exact.conditions import drive
-from jointwave.compare.exact.linear import _gauss, _load_on_nodes, twins
+from jointwave.compare.exact.linear import _load_on_nodes, gauss, twins
 
 PIECES = 400  # of a polygon
 REFINEMENTS = 2  # each by PIECES / 4
@@ -156,7 +156,7 @@ def advance(
     from scipy.sparse.linalg import expm_multiply
 
     A = csr_array(matrix)
-    nodes, weights = _gauss(h, 12 + ceil(h * abs(A).sum(axis=0).max()))
+    nodes, weights = gauss(h, 12 + ceil(h * abs(A).sum(axis=0).max()))
     share = _load_on_nodes(load, np.array([start]), h, nodes, weights)[0]
     G = np.stack([expm_multiply(A * (h - s), vector) for s in nodes], axis=1)
     return expm_multiply(A * h, state) + G @ share
