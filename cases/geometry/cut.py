@@ -48,7 +48,7 @@ class Planes:
         cls,
         normal: np.ndarray,
         family: np.ndarray,
-        places: list[np.ndarray] | np.ndarray,
+        places: np.ndarray,
         first: np.ndarray,
         base: np.ndarray,
         joint_set: int,

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from jointwave.cases.errors import SceneError
+from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.geometry.measure import widths
 from jointwave.cases.material.rigid_blocks import rigid_joints
@@ -21,85 +22,67 @@ from jointwave.cases.partition.scene import (
 from jointwave.cases.schema.region import REST
 from jointwave.cases.schema.rock_mass import RockMass
 
+#: What the sizes of blocks and of contacts are, by the number of dimensions.
+SIZES = {2: ("area", "length"), 3: ("volume", "area")}
+
 
 def block_summary(scene: RockMass) -> dict[str, Any]:
-    """Cut a rock mass into blocks and return what they are, SI.
+    """Cut a rock mass into blocks and return what they are, SI; in the plane with its rigid blocks.
 
-    rigid_blocks_lack : the part of the intact rock's stiffness that rigid blocks cannot have; None
-    where there are no rigid blocks. Raises SceneError where the rock cannot be cut.
+    Raises SceneError where the rock cannot be cut.
     """
-    if scene.in_space:
-        return _in_space(scene)
-    found, further = partition_of(scene), further_sets(scene)
-    sides = np.bincount(found.boundary.side, minlength=len(found.sides))
+    partition = None if scene.in_space else partition_of(scene)
+    found = partition.blocks if partition is not None else blocks_of_scene(scene)
+    size, contact_size = SIZES[scene.domain.dimension]
+    width, sides = widths(found.body, found.body.halves()), shape_of(scene.domain).sides
+    number = np.bincount(found.boundary.side, minlength=len(sides))
+
+    def block(one: np.intp) -> dict[str, Any]:
+        about = {size: float(found.volume[one]), "width": float(width[one])}
+        return about | {"centroid": found.centroid[one].tolist()}
+
+    def of_set(index: int) -> dict[str, Any]:
+        own = found.contacts.joint_set == index
+        area = float(found.contacts.area[own].sum())
+        return {"contacts": int(own.sum()), contact_size: area}
+
+    facts = {
+        "blocks": found.count,
+        "contacts": len(found.contacts),
+        size: float(found.volume.sum()),
+        "smallest": block(found.volume.argmin()),
+        "largest": block(found.volume.argmax()),
+        "regions": _regions(scene, found) if scene.regions or scene.in_space else {},
+        "joint_sets": {one.name: of_set(k) for k, one in enumerate(scene.joint_sets)},
+        "cuts_through_rock": of_set(NO_SET),
+        "boundary": {name: int(n) for name, n in zip(sides, number, strict=True) if n},
+        "bytes_at_most": partition_bytes(scene),
+    }
+    return facts if partition is None else facts | _rigid_blocks(scene, partition)
+
+
+def _rigid_blocks(scene: RockMass, partition: Partition) -> dict[str, Any]:
+    """Return how many rigid blocks there are, the bytes of all blocks, and what part of the intact
+    rock's stiffness rigid blocks cannot have; None where there are no rigid blocks."""
+    further = further_sets(scene)
     try:
         lack = rigid_joints(scene, further).left_over
     except SceneError:
         lack = None
-    return {
-        "blocks": found.count,
-        "contacts": len(found.contacts),
-        "rigid_blocks": partition_of(scene, further).count if further else found.count,
-        "area": float(found.area.sum()),
-        "smallest": _block(found, int(np.argmin(found.area))),
-        "largest": _block(found, int(np.argmax(found.area))),
-        "regions": _regions(scene, found) if scene.regions else {},
-        "joint_sets": {name: _of_set(found, k) for k, name in enumerate(found.joint_sets)},
-        "cuts_through_rock": _of_set(found, NO_SET),
-        "boundary": {name: int(n) for name, n in zip(found.sides, sides, strict=True) if n},
-        "bytes": found.nbytes,
-        "bytes_at_most": partition_bytes(scene),
-        "rigid_blocks_lack": lack,
-    }
+    count = partition_of(scene, further).count if further else partition.count
+    return {"rigid_blocks": count, "bytes": partition.nbytes, "rigid_blocks_lack": lack}
 
 
-def _regions(scene: RockMass, found: Partition) -> dict[str, Any]:
+def _regions(scene: RockMass, found: Blocks) -> dict[str, Any]:
     """Return what each region is, with what is left as "rock"."""
     facts, names = {}, [*(one.name for one in scene.regions), REST]
     for k, (name, rock) in enumerate(zip(names, rocks_of(scene), strict=True)):
-        own, elastic = found.region % len(names) == k, elastic_rock(rock)
-        size = {"blocks": int(own.sum()), "area": float(found.area[own].sum())}
-        facts[name] = size | {"p_speed": float(elastic.p_speed), "s_speed": float(elastic.s_speed)}
+        own, elastic = found.body.region % len(names) == k, elastic_rock(rock)
+        size = float(found.volume[own].sum())
+        facts[name] = {
+            "blocks": int(own.sum()),
+            SIZES[scene.domain.dimension][0]: size,
+            "p_speed": float(elastic.p_speed),
+            "s_speed": float(elastic.s_speed),
+        }
     return facts
-
-
-def _of_set(found: Partition, index: int) -> dict[str, Any]:
-    own = found.contacts.joint_set == index
-    return {"contacts": int(own.sum()), "length": float(found.contacts.length[own].sum())}
-
-
-def _block(found: Partition, one: int) -> dict[str, Any]:
-    x = found.corners_of(one)
-    along = np.roll(x, -1, axis=0) - x
-    across = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.hypot(*along.T)[:, None]
-    width = float(np.ptp(x @ across.T, axis=0).min())
-    where = found.centroid[one].tolist()
-    return {"area": float(found.area[one]), "width": width, "centroid": where}
-
-
-def _in_space(scene: RockMass) -> dict[str, Any]:
-    """Return the blocks of a scene in space, and the speeds of the waves of its intact rock."""
-    found, facts = blocks_of_scene(scene), dict[str, Any]()
-    width, contacts, outer = widths(found.body, found.body.halves()), found.contacts, found.boundary
-    for name, one in (("smallest", found.volume.argmin()), ("largest", found.volume.argmax())):
-        size = {"volume": float(found.volume[one]), "width": float(width[one])}
-        facts[name] = size | {"centroid": found.centroid[one].tolist()}
-    names = [*(one.name for one in scene.regions), REST]
-    for k, (name, rock) in enumerate(zip(names, rocks_of(scene), strict=True)):
-        own, speed = found.body.region % len(names) == k, elastic_rock(rock)
-        size = {"blocks": int(own.sum()), "volume": float(found.volume[own].sum())}
-        speeds = {"p_speed": float(speed.p_speed), "s_speed": float(speed.s_speed)}
-        facts.setdefault("regions", {})[name] = size | speeds
-    for k, name in enumerate([*(one.name for one in scene.joint_sets), "cuts through rock"]):
-        own = contacts.joint_set == (k if k < len(scene.joint_sets) else NO_SET)
-        size = {"contacts": int(own.sum()), "area": float(contacts.area[own].sum())}
-        facts.setdefault("joint_sets", {})[name] = size
-    sides = shape_of(scene.domain).sides
-    number = np.bincount(outer.side, minlength=len(sides))
-    return {
-        "blocks": found.count,
-        "contacts": len(contacts),
-        "volume": float(found.volume.sum()),
-        **facts,
-        "boundary": {name: int(n) for name, n in zip(sides, number, strict=True) if n},
-    }

@@ -70,17 +70,6 @@ def blocks_of_domain(
     return replace(found, boundary=replace(found.boundary, side=side))
 
 
-def cut(
-    domain: Domain,
-    sets: Sequence[JointSet],
-    further: Sequence[JointSet] = (),
-    regions: Sequence[Region] = (),
-) -> Partition:
-    """Return what `blocks_of_domain` does in the plane as arrays for engines."""
-    blocks = blocks_of_domain(domain, sets, further, regions)
-    return plane_partition(blocks, outline_of(domain).sides, sets)
-
-
 def _body(
     domain: Domain,
     shape: Outline | Box,

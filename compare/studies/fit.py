@@ -25,7 +25,7 @@ from jointwave.compare.studies.fit_keys import CLOCK, FreeKey, changed, free_key
 from jointwave.compare.studies.fit_trials import started, trials_of
 from jointwave.compare.studies.forecast import Run
 
-STEPS = 6
+STEPS = 6  # of a search that converges, usually
 SHORT = 200  # blocks, up to which matrix exponentials are cheap
 POOR = 0.2  # misfit above which another start may fit better
 NEAR = 1e-6  # of an unknown to its bound

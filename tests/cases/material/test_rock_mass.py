@@ -13,10 +13,10 @@ from jointwave.cases.material.block_stiffness import block_stiffness, jump
 from jointwave.cases.material.contact_points import contact_points, points_of
 from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus, inertia
 from jointwave.cases.partition.periodic import periodic_contacts
-from jointwave.cases.partition.scene import cut
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.plane import IntactRock
+from tests.cases.partition.polygons import cut
 
 DENSITY, NORMAL, SHEAR = 2500.0, 1.1e10, 4e9
 

@@ -1,9 +1,19 @@
-"""Widths and angles of many convex polygons, independent of how these are cut.
+"""Domains cut in the plane; widths and angles of polygons, independent of how these are cut.
 
 Polygons are given by their corners [k, 2], counter-clockwise, and the first corner of each [n + 1].
 """
 
 import numpy as np
+
+from jointwave.cases.partition.blocks import plane_partition
+from jointwave.cases.partition.outline import outline_of
+from jointwave.cases.partition.scene import blocks_of_domain
+
+
+def cut(domain, sets, further=(), regions=()):
+    """A domain in blocks, as arrays."""
+    blocks = blocks_of_domain(domain, sets, further, regions)
+    return plane_partition(blocks, outline_of(domain).sides, sets)
 
 
 def following(first: np.ndarray) -> np.ndarray:

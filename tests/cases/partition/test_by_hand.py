@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jointwave.cases.partition.scene import cut
+from tests.cases.partition.polygons import cut
 
 #: The first joints of a set with spacing 1, scatter 0.25 and seed 7: the same everywhere.
 PINNED = [1.1083358519779094, 2.4523330943513377, 3.691083905563523]

@@ -7,8 +7,9 @@ import pytest
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError, NonConvex, Sliver
 from jointwave.cases.partition.periodic import periodic_contacts
-from jointwave.cases.partition.scene import block_count, cut, partition_bytes, partition_of
+from jointwave.cases.partition.scene import block_count, partition_bytes, partition_of
 from jointwave.cases.read import load_variant
+from tests.cases.partition.polygons import cut
 
 SCENE = """\
 title = "rows"

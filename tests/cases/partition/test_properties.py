@@ -11,10 +11,10 @@ from jointwave.cases.geometry.sets import _scattered
 from jointwave.cases.partition.joints import direction_of, plane_sets
 from jointwave.cases.partition.locate import block_at, contact_at
 from jointwave.cases.partition.outline import outline_of
-from jointwave.cases.partition.scene import cut, least_width
+from jointwave.cases.partition.scene import least_width
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
-from tests.cases.partition.polygons import following, least_angles, owner, widths
+from tests.cases.partition.polygons import cut, following, least_angles, owner, widths
 
 LAW = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 HEXAGON = [[0.0, 1.0], [4.0, 0.0], [9.0, 0.5], [10.0, 4.0], [6.0, 7.0], [1.0, 5.0]]

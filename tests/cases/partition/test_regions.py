@@ -5,8 +5,8 @@ import pytest
 
 from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError
 from jointwave.cases.partition.regions import ROCK, region_at
-from jointwave.cases.partition.scene import cut
 from jointwave.cases.schema.region import Region
+from tests.cases.partition.polygons import cut
 
 
 def region(name, y, dip=0.0, x=0.0):

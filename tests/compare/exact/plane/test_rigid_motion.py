@@ -8,7 +8,6 @@ from jointwave.cases.histories import Ricker
 from jointwave.cases.material.contact_points import contact_points
 from jointwave.cases.material.rock_mass import Stiffness
 from jointwave.cases.partition.periodic import periodic_contacts
-from jointwave.cases.partition.scene import cut
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.compare.exact.linear import twins
@@ -20,6 +19,7 @@ from jointwave.compare.exact.plane.rigid_motion import (
     stiffness_of,
     viscosity_of,
 )
+from tests.cases.partition.polygons import cut
 
 K_N, K_S, DENSITY = 9e9, 4e9, 2500.0
 SIDES = {"left": (4.0, 0.0), "bottom": (0.0, 3.0)}
