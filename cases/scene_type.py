@@ -19,8 +19,9 @@ def refuse_space(scene: AnyScene) -> None:
     """Raise SceneError for a scene in space, which no engine solves yet."""
     if scene.in_space:
         allowed = f"is of a scene in space: {NOT_SOLVED}; jointwave explain and picture show it"
-        size = scene.domain.size  # type: ignore[union-attr]
-        raise SceneError(scene.where, "domain.size", size, allowed)
+        domain = scene.domain  # type: ignore[union-attr]
+        key = domain.file_key or "domain.size"
+        raise SceneError(scene.where, key, domain.size or domain.blocks, allowed)
 
 
 def pillar_of(scene: AnyScene, what: str = "this") -> Scene:

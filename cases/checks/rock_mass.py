@@ -62,7 +62,7 @@ def _check_support(scene: RockMass, outline: Outline | Box) -> None:
 
 def _join(scene: RockMass, _: Outline | Box) -> None:
     """Let the contacts of a file be those of the joint sets."""
-    normals = [attitude(one, 2)[0] for one in scene.joint_sets]
+    normals = [attitude(one, scene.domain.dimension)[0] for one in scene.joint_sets]
     scene.domain.join([one.name for one in scene.joint_sets], np.array(normals))
 
 

@@ -10,9 +10,12 @@ from jointwave.cases.geometry.measure import (
     Outlines,
     cell_moments,
     facet_moments,
+    outline_moments,
     outlines,
     united,
 )
+
+CONVEX = 1e-6  #: of its area: what the outline of facets may lack that are together convex
 
 
 @dataclass(frozen=True)
@@ -129,6 +132,27 @@ def _grouped(
 ) -> Facets:
     """Return facets, those of one key (int array [m, n]) as one piece; moments : of all facets."""
     first, group, order = _groups(key)
+    found = _united(body, facets, first, group, order, moments, tolerance)
+    size = outline_moments(found.outlines).size
+    apart = np.abs(size - found.area) > CONVEX * found.area
+    if apart.any():  # what is left beside others of a face need not be convex, nor in one piece
+        own = np.empty(len(facets), np.int64)
+        own[order] = np.where(apart[group], order, -1)
+        first, group, order = _groups(np.column_stack([key, own]))
+        return _united(body, facets, first, group, order, moments, tolerance)
+    return found
+
+
+def _united(
+    body: Complex,
+    facets: np.ndarray,
+    first: np.ndarray,
+    group: np.ndarray,
+    order: np.ndarray,
+    moments: Moments,
+    tolerance: float,
+) -> Facets:
+    """Return facets, those of one group as one piece; for groups see `_groups`."""
     one = facets[first]
     blocks = body.sides[one]
     turned = (blocks[:, 0] == OUTSIDE) | ((blocks[:, 1] != OUTSIDE) & (blocks[:, 0] > blocks[:, 1]))

@@ -172,6 +172,13 @@ def around_rock(body: Complex) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]
 
 
 def outlines_of(body: Complex) -> list[np.ndarray]:
-    """Return the corners of rock in the plane and of each of its openings, float arrays [n, 2]."""
+    """Return the corners of rock in the plane, or of the box around it in space, and of each of its
+    openings, float arrays [n, d], m."""
+    if body.dim == 3:
+        facet, vertex = _corners(body).T
+        outer = np.where(body.inner, -1, body.side)[facet]
+        ends = np.stack([body.vertices.min(axis=0), body.vertices.max(axis=0)])
+        openings = (body.vertices[np.unique(vertex[outer == k])] for k in range(1, outer.max() + 1))
+        return [np.stack(np.meshgrid(*ends.T), axis=-1).reshape(-1, 3), *openings]
     ends, _, loops = around_rock(body)
     return [body.vertices[ends[loop, 0]] for loop in loops]

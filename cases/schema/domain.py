@@ -42,9 +42,10 @@ class Domain(Table):
     #: a gmsh file (.msh) instead: groups "rock..." of triangles or quadrilaterals, and "joint NAME"
     #: of the edges of each joint set; its outline and openings are those of the rock
     mesh: str | None = None
-    #: a file of convex blocks instead: VTU (.vtu) with a cell, gmsh (.msh) with a surface, COMPAS
-    #: (.json) with a mesh or OBJ (.obj) with an object a block; contacts belong to the set of their
-    #: gmsh group "joint NAME", in files without groups to the set whose dip is nearest to theirs
+    #: a file of convex blocks instead: VTU (.vtu) with a cell, gmsh (.msh) with a surface or a
+    #: volume, COMPAS (.json) with a mesh or OBJ (.obj) with an object a block; blocks in space make
+    #: the scene one in space. Contacts belong to the set of their gmsh group "joint NAME", in files
+    #: without groups to the set whose planes are nearest to theirs
     blocks: str | None = None
     #: m, corners of polygons to be excavated; in space of boxes, two opposite corners each
     openings: list[list[Point]] = Field(default_factory=list)
@@ -74,6 +75,8 @@ class Domain(Table):
                 raise contradiction("domain.openings", None, f"are part of {key}")
             self._mesh_path = named_file(info, key, self.mesh or self.blocks or "")
             self._read(self._mesh_path)
+            if info.context:
+                info.context["dimension"] = self.dimension  # of all tables after this one
         return self
 
     @property
@@ -92,8 +95,6 @@ class Domain(Table):
                 own_blocks.complex_of_blocks if self.mesh is None else own_blocks.complex_of_cells
             )
             self._body, self._groups = read(path)
-            if self._body.dim != 2:
-                raise MeshError("has blocks in space, must have polygons in the plane z = const")
             self._outlines = [one.tolist() for one in own_blocks.outlines_of(self._body)]
         except MeshError as error:
             assert self.file_key is not None
@@ -101,7 +102,7 @@ class Domain(Table):
 
     def join(self, names: list[str], normals: np.ndarray) -> None:
         """Let the contacts of a file belong to joint sets, once: scenes that are made of this one
-        share its domain. normals : of the sets [sets, 2]. Raises a contradiction."""
+        share its domain. normals : of the sets [sets, d]. Raises a contradiction."""
         from jointwave.cases.geometry.own_blocks import with_sets
         from jointwave.cases.gmsh_file import MeshError
 
@@ -135,11 +136,11 @@ class Domain(Table):
     @property
     def dimension(self) -> int:
         """The number of dimensions, 2 or 3."""
-        return 3 if self.size is not None and len(self.size) == 3 else 2
+        return len(self.size) if self.size is not None else len(self.corners[0])
 
     @property
     def holes(self) -> list[Any]:
-        """All openings: corners of polygons or boxes, m, and prisms."""
+        """All openings: corners of polygons or boxes, or of those in a file, m, and prisms."""
         own = [*self.openings, *self.prisms]
         return own if self.given is None else self._outlines[1:]
 
@@ -151,7 +152,7 @@ class Domain(Table):
         if self.outline is not None:
             return self.outline
         assert self.size is not None
-        if self.dimension == 3:
+        if len(self.size) == 3:
             return [list(one) for one in product(*((0.0, x) for x in self.size))]
         x, y = self.size
         return [[0.0, 0.0], [x, 0.0], [x, y], [0.0, y]]

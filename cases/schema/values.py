@@ -67,8 +67,8 @@ def dimension(info: ValidationInfo) -> int:
 def _per_axis(vector: list[float], info: ValidationInfo) -> list[float]:
     """Refuse vectors of another dimension than the domain's."""
     if len(vector) != dimension(info):
-        size = "has three" if dimension(info) == 3 else "has not three"
-        context = {"allowed": f"{dimension(info)} numbers: domain.size {size}"}
+        where = "in space" if dimension(info) == 3 else "in the plane"
+        context = {"allowed": f"{dimension(info)} numbers: the domain is {where}"}
         raise PydanticCustomError("axes", "must have {allowed}", context)
     return vector
 

@@ -46,8 +46,9 @@ def sketch_of(scene: RockMass, explode: float = 0.0) -> Sketch:
     """
     blocks, domain = blocks_of_scene(scene), box_of(scene.domain)
     walls = [corners for one, _ in domain.solids for corners, _ in one.faces()]
+    walls += scene.domain.holes if domain.given is not None else []
     behind = np.concatenate(walls)[:, 1].mean() if walls else -np.inf
-    shift = explode * (blocks.centroid - domain.high / 2)
+    shift = explode * (blocks.centroid - (domain.low + domain.high) / 2)
     faces, colours = _faces(scene, blocks, blocks.centroid[:, 1] > behind, shift)
     places = np.concatenate(faces) @ ONTO.T
     low, high = places.min(axis=0), places.max(axis=0)
@@ -72,7 +73,7 @@ def sketch_of(scene: RockMass, explode: float = 0.0) -> Sketch:
     if scene.gravity is not None:
         at, down = np.array([low[0] + 2 * margin, high[1] - 0.8 * margin]), scene.gravity.direction
         shapes += gravity(at, ONTO @ down, 0.6 * margin, scene.gravity.acceleration)
-    words = " × ".join(f"{x:g}" for x in domain.high) + f" m, {blocks.count:,} blocks"
+    words = " × ".join(f"{x:g}" for x in domain.high - domain.low) + f" m, {blocks.count:,} blocks"
     words += f", moved apart by {explode:g} of their distance" if explode else ""
     words += "\ncut open through the middle of the openings" if walls else ""
     image = _rendered(faces, colours, low, high) if by_pyvista else None
@@ -140,18 +141,19 @@ def _rendered(
 def _sources(scene: RockMass, domain: Box, wide: float) -> Iterator[Artist]:
     """Yield the arrows of waves, and of loads on sides and at points; wide : by how much the blocks
     are farther apart."""
-    middle, length = domain.high / 2, LENGTH * float(domain.high.max())
+    middle, half = (domain.low + domain.high) / 2, (domain.high - domain.low) / 2
+    length = LENGTH * 2 * float(half.max())
     for wave in scene.waves:
         n = np.array(wave.direction)
         with np.errstate(divide="ignore"):
-            tail = middle - (wide * float(np.min(middle / np.abs(n))) + 1.1 * length) * n
+            tail = middle - (wide * float(np.min(half / np.abs(n))) + 1.1 * length) * n
         yield arrow(ONTO @ tail, ONTO @ (tail + length * n))
         yield note(ONTO @ (tail - 0.3 * length * n), wave.kind, "center")
         if wave.polarisation is not None:
             yield shaking(ONTO @ tail, ONTO @ wave.polarisation, length)
     for load in (one for one in scene.loads if one.opening is None):
         inwards = -domain.normals()[load.side][0] if load.side else np.array(load.direction)
-        at = middle * (1 - inwards) if load.side else np.array(load.at)
+        at = middle - half * inwards if load.side else np.array(load.at)
         at = middle + wide * (at - middle)
         if load.kind == "base":
             yield shaking(ONTO @ at, ONTO @ load.direction, 1.5 * length)

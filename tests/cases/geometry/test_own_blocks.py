@@ -9,11 +9,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import blocks_of
 from jointwave.cases.geometry.cell_complex import box
 from jointwave.cases.geometry.cut import Planes, cut
+from jointwave.cases.geometry.measure import outline_moments
 from jointwave.cases.geometry.own_blocks import complex_of_cells, complex_of_file, outlines_of
 from jointwave.cases.gmsh_file import MeshError
+from jointwave.cases.partition.box import SIDES as SIDES_OF_BOX
+from jointwave.cases.partition.scene import blocks_of_scene, shape_of
+from jointwave.cases.read import load
 
 TOLERANCE = 1e-9  # m
 
@@ -229,6 +234,60 @@ def test_a_face_that_is_touched_in_its_middle_is_one_of_both(tmp_path):
     assert found.volume == pytest.approx([1.0, 0.125])
     assert found.contacts.area == pytest.approx([0.25]) and found.contacts.joint_set == [0]
     assert found.boundary.area.sum() == pytest.approx(6 + 5 * 0.25 - 0.25)
+    assert outline_moments(found.boundary.outlines).size == pytest.approx(found.boundary.area)
+
+
+def test_an_edge_that_is_touched_in_its_middle_is_in_two_parts_beside(tmp_path):
+    (tmp_path / "two.obj").write_text(obj(square(0, 0, 3), square(1, 3)))
+    body = complex_of_file(tmp_path / "two.obj", [], np.empty((0, 2)))
+    found = blocks_of(body, TOLERANCE).boundary
+    beside = found.normal[:, 1] * (found.blocks[:, 0] == 0) > 0.5
+    assert sorted(found.outlines.corners.reshape(-1, 2, 2)[beside].tolist()) == [
+        [[1.0, 3.0], [0.0, 3.0]],
+        [[3.0, 3.0], [2.0, 3.0]],
+    ]
+
+
+SCENE = """
+title = "a wall"
+domain = { blocks = "wall.KIND" }
+rock = { density = 2600.0, intact_modulus = 5e10 }
+gravity = {}
+boundaries = { bottom = "fixed" }
+time = { duration = 6e-3 }
+record = { points = [[2.3, 0.5, 1.75]] }
+
+[[joint_sets]]
+name = "bed"
+dip = 0.0
+normal_stiffness = 2e10
+shear_stiffness = 8e9
+
+[[joint_sets]]
+name = "head"
+dip = 90.0
+dip_direction = 90.0
+normal_stiffness = 3e10
+shear_stiffness = 8e9
+"""
+
+
+@pytest.mark.parametrize("kind", WRITERS)
+def test_a_scene_of_polyhedra_is_one_in_space(kind, tmp_path):
+    """Its sides are the faces on the box around it; here it begins at no origin."""
+    expected, away = bricks(3), np.array([0.5, 0.25, -0.125])
+    solids = [[face + away for face in faces] for faces in polygons(expected)]
+    WRITERS[kind](tmp_path / f"wall.{kind}", solids)
+    (tmp_path / "wall.toml").write_text(SCENE.replace("KIND", kind))
+    (scene,) = load(tmp_path / "wall.toml")
+    assert scene.in_space and scene.gravity.direction == [0.0, 0.0, -1.0]
+    assert np.ptp(scene.domain.corners, axis=0) == pytest.approx([4.0, 1.0, 2.0])
+    found = blocks_of_scene(scene)
+    assert found.count == expected.count and len(found.contacts) == len(expected.contacts)
+    area = np.bincount(found.boundary.side, found.boundary.area, minlength=len(SIDES_OF_BOX))
+    assert area == pytest.approx([2, 2, 8, 8, 4, 4, 0], rel=1e-12)
+    of_bed = found.contacts.joint_set == 0
+    assert found.contacts.area[of_bed].sum() == pytest.approx(3 * 4.0)
 
 
 def test_openings_are_sides_from_left_to_right(tmp_path):
@@ -414,3 +473,48 @@ def test_cells_of_a_mesh_are_whole_but_at_joints(tmp_path):
     meshio.gmsh.write(tmp_path / "c.msh", mesh, "2.2", binary=False)
     with pytest.raises(MeshError, match=r"1 edges coincide .* the first near \[1, 0.5\]"):
         complex_of_cells(tmp_path / "c.msh")
+
+
+STEP = [(CUBE, SIDES), ([(x + 1, y, z / 2) for x, y, z in CUBE], SIDES)]
+ON_STEP = SCENE.replace("KIND", "obj").replace(
+    "[2.3, 0.5, 1.75]", "[0.5, 0.5, 0.9], [1.5, 0.5, 0.4]"
+)
+
+
+def scene_of(folder, blocks, *change):
+    (folder / "wall.obj").write_text(blocks)
+    (folder / "wall.toml").write_text(ON_STEP.replace(*change))
+    return load(folder / "wall.toml")[0]
+
+
+def test_what_lies_on_no_side_of_the_box_is_the_outline(tmp_path):
+    """A step: its lower top is no side of the box."""
+    scene = scene_of(tmp_path, obj(*STEP), "bottom =", 'outline = "quiet", bottom =')
+    outer = blocks_of_scene(scene).boundary
+    area = dict(zip(SIDES_OF_BOX, np.bincount(outer.side, outer.area), strict=True))
+    assert area == pytest.approx(
+        {"left": 1, "right": 0.5, "front": 1.5, "back": 1.5, "bottom": 2, "top": 1, "outline": 1.5}
+    )
+    assert shape_of(scene.domain).normals()["outline"].tolist() == [[0, 0, 1], [1, 0, 0]]
+
+
+@pytest.mark.parametrize(
+    "blocks, change, words",
+    [
+        (
+            obj(*STEP),
+            ("0.5, 0.5, 0.9", "1.5, 0.5, 0.9"),
+            "record.points[0] = [1.5, 0.5, 0.9]: must",
+        ),
+        (obj(*STEP), ("0.5, 0.5, 0.9", "0.5, 0.5"), "must have 3 numbers: the domain is in space"),
+        (obj((CUBE, SIDES)), ("bottom =", 'outline = "fixed", bottom ='), "is not a side of this"),
+        (obj(*STEP, STEP[1]), ("", ""), "domain.blocks = 'wall.obj': '1' and '2' overlap near ["),
+        (obj(square(0, 0)), ("", ""), "must have 2 numbers: the domain is in the plane"),
+        (obj(*STEP), ("dip = 90.0", "dip = 0.0"), "as near to set 'bed' as to 'head'"),
+    ],
+)
+def test_scenes_of_polyhedra_that_do_not_fit_are_refused(blocks, change, words, tmp_path):
+    with pytest.raises(SceneError) as error:
+        scene_of(tmp_path, blocks, *change)
+    said = [str(one) for one in error.value.each]
+    assert any(words in line for line in said) and "\n" not in "".join(said)

@@ -91,7 +91,7 @@ def test_joints_dip_where_they_say(dip, towards):
 MISTAKES = {
     "a point of the plane": (
         {"record": {"points": [[1.0, 1.0]]}},
-        "record.points[0] = [1.0, 1.0]: must have 3 numbers: domain.size has three",
+        "record.points[0] = [1.0, 1.0]: must have 3 numbers: the domain is in space",
     ),
     "a direction of the plane": (
         {"waves": [WAVE | {"direction": [0.0, 1.0]}], "boundaries": QUIET},

@@ -78,6 +78,45 @@ def test_explain_counts_its_blocks(jointwave):
     assert facts["effects"]["gravity"]["active"] and "steps" not in facts
 
 
+OWN = """
+title = "two bricks on one"
+domain = { blocks = "bricks.obj" }
+rock = { density = 2600.0, intact_modulus = 5e10 }
+boundaries = { bottom = "fixed" }
+gravity = {}
+time = { duration = 6e-3 }
+record = { points = [[0.5, 0.5, 1.5]] }
+
+[[joint_sets]]
+name = "bed"
+dip = 0.0
+normal_stiffness = 2e10
+shear_stiffness = 8e9
+"""
+
+
+def test_so_are_blocks_of_a_file(jointwave, tmp_path):
+    """Counted, drawn and listed, and refused by what solves; bricks of 1 and 2 m, 1 m deep."""
+    lines, count = [], 0
+    faces = ("1 4 3 2", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8")
+    for left, right, low in ((0.0, 2.0, 0.0), (0.0, 1.0, 1.0), (1.0, 2.0, 1.0)):
+        lines.append(f"o {count}")
+        for z in (low, low + 1):
+            for x, y in ((left, 0.0), (right, 0.0), (right, 1.0), (left, 1.0)):
+                lines.append(f"v {x} {y} {z}")
+        lines += ["f " + " ".join(str(count + int(k)) for k in face.split()) for face in faces]
+        count += 8
+    (tmp_path / "bricks.obj").write_text("\n".join(lines))
+    (tmp_path / "own.toml").write_text(OWN)
+    words = jointwave("explain", "own.toml").out
+    assert "blocks: 3\ncontacts: 3\nvolume (m³): 4\n" in words
+    assert "left 2; right 2; front 3; back 3; bottom 1; top 2" in words
+    jointwave("picture", "own.toml", "--out", "own.svg")
+    assert "2 × 1 × 2 m, 3 blocks" in words_of("own.svg")
+    error = jointwave("run", "own.toml", code=2).err
+    assert error.endswith(f"own.toml: domain.blocks = 'bricks.obj': {SAID}\n")
+
+
 def test_it_is_drawn(jointwave):
     """With the names of what is seen: joints where blocks are apart or cut open."""
     assert jointwave("picture", WALL, "--out", "a.svg").out == "wrote a.svg\n"
