@@ -1,4 +1,5 @@
-"""Snapshots of rigid blocks: hexahedra that move by the blocks' displacement and rotation."""
+"""Snapshots of rigid blocks: their polygons, or the faces of their polyhedra, in triangles that
+move with the blocks."""
 
 from __future__ import annotations
 
@@ -8,113 +9,80 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.loads import with_load_itself
-from jointwave.cases.material.calibrate import Properties
-from jointwave.cases.sampling import interpolation
-from jointwave.cases.schema.scene import Scene
-from jointwave.dem.static import prestressed
-from jointwave.results.snapshots import SnapshotRecorder, in_space, snapshots, with_snapshots
-from jointwave.results.subcells import CORNERS
-
-CORNERS_OF_A_BLOCK = 8
+from jointwave.cases.geometry.blocks import Blocks
+from jointwave.cases.geometry.measure import Outlines
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.dem.receivers import turning
+from jointwave.results.snapshots import (
+    SnapshotRecorder,
+    in_space,
+    snapshots,
+    with_slip,
+    with_snapshots,
+)
 
 
 class BlockFrame(NamedTuple):
-    """All blocks and contacts at one instant, in the freedoms of the engine.
+    """All blocks at one instant: displacement and velocity [N, F], m and m/s, rad and rad/s, mean
+    stress [N, components], Pa, and the slip of contacts, m."""
 
-    stress : float array [N + 1], of contacts 0 .. N, Pa.
-    displacement, velocity : float arrays [N, freedoms], m and m/s: 1, along y; 3, along x, y, z; 6,
-        with rotation vectors (rad) and their rates; 7 and 6, with the quaternion, scalar last, and
-        the angular momentum (kg m2/s).
-    """
-
-    stress: np.ndarray
     displacement: np.ndarray
     velocity: np.ndarray
+    stress: np.ndarray
+    slip: np.ndarray
 
 
 class BlockRecorder(SnapshotRecorder):
     """The blocks at every snapshot of a scene; raises SceneError for too many.
 
-    step : s, over which the load is a mean; None where it is not.
+    pieces : of planes, with the block of each [n]: in the plane the blocks, in space their faces.
     """
 
     def __init__(
-        self, scene: Scene, p: Properties, capture: Callable[[int], BlockFrame], step: float | None
+        self,
+        scene: RockMass,
+        blocks: Blocks,
+        pieces: Outlines,
+        owner: np.ndarray,
+        capture: Callable[[int], BlockFrame],
     ) -> None:
-        super().__init__(scene, CORNERS_OF_A_BLOCK * p.block_count, capture)
-        self.scene, self.p, self.step = scene, p, step
-        self.at_rest = prestressed(scene, p) if scene.prestress else None
+        super().__init__(scene, len(pieces.corners), capture)
+        self.blocks, self.points = blocks, pieces.corners
+        self.joints = np.flatnonzero(blocks.contacts.of_joints(len(scene.joint_sets)))
+        self.owner = np.repeat(owner, np.diff(pieces.first))
+        self.cells, piece = triangles(pieces)
+        self.block = owner[piece]
 
     def add_to(self, result: xr.Dataset) -> xr.Dataset:
-        """Return the run's result with its snapshots."""
-        time, count = result["time"].values[:: self.every], self.p.block_count
-        corners, centres = corners_of(self.p), np.zeros((count, 1, 3))
-        centres[:, 0, 1] = self.p.centre_y
-        frames = self.frames[: len(time)]
-        motion = [corner_motion(frame, corners, self.p) for frame in frames]
-        u, v = (np.stack(x) for x in zip(*motion, strict=True))
-        if self.at_rest is not None:
-            u[..., 1] -= self.at_rest[:, None]
-        u, v = (x.reshape(len(time), -1, 3) for x in (u, v))
-        stress = np.stack([frame.stress for frame in frames])
-        if self.step is not None:
-            y = self.p.contact_y
-            contacts = interpolation(y, y.tolist())
-            stress = with_load_itself(stress.T, self.scene, contacts, time, self.step).T
-        found = snapshots(
-            time,
-            (centres + corners).reshape(-1, 3),
-            "hexahedron",
-            np.arange(count * CORNERS_OF_A_BLOCK).reshape(count, -1),
-            np.arange(count),
-            u,
-            v,
-            (stress[:, :-1] + stress[:, 1:]) / 2,
-        )
-        return with_snapshots(result, found)
+        """Return the run's result with its snapshots; displacement and slip count from the first.
+
+        The slip of joints is shown in the plane alone."""
+        time = result["time"].values[:: self.every]
+        u, v, stress, slip = (np.stack(x) for x in zip(*self.frames[: len(time)], strict=True))
+        arms = self.points - self.blocks.centroid[self.owner]
+        moved, moving = (corner_motion(x[:, self.owner], arms) for x in (u - u[0], v))
+        own = stress[:, self.block]
+        cells = self.points, "triangle", self.cells, self.block
+        found = with_snapshots(result, snapshots(time, *cells, moved, moving, own))
+        if arms.shape[1] > 2:
+            return found
+        corners = self.blocks.contacts.outlines.corners.reshape(-1, 2, 2)
+        return with_slip(found, in_space(corners[self.joints]), (slip - slip[0])[:, self.joints])
 
 
-def corners_of(p: Properties) -> np.ndarray:
-    """Return the corners of blocks from their centroids, m, in VTK's order: [8, 3] of all, or [N,
-    8, 3] where they differ."""
-    unit = np.array(CORNERS["hexahedron"]) - 0.5
-    if p.masses is None:
-        return unit * [p.side, p.spacing, p.side]
-    sides = np.stack(np.broadcast_arrays(p.side, np.diff(p.contact_y), p.side), axis=-1)
-    return unit * sides[:, None]
+def triangles(pieces: Outlines) -> tuple[np.ndarray, np.ndarray]:
+    """Return triangles between the first corner of each piece and each of its edges that are not at
+    it [cells, 3], and the piece of each [cells]."""
+    first = pieces.first
+    piece = np.repeat(np.arange(len(first) - 1), np.diff(first))
+    corner = np.arange(len(piece))
+    at = corner[(corner > first[piece]) & (corner < first[piece + 1] - 1)]
+    return np.stack([first[piece[at]], at, at + 1], axis=1), piece[at]
 
 
-def corner_motion(
-    frame: BlockFrame, corners: np.ndarray, p: Properties
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return displacement (m) and velocity (m/s) of every block's corners, each [N, 8, 3]."""
-    freedoms = frame.displacement.shape[1]
-    along = slice(min(freedoms, 3))
-    u, v = (in_space(x[:, along])[:, None] for x in (frame.displacement, frame.velocity))
-    u, v = (np.broadcast_to(x, (len(x), *corners.shape[-2:])) for x in (u, v))
-    if freedoms == 6:
-        turn, spin = frame.displacement[:, None, 3:], frame.velocity[:, None, 3:]
-        return u + np.cross(turn, corners), v + np.cross(spin, corners)
-    if freedoms == 7:
-        turn = frame.displacement[:, None, 3:]
-        arms = corners + turning(turn, corners)
-        return u + turning(turn, corners), v + np.cross(spin_of(turn, frame.velocity, p), arms)
-    return u, v
-
-
-def turning(quaternion: np.ndarray, r: np.ndarray) -> np.ndarray:
-    """Return what unit quaternions [..., 4], scalar last, add to vectors [..., 3] that they turn.
-
-    Rr - r = 2 q x (q x r + w r), which keeps the digits of small turns.
-    """
-    q, w = quaternion[..., :3], quaternion[..., 3:]
-    return 2 * np.cross(q, np.cross(q, r) + w * r)
-
-
-def spin_of(turn: np.ndarray, velocity: np.ndarray, p: Properties) -> np.ndarray:
-    """Return the angular velocities [N, 1, 3], rad/s, of angular momenta velocity[:, 3:]."""
-    momentum, back = velocity[:, None, 3:], turn * [-1, -1, -1, 1]
-    own = momentum + turning(back, momentum)
-    own = own / [p.inertia_across, p.inertia_along, p.inertia_across]
-    return own + turning(turn, own)
+def corner_motion(motion: np.ndarray, arms: np.ndarray) -> np.ndarray:
+    """Return the motion of corners [..., k, d] of that of their blocks [..., k, F], by the arms
+    from their centroids [k, d], m."""
+    dim, freedoms = arms.shape[1], motion.shape[-1]
+    turned = np.einsum("kaf,...kf->...ka", turning(arms, freedoms), motion)
+    return motion[..., :dim] + turned

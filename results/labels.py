@@ -1,12 +1,13 @@
 """Names and units of every variable and coordinate of a result, for labels of plots."""
 
-#: Dimensions of receivers, and the coordinates with their positions.
+#: Dimensions of receivers, and the coordinates with their positions; z in space.
 RECEIVERS = {
     "stress_y": ("stress_y",),
     "velocity_y": ("velocity_y",),
-    "point": ("point_x", "point_y"),
-    "joint_point": ("joint_point_x", "joint_point_y"),
+    "point": ("point_x", "point_y", "point_z"),
+    "joint_point": ("joint_point_x", "joint_point_y", "joint_point_z"),
 }
+AXES = ("x", "y", "z")
 
 #: By name: (long name, unit; "" if it is not a physical quantity).
 LABELS = {
@@ -17,11 +18,14 @@ LABELS = {
     "point": ("number of the point", ""),
     "point_x": ("x of the point", "m"),
     "point_y": ("y of the point", "m"),
+    "point_z": ("z of the point", "m"),
     "joint_point": ("number of the point of a joint", ""),
     "joint_point_x": ("x of the point of a joint", "m"),
     "joint_point_y": ("y of the point of a joint", "m"),
+    "joint_point_z": ("z of the point of a joint", "m"),
     "stress_component": ("component of the stress", ""),
     "joint_axis": ("normal or shear", ""),
+    "slip_axis": ("direction of the slip", ""),
     "traction": ("traction of the joint, compression positive", "Pa"),
     "gap": ("opening of the joint, positive when open", "m"),
     "slip": ("slip of the joint", "m"),
@@ -60,3 +64,10 @@ def label(name: str) -> dict[str, str]:
     """Return the attributes `long_name` and, for a physical quantity, `units` of a variable."""
     long_name, unit = LABELS[name]
     return {"long_name": long_name} | ({"units": unit} if unit else {})
+
+
+def stress_components(dim: int) -> dict[str, tuple[int, int]]:
+    """Return the components of a stress in so many dimensions, xx, yy, ..., xy, ..., with their
+    indices."""
+    pairs = [*((k, k) for k in range(dim)), *((0, 1), (1, 2), (0, 2))[: dim * (dim - 1) // 2]]
+    return {AXES[i] + AXES[j]: (i, j) for i, j in pairs}

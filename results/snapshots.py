@@ -13,6 +13,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.size import LARGEST_VARIABLE
 from jointwave.results.arrays import copied
 from jointwave.results.dataset import labelled
+from jointwave.results.labels import stress_components
 
 AXES = {1: [1], 2: [0, 1], 3: [0, 1, 2]}  # of x, y, z, by the number of components
 DIMENSIONS = {
@@ -35,7 +36,7 @@ class Snapshots(NamedTuple):
     block : int32 array [cells], the block of each cell, 0 at the loaded end.
     displacement, velocity : float arrays [snapshots, nodes, 3], m and m/s.
     stress : float array [snapshots, cells], Pa, axial, compression positive; of a rock mass
-    [snapshots, cells, 3], xx, yy, xy; None if unknown.
+    [snapshots, cells, components], those of `stress_components`; None if unknown.
     """
 
     time: np.ndarray
@@ -138,7 +139,8 @@ def with_snapshots(result: xr.Dataset, s: Snapshots) -> xr.Dataset:
         "component": ("component", list("xyz")),
     }
     if s.stress is not None and s.stress.ndim == 3:
-        coords["stress_component"] = ("stress_component", ["xx", "yy", "xy"])
+        names = list(stress_components(3 if s.stress.shape[2] == 6 else 2))
+        coords["stress_component"] = ("stress_component", names)
     found = result.assign(labelled(variables)).assign_coords(labelled(coords))
     found["field_cells"].attrs["kind"] = s.kind
     return found

@@ -19,6 +19,7 @@ from jointwave.compare.misfit.metrics import (
 )
 from jointwave.compare.misfit.places import UNITS, shown
 from jointwave.compare.misfit.weight import FAINT
+from jointwave.results.labels import stress_components
 
 VELOCITY, STRESS = "PPV", "peak stress"
 _OF = {"velocity": VELOCITY, "stress": STRESS, "shear": STRESS}
@@ -58,11 +59,14 @@ def peak_differences(one: xr.Dataset, other: xr.Dataset) -> dict[str, PeakDiffer
 
 
 def _peak(components: dict[str, np.ndarray]) -> float:
-    """Return the largest length of a vector, or principal value of a tensor in the plane; a
-    component of a tensor that nothing excites is absent."""
-    if components.keys() & {"xx", "yy", "xy"}:
-        xx, yy, xy = (components.get(name, np.zeros(1)) for name in ("xx", "yy", "xy"))
-        return float((np.abs(xx + yy) / 2 + np.hypot((xx - yy) / 2, xy)).max())
+    """Return the largest length of a vector, or principal value of a tensor; a component of a
+    tensor that nothing excites is absent."""
+    if components.keys() <= (tensor := stress_components(3)).keys():
+        values = np.zeros((*next(iter(components.values())).shape, 3, 3))
+        for name, wave in components.items():
+            i, j = tensor[name]
+            values[:, i, j] = values[:, j, i] = wave
+        return float(np.abs(np.linalg.eigvalsh(values)).max())
     return float(np.sqrt(sum(wave**2 for wave in components.values())).max())
 
 

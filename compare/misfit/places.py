@@ -1,8 +1,8 @@
 """Places of waveforms: one component of one quantity at one receiver.
 
-A receiver of a pillar lies at y, one of a rock mass at (x, y). In labels and column headers a
-place is `stress@20`, `velocity_x@20.25` or `velocity_x@[20, 30]`; in words "velocity x at [20, 30]
-m".
+A receiver of a pillar lies at y, one of a rock mass at (x, y), in space at (x, y, z). In labels and
+column headers a place is `stress@20`, `velocity_x@20.25` or `velocity_x@[20, 30]`; in words
+"velocity x at [20, 30] m".
 """
 
 import re
@@ -12,10 +12,11 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
-from jointwave.results.labels import RECEIVERS
+from jointwave.results.labels import AXES, RECEIVERS, stress_components
+from jointwave.results.rock_mass import JOINT_AXES
 
 #: Dimensions of components in results.
-COMPONENT_DIMENSIONS = ("axis", "across", "stress_component", "joint_axis")
+COMPONENT_DIMENSIONS = ("axis", "across", "stress_component", "joint_axis", "slip_axis")
 
 #: By the number of coordinates of a receiver: the components of each quantity in labels, "" if
 #: it has only one, and the key of [record] with its receivers.
@@ -27,13 +28,16 @@ COMPONENTS: dict[int, dict[str, tuple[str, ...]]] = {
         "displacement": ("x", "y", "z"),
         "rotation": ("x", "y", "z"),
     },
-    2: {
-        "stress": ("xx", "yy", "xy"),
-        "velocity": ("x", "y"),
-        "displacement": ("x", "y"),
-        "traction": ("n", "s"),
-        "gap": ("",),
-        "slip": ("",),
+    **{
+        dim: {
+            "stress": tuple(stress_components(dim)),
+            "velocity": AXES[:dim],
+            "displacement": AXES[:dim],
+            "traction": axes,
+            "gap": ("",),
+            "slip": axes[1:] if dim == 3 else ("",),
+        }
+        for dim, axes in JOINT_AXES.items()
     },
 }
 #: Quantities of one unit, whose amplitudes are compared with each other.
@@ -47,13 +51,14 @@ QUANTITIES = tuple(quantity for unit in UNITS for quantity in unit)
 OF_SECTIONS, OF_JOINTS = ("stress", "shear"), ("traction", "gap", "slip")
 
 _NUMBER = r"[0-9.eE+-]+"
-_AT = rf"({_NUMBER})|\[\s*({_NUMBER})\s*[,\s]\s*({_NUMBER})\s*\]"
+_NEXT = rf"\s*[,\s]\s*({_NUMBER})"
+_AT = rf"({_NUMBER})|\[\s*({_NUMBER}){_NEXT}(?:{_NEXT})?\s*\]"
 LABEL = re.compile(rf"([A-Za-z]+)(?:_([a-z]+))?\s*@\s*(?:{_AT})(?:\s*m)?")
 
 
 class Place(NamedTuple):
     """A waveform's quantity, its component ("" for the only one), and its receiver's position, m:
-    (y,) in a pillar, (x, y) in a rock mass."""
+    (y,) in a pillar, (x, y) or (x, y, z) in a rock mass."""
 
     quantity: str
     component: str
@@ -89,7 +94,8 @@ class Place(NamedTuple):
     @property
     def coordinates(self) -> dict[str, float]:
         """The receiver's coordinates by name, m."""
-        return dict(zip("xy"[-len(self.at) :], self.at, strict=True))
+        axes = "y" if len(self.at) == 1 else AXES[: len(self.at)]
+        return dict(zip(axes, self.at, strict=True))
 
     @property
     def key(self) -> str:
@@ -157,7 +163,7 @@ def places_of(result: xr.Dataset, quantity: str) -> tuple[list[tuple[float, ...]
     the only one."""
     found = result[quantity]
     (receivers,) = (name for name in RECEIVERS if name in found.dims)
-    columns = [result[name].values.tolist() for name in RECEIVERS[receivers]]
+    columns = [result[name].values.tolist() for name in RECEIVERS[receivers] if name in result]
     dims = [name for name in COMPONENT_DIMENSIONS if name in found.dims]
     components = [str(one) for one in found[dims[0]].values] if dims else [""]
     return list(zip(*columns, strict=True)), components

@@ -37,7 +37,9 @@ def waveforms(
         if axis and axis not in named:
             raise SceneError("result", "axis", axis, f"must be one of {', '.join(named)}")
         found = found.isel({components: named.index(axis) if axis else int(loudest)})
-    along = np.array([result[name].values - result[name].values[0] for name in places])
+    along = np.array(
+        [result[name].values - result[name].values[0] for name in places if name in result]
+    )
     found = found.transpose(receiver, "time").rename({receiver: "receiver"})
     return found.assign_coords(distance=("receiver", np.hypot.reduce(along, axis=0)))
 

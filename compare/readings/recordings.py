@@ -115,12 +115,12 @@ def _dataset(time: np.ndarray, waves: dict[tuple[str, Where, str], np.ndarray]) 
     sizes = {0 if isinstance(at, str) else len(at) for at in places}
     if len(sizes) > 1:
         raise ValueError("must name the places of all its columns, or of none")
-    receiver = "point" if sizes == {2} else "velocity_y"
+    receiver = "point" if sizes & {2, 3} else "velocity_y"
     found = xr.Dataset(coords={"time": time, "axis": axes})
     for quantity in quantities:
         rows = [[waves[quantity, at, axis] for axis in axes] for at in places]
         found[quantity] = (receiver, "axis", "time"), np.array(rows)
-    names = zip(RECEIVERS[receiver], np.transpose(known), strict=True)
+    names = zip(RECEIVERS[receiver], np.transpose(known), strict=False)  # z in space
     found = found.assign_coords({name: (receiver, at) for name, at in names})
     return _even(found.transpose(receiver, "time", "axis"))
 

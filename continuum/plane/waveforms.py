@@ -10,11 +10,11 @@ import xarray as xr
 from jointwave.continuum.run import Run
 from jointwave.continuum.state import Samples
 from jointwave.continuum.waveforms import energy_terms, vectors
-from jointwave.results.plane import plane_dataset
+from jointwave.results.rock_mass import rock_mass_dataset
 
 
 def quantities(run: Run, samples: Samples) -> dict[str, np.ndarray]:
-    """Return what was recorded by name, as `results.plane.plane_dataset` takes it.
+    """Return what was recorded by name, as `results.rock_mass.rock_mass_dataset` takes it.
 
     Motion counts from the state at the start. Without joints nothing is known of them.
     """
@@ -37,7 +37,7 @@ def recorded(run: Run, samples: Samples, times: np.ndarray, about: dict[str, Any
     if run.scene.excavated and run.scene.gravity is None:
         terms, energy = _given_off(terms, energy)
     name, found = f"continuum-{run.rock}", quantities(run, samples)
-    return plane_dataset(run.scene, name, times, found, energy, terms, **about)
+    return rock_mass_dataset(run.scene, name, times, found, energy, terms, **about)
 
 
 def _given_off(

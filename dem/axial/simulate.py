@@ -22,7 +22,7 @@ from jointwave.dem.axial.stability import highest_speed
 from jointwave.dem.axial.start import start
 from jointwave.dem.axial.state import State
 from jointwave.dem.fragments import with_fragments
-from jointwave.dem.snapshots import BlockFrame, BlockRecorder
+from jointwave.dem.pillar_snapshots import BlockFrame, BlockRecorder
 from jointwave.dem.static import since_prestress
 from jointwave.dem.time_loop import Run, followed, refuse_beyond_bounds, versions
 from jointwave.numerics.divergence import guard, look

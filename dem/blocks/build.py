@@ -18,6 +18,7 @@ from jointwave.dem.blocks.links import Links, links_of
 from jointwave.dem.blocks.model import Blocks, KernelFlags
 from jointwave.dem.blocks.stability import critical_plane_step
 from jointwave.dem.blocks.tiles import Contacts, contacts_of
+from jointwave.dem.receivers import Faces, frames_of
 from jointwave.joints.law import Law, parts_of
 from jointwave.joints.normal import gap_under
 
@@ -117,6 +118,19 @@ def contacts(blocks: RigidBlocks) -> Contacts:
         law=links.column if varied else None,
         carried=None if blocks.scene.prestress is None else carried(blocks),
         second=second,
+    )
+
+
+def faces_of(blocks: RigidBlocks) -> Faces:
+    """Return the contacts as they are read."""
+    links, excess = blocks.links, np.append(blocks.joints.excess, np.zeros((2, 1)), axis=1)
+    centre, edge = (links.start + links.end) / 2, links.end - links.start
+    return Faces(
+        blocks=links.blocks,
+        area=np.hypot(*edge.T),
+        frame=frames_of(links.normal),
+        arm=np.stack([centre - links.beside_i, centre - links.beside_j], axis=1),
+        excess=excess[:, np.minimum(links.column, excess.shape[1] - 1)].T,
     )
 
 

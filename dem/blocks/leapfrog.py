@@ -22,7 +22,7 @@ from jointwave.numerics.atomic import give_way, peek, post
 from jointwave.numerics.cache_lines import zeros
 from jointwave.numerics.denormals import flush_denormals, restore_denormals
 from jointwave.numerics.jit import jitted
-from jointwave.results.plane import TERMS
+from jointwave.results.rock_mass import TERMS
 
 
 class PlaneSamples(NamedTuple):

@@ -18,7 +18,7 @@ import numpy as np
 from jointwave.dem.blocks.tiles import LANES, START, Contacts
 from jointwave.joints.law import Law, LawFlags
 from jointwave.numerics.cache_lines import zeros
-from jointwave.results.plane import TERMS
+from jointwave.results.rock_mass import TERMS
 
 
 class KernelFlags(NamedTuple):

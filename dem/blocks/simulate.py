@@ -13,8 +13,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.dem.blocks.bounds import highest_energy, motion_of_contacts
 from jointwave.dem.blocks.leapfrog import PlaneSamples, march, samples_for
 from jointwave.dem.blocks.model import PlaneState, state_at_rest
-from jointwave.dem.blocks.record import quantities
-from jointwave.dem.blocks.snapshots import PlaneRecorder
+from jointwave.dem.blocks.recording import recorder, waveforms
 from jointwave.dem.blocks.start import start
 from jointwave.dem.blocks.system import PlaneSystem, prepared
 from jointwave.dem.time_loop import Run, followed, refuse_beyond_bounds, versions
@@ -28,7 +27,7 @@ from jointwave.numerics.small_motion import (
 )
 from jointwave.numerics.time_loop import Checkpointer
 from jointwave.results.arrays import size_of
-from jointwave.results.plane import plane_dataset
+from jointwave.results.rock_mass import rock_mass_dataset
 
 MOST_OF_DRIVE = 2_000_000  # numbers: forces on held blocks in memory at a time
 
@@ -48,15 +47,15 @@ def simulate(
     monitor = guard(highest_energy(system, state))
     built = perf_counter()
     step(system, state, samples, 0, 0)
-    recorder = _recorder(system, state)
+    snapshots = recorder(system, state)
     compiled = perf_counter()
 
     def result(count: int) -> xr.Dataset:
-        found = plane_dataset(
+        found = rock_mass_dataset(
             scene,
             "dem",
             time.times[:count],
-            quantities(system, system.receivers, samples, count),
+            waveforms(system, samples, count),
             None if samples.energy is None else samples.energy[:, :count],
             model="rigid blocks",
             scheme="leapfrog",
@@ -74,7 +73,7 @@ def simulate(
             seconds_stepping=perf_counter() - compiled,
             versions=versions(),
         )
-        return found if recorder is None else recorder.add_to(found)
+        return found if snapshots is None else snapshots.add_to(found)
 
     def march_samples(first: int, last: int) -> None:
         step(system, state, samples, first * time.stride, last * time.stride)
@@ -89,7 +88,7 @@ def simulate(
 
     parts = (state, samples, monitor)
     run = Run(time, system.blocks.partition.count, march_samples, check, parts)
-    return followed(run, result, progress, recorder, keeper)
+    return followed(run, result, progress, snapshots, keeper)
 
 
 def moved_apart(system: PlaneSystem, state: PlaneState) -> Moved | None:
@@ -109,13 +108,6 @@ def moved_apart(system: PlaneSystem, state: PlaneState) -> Moved | None:
     i, j = links.blocks[k].tolist()
     place = tuple(((links.start[k] + links.end[k]) / 2).tolist())
     return Moved(i, j if j < count else -1, float(by[k]), float(size[k]), place)
-
-
-def _recorder(system: PlaneSystem, state: PlaneState) -> PlaneRecorder | None:
-    """Return the recorder of snapshots; None, and nothing imported, without snapshots."""
-    if system.blocks.scene.record.fields is None:
-        return None
-    return PlaneRecorder(system, state)
 
 
 def step(

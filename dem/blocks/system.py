@@ -11,13 +11,20 @@ from jointwave.cases.material.quiet_sides import borne, impedances
 from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes, waveform_bytes
 from jointwave.cases.sampling import Clock, clock
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.dem.blocks.build import RigidBlocks, constants, contacts, form_of, rigid_blocks
+from jointwave.dem.blocks.build import (
+    RigidBlocks,
+    constants,
+    contacts,
+    faces_of,
+    form_of,
+    rigid_blocks,
+)
 from jointwave.dem.blocks.edges import dashpots, on_freedoms, points_on
 from jointwave.dem.blocks.model import PlaneModel, held_by
-from jointwave.dem.blocks.receivers import BlockReceivers, receivers_of
 from jointwave.dem.blocks.shaking import Shaking, shaking
 from jointwave.dem.blocks.sources import Sources, load_pattern, on_sides, reactions
 from jointwave.dem.blocks.waves import incoming
+from jointwave.dem.receivers import Receivers, receivers_of
 from jointwave.dem.time_loop import thread_count
 from jointwave.joints.law import table_of
 
@@ -39,7 +46,7 @@ class PlaneSystem(NamedTuple):
     time: Clock
     critical: float
     model: PlaneModel
-    receivers: BlockReceivers
+    receivers: Receivers
     sources: Sources
     resistance: np.ndarray
     bearing: np.ndarray
@@ -56,7 +63,7 @@ def prepared(scene: RockMass, incident: IncidentField | None = None) -> PlaneSys
     blocks = rigid_blocks(scene)
     time, critical = clock_of(blocks)
     field: IncidentField = free_field(scene) if incident is None else incident
-    receivers = receivers_of(scene, blocks.partition, blocks.links)
+    receivers = receivers_of(scene, blocks.partition.blocks, faces_of(blocks), 3)
     sources, resistance, bearing = held_blocks(blocks, time, field)
     moving = shaking(scene, blocks.links.walls, time.dt)
     form = form_of(blocks, len(sources.rows) > 0 or scene.excavated, moving is not None)

@@ -34,7 +34,7 @@ CONTACT_ROWS = 6
 MOVED, RATE, NOW = range(0, 9 * L, 3 * L)
 F_N, F_T, MOMENT, STRETCH, D_N, D_T, D_M, F_X, F_Y, ON_I, ON_J = range(9 * L, 20 * L, L)
 BEFORE = 20 * L
-#: Rows of the ledger of one step, J in lanes, in the order of `results.plane.TERMS`, and AFTER
+#: Rows of the ledger of one step, J in lanes, in the order of `results.rock_mass.TERMS`, and AFTER
 #: further on what is added behind the step.
 KINETIC, ELASTIC, VISCOUS, FRICTION, FRACTURE, BOUNDARY, GRAVITY, WORK = range(0, 8 * L, L)
 AFTER = 8 * L

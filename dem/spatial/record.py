@@ -11,7 +11,7 @@ from jointwave.cases.material.calibrate import Properties
 from jointwave.cases.sampling import Clock, Interpolation
 from jointwave.cases.schema.scene import Scene
 from jointwave.dem.fragments import with_fragments
-from jointwave.dem.snapshots import BlockFrame
+from jointwave.dem.pillar_snapshots import BlockFrame
 from jointwave.dem.spatial.build import (
     buffers_for,
     build_receivers,

@@ -13,8 +13,8 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.sampling import Clock, clock
 from jointwave.cases.schema.scene import Scene
+from jointwave.dem.pillar_snapshots import BlockRecorder
 from jointwave.dem.size import refuse_large
-from jointwave.dem.snapshots import BlockRecorder
 from jointwave.dem.spatial.build import (
     buffers_for,
     build_model,

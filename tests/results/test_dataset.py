@@ -1,6 +1,7 @@
 """The one form of every result: written to NetCDF and read back without loss."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,7 +21,10 @@ from jointwave.results.dataset import (
     scene_hash,
 )
 from jointwave.results.labels import LABELS
+from jointwave.results.rock_mass import TERMS as ROCK_TERMS
+from jointwave.results.rock_mass import rock_mass_dataset
 
+CAVERN = Path(__file__).parents[2] / "cases/rock-mass/cavern.toml"
 POINTS = {"record.velocity": [19.75, 20.25]}
 
 
@@ -217,3 +221,22 @@ def test_size_is_that_of_all_arrays_in_nested_tuples():
     """Absent parts and plain numbers hold nothing."""
     parts = (np.zeros(3), None, 2.0, (np.zeros((2, 2), dtype=np.int32), (None, np.zeros(1))))
     assert size_of(parts, np.zeros(5)) == 24 + 16 + 8 + 40
+
+
+def test_a_rock_mass_in_space_has_three_axes_and_six_stresses(tmp_path):
+    (scene,) = load(CAVERN)
+    points, joints, times = len(scene.record.points), len(scene.record.joints), sample_times(scene)
+    draw, n = np.random.default_rng(2).normal, len(times)
+    shapes = {"velocity": (points, n, 3), "stress": (points, n, 6)}
+    shapes |= {"traction": (joints, n, 3), "gap": (joints, n), "slip": (joints, n, 2)}
+    values = {name: draw(size=shape) for name, shape in shapes.items()}
+    found = rock_mass_dataset(scene, "dem", times, values, draw(size=(len(ROCK_TERMS), n)))
+    assert found.axis.values.tolist() == ["x", "y", "z"]
+    assert found.stress_component.values.tolist() == ["xx", "yy", "zz", "xy", "yz", "xz"]
+    assert found.joint_axis.values.tolist() == ["n", "strike", "dip"]
+    assert found.slip_axis.values.tolist() == ["strike", "dip"]
+    at = np.stack([found[f"point_{axis}"].values for axis in "xyz"], axis=1)
+    assert at.tolist() == scene.record.points and found.energy.attrs["units"] == "J"
+    found.to_netcdf(tmp_path / "dem.nc", engine="scipy")
+    with xr.open_dataset(tmp_path / "dem.nc", engine="scipy") as back:
+        xr.testing.assert_identical(back.load(), found)

@@ -38,7 +38,7 @@ from jointwave.compare.exact.plane.rigid_motion import (
 from jointwave.compare.exact.rock_mass.conditions import beyond_linear_rock
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
-from jointwave.results.plane import plane_dataset
+from jointwave.results.rock_mass import rock_mass_dataset
 
 MOST_BLOCKS = 1000
 IN_A_PERIOD = 400  #: samples of the field per period per period
@@ -95,7 +95,7 @@ def solve(scene: RockMass) -> xr.Dataset:
     names = ("displacement", "velocity")
     values = {name: x.swapaxes(1, 2) for name, x in zip(names, found, strict=True)}
     errors = {name: bound(*pair) for name, *pair in zip(names, found, twin, strict=True)}
-    return plane_dataset(scene, SOLVER.name, times, values, errors=errors)
+    return rock_mass_dataset(scene, SOLVER.name, times, values, errors=errors)
 
 
 def _quiet(scene: RockMass, partition: Partition) -> Points:

@@ -36,7 +36,7 @@ from jointwave.compare.exact.rock_mass.conditions import (
     reflecting_side,
 )
 from jointwave.compare.solvers.record import Answer, Form, Kind, Rock, Solver, thin
-from jointwave.results.plane import plane_dataset
+from jointwave.results.rock_mass import rock_mass_dataset
 
 
 @dataclass(frozen=True)
@@ -176,7 +176,7 @@ def solve(scene: RockMass) -> xr.Dataset:
         "displacement": moved.swapaxes(1, 2),
         "stress": prestress_of(scene) - stress.swapaxes(1, 2),
     }
-    return plane_dataset(scene, SOLVER.name, times, values)
+    return rock_mass_dataset(scene, SOLVER.name, times, values)
 
 
 SOLVER = Solver(

@@ -20,7 +20,7 @@ from jointwave.compare.exact.plane.line_force import motion
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass.conditions import beyond_linear_rock, prestress_of
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
-from jointwave.results.plane import plane_dataset
+from jointwave.results.rock_mass import rock_mass_dataset
 
 #: Pieces of a Ricker wavelet, each smooth enough for the points of one integral.
 PARTS = 8
@@ -71,7 +71,7 @@ def solve(scene: RockMass) -> xr.Dataset:
     errors = {name: getattr(found, f"{name}_error") for name in values}
     known = known_until(scene)
     until: dict[str, Any] = {"known_until": known} if known < times[-1] else {}
-    return plane_dataset(scene, SOLVER.name, times, values, errors=errors, **until)
+    return rock_mass_dataset(scene, SOLVER.name, times, values, errors=errors, **until)
 
 
 def known_until(scene: RockMass) -> float:

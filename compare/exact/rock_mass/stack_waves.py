@@ -27,7 +27,7 @@ from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass.conditions import prestress_of
 from jointwave.compare.exact.rock_mass.stack import JointStack, against, begun, stack_of
 from jointwave.compare.solvers.record import Answer, Kind, Line, Rock, Solver, thin
-from jointwave.results.plane import plane_dataset
+from jointwave.results.rock_mass import rock_mass_dataset
 
 #: Causes of the engines' misfits against these waves.
 DISTANCES = {
@@ -92,7 +92,7 @@ def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Datase
     names = "velocity", "displacement", "stress"
     errors = {name: getattr(at_points, f"{name}_error") for name in names}
     errors |= {"traction": pulled, "gap": slipped[:, 0], "slip": slipped[:, 1]}
-    return plane_dataset(scene, name, times, values, errors=errors)
+    return rock_mass_dataset(scene, name, times, values, errors=errors)
 
 
 def motion_at(

@@ -7,8 +7,8 @@ from jointwave.cases.read import load_tables
 from jointwave.compare.misfit.external import read_curves
 from jointwave.compare.misfit.metrics import pairings, rms, worst
 from jointwave.compare.misfit.pairs import measure
-from jointwave.compare.misfit.places import Place, parsed, places_of
-from jointwave.results.plane import plane_dataset
+from jointwave.compare.misfit.places import Place, parsed, places_of, waveforms
+from jointwave.results.rock_mass import rock_mass_dataset
 
 JOINT = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 TABLES = {
@@ -18,6 +18,11 @@ TABLES = {
     "joint_sets": [{"name": "joint", "dip": 0.0, "through": [20.0, 20.0], **JOINT}],
     "time": {"duration": 0.01},
     "record": {"points": [[20.0, 10.0], [20.0, 30.0]], "joints": [[20.0, 20.0]], "interval": 1e-4},
+}
+SPACE = TABLES | {
+    "domain": {"size": [40.0, 40.0, 40.0]},
+    "joint_sets": [{"name": "bed", "dip": 0.0, "dip_direction": 0.0, "spacing": 5.0, **JOINT}],
+    "record": {"points": [[2.0, 1.0, 3.0], [20.0, 30.0, 4.5]], "joints": [[2.0, 2.0, 5.0]]},
 }
 TIME = 1e-4 * np.arange(101)
 WAVE = np.sin(2e3 * TIME)
@@ -39,7 +44,7 @@ def scene(**changes):
 def result(mass, scale=1.0, still=0.0, **factors):
     """Return a result in which every component is the wave, times a factor of its quantity."""
     factor = {name: scale * factors.get(name, 1.0) for name in ("velocity", "traction", "slip")}
-    fields = plane_dataset(
+    fields = rock_mass_dataset(
         mass,
         "dem",
         TIME,
@@ -70,7 +75,13 @@ def test_a_label_and_the_words_of_a_place_name_it(text, place, words):
             "gap@2",
             "shear_x@[1,2]",
         ),
-        *("velocity_z@[1,2]", "velocity_x@[1,2,3]", "velocity_x@[1]", "velocity_x@", "speed@[1,2]"),
+        *(
+            "velocity_z@[1,2]",
+            "velocity_xx@[1,2,3]",
+            "velocity_x@[1]",
+            "velocity_x@",
+            "speed@[1,2]",
+        ),
     ],
 )
 def test_what_a_kind_of_scene_does_not_record_is_no_place(text):
@@ -106,7 +117,7 @@ def test_quantities_of_one_unit_are_judged_together():
     mass, loud = scene(), np.broadcast_to(WAVE[:, None], (2, 101, 2))
     quantities = {"displacement": loud, "slip": 1e-3 * WAVE[None]}
     one, other = (
-        plane_dataset(mass, "dem", TIME, {**quantities, "slip": slip})
+        rock_mass_dataset(mass, "dem", TIME, {**quantities, "slip": slip})
         for slip in (2e-3 * WAVE[None], quantities["slip"])
     )
     faint = {p.place.quantity: p.faint for p in pairings(one, other)}
@@ -155,3 +166,17 @@ def test_columns_of_a_file_are_called_by_places(tmp_path, separator, quotes):
     np.testing.assert_allclose(velocity, 1e-3 * np.arange(4))
     traction = curves.waveforms[Place("traction", "n", (20.0, 20.0))]
     np.testing.assert_allclose(traction, 2e6 * np.arange(4))
+
+
+def test_places_in_space_have_three_coordinates():
+    scene = load_tables(SPACE)
+    points, joints, n = len(scene.record.points), len(scene.record.joints), len(TIME)
+    draw = np.random.default_rng(1).normal
+    values = {"stress": draw(size=(points, n, 6)), "slip": draw(size=(joints, n, 2))}
+    found = waveforms(rock_mass_dataset(scene, "dem", TIME, values))
+    assert len(found) == 6 * points + 2 * joints
+    for place, wave in found.items():
+        assert parsed(str(place)) == place and list(place.coordinates) == ["x", "y", "z"]
+        assert len(wave) == n
+    assert parsed("velocity_z@[1, 2, 3] m") == ("velocity", "z", (1.0, 2.0, 3.0))
+    assert parsed("velocity_z@[1, 2]") is None and parsed("slip@[1,2,3]") is None

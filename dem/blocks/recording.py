@@ -1,0 +1,76 @@
+"""What is recorded of rigid blocks in the plane, as `dem.receivers` and `dem.record` take it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jointwave.cases.geometry.measure import Outlines
+from jointwave.dem.blocks.build import faces_of
+from jointwave.dem.blocks.leapfrog import PlaneSamples, march, samples_for
+from jointwave.dem.blocks.model import PlaneState
+from jointwave.dem.blocks.system import PlaneSystem
+from jointwave.dem.blocks.tile import ALONG, BEND, FORCE_X, FORCE_Y, GAP, SLIP
+from jointwave.dem.receivers import Faces, Receivers, everywhere
+from jointwave.dem.record import jumps, mean_stress, quantities
+from jointwave.dem.snapshots import BlockFrame, BlockRecorder
+from jointwave.results.arrays import copied
+
+
+def waveforms(system: PlaneSystem, samples: PlaneSamples, count: int) -> dict[str, np.ndarray]:
+    """Return the first `count` samples of a run by name."""
+    displacement, velocity, contact = (x[..., :count] for x in samples[:3])
+    receivers = system.receivers
+    outside = acting(system, receivers, velocity)
+    contact = in_frames(receivers.faces, contact)
+    return quantities(receivers, displacement, velocity, contact, outside)
+
+
+def recorder(system: PlaneSystem, state: PlaneState) -> BlockRecorder | None:
+    """Return the recorder of snapshots; None without."""
+    scene, partition = system.blocks.scene, system.blocks.partition
+    if scene.record.fields is None:
+        return None
+    receivers = everywhere(partition.area, faces_of(system.blocks))
+    model = system.model._replace(places=receivers.places, watched=receivers.watched)
+
+    def capture(sample: int) -> BlockFrame:
+        """Return all blocks by a sample with the step that it needs, on a copy of the state."""
+        step = sample * system.time.stride
+        drive = None if model.held is None else system.sources.drive(step, step + 1)
+        shake = None if system.shaking is None else system.shaking(np.array([step]))
+        found = samples_for(model, 1)
+        march(model, copied(state), found, 1, (0, 1), drive, shake)
+        outside = acting(system, receivers, found.velocity, sample)
+        contact = in_frames(receivers.faces, found.contact)
+        stress, slip = mean_stress(receivers, contact, outside), jumps(receivers, contact)
+        moved, moving = found.displacement[..., 0], found.velocity[..., 0]
+        return BlockFrame(moved, moving, stress[:, 0], slip[:, 0, 1])
+
+    pieces = Outlines(partition.corners, partition.first)
+    return BlockRecorder(scene, partition.blocks, pieces, receivers.places, capture)
+
+
+def in_frames(faces: Faces, samples: np.ndarray) -> np.ndarray:
+    """Return samples of the watched contacts [w, rows, n] in the contacts' frames."""
+    force = np.einsum("cak,ckn->can", faces.frame, samples[:, [FORCE_X, FORCE_Y]])
+    spread = np.stack([-samples[:, BEND], samples[:, ALONG]], axis=1)
+    return np.concatenate([force, spread, samples[:, [GAP, SLIP]]], axis=1)
+
+
+def acting(
+    system: PlaneSystem, receivers: Receivers, velocity: np.ndarray, first: int = 0
+) -> np.ndarray:
+    """Return the sums of arm times force of sides and loads on the places [r, 2, 2, n], N m.
+
+    velocity : of the places [r, 3, n]. first : number of the first sample.
+    """
+    places, count = receivers.places, velocity.shape[-1]
+    found, rows = np.zeros((len(places), 2, 2, count)), system.sources.rows
+    held = np.flatnonzero(np.isin(places, rows))
+    if len(held):
+        row = np.searchsorted(rows, places[held])
+        steps = system.time.stride * (first + np.arange(count))
+        sums = np.moveaxis(system.sources.sums(steps, row)[..., 2:], 0, -1)
+        sums -= np.einsum("hkq,hqn->hkn", system.resistance[row, 2:], velocity[held])
+        found[held] = sums.reshape(len(held), 2, 2, -1)
+    return found

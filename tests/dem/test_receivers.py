@@ -1,0 +1,294 @@
+"""Receivers, mean stresses and snapshots of rigid blocks in one, two and three dimensions."""
+
+import numpy as np
+import pytest
+from scipy.linalg import null_space
+
+from jointwave.cases.geometry.blocks import blocks_of
+from jointwave.cases.geometry.cell_complex import box
+from jointwave.cases.geometry.locate import blocks_at, contact_at, sides_at
+from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
+from jointwave.dem.receivers import (
+    Faces,
+    everywhere,
+    frames_of,
+    read_by,
+    stencils_in_rock,
+    stencils_on_joints,
+    turning,
+)
+from jointwave.dem.record import at_points, jumps, mean_stress, quantities
+from jointwave.dem.snapshots import corner_motion, triangles
+from jointwave.results.labels import stress_components
+
+SIZE, TOLERANCE = np.array([6.0, 5.0, 4.0]), 1e-9
+DIMENSIONS = pytest.mark.parametrize("dim", (1, 2, 3))
+ROTATIONS = {1: 0, 2: 1, 3: 3}
+
+
+def blocks(dim, tilt=0.2):
+    """A box cut by one set across each axis, at random angles: convex blocks of any shape."""
+    draw, sets = np.random.default_rng(dim), []
+    for k, axis in enumerate(np.eye(dim)):
+        normal = axis + tilt * draw.uniform(-1, 1, dim) * (1 - axis)
+        normal /= np.linalg.norm(normal)
+        along = np.linalg.svd(normal[None])[2][1:]
+        sets.append(PlaneSet(f"set {k}", normal, along, 1.3, through=SIZE[:dim] / 2.1))
+    return blocks_of(cut_by_sets(box(np.zeros(dim), SIZE[:dim]), sets, TOLERANCE), TOLERANCE)
+
+
+def all_faces(found):
+    """Contacts, and the boundary as contacts with walls; part of their compliance is the rock's."""
+    parts, pairs, arms = (found.contacts, found.boundary), [], []
+    for part in parts:
+        i, j = part.blocks.T
+        arms.append(
+            np.stack([part.centroid - found.centroid[k] for k in (i, np.maximum(j, 0))], axis=1)
+        )
+        pairs.append(np.where(part.blocks < 0, found.count, part.blocks))
+    normal, area = (np.concatenate([getattr(p, k) for p in parts]) for k in ("normal", "area"))
+    faces = Faces(
+        np.concatenate(pairs),
+        area,
+        frames_of(normal),
+        np.concatenate(arms),
+        np.tile([1e-10, 3e-10], (len(area), 1)),
+    )
+    centroid, second = (
+        np.concatenate([getattr(p, k) for p in parts]) for k in ("centroid", "second_moment")
+    )
+    return faces, centroid, second
+
+
+def inside(found, count, seed=0):
+    """Places in the rock."""
+    dim = found.body.dim
+    return np.random.default_rng(seed).uniform(0.01, 0.99, (count, dim)) * SIZE[:dim]
+
+
+@DIMENSIONS
+def test_frames_are_right_handed(dim):
+    normal = np.random.default_rng(1).normal(size=(20, dim))
+    normal = np.concatenate([normal / np.linalg.norm(normal, axis=1)[:, None], np.eye(dim)])
+    frame = frames_of(normal)
+    np.testing.assert_allclose(
+        frame @ frame.swapaxes(1, 2), np.tile(np.eye(dim), (len(normal), 1, 1)), atol=1e-15
+    )
+    assert (frame[:, 0] == normal).all()
+    if dim > 1:
+        np.testing.assert_allclose(np.linalg.det(frame), 1, rtol=1e-14)
+
+
+@DIMENSIONS
+def test_an_affine_motion_of_blocks_in_rock_is_that_of_every_point(dim):
+    """Cuts through intact rock: u = b + A x from the centroids, whatever the blocks' rotations."""
+    found, draw = blocks(dim), np.random.default_rng(2).normal
+    points, freedoms = inside(found, 40), dim + ROTATIONS[dim]
+    sides = sides_at(found, points, 0)
+    stencils = stencils_in_rock(found, points, sides, 0)
+    receivers = read_by(found.volume, all_faces(found)[0], freedoms, stencils, [])
+    A, b = draw(size=(dim, dim)), draw(size=dim)
+    motion = draw(size=(found.count, freedoms, 1))
+    motion[:, :dim, 0] = b + found.centroid @ A.T
+    moved = at_points(receivers, motion[receivers.places])
+    np.testing.assert_allclose(
+        moved[:, 0], b + points @ A.T, rtol=0, atol=1e-13 * np.abs(A).max() * 10
+    )
+    assert (np.diff(receivers.places) > 0).all() and len(receivers.places) > dim
+
+
+@DIMENSIONS
+def test_points_between_joints_move_with_their_rigid_block(dim):
+    """A rigid motion of all blocks is that of every point; on joints the mean of both sides."""
+    found, draw = blocks(dim), np.random.default_rng(3).normal
+    points, freedoms = inside(found, 20), dim + ROTATIONS[dim]
+    on = found.contacts.centroid[:5]
+    points = np.concatenate([points, on])
+    sides = sides_at(found, points, dim)
+    assert [len(own) for own in sides] == [1] * 20 + [2] * 5
+    stencils = stencils_in_rock(found, points, sides, dim)
+    receivers = read_by(found.volume, all_faces(found)[0], freedoms, stencils, [])
+    b, phi = draw(size=dim), draw(size=freedoms - dim)
+
+    def rigid(x):
+        return b + turning(x, freedoms)[..., dim:] @ phi
+
+    motion = np.concatenate([rigid(found.centroid), np.tile(phi, (found.count, 1))], axis=1)
+    moved = at_points(receivers, motion[receivers.places, :, None])
+    np.testing.assert_allclose(moved[:, 0], rigid(points), rtol=0, atol=1e-13)
+    if dim == 3:
+        np.testing.assert_allclose(rigid(points), b + np.cross(phi, points), rtol=0, atol=1e-13)
+    other = draw(size=(found.count, freedoms, 1))  # blocks move against each other
+    moved = at_points(receivers, other[receivers.places])[20:, 0]
+    i, j = (
+        other[k, :dim, 0]
+        + np.einsum("naf,nf->na", turning(on - found.centroid[k], freedoms), other[k, :, 0])
+        for k in found.contacts.blocks[:5].T
+    )
+    np.testing.assert_allclose(moved, (i + j) / 2, rtol=0, atol=1e-13)
+
+
+def field(dim):
+    """A stress in equilibrium that is linear in space, compression positive: S [d, d] at the
+    origin and its gradient [d, d, d]."""
+    draw, pairs = np.random.default_rng(4).normal, stress_components(dim)
+    basis = []
+    for i, j in pairs.values():
+        for k in range(dim):
+            one = np.zeros((dim, dim, dim))
+            one[i, j, k] = one[j, i, k] = 1
+            basis.append(one)
+    basis = np.array(basis)
+    balance = np.einsum("mijj->im", basis)
+    free = null_space(balance)
+    gradient = (
+        np.tensordot(free @ draw(size=free.shape[1]), basis, 1) if free.size else 0 * basis[0]
+    )
+    S = draw(size=(dim, dim))
+    return S + S.T, gradient
+
+
+def samples_of(faces, centroid, second, S, gradient):
+    """Samples of contacts under a linear stress: forces, and first moments of the traction."""
+    at = S + np.einsum("ijk,ck->cij", gradient, centroid)
+    force = faces.area[:, None] * np.einsum("cai,cij,cj->ca", faces.frame, at, faces.frame[:, 0])
+    moment = np.einsum(
+        "cbk,ckl,cai,ijl,cj->cba",
+        faces.frame[:, 1:], second, faces.frame, gradient, faces.frame[:, 0],
+    )  # fmt: skip
+    rows = [force, moment.reshape(len(force), -1), np.zeros_like(force)]
+    return np.concatenate(rows, axis=1)[:, :, None]
+
+
+@DIMENSIONS
+@pytest.mark.parametrize("uniform", (True, False))
+def test_a_stress_in_equilibrium_is_the_mean_stress_of_every_block(dim, uniform):
+    """By the divergence theorem V mean(S) = sum of x F, first moments of tractions included: of a
+    stress that is linear in space that at the centroid."""
+    found = blocks(dim, tilt=0.5)
+    faces, centroid, second = all_faces(found)
+    S, gradient = field(dim)
+    gradient = 0 * gradient if uniform else gradient
+    contact = samples_of(faces, centroid, second, S, gradient)
+    stress = mean_stress(everywhere(found.volume, faces), contact)
+    expected = S + np.einsum("ijk,nk->nij", gradient, found.centroid)
+    expected = np.stack([expected[:, i, j] for i, j in stress_components(dim).values()], axis=1)
+    np.testing.assert_allclose(stress[:, 0], expected, rtol=0, atol=1e-10 * np.abs(expected).max())
+
+
+@DIMENSIONS
+def test_what_acts_from_outside_counts_as_contacts_do(dim):
+    """The boundary as walls, or as sums of arm times force."""
+    found = blocks(dim)
+    faces, centroid, second = all_faces(found)
+    contact = samples_of(faces, centroid, second, *field(dim))
+    whole = mean_stress(everywhere(found.volume, faces), contact)
+    inner = np.arange(len(found.contacts))
+    outside = np.zeros((found.count, dim, dim, 1))
+    outer = everywhere(found.volume, faces)
+    only = contact.copy()
+    only[inner] = 0
+    part = mean_stress(outer, only)[:, 0] * -found.volume[:, None]
+    for (i, j), values in zip(stress_components(dim).values(), part.T, strict=True):
+        outside[:, i, j, 0] = outside[:, j, i, 0] = values
+    inner_faces = Faces(*(array[inner] for array in faces))
+    found_stress = mean_stress(everywhere(found.volume, inner_faces), contact[inner], outside)
+    np.testing.assert_allclose(found_stress, whole, rtol=0, atol=1e-12 * np.abs(whole).max())
+
+
+@DIMENSIONS
+def test_a_rigid_rotation_gives_no_relative_motion_and_no_stress(dim):
+    """Springs between blocks feel the motion of both at the contact, whose arms must fit."""
+    found = blocks(dim)
+    freedoms, draw = dim + ROTATIONS[dim], np.random.default_rng(5).normal
+    faces = Faces(*(array[: len(found.contacts)] for array in all_faces(found)[0]))
+    phi = draw(size=freedoms - dim)
+    turn = turning(found.centroid, freedoms)[..., dim:] @ phi
+    motion = np.concatenate([turn, np.tile(phi, (found.count, 1))], axis=1)
+    i, j = (
+        motion[k, :dim] + np.einsum("naf,nf->na", turning(faces.arm[:, side], freedoms), motion[k])
+        for side, k in enumerate(faces.blocks.T)
+    )
+    gap = np.einsum("cak,ck->ca", faces.frame, j - i)
+    contact = np.zeros((len(gap), dim * (dim + 1), 1))
+    contact[:, :dim, 0], contact[:, -dim:, 0] = -1e9 * faces.area[:, None] * gap, gap
+    scale = 1e9 * np.abs(motion).max()
+    receivers = everywhere(found.volume, faces)
+    assert np.abs(mean_stress(receivers, contact)).max() <= 1e-13 * scale
+    assert np.abs(jumps(receivers, contact)).max() < 1e-13 * np.abs(motion).max(initial=1)
+
+
+@DIMENSIONS
+def test_joint_receivers_read_the_nearest_contact_or_along_the_joint(dim):
+    """Whole joints by one contact; where cuts divide them linearly, from centre to centre."""
+    found = blocks(dim, tilt=0.0)
+    faces = all_faces(found)[0]
+    inner = len(found.contacts)
+    on = found.contacts.centroid[found.contacts.joint_set == 0]
+    points = on + 0.2 * (np.eye(dim)[0] + (np.arange(dim) > 0))
+    slope = np.random.default_rng(6).normal(size=(dim, dim))
+    slope[:, 0] = 0  # it varies along the joint alone
+    values = found.contacts.centroid @ slope.T
+    contact = np.zeros((inner, dim * (dim + 1), 1))
+    contact[:, :dim, 0] = values * found.contacts.area[:, None]
+    contact[:, -dim:, 0] = 7 * values
+    faces = Faces(*(array[:inner] for array in faces))
+    for along in (False, True):
+        stencils = stencils_on_joints(found, points, 1, along)
+        receivers = read_by(found.volume, faces, dim, [], stencils)
+        two = contact[receivers.watched] * [0.0, 1.0]  # the first sample counts as the start
+        got = quantities(receivers, *np.zeros((2, 0, dim, 2)), two)
+        assert set(got) == {"traction", "gap", *(("slip",) if dim > 1 else ())}
+        ahead = points if along else on
+        if along:  # but on the last contact of a joint there is none ahead
+            last = (ahead[:, 1:] > found.contacts.centroid[:, 1:].max(axis=0) + 1e-9).any(axis=1)
+        else:
+            last = np.zeros(len(on), bool)
+        expected = ahead @ slope.T
+        np.testing.assert_allclose(got["traction"][~last, 1], expected[~last], atol=1e-12)
+        np.testing.assert_allclose(
+            got["gap"][~last, 1], (7 + 1e-10) * expected[~last, 0], rtol=0, atol=1e-12
+        )
+        if dim > 1:
+            slip = got["slip"][~last, 1].reshape(-1, dim - 1)
+            np.testing.assert_allclose(slip, (7 + 3e-10) * expected[~last, 1:], rtol=0, atol=1e-12)
+
+
+@DIMENSIONS
+def test_points_are_found_in_blocks_and_at_contacts(dim):
+    found = blocks(dim)
+    contacts, normal = found.contacts, found.contacts.normal
+    assert [one.tolist() for one in blocks_at(found, found.centroid)] == [
+        [k] for k in range(found.count)
+    ]
+    on = blocks_at(found, contacts.centroid)
+    assert [one.tolist() for one in on] == contacts.blocks.tolist()
+    assert blocks_at(found, -np.ones((1, dim)))[0].size == 0
+    assert sides_at(found, contacts.centroid, 0) == contacts.blocks[:, :1].tolist()
+    beside = contacts.centroid + 1e-6 * normal
+    np.testing.assert_array_equal(contact_at(found, beside, dim), np.arange(len(contacts)))
+    with pytest.raises(ValueError, match="no contact"):
+        contact_at(found, beside, 0)
+
+
+@pytest.mark.parametrize("dim", (2, 3))
+def test_snapshots_show_whole_blocks_that_move_rigidly(dim):
+    """Triangles have the area of polygons, or of the faces of polyhedra."""
+    found, draw = blocks(dim), np.random.default_rng(7).normal
+    owner, normal, pieces = found.faces(TOLERANCE)
+    if dim == 3:
+        cells, piece = triangles(pieces)
+        x = pieces.corners[cells]
+        area = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]) / 2
+        outward = (area * normal[piece]).sum(axis=1)
+        np.testing.assert_allclose(outward, np.linalg.norm(area, axis=1), rtol=1e-9, atol=1e-15)
+        volume = np.bincount(owner[piece], (x[:, 0] * area).sum(axis=1)) / 3
+        np.testing.assert_allclose(volume, found.volume, rtol=1e-10)
+    freedoms = dim + ROTATIONS[dim]
+    block = np.repeat(owner, np.diff(pieces.first))
+    motion = draw(size=(3, found.count, freedoms))
+    arms = pieces.corners - found.centroid[block]
+    moved = corner_motion(motion[:, block], arms)
+    pair = np.flatnonzero(np.diff(block) == 0)
+    edge, stretch = np.diff(arms, axis=0)[pair], np.diff(moved, axis=1)[:, pair]
+    assert np.abs((edge * stretch).sum(axis=2)).max() < 1e-13  # lengths stay, to first order
