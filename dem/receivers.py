@@ -50,8 +50,8 @@ class Faces(NamedTuple):
 def frames_of(normal: np.ndarray) -> np.ndarray:
     """Return the frames of contacts [c, d, d] with these normals [c, d]: in the plane the tangent
     is the normal rotated to the left, in space they are the strike and the line of dip."""
-    dim, tangents = normal.shape[1], ()
-    if dim == 2:
+    tangents: tuple[np.ndarray, ...] = ()
+    if (dim := normal.shape[1]) == 2:
         tangents = (np.stack([-normal[:, 1], normal[:, 0]], axis=1),)
     elif dim == 3:
         tangents = frames(normal)
