@@ -7,9 +7,10 @@ import shapely
 
 from jointwave.cases.geometry.cell_complex import PARALLEL
 from jointwave.cases.geometry.measure import cell_moments
+from jointwave.cases.geometry.solids import taken_out
 from jointwave.cases.partition.joints import attitude
 from jointwave.cases.partition.outline import Outline
-from jointwave.cases.partition.regions import rocks_beside, shapes
+from jointwave.cases.partition.regions import rocks_beside
 from jointwave.cases.partition.scene import rock_of
 from jointwave.cases.schema.region import REST
 from jointwave.cases.schema.rock_mass import RockMass
@@ -29,17 +30,16 @@ def check_regions(scene: RockMass, outline: Any) -> None:
                 allowed = f"must name regions: {', '.join([REST, *names])}"
                 raise contradiction(f"joint_sets[{i}].regions", name, allowed)
     _check_damping(scene)
-    if names and (key := scene.domain.file_key):
+    if not names:
+        return
+    if key := scene.domain.file_key:
         allowed = f"cannot be combined with {key}"
         raise contradiction("regions", len(names), allowed)
     _check_outlines(scene, outline)
     least = outline.tolerance * outline.size ** (scene.domain.dimension - 1)
-    if scene.in_space:
-        body = rock_of(outline, scene.regions)
-        volumes = cell_moments(body).size
-        *held, rest = np.bincount(body.region % (len(names) + 1), volumes, len(names) + 1)
-    else:
-        *held, rest = (one.area for one in shapes(scene.regions, outline))
+    body = taken_out(rock_of(outline, scene.regions), outline.solids, outline.tolerance)
+    volumes = cell_moments(body).size
+    *held, rest = np.bincount(body.region % (len(names) + 1), volumes, len(names) + 1)
     for i, (region, area) in enumerate(zip(scene.regions, held, strict=True)):
         if area <= least:
             key = "through" if region.outline is None else "outline"

@@ -77,6 +77,12 @@ class Blocks:
         """Number of blocks."""
         return len(self.volume)
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes that the arrays take."""
+        tables = (self, self.body, self.contacts, self.boundary)
+        return sum(x.nbytes for one in tables for x in vars(one).values() if hasattr(x, "nbytes"))
+
     def faces(self, tolerance: float) -> tuple[np.ndarray, np.ndarray, Outlines]:
         """Return the faces of all blocks, in order: the block of each [f], its unit normal out of
         that [f, d], and its outline. Coplanar facets of a block are one face.

@@ -10,15 +10,9 @@ from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.geometry.measure import widths
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.regions import rocks_of
-from jointwave.cases.partition.scene import (
-    blocks_of_scene,
-    partition_bytes,
-    partition_of,
-    shape_of,
-)
+from jointwave.cases.partition.scene import blocks_of_scene, partition_bytes, shape_of
 from jointwave.cases.schema.region import REST
 from jointwave.cases.schema.rock_mass import RockMass
 
@@ -27,12 +21,11 @@ SIZES = {2: ("area", "length"), 3: ("volume", "area")}
 
 
 def block_summary(scene: RockMass) -> dict[str, Any]:
-    """Cut a rock mass into blocks and return what they are, SI; in the plane with its rigid blocks.
+    """Cut a rock mass into blocks and return what they are, SI, with its rigid blocks.
 
     Raises SceneError where the rock cannot be cut.
     """
-    partition = None if scene.in_space else partition_of(scene)
-    found = partition.blocks if partition is not None else blocks_of_scene(scene)
+    found = blocks_of_scene(scene)
     size, contact_size = SIZES[scene.domain.dimension]
     width, sides = widths(found.body, found.body.halves()), shape_of(scene.domain).sides
     number = np.bincount(found.boundary.side, minlength=len(sides))
@@ -46,7 +39,7 @@ def block_summary(scene: RockMass) -> dict[str, Any]:
         area = float(found.contacts.area[own].sum())
         return {"contacts": int(own.sum()), contact_size: area}
 
-    facts = {
+    return {
         "blocks": found.count,
         "contacts": len(found.contacts),
         size: float(found.volume.sum()),
@@ -57,20 +50,21 @@ def block_summary(scene: RockMass) -> dict[str, Any]:
         "cuts_through_rock": of_set(NO_SET),
         "boundary": {name: int(n) for name, n in zip(sides, number, strict=True) if n},
         "bytes_at_most": partition_bytes(scene),
+        "bytes": found.nbytes,
+        **_rigid_blocks(scene, found),
     }
-    return facts if partition is None else facts | _rigid_blocks(scene, partition)
 
 
-def _rigid_blocks(scene: RockMass, partition: Partition) -> dict[str, Any]:
-    """Return how many rigid blocks there are, the bytes of all blocks, and what part of the intact
-    rock's stiffness rigid blocks cannot have; None where there are no rigid blocks."""
+def _rigid_blocks(scene: RockMass, found: Blocks) -> dict[str, Any]:
+    """Return how many rigid blocks there are, and what part of the intact rock's stiffness they
+    cannot have; None where there are no rigid blocks."""
     further = further_sets(scene)
     try:
         lack = rigid_joints(scene, further).left_over
     except SceneError:
         lack = None
-    count = partition_of(scene, further).count if further else partition.count
-    return {"rigid_blocks": count, "bytes": partition.nbytes, "rigid_blocks_lack": lack}
+    count = blocks_of_scene(scene, further).count if further else found.count
+    return {"rigid_blocks": count, "rigid_blocks_lack": lack}
 
 
 def _regions(scene: RockMass, found: Blocks) -> dict[str, Any]:

@@ -24,7 +24,7 @@ from jointwave.cases.material.rigid_fit import nearest_stiffness
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus
 from jointwave.cases.partition.blocks import Partition
-from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.joints import attitude
 from jointwave.cases.partition.lattice import by_direction
 from jointwave.cases.partition.regions import rocks_of, within
 from jointwave.cases.schema.joint_set import JointSet
@@ -51,8 +51,8 @@ class RigidJoints(NamedTuple):
 
 
 class RockShare(NamedTuple):
-    """What intact rock adds to the joints of one region: the normals of their directions [d, 2],
-    excess compliances Z0, normal and in shear [d, 2], 1/Pa, distances of lines [d], m, which
+    """What intact rock adds to the joints of one region: the normals of their directions [n, d],
+    excess compliances Z0, normal and in shear [n, 2], 1/Pa, distances of planes [n], m, which
     direction each set has, -1 for none [sets], and what is left over."""
 
     normals: np.ndarray
@@ -66,8 +66,9 @@ class RockShare(NamedTuple):
         return self.compliance[at] * self.apart[at] if at >= 0 else np.zeros(2)
 
     def parallel_to(self, normal: np.ndarray) -> int:
-        """Return which direction a unit normal [2] is that of, -1 for none."""
-        sines = np.abs(self.normals @ [-normal[1], normal[0]])
+        """Return which direction a unit normal [d] is that of, -1 for none."""
+        across = self.normals - np.outer(self.normals @ normal, normal)
+        sines = np.linalg.norm(across, axis=1)
         return int(sines.argmin()) if sines.min(initial=1.0) < PARALLEL else -1
 
 
@@ -80,13 +81,13 @@ def rigid_joints(
     has its own compliance, and nothing of the rock's. Raises SceneError where no lines are there to
     pass the waves of a scene.
     """
-    sets = [*scene.joint_sets, *further]
+    sets, dim = [*scene.joint_sets, *further], scene.domain.dimension
     if kinds is None:
         kinds = np.stack([np.arange(len(sets)), *np.full((2, len(sets)), -1)], axis=1)
     shares = rock_shares(scene, further)
     excess = np.zeros((len(kinds), 2))
     for row, (k, *pair) in zip(excess, kinds, strict=True):
-        normal = direction_of(sets[k].dip)[::-1] * [-1, 1]
+        normal = attitude(sets[k], dim)[0]
         for one in (shares[region] for region in pair):
             at = one.direction[k] if pair[0] == pair[1] else one.parallel_to(normal)
             row += one.excess(at) / 2
@@ -116,14 +117,14 @@ def rock_shares(scene: RockMass, further: list[JointSet]) -> list[RockShare]:
 
 def _share(scene: RockMass, sets: list[JointSet], real: int) -> RockShare:
     """Return the same of a scene of one rock, some of whose sets, the first ones, are real."""
-    spaced = [
-        group for group in by_direction(scene.joint_sets) if any(one.spacing for one in group)
-    ]
-    normals = np.array([direction_of(group[0].dip)[::-1] * [-1, 1] for group in spaced])
+    dim = scene.domain.dimension
+    groups = by_direction(scene.joint_sets, dim)
+    spaced = [group for group in groups if any(one.spacing for one in group)]
+    normals = np.array([attitude(group[0], dim)[0] for group in spaced])
     if not spaced:  # rock between joints that are alone stays rigid
         none = np.zeros((0, 2))
         return RockShare(none, none, np.zeros(0), np.full(len(sets), -1), 1.0)
-    fit = nearest_stiffness(intact(elastic_rock(scene.rock), 2), normals)
+    fit = nearest_stiffness(intact(elastic_rock(scene.rock), dim), normals)
     index = {one.name: k for k, one in enumerate(sets)}
     direction, apart = np.full(len(sets), -1), np.ones(len(spaced))
     for k, group in enumerate(spaced):

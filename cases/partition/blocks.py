@@ -113,12 +113,6 @@ class Partition:
         """Return the corners of one block [k, 2], m, counter-clockwise."""
         return self.corners[self.first[block] : self.first[block + 1]]
 
-    @property
-    def nbytes(self) -> int:
-        """Bytes that the arrays take."""
-        tables = (vars(self), vars(self.contacts), vars(self.boundary))
-        return sum(x.nbytes for table in tables for x in table.values() if hasattr(x, "nbytes"))
-
 
 def plane_contacts(facets: Facets) -> Contacts:
     """Return contacts in the plane, with their ends."""

@@ -1,7 +1,7 @@
 """Joint sets of a scene as sets of planes, and the attitude of planes."""
 
 from collections.abc import Sequence
-from math import cos, radians, sin
+from math import atan2, cos, degrees, hypot, radians, sin
 
 import numpy as np
 
@@ -31,6 +31,16 @@ def attitude(one: JointSet | Region, dim: int) -> tuple[np.ndarray, np.ndarray]:
     north, east = direction_of(turn - 360 if turn > 180 else turn)
     along = np.array([[north, -east, 0.0], [down * east, down * north, -up]])
     return np.array([up * east, up * north, down]), along
+
+
+def dips_of(normal: np.ndarray) -> dict[str, float]:
+    """Return the dip, degrees, and in space the dip direction of planes with a unit normal [d]."""
+    *across, up = np.array(normal) + 0.0  # no -0
+    if len(across) == 1:
+        return {"dip": round((degrees(atan2(-across[0], up)) + 90) % 180 - 90, 12)}
+    east, north = across if up >= 0 else (-across[0], -across[1])
+    dip, towards = atan2(hypot(east, north), abs(up)), atan2(east, north)
+    return {"dip": round(degrees(dip), 12), "dip_direction": round(degrees(towards) % 360, 12)}
 
 
 def plane_sets(

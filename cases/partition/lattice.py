@@ -1,43 +1,70 @@
 """Further cuts through intact rock, for rigid blocks: lattices that contain the joints.
 
 `numerics.dem.block` asks for blocks of about that size. Every direction of joints gets parallel
-lines, at a whole part of the spacing, or at about the size beside joints that are alone; where all
-have one direction, or there are none, lines across them are added: at 60 and 120 degrees, as far
-apart, which makes equilateral triangles, or at right angles. A side along which lines run is
-met in the middle of a block where it is quiet, since the motion of a block is that of the lattice
-in its middle, and at a line elsewhere. Every region of rock has a lattice of its own, with a line
-along its boundary. Rock no wider than the size asked for is not cut.
+planes, at a whole part of the spacing, or at about the size beside joints that are alone. Across
+directions in which no joints cut, planes are added: at right angles, or, for joints of one
+direction or none in rock with a Poisson effect, those of ISOTROPIC. A side along which planes run
+is met in the middle of a block where it is quiet, since the motion of a block is that of the
+lattice in its middle, and at a plane elsewhere. Every region of rock has a lattice of its own, with
+a plane along its boundary. Rock no wider than the size asked for is not cut.
 """
 
-from __future__ import annotations
-
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.geometry.solids import corners_of
-from jointwave.cases.partition.joints import direction_of
-from jointwave.cases.partition.outline import SIDES, Outline, outline_of
-from jointwave.cases.partition.regions import on_boundary, shapes, within
+from jointwave.cases.geometry.blocks import Blocks, blocks_of
+from jointwave.cases.partition.joints import attitude, dips_of
+from jointwave.cases.partition.regions import ROCK, within
+from jointwave.cases.partition.scene import rock_of, shape_of
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.region import REST
+from jointwave.cases.schema.rock_mass import RockMass
 
-if TYPE_CHECKING:
-    from jointwave.cases.schema.rock_mass import RockMass
-
-#: Blocks from a side to the nearest line, by the side's boundary condition.
+#: Blocks from a side to the nearest plane, by the side's boundary condition.
 AT_SIDE = {"quiet": 0.5, "periodic": 0.0, "free": 1.0, "fixed": 1.0}
-#: Degrees between dips that are one.
-ALIKE = 1e-9
+ALIKE = 1e-11  #: sine of the angle between directions that are one
+ACROSS = 3**0.5 / 2
+#: By the number of directions in which rock is cut, planes beside those across the first direction
+#: that give long waves one speed in all of them and any Poisson's ratio: normals, and spacings over
+#: that of the first. Equilateral triangles, or cubes of five tetrahedra each.
+ISOTROPIC: dict[int, list[tuple[tuple[float, ...], float]]] = {
+    2: [((0.5, -ACROSS), 1.0), ((-0.5, -ACROSS), 1.0)],
+    3: [
+        *(((0.0, 1.0, 0.0), 1.0), ((0.0, 0.0, 1.0), 1.0)),
+        *(((3**-0.5, y * 3**-0.5, z * 3**-0.5), 1 / ACROSS) for y in (1, -1) for z in (1, -1)),
+    ],
+}
+
+
+class Place(NamedTuple):
+    """Rock of one region: its corners [n, d], m; the centres of the facets around it [f, d], m,
+    those inside the domain first, and how many blocks from each the next plane lies [f]."""
+
+    corners: np.ndarray
+    facets: np.ndarray
+    rests: np.ndarray
+    tolerance: float
+
+    def extent(self, normal: np.ndarray) -> float:
+        """Return how far rock reaches along a normal, m."""
+        return float(np.ptp(self.corners @ normal))
+
+    def rest(self, normal: np.ndarray) -> float | None:
+        """Return the part of a block from the end of rock along a normal to the plane next to it;
+        None where no side runs along the planes there."""
+        end = (self.corners @ normal).max()
+        found = self.rests[self.facets @ normal >= end - self.tolerance]
+        return float(found[0]) if len(found) else None
 
 
 def further_sets(scene: RockMass) -> list[JointSet]:
     """Return the sets of cuts between the joints of a scene; without numerics.dem.block only those
     along periodic sides.
 
-    Raises SceneError, in one line, for joints whose lines have no lattice.
+    Raises SceneError, in one line, for joints whose planes have no lattice.
     """
     block = scene.numerics.dem.block
     if block is None and not scene.boundaries.sides("periodic"):
@@ -47,92 +74,107 @@ def further_sets(scene: RockMass) -> list[JointSet]:
             key = "ends_at" if one.ends_at else "scatter"
             allowed = f"cannot cut the rock between joints with {key}, which '{one.name}' has"
             raise SceneError(scene.where, "numerics.dem.block", block, allowed)
-    outline, found = outline_of(scene.domain), []
+    shape, found = shape_of(scene.domain), []
+    rock = blocks_of(rock_of(shape, scene.regions), shape.tolerance)
     names = [*(one.name for one in scene.regions), REST] if scene.regions else []
-    shaped = shapes(scene.regions, outline) if names else [None]
-    for k, (own, shape) in enumerate(zip(within(scene, scene.joint_sets), shaped, strict=True)):
-        corners = outline.corners if shape is None else corners_of(shape.convex_hull)
-        place = Place(outline, corners, scene)
-        inside = {"regions": names[k : k + 1]}
-        found += [lines.model_copy(update=inside) for lines in _cuts(own, place, block or inf)]
+    for k, own in enumerate(within(scene, scene.joint_sets)):
+        cells = rock.body.region == (k if k < len(scene.regions) else ROCK)
+        sets = _cuts(own, _place(scene, rock, cells), block or inf)
+        found += [one.model_copy(update={"regions": names[k : k + 1]}) for one in sets]
     names = [f"cut {k}" for k in range(len(found))]
     return [one.model_copy(update={"name": name}) for one, name in zip(found, names, strict=True)]
 
 
-class Place(NamedTuple):
-    """Where lines go: the domain, the corners of the part of it that they fill [n, 2], m, and the
-    scene with what holds its sides and bounds that part."""
+def _place(scene: RockMass, rock: Blocks, cells: np.ndarray) -> Place:
+    """Return the place of one region; cells : those of it, of the domain's rock, bool array."""
+    from scipy.spatial import ConvexHull
 
-    outline: Outline
-    corners: np.ndarray
-    scene: RockMass
+    shape, body = shape_of(scene.domain), rock.body
+    inside = cells[rock.contacts.blocks].sum(axis=1) == 1
+    outer = cells[rock.boundary.blocks[:, 0]]
+    held = [getattr(scene.boundaries, shape.sides[k]) for k in shape.sides_of(rock.boundary)[outer]]
+    corners = body.vertices[np.unique(body.corners(body.beside(cells))[:, 1])]
+    return Place(
+        corners[ConvexHull(corners).vertices],
+        np.concatenate([rock.contacts.centroid[inside], rock.boundary.centroid[outer]]),
+        np.array([*np.ones(inside.sum()), *(AT_SIDE[one] for one in held)]),
+        shape.tolerance,
+    )
 
 
 def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
     """Return the sets of cuts of a scene of one rock."""
-    found = []
-    groups = by_direction(scene.joint_sets)
-    for group in groups:
+    dim, found = scene.domain.dimension, []
+    groups = by_direction(scene.joint_sets, dim)
+    normals = [attitude(group[0], dim)[0] for group in groups]
+    for normal, group in zip(normals, groups, strict=True):
         first = next((one for one in group if one.spacing is not None), group[0])
         if first.spacing is None:
-            if min(_reach(place, first.dip), _reach(place, first.dip, first.through)) > block:
-                found.append(_lines(place, first.dip, block, first.through, True))
+            away = np.abs((place.corners - first.through) @ normal).max()
+            if min(place.extent(normal), away) > block:
+                found.append(_planes(place, normal, block, first.through, True))
         elif (parts := max(1, round(first.spacing / block))) > 1:
-            found.append(_set(first.dip, first.spacing / parts, first.through))
-    if len(groups) < 2:
+            found.append(_set(normal, first.spacing / parts, first.through))
+    across = _across(groups, dim)
+    wide = [axis for axis in across if place.extent(axis) > block]
+    if not groups and wide:
+        normals = [wide.pop(0)]
+        found.append(_planes(place, normals[0], block))
+    if wide and len(groups) < 2 and not squared(scene):
+        along, frame = (found or groups[0])[0], np.array([normals[0], *wide])
+        found += [
+            _set(np.array(one) @ frame, ratio * (along.spacing or block), along.through)
+            for one, ratio in ISOTROPIC[len(frame)]
+        ]
+    else:
         anchor = next((one.through for one in scene.joint_sets if one.through), None)
-        if not groups and _reach(place, 0.0) > block:
-            found.append(_lines(place, 0.0, block, anchor, False))
-        if not groups and not found:
-            return found
-        along = (found or groups[0])[0]
-        if _reach(place, along.dip + 90.0) <= block:
-            return [*found, *_seams(place, along.dip)]
-        if squared(scene):
-            dip = _folded(along.dip + 90.0)
-            found.append(_lines(place, dip, block, anchor, False))
-        else:
-            dips = (_folded(along.dip + angle) for angle in (60.0, 120.0))
-            found += [_set(dip, along.spacing or block, along.through) for dip in dips]
-    return found
+        found += [_planes(place, axis, block, anchor) for axis in wide]
+    thin = [axis for axis in across if place.extent(axis) <= block]
+    return found + (_seams(scene, np.array(thin)) if normals and thin else [])
 
 
-def _seams(place: Place, dip: float) -> list[JointSet]:
-    """Return cuts along the periodic sides at an angle to rock that is cut at one dip only: there
+def _across(groups: list[list[JointSet]], dim: int) -> list[np.ndarray]:
+    """Return unit vectors in the directions in which no joints cut, upwards first without any."""
+    if not groups:
+        return list(np.eye(dim)[::-1])
+    normals = np.array([attitude(group[0], dim)[0] for group in groups])
+    rank = np.linalg.matrix_rank(normals, tol=ALIKE)
+    if rank == 1 or rank == dim:
+        return list(attitude(groups[0][0], dim)[1]) if rank < dim else []
+    axis = np.cross(*normals[:2])
+    return [axis / np.linalg.norm(axis)]
+
+
+def _seams(scene: RockMass, thin: np.ndarray) -> list[JointSet]:
+    """Return cuts along the periodic sides across directions in which rock is not cut [n, d]: there
     blocks touch their own images, and share the rock's compliance with the other cuts."""
-    held, corners = place.scene.boundaries, place.outline.corners
-    sides = (("left", 90.0, 0), ("bottom", 0.0, 1))
+    corners, sides = np.array(scene.domain.corners), shape_of(scene.domain).sides
+    axes = sorted({sides.index(side) // 2 for side in scene.boundaries.sides("periodic")})
     return [
-        _set(along, float(np.ptp(corners[:, axis])), corners.min(axis=0).tolist())
-        for name, along, axis in sides
-        if getattr(held, name) == "periodic" and abs(_folded(along - dip)) > ALIKE
+        _set(np.eye(thin.shape[1])[k], float(np.ptp(corners[:, k])), corners.min(axis=0).tolist())
+        for k in axes
+        if np.abs(thin[:, k]).max() > ALIKE
     ]
-
-
-def _reach(place: Place, dip: float, through: list[float] | None = None) -> float:
-    """Return how far rock reaches from a line through a point, to the farther side, or from side to
-    side along its normal, m."""
-    normal = direction_of(dip)[::-1] * [-1, 1]
-    s = place.corners @ normal
-    return float(np.ptp(s) if through is None else np.abs(s - normal @ np.array(through)).max())
 
 
 def squared(scene: RockMass) -> bool:
     """Return whether cuts across joints of one direction are at right angles to them.
 
-    Triangles can have any Poisson's ratio (`material.rigid_fit`), rectangles none; but the lines of
-    rectangles can run along periodic sides, which cut no block in two then.
+    Triangles and tetrahedra can have any Poisson's ratio (`material.rigid_fit`), boxes none; but
+    the faces of boxes can run along periodic sides, which cut no block in two then.
     """
-    fit = all(one.dip % 90.0 == 0 for one in scene.joint_sets)
+    dim = scene.domain.dimension
+    fit = all(np.abs(attitude(one, dim)[0]).max() == 1 for one in scene.joint_sets)
     return scene.rock.intact_poisson == 0 or (fit and bool(scene.boundaries.sides("periodic")))
 
 
-def by_direction(sets: list[JointSet]) -> list[list[JointSet]]:
+def by_direction(sets: list[JointSet], dim: int) -> list[list[JointSet]]:
     """Return joint sets in groups of one direction."""
     groups: list[list[JointSet]] = []
     for one in sets:
         for group in groups:
-            if abs(_folded(one.dip - group[0].dip)) <= ALIKE:
+            normals = [attitude(each, dim)[0] for each in (one, group[0])]
+            if np.linalg.matrix_rank(normals, tol=ALIKE) == 1:
                 group.append(one)
                 break
         else:
@@ -140,77 +182,41 @@ def by_direction(sets: list[JointSet]) -> list[list[JointSet]]:
     return groups
 
 
-def _folded(dip: float) -> float:
-    """Return a dip between -90 and 90 degrees."""
-    return (dip + 90.0) % 180.0 - 90.0
+def _set(normal: np.ndarray, spacing: float, through: list[float] | None) -> JointSet:
+    keys = {"name": "cut", "spacing": spacing, "through": through, **dips_of(normal)}
+    law = {"contact_points": 2, "point_rule": "gauss"}
+    return JointSet.model_validate(keys | law, context={"dimension": len(normal)})
 
 
-def _set(dip: float, spacing: float, through: list[float] | None) -> JointSet:
-    return JointSet(
-        name="cut",
-        dip=dip,
-        spacing=spacing,
-        through=through,
-        contact_points=2,
-        point_rule="gauss",
-    )
-
-
-def _lines(
-    where: Place,
-    dip: float,
+def _planes(
+    place: Place,
+    normal: np.ndarray,
     block: float,
-    through: list[float] | None,
-    fixed: bool,
+    through: list[float] | None = None,
+    fixed: bool = False,
 ) -> JointSet:
-    """Return lines about `block` (m) apart, one of them through a point where that is `fixed`,
+    """Return planes about `block` (m) apart, one of them through a point where that is `fixed`,
     that meet the sides along them as they should."""
-    direction = direction_of(dip)
-    normal = np.array([-direction[1], direction[0]])
-    s = where.corners @ normal
-    low, high = float(s.min()), float(s.max())
-    rests = _rests(where, normal)
-    centre = where.corners.mean(axis=0)
-    anchor = np.array(through if through is not None else centre)
-    off = where.outline.tolerance
-    if fixed and not low - off <= anchor @ normal <= high + off:  # in another region
-        anchor, fixed = centre, False
-    place = float(anchor @ normal)
-    if fixed:
-        for rest, reach in zip(rests, (place - low, high - place), strict=True):
+    heights, anchor = place.corners @ normal, np.array(through or place.corners.mean(axis=0))
+    low, high, at = float(heights.min()), float(heights.max()), float(anchor @ normal)
+    below, above, spacing = place.rest(-normal), place.rest(normal), block
+    if fixed and low - place.tolerance <= at <= high + place.tolerance:
+        for rest, reach in ((below, at - low), (above, high - at)):
             if rest is not None and reach > 0:
-                return _set(dip, _divided(reach, rest, block), anchor.tolist())
-        return _set(dip, block, anchor.tolist())
-    below, above = rests
-    spacing = block
+                return _set(normal, _divided(reach, rest, block), through)
+        return _set(normal, block, through)
+    if fixed:  # in another region
+        return _planes(place, normal, block)
     if below is not None and above is not None:
         spacing = _divided(high - low, below + above, block)
     if below is not None:
-        place = low + below * spacing
+        at = low + below * spacing
     elif above is not None:
-        place = high - above * spacing
-    return _set(dip, spacing, (anchor + (place - anchor @ normal) * normal).tolist())
+        at = high - above * spacing
+    return _set(normal, spacing, (anchor + (at - anchor @ normal) * normal).tolist())
 
 
 def _divided(reach: float, rest: float, block: float) -> float:
     """Return the spacing, about `block`, of which a reach (m) is a whole number more than rest."""
     whole = max(round(reach / block - rest), 0)
     return reach / (whole + rest) if whole + rest else reach
-
-
-def _rests(where: Place, normal: np.ndarray) -> tuple[float | None, float | None]:
-    """Return the part of a block from the lowest and from the highest side along a normal to the
-    line next to it; None where no side runs along the lines there."""
-    start, end = where.corners, np.roll(where.corners, -1, axis=0)
-    held = where.outline.along(start, end)
-    found: list[float | None] = []
-    inner = on_boundary(where.scene.regions, (start + end) / 2, where.outline.tolerance)
-    s = np.stack([start, end]) @ normal
-    for extreme in (s.min(), s.max()):
-        along = np.flatnonzero((np.abs(s - extreme) <= where.outline.tolerance).all(axis=0))
-        kinds = [getattr(where.scene.boundaries, SIDES[held[k]]) for k in along if not inner[k]]
-        if inner[along].any():
-            found.append(1.0)
-        else:
-            found.append(AT_SIDE[kinds[0]] if kinds else None)
-    return found[0], found[1]

@@ -1,26 +1,16 @@
-"""Regions of rock in a domain: which one contains a place, and the cuts between them."""
+"""Regions of rock in a domain: which one contains a place, and the rock of each."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 import shapely
 
 from jointwave.cases.geometry.solids import ROCK, HalfSpace, Solid, corners_of, polygon_solid
-from jointwave.cases.partition.joints import attitude, direction_of
-from jointwave.cases.schema.region import REST
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from jointwave.cases.partition.outline import Outline
-    from jointwave.cases.schema.joint_set import JointSet
-    from jointwave.cases.schema.plane import IntactRock
-    from jointwave.cases.schema.region import Region
-    from jointwave.cases.schema.rock_mass import RockMass
-
-FAR = 4.0  #: sizes of a domain: beyond all of it
+from jointwave.cases.partition.joints import attitude
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.plane import IntactRock
+from jointwave.cases.schema.region import REST, Region
+from jointwave.cases.schema.rock_mass import RockMass
 
 
 def region_at(regions: Sequence[Region], places: np.ndarray) -> np.ndarray:
@@ -29,20 +19,6 @@ def region_at(regions: Sequence[Region], places: np.ndarray) -> np.ndarray:
     found = np.full(len(places), ROCK)
     for k, one in enumerate(bounded(regions)):
         found[one.contains(places)] = k
-    return found
-
-
-def on_boundary(regions: Sequence[Region], places: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return which places [n, 2] (m) lie on the line or the outline of a region, bool [n]."""
-    found = np.zeros(len(places), bool)
-    for one in regions:
-        if one.outline is not None:
-            ring = shapely.Polygon(one.outline).exterior
-            found |= shapely.dwithin(ring, shapely.points(places), tolerance)
-        else:
-            (half,) = bounded([one])
-            assert isinstance(half, HalfSpace)
-            found |= np.abs(half.heights(places)) <= tolerance
     return found
 
 
@@ -88,24 +64,3 @@ def bounded(regions: Sequence[Region], dim: int = 2) -> list[Solid | HalfSpace]:
         else:
             found.append(HalfSpace(attitude(one, dim)[0], np.array(one.through)))
     return found
-
-
-def shapes(regions: Sequence[Region], outline: Outline) -> list[shapely.Geometry]:
-    """Return the part of a domain in each region, and last the remainder."""
-    left, found = outline.shape, []
-    for one in reversed(regions):
-        whole = shapely.Polygon(_corners(one, outline))
-        found.append(left.intersection(whole))
-        left = left.difference(whole)
-    return [*reversed(found), left]
-
-
-def _corners(one: Region, outline: Outline) -> list:
-    """Return the corners of a region without the others, far beyond the domain's where it is
-    bounded by a line."""
-    if one.outline is not None:
-        return one.outline
-    along = FAR * outline.size * direction_of(one.dip)
-    up, at = np.array([-along[1], along[0]]), np.array(one.through)
-    foot = at + (outline.corners.mean(axis=0) - at) @ along / (along @ along) * along
-    return [foot - along, foot + along, foot + along + up, foot - along + up]

@@ -252,7 +252,7 @@ def test_the_estimate_bounds_the_memory_that_is_taken(rectangle, joints, scene):
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert found.count > 15_000
-    assert found.nbytes < peak < partition_bytes(changed) < 4 * peak
+    assert found.blocks.nbytes < peak < partition_bytes(changed) < 4 * peak
 
 
 def test_faults_are_told_apart():

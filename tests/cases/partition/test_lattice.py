@@ -4,30 +4,38 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from jointwave.cases.errors import SceneError
+from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.locate import contact_at
-from jointwave.cases.partition.scene import partition_of
+from jointwave.cases.partition.scene import blocks_of_scene, partition_of
 from jointwave.cases.validate import validated
 from tests.cases.partition.polygons import widths
 
 LAW = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 
 
-def scene(*sets, block=1.0, poisson=0.0, size=(12.0, 10.0), **boundaries):
+def scene(*sets, block=1.0, poisson=0.0, size=(12.0, 10.0), width=None, **boundaries):
     """Return a scene with these joint sets in blocks of about this size."""
+    dim = len(size)
     tables = {
         "title": "lattice",
-        "domain": {"size": list(size)},
+        "domain": {"size": list(size)} | ({"least_width": width} if width else {}),
         "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": poisson},
         "joint_sets": [{"name": str(k), **LAW, **one} for k, one in enumerate(sets)],
         "boundaries": boundaries,
         "numerics": {"dem": {"block": block}},
         "time": {"duration": 0.01},
-        "record": {"points": [[1.0, 2.0]]},
+        "record": {"points": [[0.1, 0.2, 0.3][:dim]]},
     }
     return validated(tables, Path("scene.toml"), frozenset())
+
+
+def cut_blocks(own):
+    return blocks_of_scene(own, further_sets(own))
 
 
 def cut(own):
@@ -96,7 +104,8 @@ def test_rock_no_wider_than_a_block_stays_whole():
         assert cut(scene(block=20.0, poisson=poisson)).count == 1
         assert cut(scene(joint, block=20.0, poisson=poisson)).count == 2
         assert cut(scene({"dip": 0.0, "spacing": 2.5}, block=20.0, poisson=poisson)).count == 4
-        assert cut(scene(block=2.5, poisson=poisson, size=(2.5, 10.0))).count == 4
+        for size in ((2.5, 10.0), (10.0, 2.5)):
+            assert cut(scene(block=2.5, poisson=poisson, size=size)).count == 4
 
 
 def test_rows_of_blocks_share_their_stiffness_with_periodic_sides_across_them():
@@ -105,7 +114,7 @@ def test_rows_of_blocks_share_their_stiffness_with_periodic_sides_across_them():
     (seam,) = further_sets(
         scene({"dip": 0.0, "spacing": 1.0}, block=None, left="periodic", right="periodic")
     )
-    assert (seam.dip, seam.spacing) == (90.0, 12.0)
+    assert (abs(seam.dip), seam.spacing) == (90.0, 12.0)
 
 
 def test_periodic_sides_lie_on_lines():
@@ -138,3 +147,68 @@ def test_slivers_of_a_lattice_are_joined_along_joints_not_across_them():
     mine = found.contacts.of_joints(1)
     assert found.contacts.length[mine].sum() == pytest.approx(alone.contacts.length[0], rel=1e-9)
     assert widths(found.corners, found.first).min() > 0.03 * 1.1
+
+
+BOX = (6.0, 5.0, 4.0)
+BED = {"dip": 0.0, "spacing": 2.0}
+STEEP = {"dip": 90.0, "dip_direction": 90.0, "spacing": 2.0}
+
+
+@pytest.mark.parametrize("sets", [[], [BED], [STEEP], [BED, STEEP]])
+def test_rock_in_space_is_cut_in_cubes(sets):
+    """Across all directions in which no joints cut."""
+    found = cut_blocks(scene(*sets, size=BOX))
+    assert found.count == 120 and found.volume == pytest.approx(np.ones(120), rel=1e-9)
+    assert len(found.contacts) == 5 * 5 * 4 + 6 * 4 * 4 + 6 * 5 * 3
+    of_joints = found.contacts.area[found.contacts.of_joints(len(sets))].sum()
+    assert of_joints == pytest.approx(30.0 * (BED in sets) + 40.0 * (STEEP in sets), rel=1e-9)
+
+
+def test_rock_in_space_with_a_poisson_effect_is_cut_in_tetrahedra():
+    """Five to a cube: a regular one in its middle, and four at corners."""
+    volume = np.sort(cut_blocks(scene(BED, poisson=0.25, size=BOX)).volume)
+    assert volume == pytest.approx(np.repeat([1 / 6, 1 / 3], [480, 120]), rel=1e-9)
+
+
+def test_quiet_sides_in_space_are_met_in_the_middle_of_blocks():
+    """Half blocks at sides, eighths where three of them meet."""
+    sides = dict.fromkeys(("left", "front", "bottom"), "quiet")
+    found = cut_blocks(scene(size=BOX, **sides))
+    assert found.volume.min() == pytest.approx(found.volume.max() / 8, rel=1e-9)
+    assert found.volume.sum() == pytest.approx(120.0, rel=1e-12)
+
+
+dips, degrees = st.floats(-90.0, 90.0), st.floats(0.0, 360.0)
+
+
+@given(st.floats(0.01, 0.45), st.floats(1.0, 89.0), degrees)
+def test_tetrahedra_have_any_poissons_ratio(poisson, dip, towards):
+    """As triangles have: rigid blocks lack nothing of intact rock, however the joints lie."""
+    one = {"dip": dip, "dip_direction": towards, "spacing": 2.0}
+    for own in (scene(one, poisson=poisson, size=BOX), scene(BED, poisson=poisson)):
+        joints = rigid_joints(own, further_sets(own))
+        assert joints.left_over < 1e-6 and (joints.shear <= joints.normal).all()
+
+
+@given(
+    st.lists(st.tuples(dips, st.booleans()), max_size=2, unique_by=lambda one: one[0]),
+    st.sampled_from([0.0, 0.25]),
+    st.lists(st.sampled_from(["quiet", "free"]), min_size=4, max_size=4),
+)
+def test_a_thin_plate_in_space_is_cut_as_the_plane_is(sets, poisson, held):
+    """Block for block: volumes are areas times the thickness, contacts likewise."""
+    keys = dict(zip(("left", "right", "bottom", "top"), held, strict=True))
+    keys |= {"poisson": poisson, "width": 0.02}
+    each = [{"dip": dip, "spacing": 3.0} if many else {"dip": dip} for dip, many in sets]
+    plane = scene(*(one | {"through": [5.0, 4.0]} for one in each), **keys)
+    turned = [
+        one | {"dip": abs(one["dip"]), "dip_direction": 270.0 if one["dip"] >= 0 else 90.0}
+        for one in each
+    ]
+    sets = [one | {"through": [5.0, 0.0, 4.0]} for one in turned]
+    plate = cut_blocks(scene(*sets, size=(12.0, 0.5, 10.0), **keys))
+    found = cut_blocks(plane)
+    assert np.sort(plate.volume) == pytest.approx(0.5 * np.sort(found.volume), rel=1e-6)
+    for k in range(len(sets)):
+        areas = [one.contacts.area[one.contacts.joint_set == k].sum() for one in (plate, found)]
+        assert areas[0] == pytest.approx(0.5 * areas[1], rel=1e-6)
