@@ -25,13 +25,11 @@ from jointwave.cases.schema.scene import Scene
 def load_history(scene: Scene) -> LoadHistory:
     """Return the scene's load as a function of time: its end stress or the motion of its base.
 
-    Stress is positive in compression. Without a load the stress is zero. Of an extreme load it is
-    that over `scene.load.scale`, which a result is multiplied by when it is put together. A wave
-    that comes up to an absorbing start, a compliant base, is twice its stress, 2 rho c v: the
-    dashpot takes half of it, and the other half enters (Mejia & Dawson, 4th FLAC Symposium, 2006).
+    Stress is positive in compression. Without a load the stress is zero. A wave that comes up to
+    an absorbing start, a compliant base, is twice its stress, 2 rho c v: the dashpot takes half of
+    it, and the other half enters (Mejia & Dawson, 4th FLAC Symposium, 2006).
     """
-    load = scene.load
-    amplitude = load.amplitude / load.scale
+    load, amplitude = scene.load, scene.load.amplitude
     if not load.is_motion or scene.shakes_base:
         return history_of(load, amplitude * (2 if load.quantity == "incident-stress" else 1))
     p = calibrate(scene).at_start
@@ -96,12 +94,12 @@ def with_load_itself(
 
 def base_steps(pulse: Pulse, dt: float, count: int) -> np.ndarray:
     """Return the displacement of the base that a pulse shakes in each step [n dt, (n + 1) dt],
-    n = 0 .. count - 1, m; of an extreme load over its scale.
+    n = 0 .. count - 1, m.
 
     A velocity history is integrated exactly over the step. An acceleration history gives, as
     leapfrog does, dt times the velocity at the half step.
     """
-    history = history_of(pulse, pulse.amplitude / pulse.scale)
+    history = history_of(pulse, pulse.amplitude)
     if pulse.quantity == "velocity":
         return np.diff(history.impulse(dt * np.arange(count + 1)))
     return dt * history.impulse(dt * (np.arange(count) + 0.5))

@@ -4,9 +4,10 @@ A file with [pillar] holds a `Scene`, one with [domain] a `RockMass`.
 """
 
 import re
+from collections.abc import Iterable, Iterator
 from copy import deepcopy
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from jointwave.cases.errors import SceneError, all_of, nearest
 from jointwave.cases.files import parse_toml, read_toml
@@ -19,7 +20,11 @@ LARGEST_FILE = 10_000_000  # bytes; a scene is a page of text
 VARIANT_NAME = re.compile(
     r"(?!.*(\.nc|\.pvd|\.bp|-fields)$)[^/\\.\s\x00-\x1f][^/\\\x00-\x1f]{0,79}", re.IGNORECASE
 )
-
+NAMES = (
+    "must be a string of up to 80 characters without '/' or control characters, not starting with "
+    "'.' or ' ' nor ending in .nc, .pvd, .bp or -fields"
+)
+NO_VARIANTS = "the scene has none"
 MOST_VARIANTS = 1000
 
 
@@ -29,15 +34,12 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[AnyS
     `overrides` maps dotted keys to values (`--set`) and holds for every variant.
     Raises SceneError, a line a mistake, for anything that cannot be simulated.
     """
-    path = Path(path)
-    table, variants = _parts(_read_toml(path), path, overrides or {})
-    given = frozenset(overrides or {})
-    scenes: list[Any] = []
+    tables = _of_file(path, overrides)
+    scenes: list[AnyScene] = []
     wrong: list[SceneError] = []
-    for i, variant in enumerate([{}, *variants]):
+    for k in range(-1, len(tables.variants)):
         try:
-            merged = _variant(table, variant, path, i - 1, overrides or {}) if i else table
-            scenes.append(validated(merged, path, given))
+            scenes.append(tables.scene(k))
         except SceneError as error:
             wrong.append(error)
     if wrong:
@@ -50,61 +52,83 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[AnyS
 
 
 def load_variant(
-    path: str | Path,
-    name: str = "",
-    overrides: dict[str, Any] | None = None,
-    asked: bool = True,
+    path: str | Path, name: str = "", overrides: dict[str, Any] | None = None, asked: bool = True
 ) -> AnyScene:
     """Read one variant of a scene file, whatever the others are; the empty name is the scene as it
     stands.
 
     asked : whether the user gave the overrides, which may then name files anywhere.
     """
-    given = frozenset(overrides or {}) if asked else frozenset()
-    return _one(_read_toml(Path(path)), Path(path), name, overrides or {}, given)
+    tables = _of_file(path, overrides)
+    return (tables if asked else tables._replace(asked=frozenset())).named(name)
 
 
 def load_tables(
     tables: dict[str, Any], name: str = "", overrides: dict[str, Any] | None = None
 ) -> AnyScene:
-    """Return one variant of a scene whose file would hold these tables.
+    """Return one variant of a scene whose file would hold these tables, or which a result holds.
 
     Files that it names lie in the working folder or below.
     """
-    given = frozenset(overrides or {})
-    return _one(deepcopy(tables), Path("scene"), name, overrides or {}, given)
+    return _parts(deepcopy(tables), Path("scene"), overrides).named(name)
 
 
-def _one(
-    whole: dict[str, Any], path: Path, name: str, overrides: dict[str, Any], given: frozenset[str]
-) -> AnyScene:
-    table, variants = _parts(whole, path, overrides)
-    if not name:
-        return validated(table, path, given)
-    names = [variant.get("name") for variant in variants]
-    if name not in names:
-        known = sorted(map(str, names))
-        allowed = f"must be one of {known}{nearest(name, known)}" if known else "the scene has none"
-        raise SceneError(str(path), "variants.name", name, allowed)
-    which = names.index(name)
-    return validated(_variant(table, variants[which], path, which, overrides), path, given)
+class _Tables(NamedTuple):
+    """The tables of a scene and of its variants, and the overrides of each.
+
+    asked : the keys that the user gave himself.
+    """
+
+    path: Path
+    base: dict[str, Any]
+    variants: list[dict[str, Any]]
+    overrides: dict[str, Any]
+    asked: frozenset[str]
+
+    def named(self, name: str) -> AnyScene:
+        """Return the variant of a name; the empty name is the scene itself."""
+        names = [variant.get("name") for variant in self.variants]
+        if name and name not in names:
+            known = sorted(map(str, names))
+            allowed = f"must be one of {known}{nearest(name, known)}" if names else NO_VARIANTS
+            raise SceneError(str(self.path), "variants.name", name, allowed)
+        return self.scene(names.index(name) if name else -1)
+
+    def scene(self, index: int) -> AnyScene:
+        """Return a variant by its number; -1 is the scene itself."""
+        table, key = dict(self.base), f"variants[{index}]." if index >= 0 else ""
+        for parts, value in _leaves(self.variants[index]) if key else ():
+            _assign(table, parts, value, key + ".".join(parts), self.path)
+        _override(table, self.overrides if key else {}, self.path)
+        name = table.get("name")
+        known = isinstance(name, str) and VARIANT_NAME.fullmatch(name) and not CONTROL.search(name)
+        if not known and (key or name):
+            raise SceneError(str(self.path), f"{key}name", name, NAMES)
+        return validated(table, self.path, self.asked)
 
 
-def _parts(
-    table: dict[str, Any], path: Path, overrides: dict[str, Any]
-) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+def _of_file(path: str | Path, overrides: dict[str, Any] | None) -> _Tables:
+    path = Path(path)
+    try:
+        table = read_toml(path, LARGEST_FILE)
+    except ValueError as error:
+        raise SceneError(str(path), "", None, str(error)) from None
+    if (name := (table | (overrides or {})).get("name")) is not None:
+        raise SceneError(str(path), "name", name, "only [[variants]] take a name")
+    return _parts(table, path, overrides)
+
+
+def _parts(table: dict[str, Any], path: Path, overrides: dict[str, Any] | None) -> _Tables:
     """Return the table of a scene, changed, and those of its variants."""
-    for key, value in overrides.items():
-        _assign(table, key, value, str(path))
-    if "name" in table:
-        raise SceneError(str(path), "name", table["name"], "only [[variants]] take a name")
+    overrides = overrides or {}
+    _override(table, overrides, path)
     variants = table.pop("variants", [])
     if not isinstance(variants, list) or not all(isinstance(v, dict) for v in variants):
         raise SceneError(str(path), "variants", variants, "must be [[variants]] tables")
     if len(variants) > MOST_VARIANTS:
         allowed = f"{len(variants):,} variants given; at most {MOST_VARIANTS:,}"
         raise SceneError(str(path), "variants", None, allowed)
-    return table, variants
+    return _Tables(path, table, variants, overrides, frozenset(overrides))
 
 
 def parse_override(text: str) -> tuple[str, Any]:
@@ -118,69 +142,38 @@ def parse_override(text: str) -> tuple[str, Any]:
         return key.strip(), value
 
 
-def _read_toml(path: Path) -> dict[str, Any]:
-    try:
-        return read_toml(path, LARGEST_FILE)
-    except ValueError as error:
-        raise SceneError(str(path), "", None, str(error)) from None
-
-
-def _variant(
-    base: dict[str, Any], changes: dict[str, Any], path: Path, index: int, overrides: dict[str, Any]
-) -> dict[str, Any]:
-    name = changes.get("name")
-    if not isinstance(name, str) or not VARIANT_NAME.fullmatch(name) or CONTROL.search(name):
-        allowed = (
-            "must be a string of up to 80 characters without '/' or control characters, not "
-            "starting with '.' or ' ' nor ending in .nc, .pvd, .bp or -fields"
-        )
-        raise SceneError(str(path), f"variants[{index}].name", name, allowed)
-    table = _merge(base, changes, f"variants[{index}]", str(path))
-    for key, value in overrides.items():
-        _assign(table, key, value, str(path))
-    return table
-
-
-def _merge(base: dict[str, Any], changes: dict[str, Any], key: str, where: str) -> dict[str, Any]:
-    """Return a table with changes; `waves.0.kind` changes one table of a list."""
-    merged = dict(base)
+def _leaves(changes: dict[str, Any], above: tuple[str, ...] = ()) -> Iterator[tuple]:
+    """Yield what a table changes, by the names of the tables and keys down to it."""
     for name, value in changes.items():
-        old, inner = merged.get(name), f"{key}.{name}"
-        if isinstance(old, dict) and isinstance(value, dict):
-            value = _merge(old, value, inner, where)
-        elif isinstance(old, list) and isinstance(value, dict):
-            value = _merge_list(old, value, inner, where)
-        merged[name] = value
-    return merged
+        if isinstance(value, dict):
+            yield from _leaves(value, (*above, name))
+        else:
+            yield (*above, name), value
 
 
-def _merge_list(base: list[Any], changes: dict[str, Any], key: str, where: str) -> list[Any]:
-    merged = list(base)
-    for part, value in changes.items():
-        at, inner = _place(base, part, key, value, where), f"{key}.{part}"
-        both = isinstance(base[at], dict) and isinstance(value, dict)
-        merged[at] = _merge(base[at], value, inner, where) if both else value
-    return merged
+def _override(table: dict[str, Any], overrides: dict[str, Any], path: Path) -> None:
+    for key, value in overrides.items():
+        _assign(table, key.split("."), value, key, path)
 
 
-def _assign(table: dict[str, Any], key: str, value: Any, where: str) -> None:
-    """Set a dotted key; the 0 of `soft_layers.0.y` is a place in a list of tables."""
-    *parents, last = key.split(".")
+def _assign(table: dict[str, Any], parts: Iterable[str], value: Any, key: str, path: Path) -> None:
+    """Set a key below tables; the 0 of `soft_layers.0.y` is a place in a list of tables."""
     at: Any = table
+    *parents, last = parts
     for parent in parents:
-        place = _place(at, parent, key, value, where)
+        place = _place(at, parent, key, value, path)
         inner = at.setdefault(parent, {}) if isinstance(at, dict) else at[place]
         if not isinstance(inner, dict | list):
-            raise SceneError(where, key, value, f"is not a key: {parent} is not a table")
+            raise SceneError(str(path), key, value, f"is not a key: {parent} is not a table")
         at[place] = at = inner.copy()  # a caller's own table stays as it is
-    at[_place(at, last, key, value, where)] = value
+    at[_place(at, last, key, value, path)] = value
 
 
-def _place(at: Any, part: str, key: str, value: Any, where: str) -> Any:
+def _place(at: Any, part: str, key: str, value: Any, path: Path) -> Any:
     """Return a part of a key as used in a table or list: a name, or a valid index."""
     if isinstance(at, dict):
         return part
     if not part.isdecimal() or int(part) >= len(at):
         allowed = f"{part} must be the number of an entry of the list, 0 to {len(at) - 1}"
-        raise SceneError(where, key, value, allowed)
+        raise SceneError(str(path), key, value, allowed)
     return int(part)

@@ -91,15 +91,8 @@ def dataset(
         of each waveform, by its quantity (a key of DIMENSIONS) and in its unit: float arrays of
         that quantity's shape without time. A closed form has none.
     attributes : numbers and texts about the run (dt, steps, seconds, ...).
-
-    Inputs are at the scale of `cases.loads.load_history`, the result at that of the scene's load.
     """
-    record, spatial, scale = scene.record, velocity.ndim == 3, scene.load.scale
-    if scale != 1:
-        stress, velocity = scale * stress, scale * velocity
-        displacement = None if displacement is None else scale * displacement
-        energy = None if energy is None else scale * (scale * energy)
-        errors = {name: scale * np.asarray(bound) for name, bound in (errors or {}).items()}
+    record, spatial = scene.record, velocity.ndim == 3
     quantities = {
         "stress": stress,
         "velocity": _with_axis(velocity),

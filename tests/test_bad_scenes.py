@@ -641,8 +641,8 @@ MESHED = {
         ["numerics.continuum.elements_per_block = 2", "no meaning"],
     ),
     "elements across beside a file": (
-        MESH + "elements_across = 1\n",
-        ["numerics.continuum.elements_across = 1", "no meaning"],
+        MESH + "elements_across = 2\n",
+        ["numerics.continuum.elements_across = 2", "no meaning"],
     ),
 }
 

@@ -1,5 +1,6 @@
 """The Python interface: functions do what those behind them do, and cost nothing before."""
 
+import json
 import re
 import subprocess
 import sys
@@ -10,10 +11,12 @@ import pytest
 
 import jointwave as jw
 from jointwave import cases
+from jointwave.cases.warnings import warnings
 from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.misfit.places import Place
 from jointwave.compare.scenes import find
+from jointwave.results.dataset import attributes_of, scene_hash
 
 TABLES = {
     "title": "made of tables",
@@ -25,6 +28,30 @@ TABLES = {
     "variants": [{"name": "damped", "joints": {"damping_ratio": 0.05}}],
 }
 MOVED = TABLES | {"record": {"velocity": [1.25]}}
+
+
+SOME = ("guo-li-2002/fig-03", "beyond/slip-weakening", "hard/short-pillar", "rock-mass/slope")
+SOME += ("rock-mass/parallel-joints", "rock-mass/tunnel", "rock-mass/cavern", "rock-mass/layers")
+
+
+@pytest.mark.parametrize("name", SOME)
+def test_the_scene_of_a_result_loads_again(name):
+    """Every key has a value there, and a variant its name."""
+    for scene in jw.load_variants(name):
+        tables = json.loads(attributes_of(scene, "dem", {})["scene"])
+        again = jw.load(tables)
+        assert again.model_dump() == scene.model_dump()
+        assert scene_hash(again) == scene_hash(scene) and warnings(again) == warnings(scene)
+
+
+def test_a_name_that_is_no_folder_is_refused():
+    with pytest.raises(jw.SceneError, match=r"scene: name = '../up': must be a string of up to"):
+        jw.load(MOVED | {"variants": [], "name": "../up"})
+
+
+def test_a_scene_is_shown_in_a_line():
+    scene = jw.load("rock-mass/layers")
+    assert re.fullmatch(r"RockMass\('.*layers.toml'\)", repr(scene))
 
 
 def test_a_scene_is_loaded_from_a_name_a_file_or_tables(tmp_path):

@@ -60,8 +60,8 @@ def _of_elements(scene: Scene) -> Iterator[Wrong]:
         if numerics.dim == 1:
             yield "dim", 1, "is a bar, which takes no numerics.continuum.mesh"
         for key in ("cell", "elements_per_block", "elements_across"):
-            if key in numerics.model_fields_set:
-                yield key, getattr(numerics, key), "has no meaning with numerics.continuum.mesh"
+            if (value := getattr(numerics, key)) != type(numerics).model_fields[key].default:
+                yield key, value, "has no meaning with numerics.continuum.mesh"
     elif numerics.cell == "simplex" and numerics.order > 2:
         yield "order", numerics.order, "must be 1 or 2 for cell 'simplex'"
     elif consistent and numerics.cell == "hexahedron":

@@ -1,6 +1,5 @@
 """Contradictions between the tables of a pillar."""
 
-from collections.abc import Iterator
 from functools import partial
 
 from pydantic_core import PydanticCustomError
@@ -21,10 +20,9 @@ from jointwave.cases.material.contacts import contacts
 from jointwave.cases.material.stiffness import equivalent_constants
 from jointwave.cases.plausible import INTACT, meant
 from jointwave.cases.schema.joint import JointLaw
-from jointwave.cases.schema.law_parts import ACROSS
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.tables import PAIRS, check_given_once
-from jointwave.cases.schema.values import contradiction, is_extreme
+from jointwave.cases.schema.values import contradiction
 
 
 def contradictions(scene: Scene) -> list[PydanticCustomError]:
@@ -88,34 +86,6 @@ def _check_lever(scene: Scene) -> None:
         key, value = ("at", load.at) if load.arm is None else ("arm", load.arm)
         allowed = "rotates the blocks, which motion.rotation = 'none' excludes"
         raise contradiction(f"load.{key}", value, allowed)
-
-
-def _check_extreme(scene: Scene) -> None:
-    """An extreme load is scaled, so that its effects must be linear."""
-    if not is_extreme(scene.load.amplitude):
-        return
-    for key, value, wrong in _beyond_scaling(scene):
-        if wrong:
-            allowed = "does not scale: needs a load.amplitude of magnitude 1e-30 to 1e30"
-            raise contradiction(key, value, allowed)
-    if scene.record.energy and not 1e-150 <= abs(scene.load.amplitude) <= 1e150:
-        allowed = "must be false: energies overflow with such a load.amplitude"
-        raise contradiction("record.energy", True, allowed)
-
-
-def _beyond_scaling(scene: Scene) -> Iterator[tuple[str, object, bool]]:
-    """Yield the keys that an extreme load excludes: key, value, and whether it is present."""
-    load, record = scene.load, scene.record
-    yield "gravity", None, scene.gravity is not None
-    yield "prestress", None, scene.prestress is not None
-    yield "record.fields", record.fields, record.fields is not None
-    yield "load.direction", load.direction, load.is_across
-    yield "load.at", load.at, load.is_eccentric
-    yield "load.arm", load.arm, load.arm is not None
-    yield "load.file", load.file, load.file is not None
-    for table, law in _laws(scene, scene.soft_layers).items():
-        for key in ("cohesion", *ACROSS):
-            yield f"{table}.{key}", getattr(law, key), getattr(law, key) is not None
 
 
 def _laws(scene: Scene, layers: list) -> dict[str, JointLaw]:
@@ -182,7 +152,6 @@ CHECKS = (
     check_time,
     check_fields,
     _check_lever,
-    _check_extreme,
     _check_ends,
     _check_damping,
     _check_strength,

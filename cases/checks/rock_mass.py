@@ -103,11 +103,10 @@ def _check_in_rock(key: str, place: list[float], outline: Outline | Box) -> None
 
 def _check_boundaries(scene: RockMass, outline: Outline | Box) -> None:
     normals = outline.normals()
-    for side in scene.boundaries.model_fields_set:
-        key, held = f"boundaries.{side}", getattr(scene.boundaries, side)
-        if side not in normals:
+    for side, held in scene.boundaries:
+        if held != "free" and side not in normals:
             allowed = f"is not a side of this domain, which has {', '.join(normals)}"
-            raise contradiction(key, held, allowed)
+            raise contradiction(f"boundaries.{side}", held, allowed)
     for side, other in PARTNER.items():
         held, across = getattr(scene.boundaries, side), getattr(scene.boundaries, other)
         if held == "periodic" and across != "periodic":

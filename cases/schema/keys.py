@@ -26,7 +26,7 @@ WORDS = {float: "number", int: "whole number", str: "string", bool: "`true` or `
 BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
 LENGTHS = {"min_length": "at least", "max_length": "at most"}
 #: Requirements of the functions that check a value; empty for bounds that only exclude nonsense.
-CHECKS = {"_magnitude": "", "_amplitude": "", "_words": ""} | {
+CHECKS = {"_magnitude": "", "_words": ""} | {
     "_unit": "of length 1",
     "_per_axis": "one for each axis",
 }

@@ -155,5 +155,3 @@ PARTS = (
         instead_of=("tension",),
     ),
 )
-#: The keys of the parts that do not act only along a joint.
-ACROSS = tuple(part.keys[0] for part in PARTS if not part.along)

@@ -1,22 +1,20 @@
 """The pulse of a load or a wave: its shape in time, or a recorded history; the load of a pillar."""
 
 from collections.abc import Iterable
-from math import frexp
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from jointwave.cases.schema.values import (
-    Amplitude,
     Direction,
     NonNegative,
+    Number,
     Offset,
     Positive,
     Table,
     contradiction,
     contradiction_here,
     folder_of,
-    is_extreme,
 )
 
 if TYPE_CHECKING:
@@ -42,7 +40,7 @@ class Pulse(Table):
     #: half-sine: half a period; ricker: peak at 1.5 periods; gabor: a cosine in a Gaussian, peak at
     #: 1.6 `cycles`; triangle: a blast; table: linear interpolation of the samples of a file
     shape: Literal["sine", "half-sine", "ricker", "gabor", "triangle", "step", "table"]
-    amplitude: Amplitude  #: Pa, m/s or m/s2 by `quantity`; a factor on the history for "table"
+    amplitude: Number  #: Pa, m/s or m/s2 by `quantity`; a factor on the history for "table"
     #: stress: on the start, of which a quiet or matched one takes half; incident-stress: of the
     #: wave that enters such a start, applied as twice this stress; velocity, acceleration: of the
     #: base under a fixed start, or of the wave that enters a quiet start, applied as the stress
@@ -104,15 +102,6 @@ class Pulse(Table):
         if self.rise is not None and self.decay is not None:
             return 2 * (self.rise + self.decay)
         return self.period
-
-    @property
-    def scale(self) -> float:
-        """A power of two that an extreme load is divided by and its result multiplied; else 1.
-
-        The motion of such a load would be below or above all numbers; scaled by a power of two it
-        is that of a load near 1, digit by digit.
-        """
-        return 2.0 ** frexp(self.amplitude)[1] if is_extreme(self.amplitude) else 1.0
 
 
 def shortest_period(pulses: Iterable[Pulse]) -> float | None:

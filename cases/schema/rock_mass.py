@@ -7,8 +7,7 @@ north and z upwards.
 
 from typing import ClassVar
 
-from pydantic import PrivateAttr
-
+from jointwave.cases.schema.any_scene import SceneBase
 from jointwave.cases.schema.damping import Damping
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
@@ -20,18 +19,15 @@ from jointwave.cases.schema.plane import (
     NumericsInPlane,
     RecordOfRock,
 )
-from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.region import Region
 from jointwave.cases.schema.sources import PlaneLoad, Wave
 from jointwave.cases.schema.tables import Time
-from jointwave.cases.schema.values import Pair, Positive, Table, Words
+from jointwave.cases.schema.values import Pair, Positive
 
 
-class RockMass(Table):
+class RockMass(SceneBase):
     """A rock mass: domain, rock, joints, waves, loads and receivers."""
 
-    title: Words  #: used in tables and figures
-    source: Words | None = None  #: reference of the scene
     domain: Domain
     rock: IntactRock
     regions: list[Region] = []
@@ -49,12 +45,6 @@ class RockMass(Table):
     name: str = ""  #: of the variant; empty for the base scene
 
     kind: ClassVar[str] = "rock mass"
-    _where: str = PrivateAttr(default="")
-
-    @property
-    def where(self) -> str:
-        """The file and variant that the scene was read from, else its title: for messages."""
-        return self._where or self.title
 
     @property
     def in_space(self) -> bool:
@@ -66,11 +56,6 @@ class RockMass(Table):
         """Everything that acts over time, by its table."""
         waves = {f"waves[{i}]": one for i, one in enumerate(self.waves)}
         return waves | {f"loads[{i}]": one for i, one in enumerate(self.loads)}
-
-    @property
-    def pulses(self) -> tuple[Wave | PlaneLoad, ...]:
-        """Everything that acts over time."""
-        return tuple(self.sources.values())
 
     @property
     def bases(self) -> list[PlaneLoad]:
@@ -90,9 +75,3 @@ class RockMass(Table):
 
     def _shakes(self, load: PlaneLoad) -> bool:
         return load.kind == "base" and getattr(self.boundaries, load.side or "") == "fixed"
-
-    @property
-    def interval(self) -> float:
-        """Time between samples, s."""
-        period = shortest_period(self.pulses)
-        return self.record.interval or (period / 200 if period else self.time.duration / 2000)

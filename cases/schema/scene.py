@@ -7,11 +7,10 @@ end, x and z across. The reference scene is that of Guo & Li (2002), Chin. J. Ro
 
 from typing import Any, ClassVar
 
-from pydantic import PrivateAttr
-
+from jointwave.cases.schema.any_scene import SceneBase
 from jointwave.cases.schema.damping import Damping
 from jointwave.cases.schema.joint import Joints, SoftLayer
-from jointwave.cases.schema.pulse import NO_LOAD, Load, shortest_period
+from jointwave.cases.schema.pulse import NO_LOAD, Load
 from jointwave.cases.schema.segment import Part, Segment, parts_of
 from jointwave.cases.schema.tables import (
     LEAN,
@@ -26,14 +25,12 @@ from jointwave.cases.schema.tables import (
     Scatter,
     Time,
 )
-from jointwave.cases.schema.values import Pair, Positive, Table, Words
+from jointwave.cases.schema.values import Pair, Positive
 
 
-class Scene(Table):
+class Scene(SceneBase):
     """A pillar scene: rock, joints, load and receivers."""
 
-    title: Words  #: used in tables and figures
-    source: Words | None = None  #: reference of the scene
     pillar: Pillar
     rock: Rock
     motion: Motion = Motion()
@@ -55,22 +52,11 @@ class Scene(Table):
     kind: ClassVar[str] = "pillar"
     excavated: ClassVar[bool] = False  #: as of a `RockMass`
     in_space: ClassVar[bool] = False  #: as of a `RockMass`
-    _where: str = PrivateAttr(default="")
 
     @property
     def sources(self) -> dict[str, Load]:
         """Everything that acts over time, by its table."""
         return {"load": self.load}
-
-    @property
-    def pulses(self) -> tuple[Load, ...]:
-        """Everything that acts over time."""
-        return (self.load,)
-
-    @property
-    def where(self) -> str:
-        """The file and variant that the scene was read from, else its title: for messages."""
-        return self._where or self.title
 
     @property
     def shakes_base(self) -> bool:
@@ -110,12 +96,6 @@ class Scene(Table):
     def is_uniform(self) -> bool:
         """Whether all blocks are equal, and all joints except the soft layers."""
         return not self.segments and self.scatter is None
-
-    @property
-    def interval(self) -> float:
-        """Time between samples, s."""
-        period = shortest_period(self.pulses)
-        return self.record.interval or (period / 200 if period else self.time.duration / 2000)
 
     @property
     def layers(self) -> list[SoftLayer]:

@@ -1,6 +1,6 @@
 """Sources in rock: plane waves, pressures, forces and a shaken base."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, ValidationInfo, model_validator
@@ -12,6 +12,7 @@ from jointwave.cases.schema.values import (
     UnitVector,
     check_dimension,
     contradiction_here,
+    dimension,
 )
 
 Side = Literal["left", "right", "front", "back", "bottom", "top", "outline"]
@@ -35,14 +36,22 @@ class Wave(Pulse):
     #: stress: on the wave front, compression positive for P; velocity: of the particles
     quantity: Literal["stress", "velocity"] = "stress"  # type: ignore[assignment]
     #: P: particles move along the direction; S: normal to it, to its left, in space as
-    #: `polarisation`
-    kind: Literal["P", "S"]
+    #: `polarisation`; SV: S, in space polarised in the vertical plane of its direction
+    kind: Literal["P", "S", "SV"]
     direction: UnitVector  #: x, y, in space x, y, z: of propagation
     #: x, y, z: of particle motion of an S wave in space, of which the part across the direction
     #: counts
     polarisation: UnitVector | None = None
     #: m, where the pulse begins at t = 0; absent: the first corner of the domain that it reaches
     through: Point | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _in_the_vertical_plane(cls, table: Any, info: ValidationInfo) -> Any:
+        if not isinstance(table, dict) or table.get("kind") != "SV":
+            return table
+        vertical = {"polarisation": [0.0, 0.0, 1.0]} if dimension(info) == 3 else {}
+        return vertical | table | {"kind": "S"}
 
     @model_validator(mode="after")
     def _is_polarised(self, info: ValidationInfo) -> "Wave":

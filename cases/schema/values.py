@@ -32,18 +32,6 @@ def _magnitude(value: float) -> float:
     return value
 
 
-def _amplitude(value: float) -> float:
-    """Refuse amplitudes close to overflow or underflow."""
-    if value and not 1e-300 <= abs(value) <= 1e300:
-        raise PydanticCustomError("magnitude", "must lie between 1e-300 and 1e300 in magnitude")
-    return value
-
-
-def is_extreme(amplitude: float) -> bool:
-    """Return whether squares or sums of a load overflow or underflow."""
-    return bool(amplitude) and not 1e-30 <= abs(amplitude) <= 1e30
-
-
 def _pair(text: str) -> str:
     """Check one key of [expect], whose names are those of whoever solves scenes."""
     one, _, other = text.partition(" ~ ")
@@ -75,7 +63,6 @@ def _per_axis(vector: list[float], info: ValidationInfo) -> list[float]:
 
 Words = Annotated[str, AfterValidator(_words)]
 Number = Annotated[float, AfterValidator(_magnitude)]
-Amplitude = Annotated[float, AfterValidator(_amplitude)]  #: of a load
 Positive = Annotated[float, Field(gt=0), AfterValidator(_magnitude)]
 NonNegative = Annotated[float, Field(ge=0), AfterValidator(_magnitude)]
 Dip = Annotated[float, Field(ge=-180, le=180)]

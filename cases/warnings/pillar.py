@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from jointwave.cases.effects import bends
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.schema.scene import Scene
+from jointwave.cases.schema.tables import Rock
 from jointwave.cases.spectrum import LEAST_BLOCKS, ShortestWave, shortest_wave
 from jointwave.cases.warnings.shared import (
     of_a_jump,
@@ -13,6 +14,7 @@ from jointwave.cases.warnings.shared import (
     onset,
 )
 
+POISSON = Rock.model_fields["intact_poisson"].default
 MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
 ON_JOINT = 1e-9  # of the pillar's length, and of a block: rounding of a receiver's place
 
@@ -34,7 +36,7 @@ def _of_poisson(scene: Scene, p: Properties, wave: ShortestWave | None) -> Itera
             f"gives a negative Poisson's ratio, {p.poisson:.3g}"
         )
     given = rock.equivalent_modulus or rock.p_speed
-    if given and rock.intact_modulus is None and "intact_poisson" in rock.model_fields_set:
+    if given and rock.intact_modulus is None and rock.intact_poisson != POISSON:
         poisson = rock.intact_poisson
         yield f"rock.intact_poisson = {poisson:g} is not used: it needs rock.intact_modulus"
 

@@ -69,5 +69,5 @@ def drive(scene: Scene) -> LoadHistory:
     """Return the end stress (Pa) or, where the load is a motion, the base's velocity (m/s)."""
     load = scene.load
     if scene.shakes_base:
-        return velocity_of(load, load.amplitude / load.scale)
+        return velocity_of(load, load.amplitude)
     return load_history(scene)

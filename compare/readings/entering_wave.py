@@ -62,11 +62,11 @@ def _along_pillar(scene: Scene) -> Iterator[EnteringWave]:
     parts = [(abs(y), p.bar_speed, "along"), (float(np.hypot(x, z)), p.shear_speed, "across")]
     for share, speed, way in parts:
         if scene.shakes_base:
-            history, gain = velocity_of(load, load.amplitude / load.scale), 1.0
+            history, gain = velocity_of(load, load.amplitude), 1.0
         else:
             gain = ENTERS[scene.ends.start] / (p.density * speed)
         if share:
-            gains = share * gain * load.scale, p.density, speed
+            gains = share * gain, p.density, speed
             yield _wave(f"load, {way} the axis", history, *gains, scene.time.duration)
 
 

@@ -6,6 +6,7 @@ form (`parallel_joints`), or by a solver's motion in a scene of the same rock an
 from collections.abc import Sequence
 from itertools import product
 from math import nan
+from typing import Literal
 
 import numpy as np
 import xarray as xr
@@ -35,7 +36,7 @@ def transmission(
     scene: AnySource,
     angles: float | Sequence[float] | np.ndarray = 0.0,
     solvers: str | Sequence[str] = EXACT,
-    incidence: Kind = "P",
+    incidence: Literal["P", "S", "SV"] = "P",
     frequency: float | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
@@ -50,7 +51,7 @@ def transmission(
     scene : as `load` takes it.
     angles : of travel from the joints' normal, degrees, 0 to below 90.
     solvers : "exact", the closed form; "dem", "continuum-jointed", ..., a run for each angle.
-    incidence : "P" or "SV".
+    incidence : "P", or "S" or "SV", which in the plane are one.
     frequency : Hz; None: one over the period of the scene's first pulse.
     progress : called with the finished fraction.
 
@@ -61,8 +62,8 @@ def transmission(
         degrees = np.atleast_1d(np.asarray(angles, dtype=float))
     except (TypeError, ValueError):
         degrees = np.array([nan])
-    if incidence not in KINDS:
-        raise SceneError("transmission", "incidence", incidence, "must be 'P' or 'SV'")
+    if incidence not in ("S", *KINDS):
+        raise SceneError("transmission", "incidence", incidence, "must be 'P', 'S' or 'SV'")
     if degrees.ndim != 1 or not ((degrees >= 0) & (degrees < 90)).all():
         allowed = "must be from 0 to below 90 degrees from the joints' normal"
         raise SceneError("transmission", "angles", angles, allowed)
@@ -72,10 +73,11 @@ def transmission(
             raise SceneError("transmission", "solvers", name, allowed)
     if not isinstance(scene, RockMass):
         raise SceneError(scene.where, "", None, f"{NONE}: it is a pillar")
+    kind: Kind = "P" if incidence == "P" else "SV"
     joints, rows = _joints_of(scene, _period(scene, frequency)), list[list[float]]()
     points = list(product(wanted, degrees.tolist()))
     for k, point in enumerate(points):
-        rows.append(_measured(joints, scene.title, incidence, *point))
+        rows.append(_measured(joints, scene.title, kind, *point))
         if progress:
             progress((k + 1) / len(points))
     found = np.reshape(np.transpose(rows), (5, len(wanted), len(degrees)))

@@ -97,7 +97,7 @@ def test_highest_frequency_of_a_record_is_that_of_the_same_wave(tmp_path, scene_
         assert found == pytest.approx(highest_frequency(scene_with(**{"load.period": 0.01})), 5e-3)
 
 
-@given(amplitude=st.floats(1e-300, 1e300), sign=st.sampled_from([-1, 1]))
+@given(amplitude=st.floats(1e-30, 1e30), sign=st.sampled_from([-1, 1]))
 def test_warnings_do_not_depend_on_the_size_of_the_load(scene_with, amplitude, sign):
     changes = {"load.period": 0.001, "ends.end": "quiet", "source": None, "record.energy": False}
     found = warnings(scene_with(**changes, **{"load.amplitude": sign * amplitude}))

@@ -46,7 +46,7 @@ def test_jump_in_stress_is_as_wrong_as_dispersion_makes_it(engine, scheme):
 
 
 @pytest.mark.parametrize(("engine", "scheme"), marked(SCHEMES))
-@pytest.mark.parametrize("amplitude", [1e-300, 1e-200, 1e200, 1e300])
+@pytest.mark.parametrize("amplitude", [1e-30, 1e30])
 def test_linear_results_scale_with_the_load(amplitude, engine, scheme):
     """Over the amplitude, the result is that of 1 Pa. Only the factor rounds, at the load and at
     the result, by an eps each; every step keeps its relative error, which a sum over steps
@@ -68,10 +68,10 @@ def test_nothing_moves_without_a_load(engine, scheme):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        (STRENGTH | {"load.amplitude": 1e300}, "joints.tensile_strength = 500000.*does not scale"),
+        ({"load.amplitude": 1.1e30}, "load.amplitude = 1.1e.30.*between 1e-30 and 1e30"),
         (STRENGTH | {"joints.fracture_energy": 14.2}, "joints.fracture_energy = 14.2.*must exceed"),
     ],
-    ids=["1e300 Pa on joints with a strength", "softening that snaps back"],
+    ids=["more than 1e30 Pa", "softening that snaps back"],
 )
 @pytest.mark.parametrize(("engine", "scheme"), JOINTED)
 def test_what_cannot_be_computed_is_refused_in_a_line(changes, words, engine, scheme):

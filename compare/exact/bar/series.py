@@ -67,15 +67,15 @@ def solve(scene: Scene, n_terms: int = 2000) -> xr.Dataset:
         "velocity": velocity,
         "displacement": displacement,
     }
-    errors = _left_out(found, images.solve(scene), scene.load.scale)
+    errors = _left_out(found, images.solve(scene))
     return dataset(scene, SOLVER.name, times, **found, errors=errors)
 
 
-def _left_out(found: dict, exact: xr.Dataset, scale: float) -> dict[str, np.ndarray]:
+def _left_out(found: dict, exact: xr.Dataset) -> dict[str, np.ndarray]:
     """Return root-mean-square errors of waveforms from the closed form, with its round-off."""
     errors = {}
     for name, waves in found.items():
-        closed = exact[name].values.reshape(waves.shape) / scale
+        closed = exact[name].values.reshape(waves.shape)
         off = np.sqrt(np.mean((waves - closed) ** 2, axis=1))
         errors[name] = off + ROUND_OFF * np.abs(closed).max(axis=1, initial=0.0)
     return errors

@@ -268,7 +268,11 @@ MISTAKES = {
         "period = 0.01\ncycles = 2",
         ["waves[0].cycles = 2", "no meaning for shape 'ricker'"],
     ),
-    "unknown kind of wave": ('kind = "P"', 'kind = "R"', ["waves[0].kind = 'R'", "'P' or 'S'"]),
+    "unknown kind of wave": (
+        'kind = "P"',
+        'kind = "R"',
+        ["waves[0].kind = 'R'", "'P', 'S' or 'SV'"],
+    ),
     "opening that is none": ("opening = 0", "opening = 1", ["loads[0].opening = 1", "of the 1 "]),
     "pressure on nothing": (
         "opening = 0",
@@ -306,7 +310,7 @@ MISTAKES = {
         'side = "outline"',
         ["loads[0].side = 'outline'", "which has left, right, bottom, top"],
     ),
-    "unknown side": ("[boundaries]", '[boundaries]\nfront = "free"', ["boundaries.front"]),
+    "unknown side": ("[boundaries]", '[boundaries]\nfront = "fixed"', ["boundaries.front"]),
     "side that is none": (
         "[boundaries]",
         '[boundaries]\noutline = "fixed"',
@@ -446,6 +450,6 @@ def test_a_variant_changes_one_of_a_list_of_tables(written):
     assert [s.dip for s in steep.joint_sets] == [first.joint_sets[0].dip, 80.0]
     assert steep.joint_sets[1].model_dump() == {**first.joint_sets[1].model_dump(), "dip": 80.0}
     path = written(GOOD + '\n[[variants]]\nname = "none"\njoint_sets.7.dip = 80.0\n')
-    allowed = r"variants\[1\].joint_sets = .*7 must be the number of an entry of the list, 0 to 1"
+    allowed = r"variants\[1\].joint_sets.7.dip = 80.0: 7 must be .*of the list, 0 to 1"
     with pytest.raises(SceneError, match=allowed):
         load(path)

@@ -29,6 +29,17 @@ def scene(**tables):
     return cases.load_tables(every)
 
 
+@pytest.mark.parametrize("size", [[4.0, 4.0], [4.0, 4.0, 4.0]])
+def test_an_sv_wave_moves_in_the_vertical_plane_of_its_direction(size):
+    along = [0.6, 0.8] if len(size) == 2 else [0.6, 0.0, 0.8]
+    wave = WAVE | {"direction": along, "kind": "SV"}
+    tables = {"domain": {"size": size}, "boundaries": QUIET | {"left": "quiet"}}
+    tables |= {"joint_sets": [], "record": {"points": [size]}}
+    (found,) = scene(waves=[wave], **tables).waves
+    assert found.kind == "S"
+    assert found.polarisation == (None if len(size) == 2 else [0.0, 0.0, 1.0])
+
+
 def test_all_that_a_scene_in_space_may_hold():
     found = scene(
         waves=[WAVE, S_WAVE | {"polarisation": [1.0, 0.0, 0.0], "through": [0.0, 0.0, 0.0]}],
@@ -207,7 +218,7 @@ def test_a_mistake_is_one_line(tables, said):
 IN_PLANE = {
     "a point": ({"record": {"points": [[1.0, 1.0, 1.0]]}}, "must have 2 numbers"),
     "a dip direction": ({"joint_sets": [BED | {"dip_direction": 0.0}]}, "no meaning in the plane"),
-    "a side": ({"boundaries": {"front": "free"}}, "is not a side of this domain, which has left"),
+    "a side": ({"boundaries": {"front": "fixed"}}, "is not a side of this domain, which has left"),
     "a stress": ({"prestress": {"xx": 1e6, "yy": 1e6, "zz": 1e6}}, "no meaning in the plane"),
     "a prism": (
         {

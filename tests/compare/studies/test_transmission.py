@@ -22,6 +22,7 @@ def test_normal_incidence_is_the_formula():
     assert found.R_p.item() == pytest.approx(R) and found.T_p.item() == pytest.approx(T)
     assert found.R_s == found.T_s == 0 and found.frequency == pytest.approx(200)
     found = transmission(MASS, 0.0, incidence="SV", frequency=50.0)
+    assert found.equals(transmission(MASS, 0.0, incidence="S", frequency=50.0))
     R, T = by_hand(np.sqrt(2600 * 2e10), 9e9, 100 * np.pi)
     assert found.R_s.item() == pytest.approx(R) and found.T_s.item() == pytest.approx(T)
 
@@ -81,7 +82,7 @@ def test_engines_have_it_too():
     [
         (MASS, {}, {"angles": [0, 90]}, r"angles = .*must be from 0 to below 90 degrees"),
         (MASS, {}, {"angles": "steep"}, r"angles = .*must be from 0 to below 90 degrees"),
-        (MASS, {}, {"incidence": "S"}, r"incidence = 'S': must be 'P' or 'SV'"),
+        (MASS, {}, {"incidence": "SH"}, r"incidence = 'SH': must be 'P', 'S' or 'SV'"),
         (MASS, {}, {"frequency": "12 Hz"}, r"frequency = 'str': must be a number, Hz"),
         (MASS, {}, {"frequency": 0.0}, r"frequency = 0.0: must be positive, Hz"),
         (MASS, {}, {"solvers": "dam"}, r"solvers = 'dam': must be of exact, dem,"),
