@@ -46,10 +46,10 @@ def shortest_wave(scene: Scene, p: Properties) -> ShortestWave | None:
     if frequency is None:
         return None
     sheared = scene.load.is_across or scene.load.arm is not None
-    p = min(p.each, key=lambda one: one.bar_speed / one.spacing)
-    speed = p.shear_speed if sheared else p.bar_speed
-    blocks = speed / (frequency * p.spacing)
-    return ShortestWave(frequency, speed, blocks, speed / (pi * p.spacing))
+    bar = min(p.each, key=lambda one: one.bar_speed / one.spacing)
+    speed = bar.shear_speed if sheared else bar.bar_speed
+    blocks = speed / (frequency * bar.spacing)
+    return ShortestWave(frequency, speed, blocks, speed / (pi * bar.spacing))
 
 
 def highest_frequency(scene: AnyScene) -> float | None:

@@ -11,6 +11,7 @@ from scipy.sparse import csr_matrix, diags, identity, kron
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.material.constant_q import Mechanisms, mechanisms_of
+from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
@@ -90,7 +91,7 @@ def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh
         raise SceneError(scene.where, key, numerics.cell, f"needs gmsh ({error})") from None
 
 
-def elements_for(scene: Scene, p: Properties, model: str) -> int:
+def elements_for(scene: Scene, p: JointedRock, model: str) -> int:
     """Return how many elements a block needs along the pillar to resolve the scene's waves."""
     modulus = p.modulus if model == "equivalent" else p.intact_modulus
     assert modulus is not None

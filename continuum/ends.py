@@ -8,6 +8,7 @@ from scipy.sparse import csr_matrix, diags
 
 from jointwave.cases.loads import base_steps, load_history, step_means
 from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.mesh.description import Side
@@ -117,7 +118,7 @@ def absorbers(
         yield face_area(body, getattr(body.mesh, place)), springs
 
 
-def _half_joint(p: Properties, z: float, is_normal: bool, dt: float) -> HalfSpring:
+def _half_joint(p: JointedRock, z: float, is_normal: bool, dt: float) -> HalfSpring:
     k = p.regular_own_stiffness if is_normal else p.regular_own_shear_stiffness
     return half_spring(2 * k, p.time_constant or 0.0, z, dt)
 

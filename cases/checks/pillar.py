@@ -16,8 +16,8 @@ from jointwave.cases.checks.shared import (
     found_by,
 )
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.material.contacts import contacts
-from jointwave.cases.material.stiffness import equivalent_constants
+from jointwave.cases.material.jointed_rock import equivalent_constants
+from jointwave.cases.partition.pillar import block_ends
 from jointwave.cases.plausible import INTACT, meant
 from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.scene import Scene
@@ -33,7 +33,7 @@ def contradictions(scene: Scene) -> list[PydanticCustomError]:
 def _check_layers(scene: Scene) -> None:
     if not scene.soft_layers:
         return
-    pillar, seen, joints = scene.pillar, set(), contacts(scene)[1:-1]
+    pillar, seen, joints = scene.pillar, set(), block_ends(scene)[1:-1]
     for i, layer in enumerate(scene.soft_layers):
         joint, key = int(abs(joints - layer.y).argmin()), f"soft_layers[{i}].y"
         loose = scene.scatter is not None and scene.scatter.spacing > 0  # the nearest will do

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from jointwave.cases.effects import off_axis
-from jointwave.cases.material.contacts import contacts, welds
-from jointwave.cases.material.stiffness import equivalent_constants
+from jointwave.cases.material.jointed_rock import equivalent_constants
+from jointwave.cases.partition.pillar import block_ends, welds
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.segment import CLOSE, Segment
 from jointwave.cases.schema.values import contradiction
@@ -55,7 +55,7 @@ def _beside(scene: Scene) -> Iterator[tuple[str, object, str]]:
 
 def _of_layers(scene: Scene) -> Iterator[tuple[str, object, str]]:
     """Yield the same of soft layers, where these are on joints."""
-    inner, no_joint = contacts(scene)[1:-1], welds(scene)
+    inner, no_joint = block_ends(scene)[1:-1], welds(scene)
     for i, layer in enumerate(scene.soft_layers):
         table = f"soft_layers[{i}]"
         yield (

@@ -98,15 +98,15 @@ class Blocks:
         return half.cell[first], normal, found
 
 
-def blocks_of(body: Complex, tolerance: float) -> Blocks:
+def blocks_of(body: Complex, tolerance: float, in_rows: bool = True) -> Blocks:
     """Return the cells of a complex as blocks, numbered along rows across the domain.
 
-    tolerance : m, below which vertices lie in a line.
+    tolerance : m, below which vertices lie in a line. in_rows : False numbers them as the cells.
     """
     moments = facet_moments(body, np.arange(len(body.sides)))
     half = body.halves()
     m = cell_moments(body, half, Moments(*(array[half.facet] for array in moments)))
-    order = _in_rows(body, m)
+    order = _in_rows(body, m) if in_rows else np.flatnonzero(m.size > 0)
     number = np.full(body.count + 1, OUTSIDE)
     number[order] = np.arange(len(order))
     body = replace(body, sides=number[body.sides], region=body.region[order], count=len(order))

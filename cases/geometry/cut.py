@@ -207,7 +207,9 @@ class _Work:
             x = np.concatenate(self.vertices)
             s = x @ self.planes.normal
             t = (self.planes.places[plane] - s[one]) / (s[other] - s[one])
-            self.vertices.append(x[one] + t[:, None] * (x[other] - x[one]))
+            found = x[one] + t[:, None] * (x[other] - x[one])
+            left = self.planes.places[plane] - found @ self.planes.normal
+            self.vertices.append(found + left[:, None] * self.planes.normal)
             return
         rows = self.rows[k][np.isin(self.rows[k][:, 0], cell)]
         found = composed(rows, self.rows[k - 1])[0]

@@ -1,10 +1,26 @@
-"""The properties of a scene, shared by engines and exact solutions."""
+"""Calibration: the properties of a pillar, shared by engines and exact solutions.
 
+A block of thickness S has half of its compliance on either side of its centre: S / (2 E) of intact
+rock and half a joint, 1 / (2 K_n), together S / (2 E_eq). A joint between two segments is half a
+joint of each, so that rigid blocks, jointed rock and the homogenised bar have one compliance, and a
+matched end the other half. Two Kelvin-Voigt elements in series are one for slow motion, with the
+time constants weighted by the compliances.
+
+Joints at random have their own thickness of block before and behind, and their own compliance.
+"""
+
+from math import inf
+from typing import Any
 from weakref import ref
 
-from jointwave.cases.material.layered import calibrate_layered
+import numpy as np
+
+from jointwave.cases.geometry.cell_complex import NO_SET
+from jointwave.cases.material.jointed_rock import JointedRock, joint_time_constant, mean_of, rock_of
 from jointwave.cases.material.properties import Properties
-from jointwave.cases.material.uniform import calibrate_uniform
+from jointwave.cases.material.strength import strength_of
+from jointwave.cases.partition.pillar import blocks_of_pillar, drawn
+from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.scene import Scene
 
 __all__ = ["Properties", "calibrate"]
@@ -21,6 +37,113 @@ def calibrate(scene: Scene) -> Properties:
     for known, found in _last:
         if known() is scene:
             return found
-    found = calibrate_uniform(scene) if scene.is_uniform else calibrate_layered(scene)
+    found = _properties(scene)
     _last[:] = [(ref(scene, lambda _: _last.clear()), found)]
     return found
+
+
+def _properties(scene: Scene) -> Properties:
+    """Return the properties of a scene by its blocks and the rock of each segment."""
+    blocks = blocks_of_pillar(scene)
+    law, segment = blocks.contacts.joint_set, blocks.body.region
+    y = np.concatenate([[0.0], blocks.contacts.centroid[:, 0], [scene.pillar.length]])
+    bars, weld = tuple(rock_of(scene.alone(one)) for one in scene.parts), law == NO_SET
+    changed = np.flatnonzero(law > 0)
+    soft = changed[np.argsort(law[changed])]
+    laws = [scene.joints, *scene.layers, *[JointLaw()] * bool(weld.any())]
+    return Properties(
+        contact_y=y,
+        segment=segment,
+        parts=() if scene.is_uniform else bars,
+        soft=soft,
+        weld=weld,
+        tension=np.array([one.tension is not False for one in laws])[law],
+        **_springs(scene, bars, segment, np.diff(y), soft),
+        **vars(mean_of(bars)),
+        **vars(strength_of(laws, law)),
+    )
+
+
+def _springs(
+    scene: Scene,
+    bars: tuple[JointedRock, ...],
+    segment: np.ndarray,
+    thickness: np.ndarray,
+    soft: np.ndarray,
+) -> dict[str, Any]:
+    """Return stiffness and time constants of each joint, ordinary ones and soft layers."""
+
+    def of_blocks(name: str, absent: float = 0.0) -> np.ndarray:
+        values = [getattr(one, name) for one in bars]
+        return np.array([absent if one is None else one for one in values])[segment]
+
+    spacing, density, eta = map(of_blocks, ("spacing", "density", "time_constant"))
+    modulus, shear_modulus = map(of_blocks, ("modulus", "shear_modulus"))
+    intact, shear_intact = (
+        of_blocks(name, inf) for name in ("intact_modulus", "intact_shear_modulus")
+    )
+    thickness = thickness if scene.scatter and scene.scatter.spacing else spacing
+    half, half_rock = spacing * (1 / modulus - 1 / intact) / 2, thickness / intact / 2
+    own, rock = _of_pairs(half) * _scattered(scene, segment), _of_pairs(half_rock)
+    compliance = own + rock
+    own_eta = _weighted(half, eta)
+    joint_eta = _joined(own, own_eta, rock, _weighted(half_rock, eta))
+    regular, ordinary_eta = 1 / compliance, joint_eta.copy()
+    shear, shear_rock = (
+        _of_pairs(spacing / shear_modulus / 2),
+        _of_pairs(spacing / shear_intact / 2),
+    )
+    apart, areal_mass = _of_pairs(spacing / 2), _of_pairs(density * spacing / 2)
+
+    for j, given, layer in zip(soft, scene.soft_layers, scene.layers, strict=True):
+        if k := given.own_stiffness(apart[j]):
+            own[j], compliance[j] = 1 / k, 1 / k + rock[j]
+        if given.shear_stiffness:
+            shear[j] = 1 / given.shear_stiffness + shear_rock[j]
+        elif k and not scene.joints.shear_stiffness:
+            shear[j] = compliance[j] * modulus[j] / shear_modulus[j]
+        if scene.damping.rayleigh is not None or layer.damping_ratio is not None:
+            of = areal_mass[j], 1 / compliance[j]
+            own_eta[j] = joint_eta[j] = joint_time_constant(scene, layer.damping_ratio, *of)
+
+    known, damped = bool(np.isfinite(intact).all()), bool(eta.any() or joint_eta.any())
+    with np.errstate(divide="ignore"):
+        own_stiffness, own_shear = 1 / own, 1 / np.maximum(shear - shear_rock, 0.0)
+    return {
+        "stiffness": 1 / compliance,
+        "shear_stiffness": 1 / shear,
+        "own_stiffness": own_stiffness if known else None,
+        "own_shear_stiffness": own_shear if known else None,
+        "joint_time_constant": joint_eta if damped else None,
+        "own_time_constant": own_eta if damped else None,
+        "ordinary_time_constant": ordinary_eta,
+        "regular": regular,
+        "rock_between": rock,
+    }
+
+
+def _scattered(scene: Scene, segment: np.ndarray) -> np.ndarray:
+    """Return the compliance of each joint over its mean [N - 1]: those of a segment, with the one
+    behind it, are a stream of random numbers."""
+    if scene.scatter is None or not scene.scatter.compliance:
+        return np.ones(len(segment) - 1)
+    counts = np.bincount(segment)
+    every = [drawn(scene, i, 1, int(count)) for i, count in enumerate(counts)]
+    return 1 + scene.scatter.compliance * np.concatenate(every)[:-1]
+
+
+def _of_pairs(half: np.ndarray) -> np.ndarray:
+    """Return the sum of two neighbours [N - 1]."""
+    return half[1:] + half[:-1]
+
+
+def _joined(one: np.ndarray, eta: np.ndarray, other: np.ndarray, beta: np.ndarray) -> np.ndarray:
+    """Return the time constant of two compliances in series, each with its own, s."""
+    whole = one + other
+    viscous = one * eta + other * beta
+    return np.divide(viscous, whole, out=np.zeros_like(whole), where=whole > 0)
+
+
+def _weighted(compliance: np.ndarray, eta: np.ndarray) -> np.ndarray:
+    """Return the time constant of each pair of neighbours in series, 0 of rigid ones [N - 1], s."""
+    return _joined(compliance[:-1], eta[:-1], compliance[1:], eta[1:])

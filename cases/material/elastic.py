@@ -1,7 +1,7 @@
-"""Stiffness from wave speeds and back: Guo & Li (2002), (4) to (7).
+"""Stiffness from wave speeds and back: Guo & Li (2002), (4) and (5).
 
 The rock mass is intact rock in series with its joints. Rigid blocks have no compliance of their
-own, so their joints carry all of it: K'_n = E_eq / S.
+own, so their joints carry all of it: K' = E_eq / S, (6), and in shear G / S, (7).
 """
 
 from math import inf, sqrt
@@ -36,16 +36,3 @@ def joint_stiffness(equivalent: float, intact: float, spacing: float) -> float:
 def equivalent_modulus(stiffness: float, intact: float, spacing: float) -> float:
     """Return E_eq (Pa) of intact rock with joints K_n at this spacing; inverse of (4)."""
     return 1 / (1 / intact + 1 / (spacing * stiffness))
-
-
-def rigid_block_stiffness(stiffness: float, intact: float, spacing: float) -> float:
-    """Return K' (Pa/m) between rigid blocks for the joint's own K, equation (6).
-
-    Normal with Young's modulus of the intact rock (Pa), in shear with its shear modulus.
-    """
-    return stiffness / (1 + spacing * stiffness / intact)
-
-
-def rigid_block_shear_stiffness(normal: float, poisson: float) -> float:
-    """Return K'_s (Pa/m) from K'_n, equation (7)."""
-    return shear_modulus(normal, poisson)

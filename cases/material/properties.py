@@ -1,77 +1,38 @@
-"""The properties of a scene: stiffness, damping and strength of joints, inertia of blocks."""
-
-from __future__ import annotations
+"""The properties of a pillar: the rock between its joints, and stiffness, damping and strength of
+each joint."""
 
 from dataclasses import dataclass
-from math import inf, sqrt
-from typing import Any
 
 import numpy as np
 
-from jointwave.cases.material.elastic import joint_stiffness
+from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.material.strength import Strength
-
-#: Times that intact rock may be stiffer than rock with joints where it joins an end block to a
-#: wall: stiffer yet it would but shorten the step, of a half block that is rigid beside the joints.
-RIGID = 100.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Properties(Strength):
-    """The properties of a scene shared by both engines and all exact solutions, with the
-    strength of its joints; where blocks or joints differ, one number for all of them is a mean.
+class Properties(JointedRock, Strength):
+    """The properties of a scene shared by both engines and all exact solutions, with the strength
+    of its joints; where blocks or joints differ, one number for all of them is a mean.
 
     Attributes
     ----------
-    block_count : number of blocks N.
-    spacing, side, area : block thickness (m), side (m) and area (m2) of the section.
-    density, block_mass : kg/m3, kg.
-    inertia_across, inertia_along : of a block about x or z, and about y, kg m2.
-    modulus, poisson : Young's modulus (Pa) and Poisson's ratio of the homogenised rock mass.
-    shear_modulus : G of the homogenised rock mass, Pa.
-    intact_modulus : Pa, or None where the scene does not give it.
-    bar_speed, shear_speed : sqrt(modulus / density), sqrt(shear_modulus / density), m/s.
-    impedance, shear_impedance : density times these speeds, Pa s/m, also of the quiet ends.
-    time_constant : Kelvin-Voigt eta of rock and ordinary joints, s; None without dashpots.
-    mass_damping : alpha of a force -alpha m v on every block, 1/s; None without.
-    local_damping : Cundall's factor, 0 to 1; None without.
     contact_y : float array [N + 1], start of each block and end of the last one, m.
     stiffness, shear_stiffness : float arrays [N - 1], K'_n, K'_s between rigid blocks, Pa/m.
-    own_stiffness, own_shear_stiffness : float arrays [N - 1], the joints' own K_n and K_s, Pa/m;
-        None without intact_modulus; K_s infinite where intact rock alone is too soft in shear.
+    own_stiffness, own_shear_stiffness : float arrays [N - 1], the joints' own K_n and K_s, (6)
+        inverted, Pa/m; None without intact_modulus; infinite where the rock alone is too soft.
     joint_time_constant : float array [N - 1], eta of each joint, s; None without any dashpot.
     own_time_constant : the same of each joint by itself; between segments that of its halves.
+    ordinary_time_constant : float array [N - 1], eta of each joint without soft layers, s.
     tension : bool array [N - 1], whether a joint carries tension.
     soft : int array, indices of the joints that [[soft_layers]] changes.
     weld : bool array [N - 1], whether a contact is no joint, between blocks of intact segments.
-    regular : K'_n that the homogenised bar has at each joint, Pa/m: a number, or [N - 1].
-    rock_between : compliance of intact rock from centre to centre, m/Pa: a number, or [N - 1].
-    parts : the properties of each segment as if it were alone; none where all blocks are equal, and
-        all joints except the soft layers.
+    regular : float array [N - 1], K'_n that the homogenised bar has at each joint, Pa/m.
+    rock_between : float array [N - 1], compliance of intact rock from centre to centre, m/Pa.
+    parts : the rock of each segment as if it were alone; none where all blocks are equal, and all
+        joints except the soft layers.
     segment : int array [N], which of `each` the blocks belong to.
-    ordinary_time_constant : float array [N - 1], eta of each joint without soft layers, s; None
-        where that is time_constant.
     """
 
-    block_count: int
-    spacing: float
-    side: float
-    area: float
-    density: float
-    block_mass: float
-    inertia_across: float
-    inertia_along: float
-    modulus: float
-    poisson: float
-    shear_modulus: float
-    intact_modulus: float | None
-    bar_speed: float
-    shear_speed: float
-    impedance: float
-    shear_impedance: float
-    time_constant: float | None
-    mass_damping: float | None
-    local_damping: float | None
     contact_y: np.ndarray
     stiffness: np.ndarray
     shear_stiffness: np.ndarray
@@ -79,14 +40,14 @@ class Properties(Strength):
     own_shear_stiffness: np.ndarray | None
     joint_time_constant: np.ndarray | None
     own_time_constant: np.ndarray | None
+    ordinary_time_constant: np.ndarray
     tension: np.ndarray
     soft: np.ndarray
     weld: np.ndarray
-    regular: float | np.ndarray
-    rock_between: float | np.ndarray
+    regular: np.ndarray
+    rock_between: np.ndarray
     segment: np.ndarray
-    parts: tuple[Properties, ...] = ()
-    ordinary_time_constant: np.ndarray | None = None
+    parts: tuple[JointedRock, ...]
 
     @property
     def is_uniform(self) -> bool:
@@ -94,18 +55,18 @@ class Properties(Strength):
         return not self.parts
 
     @property
-    def each(self) -> tuple[Properties, ...]:
-        """The properties of each segment; only these if there is one rock."""
+    def each(self) -> tuple[JointedRock, ...]:
+        """The rock of each segment; only these properties if there is one rock."""
         return self.parts or (self,)
 
     @property
-    def at_start(self) -> Properties:
-        """Those of the rock at the start; of one rock these."""
+    def at_start(self) -> JointedRock:
+        """The rock at the start."""
         return self.each[0]
 
     @property
-    def at_end(self) -> Properties:
-        """Those of the rock at the end; of one rock these."""
+    def at_end(self) -> JointedRock:
+        """The rock at the end."""
         return self.each[-1]
 
     @property
@@ -144,39 +105,6 @@ class Properties(Strength):
         return float(np.min(self.regular))
 
     @property
-    def regular_shear_stiffness(self) -> float:
-        """K'_s of an ordinary joint, Pa/m."""
-        return self.shear_modulus / self.spacing
-
-    @property
-    def regular_own_stiffness(self) -> float:
-        """K_n of an ordinary joint itself, Pa/m, by (4); needs intact_modulus."""
-        assert self.intact_modulus is not None
-        return joint_stiffness(self.modulus, self.intact_modulus, self.spacing)
-
-    @property
-    def regular_own_shear_stiffness(self) -> float:
-        """K_s of an ordinary joint itself, Pa/m; needs intact_modulus."""
-        assert self.own_shear_stiffness is not None
-        ordinary = np.setdiff1d(np.arange(self.block_count - 1), self.soft)
-        return float(self.own_shear_stiffness[ordinary[0] if ordinary.size else 0])
-
-    @property
-    def wall_stiffness(self) -> float:
-        """Of the half block of rock between the centre of an end block and a wall, Pa/m: intact
-        rock, for no joint is there; a block and its joint where no more is known."""
-        return _half_block(self.regular_stiffness, self.intact_modulus, self.spacing)
-
-    @property
-    def wall_shear_stiffness(self) -> float:
-        """The same in shear, Pa/m."""
-        whole, rock = self.regular_shear_stiffness, None
-        if self.own_shear_stiffness is not None:  # what is left of the compliance without the joint
-            left = 1 / whole - 1 / self.regular_own_shear_stiffness
-            rock = self.spacing / left if left > 0 else inf
-        return _half_block(whole, rock, self.spacing)
-
-    @property
     def rock_compliance(self) -> np.ndarray | None:
         """What rock has of the compliance between rigid blocks [N - 1], m/Pa, at most all but a
         billionth of it; None where no joint stiffens."""
@@ -202,31 +130,5 @@ class Properties(Strength):
         if self.joint_time_constant is None:
             return np.zeros_like(self.tension)
         usual = self.ordinary_time_constant
-        differs = self.joint_time_constant != (
-            (self.time_constant or 0.0) if usual is None else usual
-        )
-        return differs & (self.excess_compliance == 0)
-
-
-def of_bar(
-    density: float, side: float, spacing: float, modulus: float, shear_modulus: float
-) -> dict[str, Any]:
-    """Return what follows for `Properties` from these of them."""
-    area, speed, shear_speed = side**2, sqrt(modulus / density), sqrt(shear_modulus / density)
-    mass = density * area * spacing
-    return {
-        **{"density": density, "side": side, "spacing": spacing, "area": area, "block_mass": mass},
-        "inertia_across": mass * (side**2 + spacing**2) / 12,
-        "inertia_along": mass * side**2 / 6,
-        **{"modulus": modulus, "bar_speed": speed, "impedance": density * speed},
-        "shear_modulus": shear_modulus,
-        **{"shear_speed": shear_speed, "shear_impedance": density * shear_speed},
-    }
-
-
-def _half_block(whole: float, rock: float | None, spacing: float) -> float:
-    """Return the stiffness of half a block of rock of this modulus (Pa), from that of a block with
-    its joint, both Pa/m; None: rock that is not known apart."""
-    if rock is None:
-        return 2 * whole
-    return 2 * min(rock / spacing, RIGID * whole)
+        same = np.isclose(self.joint_time_constant, usual, rtol=1e-9, atol=0)
+        return ~same & (self.excess_compliance == 0)

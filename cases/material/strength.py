@@ -8,7 +8,6 @@ import numpy as np
 
 from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.law_parts import PARTS, UNLIMITED, tangent
-from jointwave.cases.schema.scene import Scene
 
 #: The keys of slip: without them no joint has that effect.
 SLIP = ("friction_angle", "cohesion", "residual_cohesion")
@@ -44,13 +43,6 @@ class Strength:
         without = {name: one for part in PARTS for name, one in part.without.items()}
         has = (self.given[name] != without[name] for name in ACROSS if name in self.given)
         return reduce(np.logical_or, has, False)
-
-
-def strength(scene: Scene, soft: np.ndarray) -> Strength:
-    """Return the strength of all joints; `soft` are those of the soft layers."""
-    which = np.zeros(scene.pillar.block_count - 1, dtype=np.int64)
-    which[soft] = 1 + np.arange(len(soft))
-    return strength_of((scene.joints, *scene.layers), which)
 
 
 def strength_of(laws: Sequence[JointLaw], which: np.ndarray) -> Strength:

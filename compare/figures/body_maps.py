@@ -10,7 +10,7 @@ import xarray as xr
 
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.contacts import contacts, welds
+from jointwave.cases.partition.pillar import block_ends, welds
 from jointwave.cases.partition.scene import partition_of
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
@@ -137,7 +137,7 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
 def _joints(scene: AnyScene) -> np.ndarray:
     """Return the joints of a scene as they are seen, in pieces [n, 2, 2], m."""
     if isinstance(scene, Scene):
-        y, half = contacts(scene)[1:-1][~welds(scene)], scene.pillar.side / 2
+        y, half = block_ends(scene)[1:-1][~welds(scene)], scene.pillar.side / 2
         return np.array([[(at, -half), (at, half)] for at in y]).reshape(-1, 2, 2)
     partition = partition_of(scene)
     here = partition.contacts.of_joints(len(scene.joint_sets))

@@ -8,6 +8,7 @@ from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import Properties
 from jointwave.cases.material.constant_q import mechanisms_of
+from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.space.elasticity import Material, Section
@@ -124,7 +125,7 @@ def refuse(scene: Scene | RockMass, model: str, dim: int | None) -> None:
         raise SceneError(where, "dim", dim, "must be 1, 2 or 3")
 
 
-def impedances(p: Properties, components: int) -> list[float]:
+def impedances(p: JointedRock, components: int) -> list[float]:
     """Return rho c (Pa s/m) of the rock mass for every component of the motion: what absorbs.
 
     Along the pillar that of the bar, whose sides are free; across it that of the S wave.

@@ -7,7 +7,7 @@ compression.
 from math import inf
 from typing import NamedTuple
 
-from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.joints.ends import HalfSpring, half_spring
 from jointwave.joints.formula import formula
 
@@ -26,7 +26,7 @@ class End(NamedTuple):
     gain: float = 0.0
 
 
-def build_end(kind: str, p: Properties, dt: float) -> End:
+def build_end(kind: str, p: JointedRock, dt: float) -> End:
     """Return the end of this kind for a step dt (s).
 
     quiet: -rho c v A on the end block (9). matched: the same dashpot behind the half-block spring
@@ -40,12 +40,12 @@ def build_end(kind: str, p: Properties, dt: float) -> End:
     return End(spring.stiffness, spring.viscosity, spring.decay, spring.gain)
 
 
-def end_stiffness(kind: str, p: Properties) -> float:
+def end_stiffness(kind: str, p: JointedRock) -> float:
     """Return the end's contribution to the end block's stiffness at the critical step, N/m."""
     return 0.0 if kind in ("free", "quiet") else _spring(kind, p).critical_stiffness
 
 
-def _spring(kind: str, p: Properties, dt: float = 0.0) -> HalfSpring:
+def _spring(kind: str, p: JointedRock, dt: float = 0.0) -> HalfSpring:
     fixed, eta = kind == "fixed", p.time_constant or 0.0
     stiffness = p.wall_stiffness if fixed else 2 * p.regular_stiffness
     return half_spring(stiffness * p.area, eta, inf if fixed else p.impedance * p.area, dt)

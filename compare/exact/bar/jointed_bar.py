@@ -12,8 +12,9 @@ Valid for any load; every joint carries tension and the scene gives intact_modul
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
+from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar import equivalent_bar
 from jointwave.compare.exact.bar.laplace import solved
@@ -52,7 +53,7 @@ def bar(scene: Scene) -> Bar:
     )
 
 
-def _end(kind: str, p: Properties) -> End:
+def _end(kind: str, p: JointedRock) -> End:
     """Return an end behind half a joint of this rock."""
     half_joint = 1 / (2 * p.regular_own_stiffness)
     return end_of(kind, p.impedance, half_joint, p.time_constant or 0.0)

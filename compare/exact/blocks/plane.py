@@ -20,8 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import block_diag, csr_array
 
-from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.face import face_points
+from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.schema.scene import Scene
 
 STRETCHING = (1,)
@@ -124,7 +125,7 @@ def _relative(n: int, left_face: np.ndarray, right_face: np.ndarray) -> csr_arra
     return csr_array(matrix.reshape((n + 1) * c, (n + 2) * c))
 
 
-def _end(kind: str, rock: Properties, dashpot: np.ndarray, resistance) -> tuple:
+def _end(kind: str, rock: JointedRock, dashpot: np.ndarray, resistance) -> tuple:
     """Return the spring and the dashpot of the contact at an end."""
     if kind in ("free", "quiet"):
         return 0 * dashpot, dashpot if kind == "quiet" else 0 * dashpot

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.text import Text
 
-from jointwave.cases.material.contacts import contacts, welds
+from jointwave.cases.partition.pillar import block_ends, welds
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.figures.drawing.sketch import (
     EDGE,
@@ -74,7 +74,7 @@ def sketch_of(scene: Scene) -> Sketch:
 def block_edges(scene: Scene) -> list[float]:
     """Return y of the edges of drawn blocks, m: of all, or a single one for a pillar with many; one
     per segment for segments without joints or with many blocks."""
-    every, starts = contacts(scene), [one.start for one in scene.parts]
+    every, starts = block_ends(scene), [one.start for one in scene.parts]
     edges = every[np.r_[True, ~welds(scene), True]]
     return np.union1d(edges if len(edges) <= MOST + 1 else every[[0, -1]], starts).tolist()
 

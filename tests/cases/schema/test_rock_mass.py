@@ -438,7 +438,7 @@ def test_a_pillar_imports_nothing_of_rock_masses(tmp_path):
     code = (
         "import sys; from jointwave import cases; from pathlib import Path\n"
         "cases.load(Path(cases.__file__).parent / 'guo-li-2002' / 'fig-03.toml')\n"
-        "print(*(m for m in sys.modules if 'shapely' in m or 'partition' in m))"
+        "print(*(m for m in sys.modules if 'shapely' in m or 'partition.scene' in m))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == []

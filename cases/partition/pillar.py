@@ -1,0 +1,83 @@
+"""The blocks of a pillar: a domain L x a x a with one set of joints across it."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from jointwave.cases.geometry.blocks import Blocks, blocks_of
+from jointwave.cases.geometry.cell_complex import NO_SET, box
+from jointwave.cases.geometry.cut import Planes, cut
+from jointwave.cases.geometry.sets import SPREAD
+from jointwave.cases.schema.scene import Scene
+from jointwave.cases.schema.segment import Part
+
+TOLERANCE = 1e-6  # of the thinnest block, below which points are one point
+
+
+def blocks_of_pillar(scene: Scene, dim: int = 1) -> Blocks:
+    """Return the blocks of a pillar from the loaded end on, of length alone, or in space: then y
+    runs along it, and its axis is x = z = 0.
+
+    dim : 1 or 3. `joint_set` of a contact is 0 of [joints], 1 + k of soft layer k, and NO_SET where
+    it is no joint; `body.region` of a block is the index of its part in `scene.parts`.
+    """
+    y, along = block_ends(scene), dim // 2
+    low, high = np.full((2, dim), scene.pillar.side / 2) * [[-1], [1]]
+    low[along], high[along] = y[0], y[-1]
+    planes = Planes(
+        normal=np.eye(dim)[along],
+        family=np.zeros(1, np.int64),
+        places=y[1:-1],
+        held=np.stack([np.zeros(len(y) - 2, np.int64), np.arange(len(y) - 2)], axis=1),
+        base=np.zeros(1, np.int64),
+        joint_set=0,
+    )
+    tolerance = TOLERANCE * float(np.diff(y).min())
+    body = cut(box(low, high), planes, tolerance).body
+    inner, joint_set = body.inner, body.joint_set.copy()
+    joint_set[inner] = _laws(scene, y)[body.sides[inner].min(axis=1)]
+    region = np.repeat(np.arange(len(scene.parts)), [one.blocks for one in scene.parts])
+    return blocks_of(replace(body, joint_set=joint_set, region=region), tolerance, in_rows=False)
+
+
+def block_ends(scene: Scene) -> np.ndarray:
+    """Return where the blocks begin and the last one ends, m [N + 1]."""
+    spacing, found = scene.scatter.spacing if scene.scatter else 0.0, []
+    for i, one in enumerate(scene.parts):
+        share = np.arange(one.blocks) / one.blocks
+        if spacing and not _is_intact(scene, one):
+            thickness = 1 + spacing * drawn(scene, i, 0, one.blocks)
+            share = np.append(0.0, np.cumsum(thickness))[:-1] / thickness.sum()
+        found.append(one.start + (one.stop - one.start) * share)
+    return np.append(np.concatenate(found), scene.pillar.length)
+
+
+def welds(scene: Scene) -> np.ndarray:
+    """Return which contacts between blocks are no joints but for soft layers, as rock on both sides
+    is intact, bool array [N - 1]."""
+    intact = [_is_intact(scene, one) for one in scene.parts]
+    of_block = np.repeat(intact, [one.blocks for one in scene.parts])
+    return of_block[1:] & of_block[:-1]
+
+
+def drawn(scene: Scene, part: int, what: int, count: int) -> np.ndarray:
+    """Return random numbers [count] of mean 0 and standard deviation 1, uniformly distributed.
+
+    what : 0 for spacings, 1 for compliances; each, and each part, has a stream of its own.
+    """
+    assert scene.scatter is not None
+    draws = np.random.default_rng([scene.scatter.seed, what, part]).random(count)
+    return SPREAD * (2 * draws - 1)
+
+
+def _is_intact(scene: Scene, part: Part) -> bool:
+    """Return whether a part has no joints."""
+    return part.segment is not None and not scene.segments[part.segment].joints
+
+
+def _laws(scene: Scene, y: np.ndarray) -> np.ndarray:
+    """Return the `joint_set` of each contact between blocks that begin at y, int array [N - 1]."""
+    found = np.where(welds(scene), NO_SET, 0)
+    for k, layer in enumerate(scene.soft_layers):
+        found[np.abs(y[1:-1] - layer.y).argmin()] = 1 + k
+    return found
