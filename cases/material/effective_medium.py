@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointwave.cases.material.rock import ElasticRock, elastic_rock
-from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.joints import attitude
 from jointwave.cases.partition.regions import within
 from jointwave.cases.schema import joint_set as schema
 from jointwave.cases.schema.rock_mass import RockMass
@@ -40,16 +40,15 @@ class JointSet:
     shear_compliance: float = 0.0
 
 
-def compliant(sets: Iterable[schema.JointSet]) -> list[JointSet]:
+def compliant(sets: Iterable[schema.JointSet], dimension: int = 2) -> list[JointSet]:
     """Return the sets of a scene that have a spacing; a single joint is not a medium."""
     found = []
     for one in sets:
         if one.spacing:
             assert one.normal_stiffness and one.shear_stiffness
-            x, y = direction_of(one.dip)
             laws = one.normal_stiffness, one.shear_stiffness
             Z = (1 / (one.spacing * stiffness) for stiffness in laws)
-            found.append(JointSet(np.array([-y, x]), *Z))
+            found.append(JointSet(attitude(one, dimension)[0], *Z))
     return found
 
 
@@ -130,11 +129,10 @@ def speeds(C: np.ndarray, density: float, directions: np.ndarray) -> tuple[np.nd
 def tensor(C: np.ndarray) -> np.ndarray:
     """Return C_ijkl [d, d, d, d] of Voigt's form."""
     d = {3: 2, 6: 3}[len(C)]
-    full = np.empty((d, d, d, d))
-    for (i, j), row in zip(PAIRS[d], C, strict=True):
-        for (k, m), value in zip(PAIRS[d], row, strict=True):
-            full[i, j, k, m] = full[j, i, k, m] = full[i, j, m, k] = full[j, i, m, k] = value
-    return full
+    i, j = np.transpose(PAIRS[d])
+    at = np.empty((d, d), np.int64)
+    at[i, j] = at[j, i] = np.arange(len(C))
+    return np.asarray(C)[at[:, :, None, None], at]
 
 
 def _scale(dimension: int) -> np.ndarray:

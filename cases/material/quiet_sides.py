@@ -14,14 +14,14 @@ from jointwave.cases.schema.tables import LEAN
 
 
 def impedances(scene: RockMass, normals: np.ndarray, region: np.ndarray) -> np.ndarray:
-    """Return rho a and rho b of the dashpots of sides of outward normals [m, 2], of rock in these
+    """Return rho a and rho b of the dashpots of sides of outward normals [m, d], of rock in these
     regions [m]: [m, 2], Pa s/m; as rigid blocks have them."""
     smeared = scene.numerics.dem.block is None
     return medium_impedances(scene, normals, region, smeared)
 
 
 def borne(scene: RockMass, normals: np.ndarray) -> np.ndarray:
-    """Return whether quiet sides of outward normals [m, 2] bear what gravity puts on them along
+    """Return whether quiet sides of outward normals [m, d] bear what gravity puts on them along
     their normal and along themselves, 1 or 0 [m, 2].
 
     Both below the rock, the first beside it: there is rock beyond, too. None above it.
@@ -36,8 +36,8 @@ def borne(scene: RockMass, normals: np.ndarray) -> np.ndarray:
 def medium_impedances(
     scene: RockMass, normals: np.ndarray, region: np.ndarray, smeared: bool = True
 ) -> np.ndarray:
-    """Return the same of the effective medium of all sets that have a spacing; smeared : whether
-    there is one, else of the intact rock."""
+    """Return the same of the effective medium of all sets that have a spacing, in space rho b of
+    the mean of both S speeds; smeared : whether there is one, else of the intact rock."""
     found, scenes = np.zeros((len(normals), 2)), within(scene, scene.joint_sets)
     for own in np.unique(region):
         there = region == own
@@ -46,21 +46,23 @@ def medium_impedances(
 
 
 def _of_one_rock(scene: RockMass, normals: np.ndarray, smeared: bool) -> np.ndarray:
-    rock, density = elastic_rock(scene.rock), scene.rock.density
-    sets = compliant(scene.joint_sets)
+    rock, density, dim = elastic_rock(scene.rock), scene.rock.density, normals.shape[1]
+    sets = compliant(scene.joint_sets, dim)
     if not smeared or not sets or not len(normals):
         return np.tile([rock.p_impedance, rock.s_impedance], (len(normals), 1))
-    found, shapes = speeds(stiffness(rock, sets), density, normals)
+    found, shapes = speeds(stiffness(rock, sets, dim), density, normals)
     longitudinal = np.abs((shapes * normals[:, :, None]).sum(axis=1)).argmax(axis=1)
-    at = np.arange(len(normals))
-    return density * np.stack([found[at, longitudinal], found[at, 1 - longitudinal]], axis=1)
+    p = np.arange(dim) == longitudinal[:, None]
+    s = found[~p].reshape(len(normals), dim - 1).mean(axis=1)
+    return density * np.stack([found[p], s], axis=1)
 
 
 def base_traction(normals: np.ndarray, impedance: np.ndarray, direction: list[float]) -> np.ndarray:
-    """Return the tractions [m, 2] on a compliant base for each m/s that comes up, Pa s/m.
+    """Return the tractions [m, d] on a compliant base for each m/s that comes up, Pa s/m.
 
     2 rho a of its normal component and 2 rho b of the other: the dashpots take half of them, and
-    the other half enters (Mejia & Dawson, 4th FLAC Symposium, 2006). normals, impedance : [m, 2].
+    the other half enters (Mejia & Dawson, 4th FLAC Symposium, 2006). normals : [m, d]. impedance :
+    [m, 2].
     """
     moved = np.array(direction)
     along = (normals @ moved)[:, None] * normals

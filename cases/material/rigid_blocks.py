@@ -101,10 +101,11 @@ def rigid_joints(
 def long_wave_stiffness(scene: RockMass, further: list[JointSet]) -> np.ndarray:
     """Return C (Pa) of long waves through rigid blocks of the rock of no region, in Voigt's form;
     enormous for strains that no joint gives way to."""
-    share = rock_shares(scene, further)[-1]
-    own = compliant(within(scene, scene.joint_sets)[-1].joint_sets)
+    share, dim = rock_shares(scene, further)[-1], scene.domain.dimension
+    own = compliant(within(scene, scene.joint_sets)[-1].joint_sets, dim)
     excess = zip(share.normals, share.compliance, strict=True)
-    return joints_alone([*own, *(effective_medium.JointSet(n, *map(float, z)) for n, z in excess)])
+    sets = [*own, *(effective_medium.JointSet(n, *map(float, z)) for n, z in excess)]
+    return joints_alone(sets, dim)
 
 
 def rock_shares(scene: RockMass, further: list[JointSet]) -> list[RockShare]:

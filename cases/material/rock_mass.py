@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.partition.blocks import Partition
-from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.joints import attitude
 from jointwave.cases.partition.regions import rocks_beside
 from jointwave.cases.schema.plane import IntactRock
 from jointwave.cases.schema.rock_mass import RockMass
@@ -56,7 +56,7 @@ def set_time_constants(scene: RockMass) -> np.ndarray | None:
     corners, found = np.array(scene.domain.corners), []
     for one in sets:
         assert one.normal_stiffness is not None
-        extent = float(np.ptp(corners @ (direction_of(one.dip)[::-1] * [-1, 1])))
+        extent = float(np.ptp(corners @ attitude(one, scene.domain.dimension)[0]))
         mass = rocks_beside(scene, one)[0].density * (one.spacing or extent / 2)
         found.append(2 * (one.damping_ratio or 0.0) * sqrt(mass / one.normal_stiffness))
     return np.array(found)
