@@ -4,14 +4,67 @@ All are closed forms. Units are those of an end stress, Pa and Pa s; a force or 
 in their place.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import inf, pi, sqrt
+from typing import Any, NamedTuple
 
 import numpy as np
 
 
+class Forms(NamedTuple):
+    """A smooth function of time, its rate, its integral, and the integral of that."""
+
+    rate: Callable[[Any], Any]
+    value: Callable[[Any], Any]
+    integral: Callable[[Any], Any]
+    twice: Callable[[Any], Any]
+
+
+class LoadHistory:
+    """A load over time: here that of smooth `forms` from t = 0 to `stop`, and zero else."""
+
+    stop = inf  #: s
+
+    @property
+    def forms(self) -> Forms:
+        """The smooth function that the load follows, and its integrals."""
+        raise NotImplementedError
+
+    @property
+    def end(self) -> float:
+        """Time after which it is zero, constant or hardly changes, s."""
+        return 0.0
+
+    @property
+    def breaks(self) -> list[float]:
+        """Times at which the load is not smooth, s."""
+        return [0.0]
+
+    def value(self, t: np.ndarray) -> np.ndarray:
+        """Return the stress (Pa) at times t (s)."""
+        return np.where((t > 0) & (t < self.stop), self.forms.value(t), 0.0)
+
+    def rate(self, t: np.ndarray) -> np.ndarray:
+        """Return the rate of the stress (Pa/s) at times t (s)."""
+        return np.where((t > 0) & (t < self.stop), self.forms.rate(t), 0.0)
+
+    def impulse(self, t: np.ndarray) -> np.ndarray:
+        """Return the integral of the stress from minus infinity to t (Pa s)."""
+        integral = self.forms.integral
+        return np.where(t > 0, integral(np.clip(t, 0.0, self.stop)) - integral(0.0), 0.0)
+
+    def double_impulse(self, t: np.ndarray) -> np.ndarray:
+        """Return the integral of the impulse from minus infinity to t (Pa s2)."""
+        inside, (*_, integral, twice) = np.clip(t, 0.0, self.stop), self.forms
+        found = twice(inside) - twice(0.0) - integral(0.0) * inside
+        if self.stop < inf:
+            found += self.impulse(np.array(self.stop)) * np.maximum(t - self.stop, 0.0)
+        return np.where(t > 0, found, 0.0)
+
+
 @dataclass(frozen=True)
-class Sine:
+class Sine(LoadHistory):
     """Cycles of p0 sin(2 pi t / T), zero before and after (Guo & Li 2002, fig. 2); 0.5 of one is
     a half sine."""
 
@@ -19,43 +72,33 @@ class Sine:
     period: float
     cycles: float = 1
 
-    def value(self, t: np.ndarray) -> np.ndarray:
-        """Return the stress (Pa) at times t (s)."""
-        inside = (t > 0) & (t < self.end)
-        return np.where(inside, self.amplitude * np.sin(2 * pi * t / self.period), 0.0)
-
-    def impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the stress from minus infinity to t (Pa s)."""
-        w = 2 * pi / self.period
-        return self.amplitude * (1 - np.cos(w * np.clip(t, 0, self.end))) / w
-
-    def double_impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the impulse from minus infinity to t (Pa s2)."""
-        w, inside = 2 * pi / self.period, np.clip(t, 0, self.end)
-        found = self.amplitude / w * (inside - np.sin(w * inside) / w)
-        return found + self.impulse(np.array(self.end)) * np.maximum(t - self.end, 0.0)
-
-    def rate(self, t: np.ndarray) -> np.ndarray:
-        """Return the rate of the stress (Pa/s) at times t (s)."""
-        inside, w = (t > 0) & (t < self.end), 2 * pi / self.period
-        return np.where(inside, self.amplitude * w * np.cos(w * t), 0.0)
+    @property
+    def forms(self):
+        A, w = self.amplitude, 2 * pi / self.period
+        return Forms(
+            lambda t: A * w * np.cos(w * t),
+            lambda t: A * np.sin(w * t),
+            lambda t: A * (1 - np.cos(w * t)) / w,
+            lambda t: A / w * (t - np.sin(w * t) / w),
+        )
 
     @property
-    def end(self) -> float:
-        """Time at which the last cycle ends, s."""
+    def end(self):
         return self.cycles * self.period
 
+    stop = end
+
     @property
-    def breaks(self) -> list[float]:
-        """Times at which the load is not smooth, s."""
+    def breaks(self):
         return [0.0, self.end]
 
 
 @dataclass(frozen=True)
-class Ricker:
+class Ricker(LoadHistory):
     """p0 (1 - 2 a) exp(-a), a = (pi (t - 1.5 T) / T)^2: a Ricker wavelet of peak frequency 1 / T.
 
-    Centred at 1.5 T, where the part before t = 0 is below 1e-8 of the peak.
+    Centred at 1.5 T, where the part before t = 0 is below 1e-8 of the peak, and so is what is left
+    at `end`.
     """
 
     amplitude: float
@@ -66,50 +109,33 @@ class Ricker:
         """Time of the peak, s."""
         return 1.5 * self.period
 
-    def value(self, t: np.ndarray) -> np.ndarray:
-        """Return the stress (Pa) at times t (s)."""
-        a = (pi * (t - self.centre) / self.period) ** 2
-        return np.where(t > 0, self.amplitude * (1 - 2 * a) * np.exp(-a), 0.0)
-
-    def impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the stress from minus infinity to t (Pa s)."""
-        return self._integral(np.maximum(t, 0.0)) - self._integral(0.0)
-
-    def double_impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the impulse from minus infinity to t (Pa s2)."""
-        w, later = (pi / self.period) ** 2, np.maximum(t, 0.0)
-        before, at = (np.exp(-w * (x - self.centre) ** 2) for x in (0.0, later))
-        return self.amplitude * (before - at) / (2 * w) - self._integral(0.0) * later
-
-    def rate(self, t: np.ndarray) -> np.ndarray:
-        """Return the rate of the stress (Pa/s) at times t (s)."""
-        s, w = t - self.centre, (pi / self.period) ** 2
-        a = w * s**2
-        return np.where(t > 0, 2 * self.amplitude * w * s * (2 * a - 3) * np.exp(-a), 0.0)
-
-    def _integral(self, t):
-        s = t - self.centre
-        return self.amplitude * s * np.exp(-((pi * s / self.period) ** 2))
+    @property
+    def end(self):
+        return 2 * self.centre
 
     @property
-    def end(self) -> float:
-        """Time after which less than 1e-8 of the peak is left, s."""
-        return 3 * self.period
+    def forms(self):
+        A, w, c = self.amplitude, (pi / self.period) ** 2, self.centre
 
-    @property
-    def breaks(self) -> list[float]:
-        """Times at which the load is not smooth, s."""
-        return [0.0]
+        def wave(polynomial):
+            return lambda t: A * polynomial(t - c) * np.exp(-w * (t - c) ** 2)
+
+        return Forms(
+            wave(lambda s: 2 * w * s * (2 * w * s**2 - 3)),
+            wave(lambda s: 1 - 2 * w * s**2),
+            wave(lambda s: s),
+            wave(lambda s: -1 / (2 * w)),
+        )
 
 
 @dataclass(frozen=True)
-class Gabor:
+class Gabor(LoadHistory):
     """p0 exp(-s^2 / 2 b^2) cos(2 pi s / T), s = t - 6.4 b: a cosine in a Gaussian of standard
     deviation b = cycles T / 4, so that two of them to each side hold the cycles (Gabor 1946).
 
-    The part before t = 0 is below 2e-9 of the peak. With a = 2 pi b / (T sqrt(2)), x = s / (b
-    sqrt(2)) and Faddeeva's function w, the integral from the peak to s is p0 b sqrt(pi / 2)
-    Re erf(x - i a) exp(-a^2), and erf(z) = 1 - exp(-z^2) w(i z).
+    The part before t = 0 is below 2e-9 of the peak, and so is what is left at `end`. With
+    a = 2 pi b / (T sqrt(2)), x = s / (b sqrt(2)) and Faddeeva's function w, the integral from the
+    peak to s is p0 b sqrt(pi / 2) Re erf(x - i a) exp(-a^2), and erf(z) = 1 - exp(-z^2) w(i z).
     """
 
     amplitude: float
@@ -126,113 +152,85 @@ class Gabor:
         """Time of the peak, s."""
         return 6.4 * self.width
 
-    def value(self, t: np.ndarray) -> np.ndarray:
-        """Return the stress (Pa) at times t (s)."""
-        return np.where(t > 0, self.amplitude * self._envelope(t - self.centre).real, 0.0)
-
-    def impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the stress from minus infinity to t (Pa s)."""
-        found = self._integral(np.maximum(t, 0.0)) - self._integral(0.0)
-        return np.where(t > 0, found, 0.0)
-
-    def double_impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the impulse from minus infinity to t (Pa s2)."""
-        later = np.maximum(t, 0.0)
-        found = self._twice(later) - self._twice(0.0) - self._integral(0.0) * later
-        return np.where(t > 0, found, 0.0)
-
-    def rate(self, t: np.ndarray) -> np.ndarray:
-        """Return the rate of the stress (Pa/s) at times t (s)."""
-        s = t - self.centre
-        slope = (2j * pi / self.period - s / self.width**2) * self._envelope(s)
-        return np.where(t > 0, self.amplitude * slope.real, 0.0)
-
-    def _envelope(self, s):
-        return np.exp(-(s**2) / (2 * self.width**2) + 2j * pi * s / self.period)
-
-    def _scaled(self, t):
-        """Return z = x - i a, and exp(-a^2) erf(z), at times t (s)."""
-        from scipy.special import wofz
-
-        s, a = t - self.centre, sqrt(2) * pi * self.width / self.period
-        z = s / (sqrt(2) * self.width) - 1j * a
-        return z, np.exp(-(a**2)) - self._envelope(s) * wofz(1j * z)
-
-    def _integral(self, t):
-        return self.amplitude * self.width * sqrt(pi / 2) * self._scaled(t)[1].real
-
-    def _twice(self, t):
-        z, error = self._scaled(t)
-        found = sqrt(pi) * z * error + self._envelope(t - self.centre)
-        return self.amplitude * self.width**2 * found.real
-
     @property
-    def end(self) -> float:
-        """Time after which less than 2e-9 of the peak is left, s."""
+    def end(self):
         return 2 * self.centre
 
     @property
-    def breaks(self) -> list[float]:
-        """Times at which the load is not smooth, s."""
-        return [0.0]
+    def forms(self):
+        A, b, c, w = self.amplitude, self.width, self.centre, 2 * pi / self.period
+
+        def envelope(t):
+            return np.exp(-((t - c) ** 2) / (2 * b**2) + 1j * w * (t - c))
+
+        def scaled(t):
+            """Return z = x - i a, and exp(-a^2) erf(z)."""
+            from scipy.special import wofz
+
+            a = b * w / sqrt(2)
+            z = (t - c) / (sqrt(2) * b) - 1j * a
+            return z, np.exp(-(a**2)) - envelope(t) * wofz(1j * z)
+
+        def twice(t):
+            z, error = scaled(t)
+            return A * b**2 * (sqrt(pi) * z * error + envelope(t)).real
+
+        return Forms(
+            lambda t: A * ((1j * w - (t - c) / b**2) * envelope(t)).real,
+            lambda t: A * envelope(t).real,
+            lambda t: A * b * sqrt(pi / 2) * scaled(t)[1].real,
+            twice,
+        )
 
 
 @dataclass(frozen=True)
-class Step:
-    """A stress p0 applied at t = 0 and held constant."""
+class Step(LoadHistory):
+    """A stress p0 applied at t = 0 and held constant; half of it at t = 0."""
 
     amplitude: float
 
-    def value(self, t: np.ndarray) -> np.ndarray:
-        """Return the stress (Pa) at times t (s); half the step at t = 0."""
-        return self.amplitude * np.heaviside(t, 0.5)
-
-    def impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the stress from minus infinity to t (Pa s)."""
-        return self.amplitude * np.maximum(t, 0.0)
-
-    def double_impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the impulse from minus infinity to t (Pa s2)."""
-        return self.amplitude * np.maximum(t, 0.0) ** 2 / 2
-
     @property
-    def end(self) -> float:
-        """Time after which it is constant, s."""
-        return 0.0
+    def forms(self):
+        A = self.amplitude
+        return Forms(
+            np.zeros_like,
+            lambda t: A * np.heaviside(t, 0.5),
+            lambda t: A * t,
+            lambda t: A * t**2 / 2,
+        )
 
-    @property
-    def breaks(self) -> list[float]:
-        """Times at which the load is not smooth, s."""
-        return [0.0]
+    def value(self, t):
+        return self.forms.value(t)
 
 
 @dataclass(frozen=True)
-class Recorded:
+class Recorded(LoadHistory):
     """A piecewise linear history, zero outside its samples: a record, or a triangle.
 
     `stress` is [n] Pa at `time` [n] s. Its running integral is exact, so a step of any length
-    takes the true mean of the history and nothing is lost to undersampling.
+    takes the true mean of the history and nothing is lost to undersampling. Its rate at a sample is
+    that of the line to the left.
     """
 
     time: np.ndarray
     stress: np.ndarray
 
-    def value(self, t: np.ndarray) -> np.ndarray:
-        """Return the stress (Pa) at times t (s)."""
+    def value(self, t):
         return np.interp(np.asarray(t, dtype=float), self.time, self.stress, left=0.0, right=0.0)
 
-    def impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the stress from minus infinity to t (Pa s)."""
-        running, _ = self._sums
+    def impulse(self, t):
         i, s, slope = self._piece(t)
-        return running[i] + s * (self.stress[i] + slope * s / 2)
+        return self._sums[0][i] + s * (self.stress[i] + slope * s / 2)
 
-    def double_impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the impulse from minus infinity to t (Pa s2)."""
+    def double_impulse(self, t):
         running, twice = self._sums
         i, s, slope = self._piece(t)
         found = twice[i] + s * (running[i] + s * (self.stress[i] / 2 + slope * s / 6))
         return found + running[-1] * np.maximum(t - self.time[-1], 0.0)
+
+    def rate(self, t):
+        slopes = np.concatenate([[0.0], np.diff(self.stress) / np.diff(self.time), [0.0]])
+        return slopes[np.searchsorted(self.time, t)]
 
     @property
     def _sums(self) -> tuple[np.ndarray, np.ndarray]:
@@ -249,56 +247,37 @@ class Recorded:
         slope = (self.stress[i + 1] - self.stress[i]) / (self.time[i + 1] - self.time[i])
         return i, t - self.time[i], slope
 
-    def rate(self, t: np.ndarray) -> np.ndarray:
-        """Return the rate of the stress (Pa/s) at times t (s), that of the line to the left."""
-        slopes = np.concatenate([[0.0], np.diff(self.stress) / np.diff(self.time), [0.0]])
-        return slopes[np.searchsorted(self.time, t)]
-
     @property
-    def end(self) -> float:
-        """Time of the last sample, s."""
+    def end(self):
         return float(self.time[-1])
 
     @property
-    def breaks(self) -> list[float]:
-        """Times at which the load is not smooth, s."""
+    def breaks(self):
         return self.time.tolist()
 
 
-#: A pulse by its shape in time.
-Shape = Sine | Ricker | Gabor | Step | Recorded
-
-
 @dataclass(frozen=True)
-class Integrated:
+class Integrated(LoadHistory):
     """The time integral of a history: the velocity (m/s) of an acceleration."""
 
-    history: Shape
+    history: LoadHistory
 
-    def value(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the history from minus infinity to t (s)."""
+    def value(self, t):
         return self.history.impulse(t)
 
-    def impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of that integral."""
+    def impulse(self, t):
         return self.history.double_impulse(t)
 
-    def rate(self, t: np.ndarray) -> np.ndarray:
-        """Return the history itself."""
+    def rate(self, t):
         return self.history.value(t)
 
     @property
-    def end(self) -> float:
-        """Time after which it hardly changes, s."""
+    def end(self):
         return self.history.end
 
     @property
-    def breaks(self) -> list[float]:
-        """Times at which the history is not smooth, s."""
+    def breaks(self):
         return self.history.breaks
-
-
-LoadHistory = Shape | Integrated
 
 
 def triangle(amplitude: float, rise: float, decay: float) -> Recorded:

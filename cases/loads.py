@@ -11,7 +11,6 @@ from jointwave.cases.histories import (
     Integrated,
     LoadHistory,
     Recorded,
-    Shape,
     Step,
     periodic,
     triangle,
@@ -42,7 +41,7 @@ def velocity_of(pulse: Pulse, amplitude: float) -> LoadHistory:
     return Integrated(found) if pulse.quantity == "acceleration" else found
 
 
-def history_of(pulse: Pulse, amplitude: float) -> Shape:
+def history_of(pulse: Pulse, amplitude: float) -> LoadHistory:
     """Return a pulse of this amplitude as a function of time."""
     if pulse.shape == "step":
         return Step(amplitude)

@@ -82,6 +82,11 @@ class Table(BaseModel):
         extra="forbid", strict=True, frozen=True, allow_inf_nan=False, defer_build=True
     )
 
+    def gives(self, key: str) -> bool:
+        """Return whether a key has another value than where it is absent."""
+        default = type(self).model_fields[key].get_default(call_default_factory=True)
+        return bool(getattr(self, key) != default)
+
 
 def contradiction(key: str, value: object, allowed: str) -> PydanticCustomError:
     """Return the error for a value that does not fit the rest of the scene, under its full key."""
@@ -97,10 +102,9 @@ def check_dimension(
     whether the scene is in space."""
     in_space = dimension(info) == 3
     for key in plane if in_space else space:
-        value, field = getattr(table, key), type(table).model_fields[key]
-        if value != field.get_default(call_default_factory=True):
+        if table.gives(key):
             allowed = f"has no meaning in {'space' if in_space else 'the plane'}"
-            raise contradiction_here(key, value, allowed)
+            raise contradiction_here(key, getattr(table, key), allowed)
     return in_space
 
 

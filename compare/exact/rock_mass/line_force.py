@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.histories import Gabor, Recorded, Ricker, Shape, Sine, Step
+from jointwave.cases.histories import Gabor, LoadHistory, Recorded, Ricker, Sine, Step
 from jointwave.cases.loads import history_of
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.outline import outline_of
@@ -87,11 +87,11 @@ def known_until(scene: RockMass) -> float:
     return float(first / elastic_rock(scene.rock).p_speed)
 
 
-def _histories(scene: RockMass) -> list[Shape]:
+def _histories(scene: RockMass) -> list[LoadHistory]:
     return [history_of(one, one.amplitude) for one in scene.loads]
 
 
-def _jumps(history: Shape) -> bool:
+def _jumps(history: LoadHistory) -> bool:
     recorded = isinstance(history, Recorded) and bool(history.stress[[0, -1]].any())
     return recorded or isinstance(history, Step)
 
