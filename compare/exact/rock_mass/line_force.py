@@ -58,7 +58,7 @@ def solve(scene: RockMass) -> xr.Dataset:
     rock, times = elastic_rock(scene.rock), sample_times(scene)
     points, total = np.array(scene.record.points), []
     for load, history in zip(scene.loads, _histories(scene), strict=True):
-        assert not isinstance(history, Step)
+        assert isinstance(history, Sine | Ricker | Gabor | Recorded)
         offsets, breaks = points - np.array(load.at), _breaks(history)
         direction = np.array(load.direction)
         total.append(motion(rock, direction, history.value, history.rate, breaks, offsets, times))
