@@ -38,9 +38,8 @@ def _beside(scene: Scene) -> Iterator[Wrong]:
     """Yield the keys that segments and random joints exclude."""
     mesh, scheme = scene.numerics.continuum.mesh, scene.numerics.dem.scheme
     if why := off_axis(scene):
-        count = len(scene.segments)
-        table, gives = ("segments", str(count)) if count else ("scatter", "given")
-        yield table, gives, f"supports axial motion only, as pillar.joints does: {why}"
+        table, count = "segments" if scene.segments else "scatter", len(scene.segments)
+        yield table, count or "given", f"supports axial motion only, as pillar.joints does: {why}"
     if scene.gravity is not None and scene.gravity.acceleration:
         allowed = "is not supported with segments or scatter"
         yield "gravity.acceleration", scene.gravity.acceleration, allowed
