@@ -8,6 +8,7 @@ With the outward normal n, a side that the field (v, sigma) passes has the tract
 with v_rock is the dashpot of the side; the rest, `tractions`, is known before the run.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
@@ -21,14 +22,20 @@ from jointwave.cases.partition.regions import region_at, rocks_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import Wave
 
+#: Of i and j the index of the component of a stress: of xx; xx, yy, xy; xx, yy, zz, xy, yz, xz.
+COMPONENT = {
+    1: np.array([[0]]),
+    2: np.array([[0, 2], [2, 1]]),
+    3: np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]]),
+}
 AT_ONCE = 16  # points whose tractions are found together, in the cache
 BEYOND = 20  # samples on either side of the requested times
 WITHIN = 1e-6  # of a domain: from its corner to a place in the rock there
 
 
 class WaveMotion(NamedTuple):
-    """Particle velocity [points, (x, y), times], m/s, and stress [points, (xx, yy, xy), times],
-    Pa, tension positive."""
+    """Particle velocity [points, d, times], m/s, and stress [points, components, times], Pa,
+    tension positive: in the plane xx, yy, xy, in space xx, yy, zz, xy, yz, xz."""
 
     velocity: np.ndarray
     stress: np.ndarray
@@ -38,7 +45,7 @@ class IncidentField(Protocol):
     """A motion of the rock mass as if it had no artificial sides; it acts on all quiet sides."""
 
     def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
-        """Return the motion at points [m, 2] (m) and equally spaced times [n] (s)."""
+        """Return the motion at points [m, d] (m) and equally spaced times [n] (s)."""
 
 
 @dataclass(frozen=True)
@@ -58,17 +65,18 @@ class PlaneWave:
     pulse: LoadHistory
 
     def lateness(self, points: np.ndarray) -> np.ndarray:
-        """Return when the pulse begins at points [m, 2], s."""
+        """Return when the pulse begins at points [m, d], s."""
         return (np.asarray(points) - self.through) @ self.direction / self.speed
 
     def motion(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
         """Return velocity and stress, sigma = -C : (n g) f / c, at points and times."""
         f = self.pulse.value(np.asarray(times) - self.lateness(points)[:, None])
         n, g, rock = self.direction, self.polarisation, self.rock
-        tensor = rock.lame * (n @ g) * np.eye(2) + rock.shear_modulus * (
+        tensor = rock.lame * (n @ g) * np.eye(len(n)) + rock.shear_modulus * (
             np.outer(n, g) + np.outer(g, n)
         )
-        stress = -np.array([tensor[0, 0], tensor[1, 1], tensor[0, 1]]) / self.speed
+        _, first = np.unique(COMPONENT[len(n)], return_index=True)
+        stress = -tensor.ravel()[first] / self.speed
         return WaveMotion(f[:, None] * g[:, None], f[:, None] * stress[:, None])
 
 
@@ -101,7 +109,8 @@ def plane_wave(scene: RockMass, wave: Wave) -> PlaneWave:
     """Return a wave of a scene: its speed, where its pulse begins, and its particle velocity, in
     the rock of the corner of the domain that it meets first.
 
-    Of an S wave particles move to the left of its travel. Stress is that on the wave front, minus
+    Of an S wave particles move to the left of its travel, in space along the part of its
+    `polarisation` across that. Stress is that on the wave front, minus
     sigma_nn of P and sigma_ns of S: both are impedance times velocity.
     """
     n, corners = np.array(wave.direction), np.array(scene.domain.corners)
@@ -110,23 +119,35 @@ def plane_wave(scene: RockMass, wave: Wave) -> PlaneWave:
     rock = elastic_rock(rocks_of(scene)[region_at(scene.regions, inside[None])[0]])
     is_p = wave.kind == "P"
     speed = float(rock.p_speed if is_p else rock.s_speed)
-    polarisation = n if is_p else np.array([-n[1], n[0]])
+    polarisation = n if is_p else _across(n, wave)
     through = first if wave.through is None else np.array(wave.through)
     over = float(rock.density) * speed if wave.quantity == "stress" else 1.0
     return PlaneWave(rock, n, polarisation, speed, through, history_of(wave, wave.amplitude / over))
 
 
+def _across(n: np.ndarray, wave: Wave) -> np.ndarray:
+    """Return the unit vector along which the particles of an S wave move that travels along n."""
+    if wave.polarisation is None:
+        return np.array([-n[1], n[0]])
+    across = np.array(wave.polarisation) - (n @ wave.polarisation) * n
+    return across / np.linalg.norm(across)
+
+
 class FaceTractions(NamedTuple):
     """Tractions of a field on points of sides, without the dashpots' own part.
 
-    times : equally spaced [n], s. values : [n, m, 2], Pa.
+    times : equally spaced [n], s. values : [n, m, d], Pa.
     """
 
     times: np.ndarray
     values: np.ndarray
 
-    def at(self, times: np.ndarray) -> np.ndarray:
-        """Return the tractions at times of a run [k], [k, m, 2] in Pa: cubic between samples.
+    def at(
+        self, times: np.ndarray, of: Callable[[np.ndarray], np.ndarray] = lambda values: values
+    ) -> np.ndarray:
+        """Return the tractions at times of a run [k], [k, m, d] in Pa: cubic between samples.
+
+        of : what is asked for instead, a linear function of them, by samples [n, m, d].
 
         They do not depend on which times are asked for together: what is not known of the samples
         beyond falls by 2 - sqrt(3) with each of them.
@@ -137,7 +158,7 @@ class FaceTractions(NamedTuple):
         low = max(int((times[0] - self.times[0]) / dt) - BEYOND, 0)
         high = int((times[-1] - self.times[0]) / dt) + BEYOND + 2
         window = slice(low, max(high, low + 4))
-        return CubicSpline(self.times[window], self.values[window])(times)
+        return CubicSpline(self.times[window], of(self.values[window]))(times)
 
 
 def tractions(
@@ -147,17 +168,18 @@ def tractions(
     impedance: np.ndarray,
     times: np.ndarray,
 ) -> FaceTractions:
-    """Return sigma n + rho a v_n + rho b v_s of a field at points [m, 2] of outward normals [m, 2].
+    """Return sigma n + rho a v_n + rho b v_s of a field at points [m, d] of outward normals [m, d].
 
     impedance : rho a and rho b of the dashpots there, Pa s/m, [m, 2]. times : equally spaced, s.
     """
     velocity, stress = field(points, times)
     normals, Z = np.asarray(normals)[:, :, None], np.asarray(impedance)[:, :, None, None]
-    values = np.empty((len(times), len(normals), 2))
+    values = np.empty((len(times), *normals.shape[:2]))
+    tensor = COMPONENT[normals.shape[1]]
     for k in range(0, len(normals), AT_ONCE):
         some = slice(k, k + AT_ONCE)
-        n, v, (xx, yy, xy) = normals[some], velocity[some], np.moveaxis(stress[some], 1, 0)
-        pulled = np.stack([xx * n[:, 0] + xy * n[:, 1], xy * n[:, 0] + yy * n[:, 1]], axis=1)
+        n, v = normals[some], velocity[some]
+        pulled = (stress[some][:, tensor] * n[:, None]).sum(axis=2)
         along = (v * n).sum(axis=1, keepdims=True) * n
         total = pulled + Z[some, 0] * along + Z[some, 1] * (v - along)
         values[:, some] = np.moveaxis(total, 2, 0)

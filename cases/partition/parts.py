@@ -2,26 +2,12 @@
 
 import numpy as np
 
-from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.outline import Outline, outline_of
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad
 
 #: Of the domain's size: tolerated distance of an edge from its line.
 BESIDE = 1e-6
-
-
-def loaded_part(
-    scene: RockMass, partition: Partition, load: PlaneLoad
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return which boundary edges a pressure acts on, bool array [b], and from where to where along
-    each, of its length [b, 2]."""
-    edges, name = partition.boundary, load.side or f"opening {load.opening}"
-    chosen = np.flatnonzero(edges.side == partition.sides.index(name))
-    part = np.zeros((len(edges), 2))
-    part[chosen] = covered(scene.domain, load, edges.start[chosen], edges.end[chosen])
-    return part[:, 1] > part[:, 0], part
 
 
 def covered(domain: Domain, load: PlaneLoad, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:

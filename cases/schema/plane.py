@@ -2,6 +2,7 @@
 
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import Field, ValidationInfo, model_validator
 
 from jointwave.cases.schema.damping import Attenuating
@@ -77,6 +78,18 @@ class InSituStress(Table):
         if check_dimension(self, info, space=("zz", "yz", "xz")) and self.zz is None:
             raise contradiction_here("zz", None, "is required in space")
         return self
+
+    @property
+    def tensor(self) -> np.ndarray:
+        """The stress [d, d], Pa."""
+        if self.zz is None:
+            return np.array([[self.xx, self.xy], [self.xy, self.yy]])
+        x, y, z = (
+            (self.xx, self.xy, self.xz),
+            (self.xy, self.yy, self.yz),
+            (self.xz, self.yz, self.zz),
+        )
+        return np.array([x, y, z])
 
 
 class RecordOfRock(Table):

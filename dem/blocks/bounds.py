@@ -4,10 +4,10 @@ import numpy as np
 
 from jointwave.cases.spectrum import highest_frequency
 from jointwave.dem.blocks.model import PlaneState
-from jointwave.dem.blocks.shaking import variation
 from jointwave.dem.blocks.system import PlaneSystem
 from jointwave.dem.blocks.tile import relative
 from jointwave.dem.blocks.tiles import LENGTH, START
+from jointwave.dem.shaking import variation
 from jointwave.numerics.divergence import speed_that
 
 
@@ -24,9 +24,7 @@ def highest_energy(system: PlaneSystem, state: PlaneState) -> float:
         shaken = variation(system.shaking(np.arange(time.steps + time.stride)))
     with np.errstate(over="ignore"):
         return speed_that(
-            system.sources.impulse(
-                blocks.masses[system.sources.rows], highest_frequency(blocks.scene)
-            ),
+            system.loads.impulse(blocks.masses[system.loads.rows], highest_frequency(blocks.scene)),
             duration * np.hypot(own.gravity_x, own.gravity_y) * np.sqrt(mass.sum()),
             np.sqrt(mass.sum()) * shaken,
             stored(system, state),

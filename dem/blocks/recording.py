@@ -36,7 +36,7 @@ def recorder(system: PlaneSystem, state: PlaneState) -> BlockRecorder | None:
     def capture(sample: int) -> BlockFrame:
         """Return all blocks by a sample with the step that it needs, on a copy of the state."""
         step = sample * system.time.stride
-        drive = None if model.held is None else system.sources.drive(step, step + 1)
+        drive = None if model.held is None else system.loads.drive(np.array([step]))
         shake = None if system.shaking is None else system.shaking(np.array([step]))
         found = samples_for(model, 1)
         march(model, copied(state), found, 1, (0, 1), drive, shake)
@@ -64,13 +64,12 @@ def acting(
 
     velocity : of the places [r, 3, n]. first : number of the first sample.
     """
-    places, count = receivers.places, velocity.shape[-1]
-    found, rows = np.zeros((len(places), 2, 2, count)), system.sources.rows
-    held = np.flatnonzero(np.isin(places, rows))
+    places, loads, count = receivers.places, system.loads, velocity.shape[-1]
+    found, held = np.zeros((len(places), 2, 2, count)), np.flatnonzero(np.isin(places, loads.rows))
     if len(held):
-        row = np.searchsorted(rows, places[held])
+        row = np.searchsorted(loads.rows, places[held])
         steps = system.time.stride * (first + np.arange(count))
-        sums = np.moveaxis(system.sources.sums(steps, row)[..., 2:], 0, -1)
-        sums -= np.einsum("hkq,hqn->hkn", system.resistance[row, 2:], velocity[held])
-        found[held] = sums.reshape(len(held), 2, 2, -1)
+        sums = np.moveaxis(loads.resultants(steps, row), 0, -1)
+        sums -= system.resistance[row] @ loads.onto.T @ velocity[held]
+        found[held] = sums[:, 2:].reshape(len(held), 2, 2, -1)
     return found

@@ -114,12 +114,13 @@ def step(
     system: PlaneSystem, state: PlaneState, samples: PlaneSamples, first: int, last: int
 ) -> None:
     """Take the steps first .. last - 1, in batches whose forces fit in memory."""
-    model, sources = system.model, system.sources
-    size = max(1, MOST_OF_DRIVE // max(1, 6 * len(sources.rows)))
+    model, loads = system.model, system.loads
+    size = max(1, MOST_OF_DRIVE // max(1, loads.onto.shape[1] * len(loads.rows)))
     for begin in range(first, max(last, first + 1), size):
         end = min(begin + size, last)
-        drive = sources.drive(begin, end) if model.held is not None else None
-        shake = None if system.shaking is None else system.shaking(np.arange(begin, end))
+        steps = np.arange(begin, end)
+        drive = None if model.held is None else loads.drive(steps)
+        shake = None if system.shaking is None else system.shaking(steps)
         march(model, state, samples, system.time.stride, (begin, end), drive, shake, system.threads)
 
 

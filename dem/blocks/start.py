@@ -8,13 +8,13 @@ from math import ceil
 import numpy as np
 
 from jointwave.cases.material.prestress import refuse_beyond_strength
-from jointwave.dem.blocks.edges import on_freedoms, resultant
 from jointwave.dem.blocks.leapfrog import make_stepper, samples_for
 from jointwave.dem.blocks.model import PlaneState, held_by, state_at_rest
-from jointwave.dem.blocks.sources import Sources, reactions
 from jointwave.dem.blocks.stability import critical_plane_step
 from jointwave.dem.blocks.system import PlaneSystem
 from jointwave.dem.blocks.tiles import LANES, START, Contacts
+from jointwave.dem.boundaries import facets_on
+from jointwave.dem.loads import Loads, reactions
 from jointwave.dem.static import (
     NEVER,
     STEP_FRACTION,
@@ -53,7 +53,7 @@ def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
             points = LANES * system.model.form.rate_rows
             state.history[:, points:] = relaxation.state.history[:, points:]
         if static and bears:
-            system.sources.add_steady(relaxation.borne())
+            system.loads.add_steady(relaxation.borne())
     if scene.gravity is not None and not static:
         # Gravity from t = 0 on: the velocity at t = 0 is the mean of those half a step around it.
         count = len(blocks.inertia)
@@ -61,9 +61,10 @@ def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
         if bears:
             relaxation = PlaneRelaxation(system, True, sticks=True)
             settle(scene, relaxation, UNBORNE)
-            sums, rows = relaxation.borne(), system.sources.rows
-            system.sources.add_steady(sums)
-            state.v[rows] -= 0.5 * blocks.dt * resultant(sums) / blocks.inertia[rows]
+            found, loads = relaxation.borne(), system.loads
+            loads.add_steady(found)
+            impulse = 0.5 * blocks.dt * found @ loads.onto.T
+            state.v[loads.rows] -= impulse / blocks.inertia[loads.rows]
     return rest
 
 
@@ -99,31 +100,33 @@ class PlaneRelaxation:
     """
 
     def __init__(self, system: PlaneSystem, weighed: bool, sticks: bool = False) -> None:
-        blocks, model, sources = system.blocks, system.model, system.sources
+        blocks, model, loads = system.blocks, system.model, system.loads
         columns = blocks.columns._replace(time_constants=None)
         dt = STEP_FRACTION * critical_plane_step(blocks.links, columns, blocks.inertia, 0.0)
         own, laws = model.blocks._replace(dt=dt, local=0.0), model.laws.copy()
         if not weighed:
             own = own._replace(gravity_x=0.0, gravity_y=0.0)
         laws[IN_MOTION] = 0.0
-        rows, self.steady, self.walls = sources.rows, sources.steady, None
+        rows, self.steady, self.walls = loads.rows, loads.steady, None
         stress, partition = blocks.scene.prestress, blocks.partition
         if sticks:
             laws, self.steady, stress = sticking(laws), np.zeros_like(self.steady), None
             model = model._replace(contacts=unstressed(model.contacts, model.form.stressed))
         if stress is not None and blocks.scene.excavated and model.form.points:
             openings = [name for name in partition.sides if name.startswith("opening")]
-            walls = reactions(partition, openings, stress)
+            facets = facets_on(partition.blocks, partition.sides, openings)
+            walls = reactions(partition.blocks, facets, stress.tensor)
             rows = np.union1d(rows, walls.block)
-            self.walls = Sources(rows, [walls], [], system.time).steady
+            self.walls = Loads(rows, [walls], [], system.time, loads.onto).steady
             self.steady = np.zeros_like(self.walls)
-            self.steady[np.searchsorted(rows, sources.rows)] = sources.steady
-        self.bearing, self.rows = system.bearing, sources.rows
+            self.steady[np.searchsorted(rows, loads.rows)] = loads.steady
+        # Of the velocities of blocks: what quiet sides that bear the weight resist them by.
+        self.bearing, self.onto, self.rows = system.bearing @ loads.onto.T, loads.onto, loads.rows
         nothing = np.zeros((len(rows), 3, 3))
         held = held_by(nothing, rows, own.inertia, dt) if model.form.held else None
         if weighed and held is not None:
             resistance = nothing.copy()
-            resistance[np.searchsorted(rows, sources.rows)] = on_freedoms(self.bearing)
+            resistance[np.searchsorted(rows, loads.rows)] = self.onto @ self.bearing
             held.moves[:] = still(resistance, own.inertia[rows])
         self.model = model._replace(blocks=own, laws=laws, held=held)
         self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 0)
@@ -174,14 +177,14 @@ class PlaneRelaxation:
         return self.mass * gain / self.model.blocks.dt
 
     def borne(self) -> np.ndarray:
-        """Return the forces that sides which bear the weight are held by, as `edges.gathered` has
-        them [h, 6]: of tractions linear along each block's edges."""
+        """Return the resultants of the forces that sides which bear the weight are held by [h, 6]:
+        of tractions linear along each block's edges."""
         moves = self.model.held.moves
         held = moves.copy()
         moves[:] = np.eye(3)
         missing = -self.unbalanced().reshape(-1, 3)[self.rows]
         moves[:] = held
-        own = on_freedoms(self.bearing)
+        own = self.onto @ self.bearing
         stretched = np.linalg.pinv(own, rcond=1e-9, hermitian=True) @ missing[:, :, None]
         return (self.bearing @ stretched)[:, :, 0]
 

@@ -10,6 +10,7 @@ from jointwave.cases.incident import IncidentField, free_field
 from jointwave.cases.material.quiet_sides import borne, impedances
 from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes, waveform_bytes
 from jointwave.cases.sampling import Clock, clock
+from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.dem.blocks.build import (
     RigidBlocks,
@@ -19,13 +20,13 @@ from jointwave.dem.blocks.build import (
     form_of,
     rigid_blocks,
 )
-from jointwave.dem.blocks.edges import dashpots, on_freedoms, points_on
 from jointwave.dem.blocks.model import PlaneModel, held_by
-from jointwave.dem.blocks.shaking import Shaking, shaking
-from jointwave.dem.blocks.sources import Sources, load_pattern, on_sides, reactions
-from jointwave.dem.blocks.waves import incoming
+from jointwave.dem.boundaries import dashpots, facets_on, freedoms, points_on
+from jointwave.dem.loads import Loads, load_pattern, reactions
 from jointwave.dem.receivers import Receivers, receivers_of
+from jointwave.dem.shaking import Shaking, shaking
 from jointwave.dem.time_loop import thread_count
+from jointwave.dem.waves import incoming
 from jointwave.joints.law import table_of
 
 #: Bytes a block, with its contacts and all that makes them, and for each of their points.
@@ -36,10 +37,10 @@ CORNERS = 4  # of a block, in snapshots
 class PlaneSystem(NamedTuple):
     """A rock mass ready to run.
 
-    receivers : what is recorded. sources : what acts on held blocks. resistance : what the velocity
-    of each of them gives of forces and sums at quiet edges, with the sign of a resistance
-    [h, 6, 3]. bearing : the same of unit dashpots where those edges bear the weight. shaking : the
-    motion of walls; None where none moves. threads : that share each step.
+    receivers : what is recorded. loads : what acts on held blocks. resistance : of their quiet
+    sides, as `boundaries.dashpots` has it [h, 6, 6]. bearing : the same of unit dashpots where
+    those sides bear the weight. shaking : the motion of walls; None where none moves. threads :
+    that share each step.
     """
 
     blocks: RigidBlocks
@@ -47,7 +48,7 @@ class PlaneSystem(NamedTuple):
     critical: float
     model: PlaneModel
     receivers: Receivers
-    sources: Sources
+    loads: Loads
     resistance: np.ndarray
     bearing: np.ndarray
     shaking: Shaking | None
@@ -64,10 +65,10 @@ def prepared(scene: RockMass, incident: IncidentField | None = None) -> PlaneSys
     time, critical = clock_of(blocks)
     field: IncidentField = free_field(scene) if incident is None else incident
     receivers = receivers_of(scene, blocks.partition.blocks, faces_of(blocks), 3)
-    sources, resistance, bearing = held_blocks(blocks, time, field)
-    moving = shaking(scene, blocks.links.walls, time.dt)
-    form = form_of(blocks, len(sources.rows) > 0 or scene.excavated, moving is not None)
-    held = held_by(on_freedoms(resistance), sources.rows, blocks.masses, time.dt)
+    loads, resistance, bearing = held_blocks(blocks, time, field)
+    moving = shaking(scene.bases, blocks.links.walls, 2, time.dt)
+    form = form_of(blocks, len(loads.rows) > 0 or scene.excavated, moving is not None)
+    held = held_by(loads.onto @ resistance @ loads.onto.T, loads.rows, blocks.masses, time.dt)
     model = PlaneModel(
         form=form,
         blocks=constants(scene, blocks, time.dt),
@@ -81,7 +82,7 @@ def prepared(scene: RockMass, incident: IncidentField | None = None) -> PlaneSys
     )
     threads = thread_count(scene.numerics.dem.threads, blocks.partition.count)
     quiet = resistance, bearing
-    return PlaneSystem(blocks, time, critical, model, receivers, sources, *quiet, moving, threads)
+    return PlaneSystem(blocks, time, critical, model, receivers, loads, *quiet, moving, threads)
 
 
 def clock_of(blocks: RigidBlocks) -> tuple[Clock, float]:
@@ -101,21 +102,22 @@ def clock_of(blocks: RigidBlocks) -> tuple[Clock, float]:
 
 def held_blocks(
     blocks: RigidBlocks, time: Clock, field: IncidentField
-) -> tuple[Sources, np.ndarray, np.ndarray]:
-    """Return the external forces on blocks, and the resistance of quiet edges [h, 6, 3], then that
+) -> tuple[Loads, np.ndarray, np.ndarray]:
+    """Return the external forces on blocks, and the resistance of quiet sides [h, 6, 6], then that
     of unit dashpots where they bear the weight."""
-    scene, partition = blocks.scene, blocks.partition
-    on_quiet = on_sides(partition, scene.boundaries.sides("quiet"))
-    quiet = points_on(partition, partition.boundary, on_quiet)
-    impedance = impedances(scene, quiet.normal, partition.region[quiet.block])
-    patterns = [load_pattern(scene, partition, x) for x in scene.pushes]
+    scene, sides, cut = blocks.scene, blocks.partition.sides, blocks.partition.blocks
+    quiet = points_on(cut, facets_on(cut, sides, scene.boundaries.sides("quiet")))
+    impedance = impedances(scene, quiet.normal, cut.body.region[quiet.block])
+    patterns = [load_pattern(scene, cut, sides, one) for one in scene.pushes]
     if scene.prestress is not None:
         # Openings have been excavated: nothing holds their walls.
-        open_sides = scene.boundaries.sides("free", "quiet")
-        patterns.append(reactions(partition, open_sides, scene.prestress))
+        bear = facets_on(cut, sides, scene.boundaries.sides("free", "quiet"))
+        patterns.append(reactions(cut, bear, scene.prestress.tensor))
     rows = np.unique(np.concatenate([quiet.block, *(one.block for one in patterns)]))
-    waves = incoming(scene, field, quiet, impedance, rows, time)
-    sources = Sources(rows, patterns, waves, time)
+    period, waves = shortest_period(scene.waves), []
+    if scene.waves and len(quiet.block):
+        waves = incoming(field, period, quiet, impedance, rows, time)
+    loads = Loads(rows, patterns, waves, time, freedoms(2, 1))
     row, bears = np.searchsorted(rows, quiet.block), borne(scene, quiet.normal)
     resistance, bearing = (dashpots(quiet, one, row, len(rows)) for one in (impedance, bears))
-    return sources, resistance, bearing
+    return loads, resistance, bearing

@@ -1,0 +1,210 @@
+"""What acts on blocks from outside, in one, two and three dimensions: points on facets, resultants,
+dashpots, loads and waves, against closed forms."""
+
+import numpy as np
+import pytest
+
+from jointwave import cases
+from jointwave.cases.geometry.blocks import blocks_of
+from jointwave.cases.geometry.cell_complex import box
+from jointwave.cases.geometry.cut import cut, one_plane
+from jointwave.cases.histories import Ricker
+from jointwave.cases.incident import FreeField, PlaneWave
+from jointwave.cases.loads import history_of
+from jointwave.cases.material.rock import ElasticRock, elastic_rock
+from jointwave.cases.partition.scene import blocks_of_scene, shape_of
+from jointwave.cases.sampling import Clock
+from jointwave.cases.schema.sources import PlaneLoad
+from jointwave.dem.boundaries import (
+    TURNS,
+    dashpots,
+    facets_on,
+    freedoms,
+    points_on,
+    resultants,
+)
+from jointwave.dem.loads import Loads, load_pattern, reactions
+from jointwave.dem.shaking import shaking
+from jointwave.dem.waves import incoming
+
+SIZE = np.array([3.0, 2.0, 2.5])
+SIDES = ("left", "right", "front", "back", "bottom", "top")
+CLOCK = Clock(dt=1e-4, stride=1, samples=400)
+ROTATIONS = {1: 0, 2: 1, 3: 3}
+STRESS = np.array([[3e6, 1e6, -5e5], [1e6, 2e6, 7e5], [-5e5, 7e5, 4e6]])
+
+
+def whole(dim):
+    """One box, whose facets on the low and high end of axis k are the sides 2 k and 2 k + 1."""
+    found = blocks_of(box(np.zeros(dim), SIZE[:dim]), 1e-9)
+    edge = found.boundary
+    axis = np.abs(edge.normal).argmax(axis=1)
+    edge.side[:] = 2 * axis + (edge.normal[np.arange(len(axis)), axis] > 0)
+    return found
+
+
+def polytope(dim):
+    """A box whose corners three oblique planes have cut off, with the rest of it removed."""
+    rng, body = np.random.default_rng(dim), box(np.zeros(dim), SIZE[:dim])
+    middle = SIZE[:dim] / 2
+    for normal in rng.normal(size=(3, dim)):
+        normal /= np.linalg.norm(normal)
+        through = middle + 0.8 * normal
+        body = cut(body, one_plane(normal, through, np.ones(body.count, bool)), 1e-9).body
+    depth = body.depths(middle)
+    return blocks_of(body.removed(depth < depth.max(), 1), 1e-9)
+
+
+def on_all(blocks, traction):
+    """The resultants of a traction, a function of points, on the whole boundary of one block."""
+    points = points_on(blocks, np.arange(len(blocks.boundary)))
+    force = points.area[:, None] * traction(points)
+    return resultants(points.arm, force).sum(axis=0)
+
+
+@pytest.mark.parametrize("dim", [1, 2, 3])
+def test_a_linear_stress_has_the_resultants_of_its_volume(dim):
+    """Of a stress s + g x about the centroid, by the divergence theorem: the force V div g, the
+    sums of arm times force V s."""
+    rng = np.random.default_rng(dim)
+    s, g = rng.normal(size=(dim, dim)), rng.normal(size=(dim, dim, dim))
+    blocks = polytope(dim)
+    found = on_all(
+        blocks,
+        lambda at: np.einsum("mi,mij->mj", at.normal, s + np.einsum("ijk,mk->mij", g, at.arm)),
+    )
+    expected = np.append(np.einsum("iji->j", g), s)
+    np.testing.assert_allclose(found, blocks.volume[0] * expected, atol=1e-13 * SIZE.prod())
+
+
+@pytest.mark.parametrize("dim", [1, 2, 3])
+def test_a_uniform_stress_around_a_block_has_no_force_and_no_moment(dim):
+    blocks = polytope(dim)
+    pattern = reactions(blocks, np.arange(len(blocks.boundary)), STRESS[:dim, :dim])
+    loads = Loads(np.zeros(1, int), [pattern], [], CLOCK, freedoms(dim, ROTATIONS[dim]))
+    assert loads.steady.shape == (1, dim + ROTATIONS[dim])
+    assert np.abs(loads.steady).max() < 1e-14 * STRESS.max() * SIZE.prod()
+    sums = loads.resultants(np.arange(2), np.zeros(1, int))[:, 0, dim:].reshape(2, dim, dim)
+    np.testing.assert_allclose(sums, [-blocks.volume[0] * STRESS[:dim, :dim]] * 2, rtol=1e-12)
+
+
+@pytest.mark.parametrize("dim", [1, 2, 3])
+def test_dashpots_take_the_power_of_a_rigid_motion(dim):
+    """The integral of v Z v with a velocity linear along each facet, from its moments."""
+    rng, blocks = np.random.default_rng(dim), polytope(dim)
+    edge, Z = blocks.boundary, rng.uniform(1e6, 9e6, 2)
+    points = points_on(blocks, np.arange(len(edge)))
+    impedance = np.tile(Z, (len(points.block), 1))
+    onto = freedoms(dim, ROTATIONS[dim])
+    C = onto @ dashpots(points, impedance, points.block, 1)[0] @ onto.T
+    velocity = rng.normal(size=len(onto))
+    middle, turning = np.split(velocity, [dim])
+    spin = np.zeros((dim, dim))
+    for w, (i, j) in zip(turning, TURNS[ROTATIONS[dim]], strict=True):
+        spin[j, i], spin[i, j] = w, -w
+    power = 0.0
+    for k, n in enumerate(edge.normal):
+        resists = Z[0] * np.outer(n, n) + Z[1] * (np.eye(dim) - np.outer(n, n))
+        v = middle + spin @ (edge.centroid[k] - blocks.centroid[0])
+        power += edge.area[k] * v @ resists @ v
+        power += np.trace(spin.T @ resists @ spin @ edge.second_moment[k])
+    assert velocity @ C @ velocity == pytest.approx(power, rel=1e-13)
+    np.testing.assert_allclose(C, C.T, rtol=1e-14, atol=1e-9)
+
+
+def test_dashpots_of_a_face_of_a_box():
+    """A face b by c at a distance h from the centroid: in closed form, all 36 numbers."""
+    blocks, (Z_n, Z_s) = whole(3), (7e6, 4e6)
+    points = points_on(blocks, facets_on(blocks, SIDES, ["right"]))
+    C = dashpots(points, np.tile([Z_n, Z_s], (4, 1)), np.zeros(4, int), 1)[0]
+    C, (a, b, c) = freedoms(3, 3) @ C @ freedoms(3, 3).T, SIZE
+    h, expected = a / 2, np.diag([Z_n, Z_s, Z_s, 0.0, 0.0, 0.0])
+    expected[[3, 4, 5], [3, 4, 5]] = np.array([Z_s * b**2, Z_n * c**2, Z_n * b**2]) / 12
+    expected[3, 3] += Z_s * c**2 / 12
+    expected[[4, 5], [4, 5]] += Z_s * h**2
+    expected[[1, 5], [5, 1]], expected[[2, 4], [4, 2]] = Z_s * h, -Z_s * h
+    np.testing.assert_allclose(C, b * c * expected, atol=1e-8)
+
+
+@pytest.mark.parametrize(("dim", "kind"), [(1, "P"), (2, "P"), (2, "S"), (3, "P"), (3, "S")])
+def test_a_wave_pushes_a_quiet_side_by_twice_its_impedance(dim, kind):
+    """At normal incidence from the left: 2 rho c A times the mean of the velocity over each step,
+    along its polarisation, and no moment but that of the lever; sampled, to (omega dt)^2 / 24."""
+    rock, pulse, blocks = ElasticRock(2500.0, 4000.0, 2300.0), Ricker(1.0, 0.01), whole(dim)
+    speed = rock.p_speed if kind == "P" else rock.s_speed
+    along, moves = np.eye(dim)[0], np.eye(dim)[0 if kind == "P" else dim - 1]
+    wave = FreeField((PlaneWave(rock, along, moves, speed, np.zeros(dim), pulse),))
+    points = points_on(blocks, facets_on(blocks, SIDES, ["left"]))
+    impedance = np.tile([rock.p_impedance, rock.s_impedance], (len(points.block), 1))
+    rows, onto = np.zeros(1, int), freedoms(dim, ROTATIONS[dim])
+    made = (wave, lambda places, times: wave(places, times))
+    delayed, sampled = (
+        Loads(rows, [], incoming(one, 0.01, points, impedance, rows, CLOCK), CLOCK, onto)
+        for one in made
+    )
+    steps = np.arange(400)
+    mean = np.diff(pulse.impulse(CLOCK.dt * (np.arange(401) - 0.5))) / CLOCK.dt
+    force = 2 * rock.density * speed * SIZE[1:dim].prod() * mean[:, None] * moves
+    found = delayed.drive(steps)[:, 0]
+    np.testing.assert_allclose(found[:, :dim], force, atol=1e-12 * force.max())
+    lever = -SIZE[0] / 2 * along
+    moments = resultants(lever[None], force[:, None])[:, 0] @ onto.T
+    np.testing.assert_allclose(found, moments, atol=1e-12 * force.max())
+    off = np.abs(sampled.drive(steps)[:, 0] - found).max()
+    assert off < 10 * (2 * np.pi / 0.01 * CLOCK.dt) ** 2 / 24 * force.max()
+    some = delayed.resultants(steps[::7], rows)[:, 0] @ onto.T
+    np.testing.assert_allclose(some, found[::7], atol=1e-12 * force.max())
+
+
+def test_loads_of_a_scene_in_space():
+    """A pressure on the top, a force at a point of the second block, a compliant base below."""
+    step, at = {"amplitude": 2.0, "shape": "step"}, [2.5, 0.5, 1.0]
+    stiff = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    scene = cases.load_tables(
+        {
+            "title": "box",
+            "domain": {"size": SIZE.tolist()},
+            "rock": {"density": 2500.0, "intact_modulus": 4e10},
+            "joint_sets": [
+                stiff | {"name": "cut", "dip": 90.0, "dip_direction": 90.0, "through": [1.5, 1, 1]}
+            ],
+            "boundaries": {"bottom": "quiet"},
+            "loads": [
+                step | {"kind": "pressure", "side": "top"},
+                step
+                | {"kind": "force", "quantity": "force", "at": at, "direction": [0.0, 0.6, 0.8]},
+                step
+                | {
+                    "kind": "base",
+                    "quantity": "velocity",
+                    "side": "bottom",
+                    "direction": [1, 0, 0],
+                },
+            ],
+            "time": {"duration": 0.1},
+            "record": {"points": [[1.0, 1.0, 1.5]]},
+        }
+    )
+    blocks, sides = blocks_of_scene(scene), shape_of(scene.domain).sides
+    patterns = [load_pattern(scene, blocks, sides, one) for one in scene.pushes]
+    loads = Loads(np.arange(2), patterns, [], CLOCK, freedoms(3, 3))
+    found = loads.drive(np.array([3, 4]))[1]
+    arm, force = at - blocks.centroid[1], 2 * np.array([0.0, 0.6, 0.8])
+    face, shear = SIZE[0] * SIZE[1], 2 * elastic_rock(scene.rock).s_impedance
+    expected = face * np.array([[shear, 0, -1, 0, -shear * SIZE[2] / 2, 0]] * 2)
+    expected[1] += np.append(force, np.cross(arm, force))
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-6)
+
+
+def test_a_wall_is_shaken_along_its_direction():
+    """Velocities are means over steps, which add up to the displacement of the pulse."""
+    base = PlaneLoad.model_validate(
+        {"kind": "base", "quantity": "velocity", "side": "bottom", "amplitude": 0.3}
+        | {"shape": "ricker", "period": 0.01, "direction": [0.0, 0.6, 0.8]},
+        context={"dimension": 3},
+    )
+    moving = shaking([base], ("top", "bottom"), 3, CLOCK.dt)
+    moved = CLOCK.dt * moving(np.arange(170)).sum(axis=0)
+    way = history_of(base, 0.3).impulse(np.array([170 * CLOCK.dt]))
+    np.testing.assert_allclose(moved, [np.zeros(3), way * base.direction], atol=1e-16)
+    assert shaking([], ("top",), 3, CLOCK.dt) is None
