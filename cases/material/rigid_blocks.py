@@ -132,8 +132,7 @@ def _share(scene: RockMass, sets: list[JointSet], real: int) -> RockShare:
         distances = _apart([index[member.name] for member in group], sets, real)
         direction[list(distances)] = k
         apart[k] = next(iter(distances.values()))
-    compliance = np.array([[one.normal_compliance, one.shear_compliance] for one in fit.sets])
-    return RockShare(normals, compliance, apart, direction, fit.left_over)
+    return RockShare(normals, fit.compliance, apart, direction, fit.left_over)
 
 
 def welds(

@@ -14,19 +14,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.material.effective_medium import JointSet, opening, sliding
+from jointwave.cases.material.effective_medium import opening, sliding
 
-LEAST = 1e-7  # weight of the fit's own norm
-
-
-#: Accuracy of least squares relative to the largest number: round-off.
-PRECISE = 1e-15
+LEAST = 1e-7  #: weight of the fit's own norm
+PRECISE = 1e-15  #: accuracy of least squares relative to the largest number: round-off
 
 
 class RigidFit(NamedTuple):
-    """The sets with their compliances, and what they lack of S over S (norms of tensors)."""
+    """Z_N and Z_T of each set [sets, 2], 1/Pa, and what they lack of S over S, norms of tensors."""
 
-    sets: list[JointSet]
+    compliance: np.ndarray
     left_over: float
 
 
@@ -37,15 +34,11 @@ def rigid_fit(compliance: np.ndarray, normals: np.ndarray) -> RigidFit:
     """
     from scipy.optimize import nnls
 
-    S = np.asarray(compliance, dtype=float)
-    size = np.linalg.norm(S)
-    parts = [form(n).ravel() for n in normals for form in (opening, sliding)]
-    A = np.concatenate([np.transpose(parts), LEAST * np.eye(len(parts))])
-    Z, _ = nnls(A, np.concatenate([S.ravel() / size, np.zeros(len(parts))]))
-    left_over = np.linalg.norm(Z @ parts - S.ravel() / size)
-    pairs = size * Z.reshape(-1, 2)
-    sets = [JointSet(n, *map(float, z)) for n, z in zip(normals, pairs, strict=True)]
-    return RigidFit(sets, float(left_over))
+    size = np.linalg.norm(compliance)
+    aim, parts = np.ravel(compliance) / size, _forms(normals).reshape(2 * len(normals), -1)
+    A = np.concatenate([parts.T, LEAST * np.eye(len(parts))])
+    Z, _ = nnls(A, np.append(aim, np.zeros(len(parts))))
+    return RigidFit(size * Z.reshape(-1, 2), float(np.linalg.norm(Z @ parts - aim)))
 
 
 def nearest_stiffness(stiffness: np.ndarray, normals: np.ndarray) -> RigidFit:
@@ -59,13 +52,11 @@ def nearest_stiffness(stiffness: np.ndarray, normals: np.ndarray) -> RigidFit:
     """
     from scipy.optimize import least_squares
 
-    C, size = np.asarray(stiffness, dtype=float), np.linalg.norm(stiffness)
-    first = rigid_fit(np.linalg.inv(C) * size, normals).sets
-    forms = np.array([form(n) for n in normals for form in (opening, sliding)])
+    C, size, forms = np.asarray(stiffness), np.linalg.norm(stiffness), _forms(normals)
     reach, shapes = np.linalg.eigh(forms.sum(axis=0))
     basis = shapes[:, reach > LEAST * reach[-1]]
     parts, aim = basis.T @ forms @ basis, basis.T @ C @ basis / size
-    start = np.array([[s.normal_compliance, s.shear_compliance] for s in first]).ravel()
+    start = rigid_fit(np.linalg.inv(C) * size, normals).compliance.ravel()
     scale, small = start.max(), LEAST * np.eye(len(start))
 
     def stiffness_of(z: np.ndarray) -> np.ndarray:
@@ -86,4 +77,9 @@ def nearest_stiffness(stiffness: np.ndarray, normals: np.ndarray) -> RigidFit:
     missing = float(1 - (aim**2).sum() + ((stiffness_of(z) - aim) ** 2).sum())
     # Of all sets with this compliance those of least norm.
     found = rigid_fit(np.einsum("k,kij->ij", scale / size * z, forms), normals)
-    return RigidFit(found.sets, max(missing, 0.0) ** 0.5)
+    return found._replace(left_over=max(missing, 0.0) ** 0.5)
+
+
+def _forms(normals: np.ndarray) -> np.ndarray:
+    """Return the compliances of sets that open, and that slide, by one, in turn [2 sets, k, k]."""
+    return np.array([form(n) for n in normals for form in (opening, sliding)])
