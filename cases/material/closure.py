@@ -9,7 +9,7 @@ MPa and mm, of the third cycle of loading, to which joints in the ground are nea
     d_m = -0.1032 - 0.0074 JRC + 1.135 (JCS / a)^-0.251.
 """
 
-from math import hypot, sqrt
+from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -67,30 +67,27 @@ def stress_in_reach(scene: AnyScene) -> float:
 
 def _at_rest(scene: AnyScene) -> float:
     """Return the stress of prestress and weight, doubled for a sudden weight, Pa."""
+    stress, densities = 0.0, [scene.rock.density]
     if isinstance(scene, Scene):
-        stress = abs(scene.prestress.normal) if scene.prestress else 0.0
         extent = scene.pillar.length
+        if scene.prestress is not None:
+            stress = abs(scene.prestress.normal)
     else:
-        given = scene.prestress
-        stress = 0.0 if given is None else _largest(given, scene.excavated)
-        extent = float(np.hypot(*np.ptp(np.array(scene.domain.corners), axis=0)))
+        if scene.prestress is not None:
+            stress = _largest(scene.prestress, scene.excavated)
+        extent = float(np.linalg.norm(np.ptp(np.array(scene.domain.corners), axis=0)))
+        densities += [one.density or 0.0 for one in scene.regions]
     if scene.gravity is None:
         return stress
-    weight = _densest(scene) * scene.gravity.acceleration * extent
+    weight = max(densities) * scene.gravity.acceleration * extent
     return stress + (1 if scene.gravity.static else 2) * weight
 
 
-def _densest(scene: AnyScene) -> float:
-    """Return the largest density of [rock] and, of a rock mass, its regions, kg/m3."""
-    regions = () if isinstance(scene, Scene) else scene.regions
-    return max(scene.rock.density, *(one.density or 0.0 for one in regions), 0.0)
-
-
 def _largest(stress: InSituStress, excavated: bool) -> float:
-    """Return the largest stress in the plane, not below zero: s1, or 3 s1 - s2 at the wall of a
-    circular opening (Kirsch); at corners of others it is more in places."""
-    mean, half = (stress.xx + stress.yy) / 2, hypot((stress.xx - stress.yy) / 2, stress.xy)
-    return max(0.0, 2 * mean + 4 * half if excavated else mean + half)
+    """Return the largest principal stress s1, not below zero, or with the least one 3 s1 - s2 at
+    the wall of a circular opening (Kirsch); at corners of others it is more in places."""
+    low, *_, high = np.linalg.eigvalsh(stress.tensor)
+    return max(0.0, float(3 * high - low if excavated else high))
 
 
 def _peak(pulse: Pulse, duration: float) -> float:

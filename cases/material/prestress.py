@@ -5,7 +5,7 @@ from math import inf, radians, tan
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.joints import attitude
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.plane import InSituStress
 from jointwave.cases.schema.rock_mass import RockMass
@@ -26,11 +26,11 @@ def refuse_beyond_strength(scene: RockMass) -> None:
 
 def beyond_strength(joint: JointSet, stress: InSituStress) -> str | None:
     """Return whether a joint "opens" or "slides" under a stress, None if it carries it."""
-    along = direction_of(joint.dip)
-    normal = np.array([-along[1], along[0]])
-    traction = np.array([[stress.xx, stress.xy], [stress.xy, stress.yy]]) @ normal
-    t_n, t_s = float(normal @ traction), abs(float(along @ traction))
-    slack = SLACK * max(abs(stress.xx), abs(stress.yy), abs(stress.xy))
+    sigma = stress.tensor
+    normal, _ = attitude(joint, len(sigma))
+    traction = sigma @ normal
+    t_n, slack = float(normal @ traction), SLACK * np.abs(sigma).max()
+    t_s = float(np.linalg.norm(traction - t_n * normal))
     tensile = inf if joint.tensile_strength is None else joint.tensile_strength
     if t_n < -slack - (0.0 if joint.tension is False else tensile):
         return "opens"
