@@ -1,7 +1,6 @@
 """Contradictions of the regions of a rock mass with its domain and joint sets."""
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 import shapely
@@ -11,14 +10,14 @@ from jointwave.cases.geometry.cell_complex import PARALLEL
 from jointwave.cases.geometry.measure import cell_moments
 from jointwave.cases.geometry.solids import taken_out
 from jointwave.cases.partition.joints import attitude
-from jointwave.cases.partition.outline import Outline
 from jointwave.cases.partition.regions import rocks_beside
 from jointwave.cases.partition.scene import rock_of
+from jointwave.cases.partition.shape import Shape
 from jointwave.cases.schema.region import REST
 from jointwave.cases.schema.rock_mass import RockMass
 
 
-def of_regions(scene: RockMass, outline: Any) -> Iterator[Wrong]:
+def of_regions(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
     """Yield contradictions of the regions, and of the joint sets that name them."""
     names = [one.name for one in scene.regions]
     for i, name in enumerate(names):
@@ -51,7 +50,7 @@ def of_regions(scene: RockMass, outline: Any) -> Iterator[Wrong]:
     yield from _of_periodic_sides(scene)
 
 
-def _of_outlines(scene: RockMass, outline: Outline) -> Iterator[Wrong]:
+def _of_outlines(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
     """Yield outlines that are no polygons, and those on sides that waves enter through."""
     for i, one in enumerate(scene.regions):
         if one.outline is None:
@@ -60,7 +59,7 @@ def _of_outlines(scene: RockMass, outline: Outline) -> Iterator[Wrong]:
         shape = shapely.Polygon(one.outline if corners > 2 else ())
         if not (shape.is_valid and shape.area > 0):
             yield key, corners, "must be a polygon that does not cross itself"
-        within = shapely.Polygon(outline.corners).exterior.distance(shape)
+        within = shapely.Polygon(scene.domain.corners).exterior.distance(shape)
         if within <= outline.tolerance and (scene.waves or scene.boundaries.sides("periodic")):
             allowed = "must lie inside the domain, not on its sides, with waves or periodic sides"
             yield key, corners, allowed

@@ -1,7 +1,6 @@
 """Contradictions between the tables of a rock mass."""
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
@@ -10,10 +9,9 @@ from jointwave.cases.checks.regions import of_regions
 from jointwave.cases.checks.shared import Rules, Wrong, of_quality, of_time, within
 from jointwave.cases.geometry.cell_complex import GeometryError
 from jointwave.cases.geometry.sets import cut_by_sets
-from jointwave.cases.partition.box import Box
 from jointwave.cases.partition.joints import attitude, plane_sets
-from jointwave.cases.partition.outline import Outline
-from jointwave.cases.partition.scene import rock_of, shape_of
+from jointwave.cases.partition.scene import rock_of
+from jointwave.cases.partition.shape import Shape, shape_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.cases.schema.tables import LEAN
@@ -42,7 +40,7 @@ def rules(scene: RockMass) -> Rules:
     ]
 
 
-def _of_support(scene: RockMass, outline: Outline | Box) -> Iterator[Wrong]:
+def _of_support(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
     """Yield rock under gravity that no side bears, though some side holds it back."""
     gravity, normals = scene.gravity, outline.normals()
     quiet = [side for side in scene.boundaries.sides("quiet") if side in normals]
@@ -58,7 +56,7 @@ def _of_support(scene: RockMass, outline: Outline | Box) -> Iterator[Wrong]:
         yield f"boundaries.{quiet[0]}", "quiet", allowed
 
 
-def _of_cuts(scene: RockMass, outline: Any) -> Iterator[Wrong]:
+def _of_cuts(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
     """Yield joints that miss the domain. Those of spacings that fit into it do not, and sets that
     end at others are known when they are cut. The contacts of a file become those of the sets."""
     dimension = scene.domain.dimension
@@ -76,7 +74,7 @@ def _of_cuts(scene: RockMass, outline: Any) -> Iterator[Wrong]:
             yield error.key.replace("[0]", f"[{i}]"), None, str(error)
 
 
-def _of_receivers(scene: RockMass, outline: Outline | Box) -> Iterator[Wrong]:
+def _of_receivers(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
     record = scene.record
     if not (record.points or record.joints or record.fields):
         yield "record", None, "give at least one of record.points, joints and fields"
@@ -90,12 +88,12 @@ def _of_receivers(scene: RockMass, outline: Outline | Box) -> Iterator[Wrong]:
                 yield f"record.{key}[{i}]", place, "must not repeat a position"
 
 
-def _of_place(key: str, place: list[float], outline: Outline | Box) -> Iterator[Wrong]:
+def _of_place(key: str, place: list[float], outline: Shape) -> Iterator[Wrong]:
     if not outline.holds(place):
         yield key, place, "must lie in the domain and outside its openings"
 
 
-def _of_boundaries(scene: RockMass, outline: Outline | Box) -> Iterator[Wrong]:
+def _of_boundaries(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
     normals = outline.normals()
     for side, held in scene.boundaries:
         if held != "free" and side not in normals:
@@ -107,7 +105,7 @@ def _of_boundaries(scene: RockMass, outline: Outline | Box) -> Iterator[Wrong]:
             yield f"boundaries.{side}", "periodic", allowed
 
 
-def _of_waves(scene: RockMass, outline: Outline | Box) -> Iterator[Wrong]:
+def _of_waves(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
     for i, wave in enumerate(scene.waves):
         for side, normals in outline.normals().items():
             held = getattr(scene.boundaries, side)
@@ -115,7 +113,7 @@ def _of_waves(scene: RockMass, outline: Outline | Box) -> Iterator[Wrong]:
                 yield f"boundaries.{side}", held, f"must be 'quiet': waves[{i}] enters there"
 
 
-def _of_load(load: PlaneLoad, scene: RockMass, outline: Any) -> Iterator[Wrong]:
+def _of_load(load: PlaneLoad, scene: RockMass, outline: Shape) -> Iterator[Wrong]:
     if load.at is not None:
         yield from _of_place("at", load.at, outline)
     holes = len(scene.domain.holes)
@@ -130,20 +128,11 @@ def _of_load(load: PlaneLoad, scene: RockMass, outline: Any) -> Iterator[Wrong]:
             allowed = f"needs boundaries.{load.side} = '{one}' or '{other}', not '{held}'"
             yield "side", load.side, allowed
     if load.between is not None:
-        edges = outline.edges(load.side, load.opening)
         for point in load.between:
-            if distance(np.array(point), edges) > BESIDE * outline.size:
+            if outline.away(np.array(point), load.side, load.opening) > BESIDE * outline.size:
                 yield "between", point, f"must lie on {load.side or f'openings[{load.opening}]'}"
         if np.hypot(*np.diff(load.between, axis=0)[0]) <= BESIDE * outline.size:
             yield "between", load.between, "must be two points"
 
 
 OF_SHAPE = (of_regions, _of_cuts, _of_receivers, _of_boundaries, _of_waves)
-
-
-def distance(point: np.ndarray, edges: np.ndarray) -> float:
-    """Return the distance of a point from the nearest of some edges [n, 2, 2], m."""
-    start, along = edges[:, 0], edges[:, 1] - edges[:, 0]
-    t = ((point - start) * along).sum(axis=1) / (along**2).sum(axis=1)
-    foot = start + np.clip(t, 0, 1)[:, None] * along
-    return float(np.hypot(*(point - foot).T).min())

@@ -49,6 +49,12 @@ class Solid:
         ends = [(hull[::-1] + low, -self.axes[2]), (hull + high, self.axes[2])]
         return [*zip(sides, out, strict=True), *ends]
 
+    @property
+    def volume(self) -> float:
+        """Volume, m^d."""
+        length = self.span[1] - self.span[0] if len(self.axes) == 3 else 1.0
+        return float(shapely.Polygon(self.corners).area * length)
+
     def contains(self, points: np.ndarray) -> np.ndarray:
         """Return which points [n, d] lie inside, bool array."""
         own = points @ self.axes.T

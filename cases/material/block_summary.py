@@ -12,7 +12,8 @@ from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.regions import rocks_of
-from jointwave.cases.partition.scene import blocks_of_scene, partition_bytes, shape_of
+from jointwave.cases.partition.scene import blocks_of_scene, partition_bytes
+from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.region import REST
 from jointwave.cases.schema.rock_mass import RockMass
 

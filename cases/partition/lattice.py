@@ -18,7 +18,8 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import Blocks, blocks_of
 from jointwave.cases.partition.joints import attitude, dips_of
 from jointwave.cases.partition.regions import ROCK, within
-from jointwave.cases.partition.scene import rock_of, shape_of
+from jointwave.cases.partition.scene import rock_of
+from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.region import REST
 from jointwave.cases.schema.rock_mass import RockMass

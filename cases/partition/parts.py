@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from jointwave.cases.partition.outline import Outline, outline_of
+from jointwave.cases.partition.shape import Shape, shape_of
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.sources import PlaneLoad
 
@@ -15,7 +15,7 @@ def covered(domain: Domain, load: PlaneLoad, starts: np.ndarray, ends: np.ndarra
     opening, [n, 2]; both 0 where it does not. starts, ends : float arrays [n, 2], m."""
     if load.between is None:
         return np.tile([0.0, 1.0], (len(starts), 1))
-    outline = outline_of(domain)
+    outline = shape_of(domain)
     part, tolerance = np.zeros((len(starts), 2)), BESIDE * outline.size
     for start, end in loaded_lines(outline, load):
         length = float(np.hypot(*(end - start)))
@@ -35,7 +35,7 @@ def covered(domain: Domain, load: PlaneLoad, starts: np.ndarray, ends: np.ndarra
     return part
 
 
-def loaded_lines(outline: Outline, load: PlaneLoad) -> list[tuple[np.ndarray, np.ndarray]]:
+def loaded_lines(outline: Shape, load: PlaneLoad) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return the straight parts of the boundary, from point to point, between the two points of a
     load: of one face what is between them; of a side that has ends, from one to the other; else,
     as of an opening, from the first to the second counter-clockwise around it."""

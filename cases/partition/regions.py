@@ -14,10 +14,10 @@ from jointwave.cases.schema.rock_mass import RockMass
 
 
 def region_at(regions: Sequence[Region], places: np.ndarray) -> np.ndarray:
-    """Return the region that contains each place (float array [n, 2], m), or ROCK: the last of
+    """Return the region that contains each place (float array [n, d], m), or ROCK: the last of
     those whose line it lies above, or whose outline it lies in."""
     found = np.full(len(places), ROCK)
-    for k, one in enumerate(bounded(regions)):
+    for k, one in enumerate(bounded(regions, places.shape[1])):
         found[one.contains(places)] = k
     return found
 

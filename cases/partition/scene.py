@@ -10,15 +10,15 @@ import numpy as np
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import Blocks, blocks_of
 from jointwave.cases.geometry.cell_complex import Complex, GeometryError, Sliver
+from jointwave.cases.geometry.measure import cell_moments
 from jointwave.cases.geometry.sets import cut_by_sets
 from jointwave.cases.geometry.slivers import Limits, without_slivers
 from jointwave.cases.geometry.solids import check_convex, cut_into_regions, taken_out
 from jointwave.cases.partition.blocks import Partition, plane_partition
-from jointwave.cases.partition.box import Box, box_of
 from jointwave.cases.partition.joints import attitude, plane_sets
-from jointwave.cases.partition.outline import Outline, outline_of
 from jointwave.cases.partition.periodic import across_periodic
 from jointwave.cases.partition.regions import bounded
+from jointwave.cases.partition.shape import Shape, shape_of
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.region import Region
@@ -35,15 +35,9 @@ LATTICE = (0.03, THIN)
 OF_BLOCK = {2: 2500, 3: 16_000}
 
 
-def shape_of(domain: Domain) -> Outline | Box:
-    """Return the shape of a domain; raises GeometryError if it is invalid."""
-    return box_of(domain) if domain.dimension == 3 else outline_of(domain)
-
-
-def rock_of(shape: Outline | Box, regions: Sequence[Region]) -> Complex:
+def rock_of(shape: Shape, regions: Sequence[Region]) -> Complex:
     """Return a domain in cells of one region of rock each."""
-    whole = shape.whole()
-    return cut_into_regions(whole, bounded(regions, whole.dim), shape.tolerance)
+    return cut_into_regions(shape.hull, bounded(regions, shape.hull.dim), shape.tolerance)
 
 
 def blocks_of_domain(
@@ -72,7 +66,7 @@ def blocks_of_domain(
 
 def _body(
     domain: Domain,
-    shape: Outline | Box,
+    shape: Shape,
     sets: Sequence[JointSet],
     further: Sequence[JointSet],
     regions: Sequence[Region],
@@ -134,7 +128,7 @@ def partition_of(scene: RockMass, further: Sequence[JointSet] = ()) -> Partition
     """Return the blocks of a rock mass in the plane, as `blocks_of_scene` does, as arrays for
     engines; raises SceneError, too, where periodic sides do not fit each other."""
     blocks = blocks_of_scene(scene, further)
-    found = plane_partition(blocks, outline_of(scene.domain).sides, scene.joint_sets)
+    found = plane_partition(blocks, shape_of(scene.domain).sides, scene.joint_sets)
     try:
         across_periodic(scene, found)  # whether its sides fit each other
     except GeometryError as error:
@@ -148,7 +142,8 @@ def block_count(domain: Domain, sets: Sequence[JointSet]) -> float:
     if domain.given is not None:
         return float(domain.given.count)
     corners, dim, count = np.array(domain.corners), domain.dimension, 1.0
-    volume, normals = shape_of(domain).volume, [attitude(one, dim)[0] for one in sets]
+    volume = cell_moments(shape_of(domain).hull).size[0]
+    normals = [attitude(one, dim)[0] for one in sets]
     joints = [
         float(np.ptp(corners @ normal)) / one.spacing if one.spacing else 1.0
         for normal, one in zip(normals, sets, strict=True)

@@ -104,7 +104,7 @@ class RecordOfRock(Table):
     energy: bool = True  #: record the energy ledger
 
 
-class DemInPlane(Table):
+class DemOfRock(Table):
     """Time stepping of rigid blocks, and their size where intact rock is subdivided."""
 
     #: m, approximate block size: rock between joints is subdivided by joints of its own stiffness;
@@ -116,11 +116,11 @@ class DemInPlane(Table):
     threads: Annotated[int, Field(ge=1, le=1024)] | None = None  #: absent: by the number of blocks
 
 
-class ContinuumInPlane(Table):
+class ContinuumOfRock(Table):
     """Discretisation and time stepping of the deformable rock."""
 
     order: Annotated[int, Field(ge=1, le=4)] = 2  #: of the elements; at most 2 for triangles
-    #: absent: quadrilaterals where every block has four corners
+    #: in the plane; absent: quadrilaterals where every block has four corners
     cell: Literal["quadrilateral", "triangle"] | None = None
     size: Positive | None = None  #: m, element size; absent: from the shortest wave
     scheme: Literal["auto", "explicit", "implicit"] = "auto"  #: auto: whichever costs less
@@ -129,12 +129,17 @@ class ContinuumInPlane(Table):
     spectral_radius: Annotated[float, Field(ge=0, le=1)] = 0.9  #: implicit: at infinite frequency
     allow_unstable: bool = False  #: allow an explicit step above the critical one
 
+    @model_validator(mode="after")
+    def _fits_dimension(self, info: ValidationInfo) -> "ContinuumOfRock":
+        check_dimension(self, info, plane=("cell",))
+        return self
 
-class NumericsInPlane(Table):
+
+class NumericsOfRock(Table):
     """Numerical parameters; the defaults are chosen for accuracy."""
 
     #: joints may move by more than 2 % of a block, and blocks meet others than their neighbours,
     #: though contacts stay those of the start; else such a run stops
     allow_large_motion: bool = False
-    dem: DemInPlane = DemInPlane()
-    continuum: ContinuumInPlane = ContinuumInPlane()
+    dem: DemOfRock = DemOfRock()
+    continuum: ContinuumOfRock = ContinuumOfRock()

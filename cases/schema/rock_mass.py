@@ -16,7 +16,7 @@ from jointwave.cases.schema.plane import (
     GravityOfRock,
     InSituStress,
     IntactRock,
-    NumericsInPlane,
+    NumericsOfRock,
     RecordOfRock,
 )
 from jointwave.cases.schema.region import Region
@@ -39,7 +39,7 @@ class RockMass(SceneBase):
     gravity: GravityOfRock | None = None
     prestress: InSituStress | None = None
     time: Time
-    numerics: NumericsInPlane = NumericsInPlane()
+    numerics: NumericsOfRock = NumericsOfRock()
     record: RecordOfRock
     expect: dict[Pair, Positive] = {}  #: bounds on the relative L2 misfit of pairs
     name: str = ""  #: of the variant; empty for the base scene

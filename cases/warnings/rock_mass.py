@@ -1,20 +1,21 @@
 """Warnings of likely mistakes in a rock mass, one line each."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
 from typing import cast
 
 import numpy as np
 
-from jointwave.cases.checks.rock_mass import GRAZING, distance
+from jointwave.cases.checks.rock_mass import GRAZING
+from jointwave.cases.geometry.cell_complex import PARALLEL
+from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.incident import plane_wave
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.joints import direction_of
-from jointwave.cases.partition.locate import sides_at
-from jointwave.cases.partition.outline import outline_of
+from jointwave.cases.partition.joints import attitude
 from jointwave.cases.partition.parts import loaded_lines
 from jointwave.cases.partition.regions import rocks_of
-from jointwave.cases.partition.scene import partition_of
+from jointwave.cases.partition.scene import blocks_of_scene
+from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.plausible import LENGTH, of_dip, of_value
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
@@ -29,8 +30,7 @@ EARLY = 1e-6  # of the duration: by which a wave may seem to be early
 
 def warnings_in_plane(scene: RockMass) -> list[str]:
     """Return warnings of probable mistakes in a rock mass, one line each."""
-    rules = IN_SPACE if scene.in_space else RULES
-    return [line for rule in rules for line in rule(scene)]
+    return [line for rule in RULES for line in rule(scene)]
 
 
 def _acting(scene: RockMass) -> dict[str, Wave | PlaneLoad]:
@@ -40,15 +40,16 @@ def _acting(scene: RockMass) -> dict[str, Wave | PlaneLoad]:
 
 def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
     """Say where joints of two sets coincide: only the law of the first holds there."""
-    sets, corners = scene.joint_sets, np.array(scene.domain.corners)
+    sets, corners, dim = scene.joint_sets, np.array(scene.domain.corners), scene.domain.dimension
     plain = [
         (i, one)
         for i, one in enumerate(sets)
         if not (one.scatter or one.ends_at or one.regions or scene.domain.file_key)
     ]
     for (i, one), (k, other) in combinations(plain, 2):
-        if (one.dip - other.dip) % 180 == 0:
-            places = _places(one, other.dip, corners), _places(other, other.dip, corners)
+        normals = np.array([attitude(each, dim)[0] for each in (one, other)])
+        if np.linalg.matrix_rank(normals, tol=PARALLEL) == 1:
+            places = _places(one, normals[1], corners), _places(other, normals[1], corners)
             apart = np.abs(np.subtract.outer(*places))
             if count := int((apart < COINCIDENT * np.ptp(corners)).any(axis=0).sum()):
                 yield (
@@ -57,22 +58,20 @@ def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
                 )
 
 
-def _normal(dip: float) -> np.ndarray:
-    """Return the unit normal [2] of joints of a dip."""
-    return direction_of(dip)[::-1] * [-1, 1]
+def _at(place: Sequence[float]) -> str:
+    return "[" + ", ".join(f"{x:g}" for x in place) + "]"
 
 
 def _away(one: JointSet, points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Return the distances of points [n, 2] from the nearest joint of a set without scatter, m."""
-    across = points @ _normal(one.dip)
-    apart = np.subtract.outer(across, _places(one, one.dip, corners))
+    """Return the distances of points [n, d] from the nearest joint of a set without scatter, m."""
+    normal = attitude(one, corners.shape[1])[0]
+    apart = np.subtract.outer(points @ normal, _places(one, normal, corners))
     return np.abs(apart).min(axis=1, initial=np.inf)
 
 
-def _places(one: JointSet, dip: float, corners: np.ndarray) -> np.ndarray:
-    """Return where the joints of a set without scatter lie along the normal to a dip, m."""
-    normal = _normal(dip)
-    origin, across = normal @ (one.through or [0.0, 0.0]), corners @ normal
+def _places(one: JointSet, normal: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Return where the joints of a set without scatter lie along a normal of theirs, m."""
+    origin, across = normal @ (one.through or 0 * normal), corners @ normal
     if one.spacing is None:
         return np.array([origin])
     first = np.ceil((across.min() - origin) / one.spacing)
@@ -82,9 +81,9 @@ def _places(one: JointSet, dip: float, corners: np.ndarray) -> np.ndarray:
 
 def _of_places(scene: RockMass) -> Iterator[str]:
     """Say which spacings exceed the domain, and which receivers of joints are far from any."""
-    corners, sets = np.array(scene.domain.corners), scene.joint_sets
+    corners, sets, dim = np.array(scene.domain.corners), scene.joint_sets, scene.domain.dimension
     for i, one in enumerate(sets):
-        extent = float(np.ptp(corners @ _normal(one.dip)))
+        extent = float(np.ptp(corners @ attitude(one, dim)[0]))
         if one.spacing is not None and one.spacing > extent and not scene.domain.file_key:
             yield (
                 f"joint_sets[{i}].spacing = {one.spacing:g} m exceeds the domain, {extent:g} m "
@@ -93,12 +92,12 @@ def _of_places(scene: RockMass) -> Iterator[str]:
     known = bool(sets) and not any(one.scatter or one.ends_at or one.regions for one in sets)
     if not known or scene.domain.file_key:
         return  # where joints run, only the cuts know
-    places = np.array(scene.record.joints).reshape(-1, 2)
+    places = np.array(scene.record.joints).reshape(-1, dim)
     away = np.min([_away(one, places, corners) for one in sets], axis=0, initial=np.inf)
     for k in np.flatnonzero(away > NEAR * np.ptp(corners, axis=0).max()):
         yield (
-            f"record.joints[{k}] = [{places[k, 0]:g}, {places[k, 1]:g}] is {away[k]:.3g} m from "
-            "the nearest joint, whose motion it records"
+            f"record.joints[{k}] = {_at(places[k])} is {away[k]:.3g} m from the nearest joint, "
+            "whose motion it records"
         )
 
 
@@ -109,9 +108,8 @@ def _of_directions(scene: RockMass) -> Iterator[str]:
         for value in np.ravel(getattr(scene.domain, key) or []):
             yield from of_value(f"domain.{key}", abs(float(value)), LENGTH)
     if scene.gravity is not None and scene.gravity.direction[-1] > 0:
-        direction = ", ".join(f"{x:g}" for x in scene.gravity.direction)
         up = "z" if scene.in_space else "y"
-        yield f"gravity.direction = [{direction}] pulls upwards: {up} points up"
+        yield f"gravity.direction = {_at(scene.gravity.direction)} pulls upwards: {up} points up"
 
 
 def _of_half_a_load(scene: RockMass) -> Iterator[str]:
@@ -168,27 +166,27 @@ def _of_wavelength(scene: RockMass) -> Iterator[str]:
 
 
 def _block_size(scene: RockMass) -> float | None:
-    """Return how long the blocks of the joint sets are, m: the domain's size unless two sets cut
-    it, or one across which all waves travel. None where no joints have a spacing: rigid blocks
-    then need a size of their own."""
+    """Return how long the blocks of the joint sets are, m: the domain's size unless two sets, in
+    space three, cut it, or one across which all waves travel. None where no joints have a spacing:
+    rigid blocks then need a size of their own."""
     spacings = sorted(one.spacing for one in scene.joint_sets if one.spacing)
     if not spacings:
         return None
-    size = float(np.ptp(scene.domain.corners, axis=0).max())
+    size, dim = float(np.ptp(scene.domain.corners, axis=0).max()), scene.domain.dimension
     if len(scene.joint_sets) == 1 and not scene.loads:
-        along = direction_of(scene.joint_sets[0].dip)
-        if all(abs(along @ wave.direction) < GRAZING for wave in scene.waves):
+        along = attitude(scene.joint_sets[0], dim)[1]
+        if all(np.abs(along @ wave.direction).max() < GRAZING for wave in scene.waves):
             turned = any(wave.kind == "S" for wave in scene.waves)  # blocks as wide as the period
             wide = turned and bool(scene.boundaries.sides("periodic"))
-            width = float(np.ptp(scene.domain.corners @ along)) if wide else 0.0
+            width = float(np.ptp(scene.domain.corners @ along.T, axis=0).max()) if wide else 0.0
             return min(max(spacings[0], width), size)
-    return min(spacings[1], size) if len(spacings) > 1 else size
+    return min(spacings[dim - 1], size) if len(spacings) >= dim else size
 
 
 def _of_parts(scene: RockMass) -> Iterator[str]:
     """Say where a pressure acts on more than half of an opening, which its points in the other
     order would not."""
-    outline = outline_of(scene.domain)
+    outline = shape_of(scene.domain)
     for i, load in enumerate(scene.loads):
         if load.between is not None and load.opening is not None:
             whole = np.diff(outline.edges(opening=load.opening), axis=1)[:, 0]
@@ -213,7 +211,7 @@ def _of_arrivals(scene: RockMass) -> Iterator[str]:
             at = min(_arrival(scene, pulse, np.array(place)) for pulse in sources.values())
             if at >= end:
                 yield (
-                    f"record.{key}[{i}] = [{place[0]:g}, {place[1]:g}] is reached at {at:.4g} s: "
+                    f"record.{key}[{i}] = {_at(place)} is reached at {at:.4g} s: "
                     f"after the end of the scene at time.duration = {end:g} s"
                 )
 
@@ -226,8 +224,8 @@ def _of_starts(scene: RockMass) -> Iterator[str]:
         early = begun > onset(wave) + EARLY * scene.time.duration
         if wave.amplitude and wave.through is not None and early:
             yield (
-                f"waves[{i}].through = [{wave.through[0]:g}, {wave.through[1]:g}]: the wave enters "
-                f"the domain {begun:.3g} s before t = 0, when the rock is at rest: move it back"
+                f"waves[{i}].through = {_at(wave.through)}: the wave enters the domain "
+                f"{begun:.3g} s before t = 0, when the rock is at rest: move it back"
             )
 
 
@@ -244,31 +242,32 @@ def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> flo
 def _nearest(scene: RockMass, load: PlaneLoad, place: np.ndarray) -> float:
     """Return the distance of a point from a load, m."""
     if load.at is not None:
-        return float(np.hypot(*(place - load.at)))
-    return distance(place, outline_of(scene.domain).edges(load.side, load.opening))
+        return float(np.linalg.norm(place - load.at))
+    return shape_of(scene.domain).away(place, load.side, load.opening)
 
 
 def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
     """Warn of points on joints, across which velocity and the stress along them jump."""
-    points, corners = np.array(scene.record.points).reshape(-1, 2), np.array(scene.domain.corners)
+    corners, points = np.array(scene.domain.corners), np.array(scene.record.points)
     for k, one in enumerate(scene.joint_sets):
         if one.scatter or scene.domain.file_key or not len(points):
             continue
         near = _away(one, points, corners)
-        on = np.flatnonzero(near <= COINCIDENT * np.hypot(*np.ptp(corners, axis=0)))
+        on = np.flatnonzero(near <= COINCIDENT * np.linalg.norm(np.ptp(corners, axis=0)))
         if len(on) and (one.ends_at or one.regions):
-            sides = sides_at(partition_of(scene), points[on])
+            sides = sides_at(blocks_of_scene(scene), points[on], len(scene.joint_sets))
             on = on[[len(blocks) > 1 for blocks in sides]]
         for i in on.tolist():
-            x, y = points[i]
             yield (
-                f"record.points[{i}] = [{x:g}, {y:g}] lies on a joint of joint_sets[{k}], where "
+                f"record.points[{i}] = {_at(points[i])} lies on a joint of joint_sets[{k}], where "
                 "velocity, displacement and the stress along it are the mean of both sides"
             )
 
 
 def _of_contact_points(scene: RockMass) -> Iterator[str]:
-    """Warn once of contact points of joints that may open."""
+    """Warn once of contact points of joints that may open; in space they are others."""
+    if scene.in_space:
+        return
     for i, one in enumerate(scene.joint_sets):
         if one.tension is False or one.tensile_strength is not None:
             found = list(of_lever(f"joint_sets[{i}]", one))
@@ -277,12 +276,7 @@ def _of_contact_points(scene: RockMass) -> Iterator[str]:
                 return
 
 
-Rules = tuple[Callable[[RockMass], Iterator[str]], ...]
-IN_SPACE: Rules = (
-    _of_half_a_load,
-    _of_directions,
-)  #: of scenes in space
-RULES: Rules = (
+RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
     _of_joints_given_twice,
     _of_half_a_load,
     _of_a_jump,

@@ -11,8 +11,8 @@ from jointwave.cases.incident import WITHIN, plane_wave
 from jointwave.cases.loads import load_history, velocity_of
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.quiet_sides import impedances
-from jointwave.cases.partition.outline import outline_of
 from jointwave.cases.partition.regions import region_at, rocks_of
+from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
@@ -88,7 +88,7 @@ def _of_waves(scene: RockMass) -> Iterator[EnteringWave]:
 
 def _through_side(scene: RockMass, table: str, load: PlaneLoad) -> Iterator[EnteringWave]:
     """Yield the P and the S wave of a load on the first edge of a side."""
-    outline = outline_of(scene.domain)
+    outline = shape_of(scene.domain)
     normal, edge = outline.normals()[load.side or ""][:1], outline.edges(load.side)[:1]
     inside = edge.mean(axis=1) - WITHIN * outline.size * normal
     region = region_at(scene.regions, inside)

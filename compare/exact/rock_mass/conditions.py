@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.partition.joints import direction_of
-from jointwave.cases.partition.outline import outline_of
 from jointwave.cases.partition.regions import strata
+from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.rock_mass import RockMass
@@ -56,7 +56,7 @@ def reflecting_side(scene: RockMass, face: Face | None = None) -> str | None:
     """Return why waves do not leave through all sides but a free face, None if they do: each other
     side must be quiet, or periodic with waves and joints uniform along the direction to its
     partner."""
-    for side, normals in outline_of(scene.domain).normals().items():
+    for side, normals in shape_of(scene.domain).normals().items():
         held = getattr(scene.boundaries, side)
         if held == "periodic" and not _is_invariant(scene, side):
             return f"the {side} is periodic, and waves or joints vary along it"
@@ -69,7 +69,7 @@ def reflecting_side(scene: RockMass, face: Face | None = None) -> str | None:
 def free_face(scene: RockMass) -> Face | None:
     """Return the free face that waves of a scene reach; None where they reach none, or several that
     are not one plane."""
-    outline, found = outline_of(scene.domain), []
+    outline, found = shape_of(scene.domain), []
     for side, normals in outline.normals().items():
         if getattr(scene.boundaries, side) == "free":
             for n, edge in zip(normals, outline.edges(side), strict=True):

@@ -13,7 +13,7 @@ import xarray as xr
 from jointwave.cases.histories import Gabor, LoadHistory, Recorded, Ricker, Sine, Step
 from jointwave.cases.loads import history_of
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.outline import outline_of
+from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane.line_force import motion
@@ -36,7 +36,7 @@ def applies(scene: RockMass) -> Answer:
         (not scene.loads, "no force acts"),
         (any(one.kind != "force" for one in scene.loads), "a load other than a force acts"),
         (gravity is not None and bool(gravity.acceleration), "gravity acts"),
-        (bool(outline_of(scene.domain).taken), "the domain is not convex, or has openings"),
+        (bool(shape_of(scene.domain).solids), "the domain is not convex, or has openings"),
         ("periodic" in held, "a side is periodic"),
         (not scene.record.points, "no point is recorded"),
     ]
@@ -76,7 +76,7 @@ def solve(scene: RockMass) -> xr.Dataset:
 
 def known_until(scene: RockMass) -> float:
     """Return the earliest arrival of a side's reflection at a receiver, by its mirror image, s."""
-    outline, points = outline_of(scene.domain), np.array(scene.record.points)
+    outline, points = shape_of(scene.domain), np.array(scene.record.points)
     first = np.inf
     for side, normals in outline.normals().items():
         for (start, _), normal in zip(outline.edges(side), normals, strict=True):

@@ -12,12 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.checks.rock_mass import distance
 from jointwave.cases.incident import PlaneWave, plane_wave
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.joints import direction_of
-from jointwave.cases.partition.outline import outline_of
 from jointwave.cases.partition.regions import rocks_of
+from jointwave.cases.partition.shape import Face, distance, shape_of
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane.waves import face
@@ -63,18 +62,19 @@ class SideError(NamedTuple):
 def side_error(scene: RockMass) -> SideError | None:
     """Return the largest error of the quiet sides of a scene that receivers feel; None where it is
     below LEAST or reaches no receiver in time."""
-    edges = _oblique(scene) if scene.waves else np.zeros((0, 2, 2))
-    if not len(edges) or normal_incidence.applies(scene):
+    faces = _oblique(scene) if scene.waves else []
+    if not faces or normal_incidence.applies(scene):
         return None
     part, cause = max(_causes(scene), default=(0.0, ""))
     if part < LEAST:
         return None
     speed = max(float(elastic_rock(one).p_speed) for one in rocks_of(scene))
-    begins = min(plane_wave(scene, one).lateness(edges.reshape(-1, 2)).min() for one in scene.waves)
+    corners = np.concatenate([corners for corners, _ in faces])
+    begins = min(plane_wave(scene, one).lateness(corners).min() for one in scene.waves)
     reach = speed * (scene.time.duration - max(float(begins), 0.0))
     wavelength = speed * max(one.time_scale or scene.time.duration for one in scene.waves)
     away = {
-        key: [(tuple(place), distance(np.array(place), edges)) for place in places]
+        key: [(tuple(place), distance(np.array(place), faces)) for place in places]
         for key in ("points", "joints")
         if (places := getattr(scene.record, key))
     }
@@ -84,18 +84,16 @@ def side_error(scene: RockMass) -> SideError | None:
     return SideError(cause, min(part, 1.0), wavelength, near)
 
 
-def _oblique(scene: RockMass) -> np.ndarray:
-    """Return the edges of quiet sides [n, 2, 2] but of those that all waves meet at normal
-    incidence."""
-    outline, found = outline_of(scene.domain), []
+def _oblique(scene: RockMass) -> list[Face]:
+    """Return the faces of quiet sides but of those that all waves meet at normal incidence."""
+    shape, found = shape_of(scene.domain), []
     planes = directions_of(planes_of(scene))
-    for side, normals in outline.normals().items():
-        if getattr(scene.boundaries, side) == "quiet":
-            for n, edge in zip(normals, outline.edges(side), strict=True):
-                straight = all(along(np.array(w.direction), n, ALONG) for w in scene.waves)
-                if not straight or any(abs(n @ one) > ALONG for one in planes):
-                    found.append(edge)
-    return np.array(found)
+    for side in scene.boundaries.sides("quiet"):
+        for corners, n in shape.faces_of(side):
+            straight = all(along(np.array(w.direction), n, ALONG) for w in scene.waves)
+            if not straight or any(abs(n @ one) > ALONG for one in planes):
+                found.append((corners, n))
+    return found
 
 
 def _causes(scene: RockMass) -> Iterator[tuple[float, str]]:
@@ -114,7 +112,7 @@ def _causes(scene: RockMass) -> Iterator[tuple[float, str]]:
         if smeared:
             yield 1 - float(np.sqrt(1 - back**2)), f"joint set {one.name!r} is not smeared"
         else:
-            count = outline_of(scene.domain).size / one.spacing if one.spacing else 1.0
+            count = shape_of(scene.domain).size / one.spacing if one.spacing else 1.0
             crosses = f"joint set {one.name!r} is not parallel to layers, a free side or other sets"
             yield 1 - (1 - back) ** count, crosses
     yield from _beyond_strength(scene)
@@ -138,7 +136,7 @@ def _damped(scene: RockMass) -> float:
     alpha, beta = scene.damping.alpha or 0.0, 0.0
     if scene.damping.rayleigh is not None:
         beta = scene.damping.rayleigh.coefficients[1]
-    size, most = outline_of(scene.domain).size, 0.0
+    size, most = shape_of(scene.domain).size, 0.0
     for wave in scene.waves:
         omega = 2 * np.pi / wave.time_scale if wave.time_scale else 0.0
         rate = (alpha + beta * omega**2) / 2

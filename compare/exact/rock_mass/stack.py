@@ -15,9 +15,9 @@ from jointwave.cases.material.rock import ElasticRock, elastic_rock
 from jointwave.cases.material.rock_mass import set_time_constants
 from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.joints import direction_of
-from jointwave.cases.partition.outline import TOLERANCE, outline_of
 from jointwave.cases.partition.regions import rocks_of, strata
 from jointwave.cases.partition.scene import partition_of
+from jointwave.cases.partition.shape import TOLERANCE, shape_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import Wave
 from jointwave.compare.exact.plane import parallel_joints
@@ -159,7 +159,7 @@ def scatters_otherwise(scene: RockMass, leaves: bool = True) -> str | None:
     found = beyond_linear_rock(scene) if leaves else None
     found = found or next((why for there, why in reasons if there), None)
     found = found or (reflecting_side(scene, face) if leaves else None)
-    if found is None and leaves and len(outline_of(scene.domain).taken) > len(scene.domain.holes):
+    if found is None and leaves and len(shape_of(scene.domain).solids) > len(scene.domain.holes):
         found = "the domain is not convex"
     return found
 

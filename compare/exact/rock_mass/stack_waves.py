@@ -19,7 +19,7 @@ import xarray as xr
 from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.incident import plane_wave
 from jointwave.cases.partition.locate import contact_at, sides_at
-from jointwave.cases.partition.outline import TOLERANCE
+from jointwave.cases.partition.shape import TOLERANCE
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane.layer_pulses import fields

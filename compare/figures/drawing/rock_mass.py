@@ -4,8 +4,8 @@ import numpy as np
 from matplotlib.artist import Artist
 
 from jointwave.cases.partition.blocks import Partition
-from jointwave.cases.partition.outline import outline_of
 from jointwave.cases.partition.scene import partition_of
+from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad, Wave
 from jointwave.compare.figures.drawing.sketch import (
@@ -112,7 +112,7 @@ def _load(scene: RockMass, load: PlaneLoad, size: float) -> list[Artist]:
     """Return the arrow of a force or a shaken side, or those of a pressure, onto the rock."""
     if load.kind == "force":
         return [pushing(np.array(load.at), np.array(load.direction), 1.5 * SHORT * size)]
-    edges = outline_of(scene.domain).edges(load.side, load.opening)
+    edges = shape_of(scene.domain).edges(load.side, load.opening)
     start, end = edges[:, 0], edges[:, 1]
     if load.kind == "base":
         return [shaking((start[0] + end[-1]) / 2, np.array(load.direction), 2 * SHORT * size)]

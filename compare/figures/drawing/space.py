@@ -10,8 +10,8 @@ from matplotlib.colors import to_rgb
 
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import OUTSIDE
-from jointwave.cases.partition.box import SIDES, Box, box_of
 from jointwave.cases.partition.scene import blocks_of_scene
+from jointwave.cases.partition.shape import SIDES, Shape, shape_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.figures.drawing.rock_mass import LENGTH, SETS
 from jointwave.compare.figures.drawing.sketch import (
@@ -44,7 +44,7 @@ def sketch_of(scene: RockMass, explode: float = 0.0) -> Sketch:
 
     explode : how far blocks are moved apart, over their distance from the middle.
     """
-    blocks, domain = blocks_of_scene(scene), box_of(scene.domain)
+    blocks, domain = blocks_of_scene(scene), shape_of(scene.domain)
     walls = [corners for one, _ in domain.solids for corners, _ in one.faces()]
     walls += scene.domain.holes if domain.given is not None else []
     behind = np.concatenate(walls)[:, 1].mean() if walls else -np.inf
@@ -97,7 +97,7 @@ def _faces(
         seen = kept[own] & (normal @ TOWARDS > 0) & (outer | ~kept[other] | bool(shift.any()))
         of_joint = ~outer & (facets.joint_set >= 0)
         found = np.where(of_joint[:, None], sets[facets.joint_set], rocks[own])
-        found[outer & (facets.side >= len(SIDES))] = to_rgb(WALLS)
+        found[outer & (facets.side >= len(SIDES[3]))] = to_rgb(WALLS)
         lit = DARKEST + (1 - DARKEST) * np.clip(normal @ LIGHT, 0, 1)
         colours.append((found * lit[:, None])[seen])
         pieces = np.split(facets.outlines.corners, facets.outlines.first[1:-1])
@@ -138,7 +138,7 @@ def _rendered(
         return plotter.screenshot(return_img=True, transparent_background=True)
 
 
-def _sources(scene: RockMass, domain: Box, wide: float) -> Iterator[Artist]:
+def _sources(scene: RockMass, domain: Shape, wide: float) -> Iterator[Artist]:
     """Yield the arrows of waves, and of loads on sides and at points; wide : by how much the blocks
     are farther apart."""
     middle, half = (domain.low + domain.high) / 2, (domain.high - domain.low) / 2

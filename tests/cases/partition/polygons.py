@@ -6,14 +6,14 @@ Polygons are given by their corners [k, 2], counter-clockwise, and the first cor
 import numpy as np
 
 from jointwave.cases.partition.blocks import plane_partition
-from jointwave.cases.partition.outline import outline_of
 from jointwave.cases.partition.scene import blocks_of_domain
+from jointwave.cases.partition.shape import shape_of
 
 
 def cut(domain, sets, further=(), regions=()):
     """A domain in blocks, as arrays."""
     blocks = blocks_of_domain(domain, sets, further, regions)
-    return plane_partition(blocks, outline_of(domain).sides, sets)
+    return plane_partition(blocks, shape_of(domain).sides, sets)
 
 
 def following(first: np.ndarray) -> np.ndarray:

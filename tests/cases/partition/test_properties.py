@@ -10,8 +10,8 @@ from jointwave.cases.geometry.cell_complex import GeometryError, Sliver
 from jointwave.cases.geometry.sets import _scattered
 from jointwave.cases.partition.joints import direction_of, plane_sets
 from jointwave.cases.partition.locate import block_at, contact_at
-from jointwave.cases.partition.outline import outline_of
 from jointwave.cases.partition.scene import least_width
+from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
 from tests.cases.partition.polygons import cut, following, least_angles, owner, widths
@@ -50,7 +50,7 @@ def joint_sets(draw, most=3):
     return found
 
 
-def shape_of(domain):
+def rock_by_shapely(domain):
     """The domain minus its openings, by shapely only."""
     whole = shapely.Polygon(domain.corners)
     return whole.difference(shapely.union_all([shapely.Polygon(o) for o in domain.openings]))
@@ -63,7 +63,7 @@ def partition(domain, sets):
     except GeometryError as error:
         assert error.cause and error.key.startswith(("domain", "joint_sets"))
         if error.key.startswith("domain"):
-            assert shapely.Point(error.at).distance(shape_of(domain)) < 1e-6
+            assert shapely.Point(error.at).distance(rock_by_shapely(domain)) < 1e-6
         assume(False)
 
 
@@ -87,7 +87,7 @@ domains = st.sampled_from([Domain(**keys, non_convex="cut", least_angle=0.5) for
 @settings(max_examples=25)
 @given(domain=domains, sets=joint_sets())
 def test_areas_add_up_to_the_domain(domain, sets):
-    found, shape = partition(domain, sets), shape_of(domain)
+    found, shape = partition(domain, sets), rock_by_shapely(domain)
     assert found.area.sum() == pytest.approx(shape.area, rel=1e-12)
     whole = (found.area @ found.centroid) / shape.area
     np.testing.assert_allclose(whole, shape.centroid.coords[0], rtol=1e-11)
@@ -114,7 +114,7 @@ def test_blocks_do_not_overlap_and_fill_the_domain(domain, sets):
     """By shapely: the union of all blocks is the domain, so that no area is counted twice."""
     found = partition(domain, sets)
     blocks = [shapely.Polygon(found.corners_of(k)) for k in range(found.count)]
-    union, shape = shapely.union_all(blocks, grid_size=1e-10), shape_of(domain)
+    union, shape = shapely.union_all(blocks, grid_size=1e-10), rock_by_shapely(domain)
     assert union.symmetric_difference(shape).area < 1e-7 * shape.area
 
 
@@ -123,7 +123,7 @@ def test_blocks_do_not_overlap_and_fill_the_domain(domain, sets):
 def test_euler(domain, sets):
     """V - E + F = 1 + C: corners and ends of contacts, the edges between them, and the blocks and
     openings; C parts of the domain."""
-    found, shape = partition(domain, sets), shape_of(domain)
+    found, shape = partition(domain, sets), rock_by_shapely(domain)
     edges = [found.contacts, found.boundary]
     segments = np.concatenate([np.stack([e.start, e.end], axis=1) for e in edges])
     rounded = np.round(segments.reshape(-1, 2), 8) + 0.0
@@ -174,7 +174,7 @@ def test_each_outline_is_closed_by_its_contacts_and_boundary(domain, sets):
     after = following(found.first)
     sides = np.hypot(*(found.corners[after] - found.corners).T)
     np.testing.assert_allclose(around, np.add.reduceat(sides, found.first[:-1]), rtol=1e-8)
-    assert b.length.sum() == pytest.approx(shape_of(domain).length, rel=1e-9)
+    assert b.length.sum() == pytest.approx(rock_by_shapely(domain).length, rel=1e-9)
 
 
 @settings(max_examples=25)
@@ -290,7 +290,7 @@ def test_slivers_are_refused_with_place_and_cause(sets):
     try:
         found = cut(domain, sets)
     except Sliver as error:
-        assert outline_of(domain).holds(error.at.tolist())
+        assert shape_of(domain).holds(error.at.tolist())
         assert "grazing" in error.cause or "domain.least_width" in error.cause
     except GeometryError as error:
         assert error.key.startswith("joint_sets")

@@ -7,8 +7,8 @@ import pytest
 
 from jointwave import cases
 from jointwave.cases.errors import SceneError
-from jointwave.cases.partition.box import SIDES
 from jointwave.cases.partition.scene import blocks_of_scene
+from jointwave.cases.partition.shape import SIDES
 from jointwave.cases.warnings import warnings
 
 ROCK = {"density": 2600.0, "intact_modulus": 5e10}
@@ -74,7 +74,7 @@ def test_blocks_of_a_box(sets, domain, count):
     area = np.bincount(blocks.boundary.side, blocks.boundary.area, minlength=7)
     if not domain:
         assert area[:6] == pytest.approx([24, 24, 32, 32, 48, 48], rel=1e-12)
-    assert dict(zip(SIDES, area, strict=False))["right"] == pytest.approx(24.0, rel=1e-12)
+    assert dict(zip(SIDES[3], area, strict=False))["right"] == pytest.approx(24.0, rel=1e-12)
 
 
 def test_an_arched_opening_is_taken_out_all_along_its_axis():
@@ -84,7 +84,7 @@ def test_an_arched_opening_is_taken_out_all_along_its_axis():
     given = scene(domain=DOMAIN | {"prisms": prisms, "non_convex": "cut"})
     blocks = blocks_of_scene(given)
     assert blocks.volume.sum() == pytest.approx(192.0 - 3.0 * 6.0, rel=1e-12)
-    walls = blocks.boundary.area[blocks.boundary.side == len(SIDES)].sum()
+    walls = blocks.boundary.area[blocks.boundary.side == len(SIDES[3])].sum()
     assert walls == pytest.approx(6.0 * (2.0 + 1.0 + 1.0 + 2 * 2**0.5), rel=1e-12)
 
 
@@ -140,6 +140,24 @@ MISTAKES = {
     "an opening outside": (
         {"domain": DOMAIN | {"openings": [[[1.0, 1.0, 1.0], [2.0, 2.0, 9.0]]]}},
         "domain.openings[0]: must lie in the domain, near [",
+    ),
+    "two openings in one place": (
+        {
+            "domain": DOMAIN
+            | {
+                "openings": [[[1.0, 1.0, 1.0], [3.0, 3.0, 2.0]]],
+                "prisms": [{"axis": "x", "polygon": [[2.0, 0.5], [4.0, 1.5], [2.0, 1.5]]}],
+            }
+        },
+        "domain.prisms[0]: must not overlap openings[0], near [2, 2.",
+    ),
+    "no rock": (
+        {"domain": DOMAIN | {"openings": [[[0.0, 0.0, 0.0], [8.0, 6.0, 4.0]]]}},
+        "domain.openings[0]: must leave rock, near [4, 3, 2]",
+    ),
+    "cells of the plane": (
+        {"numerics": {"continuum": {"cell": "triangle"}}},
+        "numerics.continuum.cell = 'triangle': has no meaning in space",
     ),
     "a prism that crosses itself": (
         {
@@ -253,3 +271,48 @@ def test_probable_mistakes_are_warned_of():
     assert warnings(scene(gravity=up)) == [
         "gravity.direction = [0, 0, 1] pulls upwards: z points up"
     ]
+
+
+def test_openings_that_touch_are_no_mistake():
+    """Two boxes that share a wall, and a gallery on top of them."""
+    boxes = [[[1.0, 1.0, 1.0], [3.0, 3.0, 2.0]], [[3.0, 1.0, 1.0], [5.0, 3.0, 2.0]]]
+    arch = {"axis": "y", "polygon": [[1.0, 2.0], [5.0, 2.0], [3.0, 3.0]]}
+    domain = DOMAIN | {"openings": boxes, "prisms": [arch], "non_convex": "cut"}
+    blocks = blocks_of_scene(scene(domain=domain, record={"points": [[7.0, 1.0, 0.5]]}))
+    assert blocks.volume.sum() == pytest.approx(192.0 - 8.0 - 12.0, rel=1e-12)
+
+
+P, S = (5e10 * 1.2 / 2600.0) ** 0.5, (2e10 / 2600.0) ** 0.5  # of a Poisson's ratio of 1/4
+LOAD = {"shape": "step", "amplitude": 1e6}
+FORCE = {"kind": "force", "quantity": "force", "direction": [0.6, 0.8, 0.0], "at": [4.0, 5.0, 1.5]}
+PRESSURE = {"kind": "pressure", "quantity": "stress"}
+REACHED = {
+    "a P wave": ({"waves": [WAVE], "boundaries": QUIET}, 1.5 / P),
+    "an S wave": (
+        {"waves": [S_WAVE | {"polarisation": [1.0, 0.0, 0.0]}], "boundaries": QUIET},
+        1.5 / S,
+    ),
+    "a force": ({"loads": [LOAD | FORCE]}, 5.0 / P),
+    "a side": ({"loads": [LOAD | PRESSURE | {"side": "back"}]}, 5.0 / P),
+    "an opening": (
+        {
+            "loads": [LOAD | PRESSURE | {"opening": 0}],
+            "domain": DOMAIN | {"openings": [[[4.0, 5.0, 1.0], [5.0, 6.0, 2.0]]]},
+        },
+        5.0 / P,
+    ),
+}
+
+
+@pytest.mark.parametrize(("tables", "at"), REACHED.values(), ids=REACHED)
+def test_receivers_that_nothing_reaches_are_named(tables, at):
+    """By the speed of the wave, or that of P from where a load acts."""
+    for part, late in ((0.99, 1), (1.01, 0)):
+        found = warnings(scene(**tables, time={"duration": part * at}))
+        found = [line for line in found if "is reached at" in line]
+        assert len(found) == late, found
+    found = warnings(scene(**tables, time={"duration": 0.5 * at}))
+    assert any(
+        line.startswith(f"record.points[0] = [1, 1, 1.5] is reached at {at:.4g} s")
+        for line in found
+    )

@@ -1,0 +1,240 @@
+"""The shape of a scene's domain: its outer boundary, and what is taken out of its convex hull."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+
+from jointwave.cases.geometry.blocks import Facets
+from jointwave.cases.geometry.cell_complex import Complex, GeometryError, box, polygon
+from jointwave.cases.geometry.locate import distances
+from jointwave.cases.geometry.measure import Outlines, cell_moments, outlines
+from jointwave.cases.geometry.solids import (
+    ROCK,
+    Solid,
+    corners_of,
+    cut_into_regions,
+    polygon_solid,
+    prism,
+)
+from jointwave.cases.schema.domain import Domain
+
+#: By the number of dimensions: two for each axis, and what lies on none of them.
+SIDES = {
+    2: ("left", "right", "bottom", "top", "outline"),
+    3: ("left", "right", "front", "back", "bottom", "top", "outline"),
+}
+TOLERANCE = 1e-9  #: of the domain's size: lengths below which points are one point
+SAME = 1e-6  #: the same of the blocks of a file in space
+
+
+Face = tuple[np.ndarray, np.ndarray]  #: corners [k, d], m, and outward unit normal [d]
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A domain in the plane or in space.
+
+    Attributes
+    ----------
+    hull : its convex hull, or the box around it in space, as one cell.
+    faces : of its outer boundary, in the plane edges, counter-clockwise.
+    solids : what is taken out of the hull, with the side that its faces become: 0 for a bay of the
+        outline, 1 + k for opening k.
+    tolerance : length below which points are one point, m.
+    given : the blocks of a file in space, if these are the domain.
+    """
+
+    hull: Complex
+    faces: list[Face]
+    solids: list[tuple[Solid, int]]
+    tolerance: float
+    given: Complex | None = None
+
+    @property
+    def low(self) -> np.ndarray:
+        """The lower corner of the box around it [d], m."""
+        return self.hull.vertices.min(axis=0)
+
+    @property
+    def high(self) -> np.ndarray:
+        """The upper corner of the box around it [d], m."""
+        return self.hull.vertices.max(axis=0)
+
+    @property
+    def size(self) -> float:
+        """The diagonal of the box around it, m."""
+        return float(np.linalg.norm(self.high - self.low))
+
+    @property
+    def sides(self) -> tuple[str, ...]:
+        """Names of the sides, those of openings last."""
+        numbers = self.given.side if self.given is not None else [side for _, side in self.solids]
+        return (*SIDES[self.hull.dim], *(f"opening {k}" for k in range(max(numbers, default=0))))
+
+    def sides_of(self, facets: Facets) -> np.ndarray:
+        """Return the index in `sides` of facets of the outer boundary and of openings."""
+        outer = self._along(*facets.outlines)
+        return np.where(facets.side == 0, outer, len(SIDES[self.hull.dim]) - 1 + facets.side)
+
+    def _along(self, corners: np.ndarray, first: np.ndarray) -> np.ndarray:
+        """Return the index in `sides` of pieces of the outer boundary, as those of `Outlines`."""
+        found = np.full(len(first) - 1, 2 * self.hull.dim)
+        for k, place in enumerate(np.stack([self.low, self.high], axis=1).ravel()):
+            off = np.maximum.reduceat(np.abs(corners[:, k // 2] - place), first[:-1])
+            found[off <= self.tolerance] = k
+        return found
+
+    def faces_of(self, side: str | None = None, opening: int | None = None) -> list[Face]:
+        """Return the faces of a side, or of an opening."""
+        if opening is not None and self.given is not None:
+            return _faces(self.given, 1 + opening, self.tolerance)
+        if opening is not None:
+            return next(solid.faces() for solid, k in self.solids if k == 1 + opening)
+        along = self._along(*_outlines(self.faces))
+        index = SIDES[self.hull.dim].index(side or "outline")
+        return [self.faces[k] for k in np.flatnonzero(along == index)]
+
+    def edges(self, side: str | None = None, opening: int | None = None) -> np.ndarray:
+        """Return the edges of a side, or of an opening, in the plane, from point to point, m
+        [n, 2, 2]."""
+        found = [corners for corners, _ in self.faces_of(side, opening)]
+        return np.array(found).reshape(-1, 2, 2)
+
+    def normals(self) -> dict[str, np.ndarray]:
+        """Return the unit normals [n, d] out of the faces of each side that there is."""
+        found = {side: self.faces_of(side) for side in SIDES[self.hull.dim]}
+        return {side: np.array([n for _, n in faces]) for side, faces in found.items() if faces}
+
+    def away(self, point: np.ndarray, side: str | None = None, opening: int | None = None) -> float:
+        """Return the distance of a point from a side, or from an opening, m."""
+        return distance(point, self.faces_of(side, opening))
+
+    def holds(self, point: list[float]) -> bool:
+        """Return whether a point lies in the domain or on its boundary, and in no opening."""
+        place, body = np.array(point), self.hull if self.given is None else self.given
+        return bool(body.depths(place).max() >= -self.tolerance) and not any(
+            solid.contains(place[None])[0] and distance(place, solid.faces()) > self.tolerance
+            for solid, _ in self.solids
+        )
+
+
+def shape_of(domain: Domain) -> Shape:
+    """Return the shape of a domain; raises GeometryError if it is invalid."""
+    if domain.dimension == 3:
+        low, high = (at(domain.corners, axis=0) for at in (np.min, np.max))
+        hull, outer, bays = box(low, high), _box(low, high), list[Solid]()
+    else:
+        whole = _polygon(domain.corners, "domain.outline")
+        hull, outer = polygon(corners_of(whole.convex_hull)), polygon_solid(corners_of(whole))
+        bays = [polygon_solid(corners_of(one)) for one in _parts(whole.convex_hull - whole)]
+    found = Shape(hull, outer.faces(), [(bay, 0) for bay in bays], 0.0)
+    found = replace(found, tolerance=TOLERANCE * found.size)
+    if domain.given is not None and domain.dimension == 3:
+        tolerance = SAME * found.size
+        faces = _faces(domain.given, 0, tolerance)
+        return replace(found, faces=faces, tolerance=tolerance, given=domain.given)
+    names = ["domain"] * len(bays)
+    for number, (key, solid) in enumerate(_openings(domain)):
+        _check_opening(found, solid, key, names)
+        found.solids.append((solid, 1 + number))
+        names.append(key)
+    return found
+
+
+def _outlines(faces: list[Face]) -> Outlines:
+    corners = [corners for corners, _ in faces]
+    return Outlines(np.concatenate(corners), np.append(0, np.cumsum([len(x) for x in corners])))
+
+
+def distance(point: np.ndarray, faces: list[Face]) -> float:
+    """Return the distance of a point [d] from the nearest of some faces, m."""
+    return float(distances(_outlines(faces), np.array([n for _, n in faces]), point).min())
+
+
+def _faces(body: Complex, side: int, tolerance: float) -> list[Face]:
+    """Return the faces of the boundary of some cells that have a number of a side."""
+    half = body.halves(~body.inner & (body.side == side))
+    found = outlines(body, half.facet, np.arange(len(half.facet)), half.outward, tolerance)
+    return [(found.of(k), normal) for k, normal in enumerate(half.outward)]
+
+
+def _box(low: np.ndarray, high: np.ndarray) -> Solid:
+    """Return a box in space by two opposite corners [3], m."""
+    base = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
+    return prism(base, 2, (low[2], high[2]))
+
+
+def _openings(domain: Domain) -> Iterator[tuple[str, Solid]]:
+    """Yield the openings of a domain, each with its key."""
+    in_space = domain.dimension == 3
+    for k, corners in enumerate(domain.openings if in_space else domain.holes):
+        key = f"domain.openings[{k}]"
+        if not in_space:
+            yield key, polygon_solid(corners_of(_polygon(corners, key)))
+        elif len(corners) != 2 or not np.ptp(corners, axis=0).all():
+            raise GeometryError(None, "must be two opposite corners of a box", key)
+        else:
+            yield key, _box(*np.sort(corners, axis=0))
+    for k, one in enumerate(domain.prisms):
+        axis, key = "xyz".index(one.axis), f"domain.prisms[{k}]"
+        low, top = one.ends or np.array(domain.corners)[[0, -1], axis]
+        if not low < top:
+            raise GeometryError(None, "must be two increasing numbers", f"{key}.ends")
+        corners = np.array(_polygon(one.polygon, f"{key}.polygon").exterior.coords[:-1])
+        yield key, prism(corners[:, ::-1] if one.axis == "y" else corners, axis, (low, top))
+
+
+def _polygon(corners: list[list[float]], key: str) -> shapely.Polygon:
+    polygon = shapely.Polygon(corners) if len(corners) > 2 else shapely.Polygon()
+    if not polygon.is_valid or not polygon.area > 0:
+        why = "it has no area" if polygon.is_valid else shapely.is_valid_reason(polygon)
+        raise GeometryError(None, f"must be a polygon that does not cross itself ({why})", key)
+    return polygon
+
+
+def _parts(shape: shapely.Geometry) -> list[shapely.Polygon]:
+    """Return the polygons of a shape but those that are round-off of a straight side."""
+    parts = [one for one in shapely.get_parts(shape) if isinstance(one, shapely.Polygon)]
+    least = TOLERANCE * np.hypot(*np.ptp(shapely.bounds(shape).reshape(2, 2), axis=0)) ** 2
+    return [one for one in parts if one.area > least]
+
+
+def _check_opening(shape: Shape, solid: Solid, key: str, names: list[str]) -> None:
+    """Refuse an opening that reaches out of the domain or into another one, or leaves no rock.
+
+    names : of what is taken out already.
+    """
+    corners = _corners(solid)
+    outside = np.array([shape.hull.depths(one).max() for one in corners]) < -shape.tolerance
+    if outside.any():
+        raise GeometryError(corners[outside][0], "must lie in the domain", key)
+    for (other, side), name in zip(shape.solids, names, strict=True):
+        at = _common(shape, solid, other)
+        if at is not None:
+            what = f"not overlap {name.removeprefix('domain.')}" if side else "lie in the domain"
+            raise GeometryError(at, f"must {what}", key)
+    left = cell_moments(shape.hull).size[0] - sum(
+        one.volume for one in (solid, *(one for one, _ in shape.solids))
+    )
+    if left <= TOLERANCE * shape.size**shape.hull.dim:
+        raise GeometryError(corners.mean(axis=0), "must leave rock", key)
+
+
+def _common(shape: Shape, one: Solid, other: Solid) -> np.ndarray | None:
+    """Return a place in both of two solids [d], m; None where they have none in common."""
+    low, high = ([at(_corners(solid), axis=0) for solid in (one, other)] for at in (np.min, np.max))
+    if (np.maximum(*low) >= np.minimum(*high) - shape.tolerance).any():
+        return None
+    body = cut_into_regions(shape.hull, [one], shape.tolerance)
+    body = body.removed(body.region == ROCK, 0)
+    body = replace(body, region=np.full(body.count, ROCK))
+    m = cell_moments(body := cut_into_regions(body, [other], shape.tolerance))
+    size = np.where(body.region == ROCK, 0.0, m.size)
+    enough = size.sum() > TOLERANCE * min(one.volume, other.volume)
+    return m.centroid[size.argmax()] if enough else None
+
+
+def _corners(solid: Solid) -> np.ndarray:
+    return np.concatenate([corners for corners, _ in solid.faces()])
