@@ -1,12 +1,12 @@
 """The effects of a scene; all others are not computed."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
-from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.joint_set import JointSet
-from jointwave.cases.schema.law_parts import PARTS
+from jointwave.cases.schema.joint import JointLaw
+from jointwave.cases.schema.law_parts import PARTS, LawPart
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 
@@ -15,19 +15,15 @@ SIDES = ("quiet", "fixed", "periodic")
 SLIPS = "friction_angle or cohesion is given"
 STICKS = "neither friction_angle nor cohesion"
 
+Called = tuple[str, object, str]  #: name, why the scene has it (false: not), why it has not
 
-@dataclass(frozen=True)
-class Effect:
+
+class Effect(NamedTuple):
     """One optional part of the physics: its name, whether the scene has it, and why."""
 
     name: str
     active: bool
     reason: str
-
-
-def _called_for(name: str, why: object, why_not: str) -> Effect:
-    """Return an effect; why : the reason if the scene has it, false otherwise."""
-    return Effect(name, bool(why), str(why) if why else why_not)
 
 
 def is_spatial(scene: Scene) -> bool:
@@ -37,23 +33,8 @@ def is_spatial(scene: Scene) -> bool:
 
 def effects(scene: AnyScene) -> list[Effect]:
     """Return every effect that this version knows of this kind of scene, in the order of cost."""
-    if not isinstance(scene, Scene):
-        return [
-            *_of_joint_sets(scene),
-            *(_of_sides(scene, kind) for kind in SIDES),
-            _of_ledger(scene),
-            _of_fields(scene),
-            *_of_forces_in_plane(scene),
-        ]
-    p = calibrate(scene)
-    return [
-        *_of_joints(scene, p),
-        *(_of_ends(scene, kind) for kind in ("quiet", "matched", "fixed")),
-        _of_ledger(scene),
-        _of_fields(scene),
-        *_of_motion(scene, p),
-        *_of_forces(scene, p),
-    ]
+    found = _of_pillar(scene) if isinstance(scene, Scene) else _of_rock_mass(scene)
+    return [Effect(name, bool(why), str(why or why_not)) for name, why, why_not in found]
 
 
 def active_effects(scene: AnyScene) -> list[str]:
@@ -99,26 +80,82 @@ def bends(scene: Scene) -> bool:
     return is_spatial(scene) and scene.motion.rotation != "none" and not twists
 
 
-def _of_joints(scene: Scene, p: Properties) -> Iterator[Effect]:
+def _of_pillar(scene: Scene) -> Iterator[Called]:
+    p, laws, random = calibrate(scene), [scene.joints, *scene.layers], scene.scatter
     source = "damping.rayleigh" if scene.damping.rayleigh else "damping_ratio"
-    damped = p.joint_time_constant is not None and f"{source} is given"
-    yield _called_for("dashpots", damped, "no damping_ratio")
-    yield from _of_law(scene, along=False)
-    parts, random = len(p.each), scene.scatter
-    other = parts > 1 and f"{parts} segments"
-    yield _called_for("segments", other, "no [[segments]]")
-    yield _called_for("scatter", random and f"seed {random.seed}", "no [scatter]")
-    no_tension, differ = int((~p.tension).sum()), len(p.soft)
-    layers = differ and f"{differ} soft layer{'s' * (differ > 1)}"
-    whose = no_tension and f"{no_tension} of {len(p.tension)} joints"
-    yield _called_for("no tension", whose, _carries(p.friction is not None))
+    damped = p.joint_time_constant is not None
+    yield "dashpots", damped and f"{source} is given", "no damping_ratio"
+    for part in PARTS:
+        if not part.along:
+            yield _of_part(part, laws)
+    parts, differ = len(p.each), len(p.soft)
+    yield "segments", parts > 1 and f"{parts} segments", "no [[segments]]"
+    yield "scatter", random and f"seed {random.seed}", "no [scatter]"
+    open_up = int((~p.tension).sum())
+    whose = open_up and f"{open_up} of {len(p.tension)} joints"
+    yield "no tension", whose, _carries(p.friction is not None)
     alike = "all joints are equal: scalars, no arrays" if p.is_uniform else "no soft layers"
-    yield _called_for("joints that differ", layers, alike)
+    layers = differ and f"{differ} soft layer{'s' * (differ > 1)}"
+    yield "joints that differ", layers, alike
+    for kind in ("quiet", "matched", "fixed"):
+        places = [f"ends.{end}" for end, held in scene.ends if held == kind]
+        yield f"{kind} ends", " and ".join(places), f"no end is {kind}"
+    yield from _of_record(scene)
+    cause, rotation = off_axis(scene), scene.motion.rotation
+    freedoms = 3 if rotation == "none" else 6
+    axial = "the load is axial and central: one degree of freedom per block"
+    yield "spatial motion", cause and f"{cause}: {freedoms} degrees of freedom", axial
+    turns = f"motion.rotation = '{rotation}'" if cause else "the blocks do not rotate"
+    yield "finite rotation", cause and rotation == "finite" and turns, turns
+    slips = p.friction is not None or p.cohesion is not None
+    yield "slip", cause and slips and SLIPS, STICKS if cause else NO_SHEAR
+    for part in PARTS:
+        if part.along:
+            yield _of_part(part, laws) if cause else (part.name, None, NO_SHEAR)
+    yield from _of_body_forces(scene, p.mass_damping)
+    stress, shakes = scene.prestress, f"load.quantity = '{scene.load.quantity}'"
+    yield "prestress", stress and f"{stress.normal:.4g} Pa", "no [prestress]"
+    yield "shaken base", scene.shakes_base and shakes, shakes
 
 
-def _of_ends(scene: Scene, kind: str) -> Effect:
-    places = [f"ends.{k}" for k in ("start", "end") if getattr(scene.ends, k) == kind]
-    return _called_for(f"{kind} ends", " and ".join(places), f"no end is {kind}")
+def _of_rock_mass(scene: RockMass) -> Iterator[Called]:
+    sets, boundaries, stress = scene.joint_sets, scene.boundaries, scene.prestress
+    ratios = (one.damping_ratio is not None for one in sets)
+    damped = _of_sets(scene, ratios, "damping_ratio is given")
+    whole = scene.damping.rayleigh and "damping.rayleigh is given"
+    yield "dashpots", whole or damped, "no damping_ratio"
+    open_up = _of_sets(scene, (one.tension is False for one in sets), "tension = false")
+    rubs = [one.friction_angle is not None for one in sets]
+    yield "no tension", open_up, _carries(any(rubs))
+    slips = (rub or one.cohesion is not None for rub, one in zip(rubs, sets, strict=True))
+    yield "slip", _of_sets(scene, slips, SLIPS), STICKS
+    for part in PARTS:
+        having = _of_sets(scene, map(part.of, sets), part.why(True))
+        yield part.name, having, part.why(False)
+    for kind in SIDES:
+        places = ", ".join(f"boundaries.{side}" for side in boundaries.sides(kind))
+        yield f"{kind} sides", places, f"no side is {kind}"
+    yield from _of_record(scene)
+    yield from _of_body_forces(scene, scene.damping.alpha)
+    keys = ("xx", "yy", "zz", "xy", "yz", "xz") if scene.in_space else ("xx", "yy", "xy")
+    words = stress and ", ".join(f"{key} {getattr(stress, key):.4g}" for key in keys)
+    words = words and words + " Pa" + scene.excavated * ", openings excavated"
+    yield "prestress", words, "no [prestress]"
+    waves, pushed = len(scene.waves), len(scene.pushes)
+    yield "incident waves", waves and f"{waves} in [[waves]]", "no [[waves]]"
+    yield "loads", pushed and f"{pushed} in [[loads]]", "no [[loads]]"
+    yield "shaken base", scene.bases and "a load of kind 'base'", "no base is shaken"
+
+
+def _of_part(part: LawPart, laws: list[JointLaw]) -> Called:
+    has = any(part.of(law) for law in laws)
+    return part.name, has and part.why(True), part.why(False)
+
+
+def _of_sets(scene: RockMass, has: Iterable[bool], why: str) -> str:
+    """Return why joint sets have an effect, and which; empty where none has."""
+    names = [one.name for one, there in zip(scene.joint_sets, has, strict=True) if there]
+    return f"{why}: {', '.join(names)}" if names else ""
 
 
 def _carries(slides: bool) -> str:
@@ -126,100 +163,22 @@ def _carries(slides: bool) -> str:
     return "every joint carries tension" + ", also with friction" * slides
 
 
-def _of_ledger(scene: AnyScene) -> Effect:
-    """Return whether a scene records its energy ledger."""
-    kept = scene.record.energy and "record.energy is on"
-    return _called_for("energy ledger", kept, "record.energy = false")
+def _of_record(scene: AnyScene) -> Iterator[Called]:
+    record = scene.record
+    yield "energy ledger", record.energy and "record.energy is on", "record.energy = false"
+    every = record.fields
+    yield "field output", every and f"a snapshot every {every:g} s", "no record.fields"
 
 
-def _of_fields(scene: AnyScene) -> Effect:
-    """Return whether a scene records snapshots."""
-    every = scene.record.fields
-    why = every and f"a snapshot every {every:g} s"
-    return _called_for("field output", why, "no record.fields")
-
-
-def _of_motion(scene: Scene, p: Properties) -> Iterator[Effect]:
-    cause, rotation = off_axis(scene), scene.motion.rotation
-    freedoms = 3 if rotation == "none" else 6
-    axial = "the load is axial and central: one degree of freedom per block"
-    yield _called_for("spatial motion", cause and f"{cause}: {freedoms} degrees of freedom", axial)
-    turns = f"motion.rotation = '{rotation}'" if cause else "the blocks do not rotate"
-    yield Effect("finite rotation", cause is not None and rotation == "finite", turns)
-    slips = p.friction is not None or p.cohesion is not None
-    given = cause and slips and SLIPS
-    yield _called_for("slip", given, STICKS if cause else NO_SHEAR)
-    yield from _of_law(scene, along=True)
-
-
-def _of_law(scene: Scene, along: bool) -> Iterator[Effect]:
-    """Yield the optional parts of the joint law: those in shear, or the others."""
-    still = along and off_axis(scene) is None
-    for part in PARTS:
-        if part.along == along:
-            has = any(part.of(law) for law in (scene.joints, *scene.layers))
-            yield Effect(part.name, has and not still, NO_SHEAR if still else part.why(has))
-
-
-def _of_body_forces(scene: AnyScene, alpha: float | None) -> Iterator[Effect]:
+def _of_body_forces(scene: AnyScene, alpha: float | None) -> Iterator[Called]:
     """Yield the effects on blocks themselves; alpha : of mass-proportional damping, 1/s."""
     local, quality, gravity = scene.damping.local, scene.rock.quality_factor, scene.gravity
     mass = alpha is not None and f"alpha = {alpha:.4g} 1/s"
-    yield _called_for("mass damping", mass, "no mass_proportional, no rayleigh")
-    yield _called_for("local damping", local and f"damping.local = {local:g}", "no damping.local")
-    yield _called_for("constant Q", quality and _relaxes(scene), "no rock.quality_factor")
+    yield "mass damping", mass, "no mass_proportional, no rayleigh"
+    yield "local damping", local and f"damping.local = {local:g}", "no damping.local"
+    if quality:
+        _, low, high = scene.rock.quality_frequencies(scene.pulses)
+        band = f"rock.quality_factor = {quality:g} from {low:.4g} to {high:.4g} Hz"
+    yield "constant Q", quality and band, "no rock.quality_factor"
     acts = gravity and ("static at the start" if gravity.static else "applied at t = 0")
-    yield _called_for("gravity", acts, "no [gravity]")
-
-
-def _relaxes(scene: AnyScene) -> str:
-    _, low, high = scene.rock.quality_frequencies(scene.pulses)
-    return f"rock.quality_factor = {scene.rock.quality_factor:g} from {low:.4g} to {high:.4g} Hz"
-
-
-def _of_forces(scene: Scene, p: Properties) -> Iterator[Effect]:
-    yield from _of_body_forces(scene, p.mass_damping)
-    stress = scene.prestress
-    yield _called_for("prestress", stress and f"{stress.normal:.4g} Pa", "no [prestress]")
-    yield Effect("shaken base", scene.shakes_base, f"load.quantity = '{scene.load.quantity}'")
-
-
-def _of_joint_sets(scene: RockMass) -> Iterator[Effect]:
-    stiffness_damping = scene.damping.rayleigh is not None
-    damped = [one for one in scene.joint_sets if one.damping_ratio is not None]
-    if stiffness_damping:
-        yield Effect("dashpots", True, "damping.rayleigh is given")
-    else:
-        yield _of_sets("dashpots", damped, "damping_ratio is given", "no damping_ratio")
-    no_tension = [one for one in scene.joint_sets if one.tension is False]
-    slides = any(one.friction_angle is not None for one in scene.joint_sets)
-    yield _of_sets("no tension", no_tension, "tension = false", _carries(slides))
-    slips = [s for s in scene.joint_sets if s.friction_angle is not None or s.cohesion is not None]
-    yield _of_sets("slip", slips, SLIPS, STICKS)
-    for part in PARTS:
-        having = [one for one in scene.joint_sets if part.of(one)]
-        yield _of_sets(part.name, having, part.why(True), part.why(False))
-
-
-def _of_sets(name: str, found: list[JointSet], why: str, why_not: str) -> Effect:
-    """Return an effect of joints, which those sets call for."""
-    whose = ", ".join(one.name for one in found)
-    return _called_for(name, found and f"{why}: {whose}", why_not)
-
-
-def _of_sides(scene: RockMass, kind: str) -> Effect:
-    sides = [f"boundaries.{side}" for side in scene.boundaries.sides(kind)]
-    return _called_for(f"{kind} sides", ", ".join(sides), f"no side is {kind}")
-
-
-def _of_forces_in_plane(scene: RockMass) -> Iterator[Effect]:
-    yield from _of_body_forces(scene, scene.damping.alpha)
-    stress = scene.prestress
-    keys = ("xx", "yy", "zz", "xy", "yz", "xz") if scene.in_space else ("xx", "yy", "xy")
-    words = stress and ", ".join(f"{key} {getattr(stress, key):.4g}" for key in keys)
-    words = words and words + " Pa" + scene.excavated * ", openings excavated"
-    yield _called_for("prestress", words, "no [prestress]")
-    waves, pushed = len(scene.waves), len(scene.pushes)
-    yield _called_for("incident waves", waves and f"{waves} in [[waves]]", "no [[waves]]")
-    yield _called_for("loads", pushed and f"{pushed} in [[loads]]", "no [[loads]]")
-    yield _called_for("shaken base", scene.bases and "a load of kind 'base'", "no base is shaken")
+    yield "gravity", acts, "no [gravity]"

@@ -192,7 +192,7 @@ MISTAKES = {
     "two stiffnesses": (
         "spacing_stiffness = 4.375e8",
         "spacing_stiffness = 4.375e8\nnormal_stiffness = 1e9",
-        ["soft_layers.spacing_stiffness = 437500000.0", "not both"],
+        ["soft_layers[0].spacing_stiffness = 437500000.0", "not both"],
     ),
     "receiver outside": ("[20.0]", "[20.0, 50.1]", ["record.stress = 50.1", "0 and 50 m"]),
     "receiver before the start": ("[20.0]", "[-1.0]", ["record.stress[0] = -1.0", "at least 0"]),
@@ -436,12 +436,12 @@ MISTAKES = {
     "contact points of one layer": (
         LAYER,
         LAYER + "contact_points = 3\n",
-        ["soft_layers.contact_points = 3", "applies to all joints"],
+        ["soft_layers[0].contact_points = 3", "applies to all joints"],
     ),
     "point rule of one layer": (
         LAYER,
         LAYER + 'point_rule = "gauss"\n',
-        ["soft_layers.point_rule = 'gauss'", "applies to all joints"],
+        ["soft_layers[0].point_rule = 'gauss'", "applies to all joints"],
     ),
     # damping and gravity
     "Rayleigh's damping and a damping ratio": (

@@ -7,7 +7,13 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from jointwave.cases.schema.pulse import Pulse, shortest_period
-from jointwave.cases.schema.values import NonNegative, Positive, Table, contradiction
+from jointwave.cases.schema.values import (
+    NonNegative,
+    Positive,
+    Table,
+    contradiction,
+    contradiction_here,
+)
 
 WIDEST = 1e4  # of a band: its ends, one over the other
 
@@ -61,16 +67,13 @@ class Rayleigh(Table):
     def _both_damp(self) -> "Rayleigh":
         low, high = self.frequencies
         if not low < high:
-            raise contradiction(
-                "damping.rayleigh.frequencies", self.frequencies, "must be two increasing numbers"
-            )
+            allowed = "must be two increasing numbers"
+            raise contradiction_here("frequencies", self.frequencies, allowed)
         alpha, beta = self.coefficients
         if alpha < 0 or beta < 0:
-            raise contradiction(
-                "damping.rayleigh.ratios",
-                self.ratios,
-                f"would give alpha = {alpha:.4g} 1/s and beta = {beta:.4g} s; "
-                "neither may be negative",
+            gives = f"alpha = {alpha:.4g} 1/s and beta = {beta:.4g} s"
+            raise contradiction_here(
+                "ratios", self.ratios, f"would give {gives}; neither may be negative"
             )
         return self
 
@@ -92,11 +95,8 @@ class Damping(Table):
     @model_validator(mode="after")
     def _one_alpha(self) -> "Damping":
         if self.rayleigh is not None and self.mass_proportional is not None:
-            raise contradiction(
-                "damping.mass_proportional",
-                self.mass_proportional,
-                "damping.rayleigh already sets it: give one of them",
-            )
+            allowed = "damping.rayleigh already sets it: give one of them"
+            raise contradiction_here("mass_proportional", self.mass_proportional, allowed)
         return self
 
     @property

@@ -2,8 +2,8 @@
 read it.
 """
 
-import ast
 import inspect
+import re
 from collections.abc import Iterator, Mapping
 from functools import cache
 from textwrap import dedent
@@ -25,6 +25,7 @@ SOLVERS = "solvers"
 WORDS = {float: "number", int: "whole number", str: "string", bool: "`true` or `false`"}
 BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
 LENGTHS = {"min_length": "at least", "max_length": "at most"}
+FIELD = re.compile(r"    (\w+): ")  # of a model
 #: Requirements of the functions that check a value; empty for bounds that only exclude nonsense.
 CHECKS = {"_magnitude": "", "_words": ""} | {
     "_unit": "of length 1",
@@ -82,35 +83,21 @@ def default_of(field: FieldInfo) -> Any:
 
 @cache
 def field_comments(model: type) -> Mapping[str, str]:
-    """Return the comment of each field of a model, inherited fields included."""
+    """Return the comment of each field of a model, above or beside it, inherited fields
+    included."""
     found: dict[str, str] = {}
     for base in reversed(model.__mro__):
-        if "__annotations__" in vars(base) and base.__module__.startswith(CASES):
-            found |= _own(dedent(inspect.getsource(base)))
+        above: list[str] = []
+        own = base.__module__.startswith(CASES) and "__annotations__" in vars(base)
+        for line in dedent(inspect.getsource(base)).splitlines() if own else ():
+            code, _, comment = line.partition("#:")
+            if comment and not code.strip():
+                above.append(comment.strip())
+                continue
+            if field := FIELD.match(code):
+                found[field[1]] = " ".join(above) or comment.strip()
+            above = []
     return found
-
-
-def _own(source: str) -> dict[str, str]:
-    lines = source.splitlines()
-    (model,) = ast.parse(source).body
-    assert isinstance(model, ast.ClassDef)
-    return {
-        field.target.id: _above(lines, field) or _beside(lines, field)
-        for field in model.body
-        if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)
-    }
-
-
-def _beside(lines: list[str], field: ast.AnnAssign) -> str:
-    assert field.end_lineno is not None
-    return lines[field.end_lineno - 1][field.end_col_offset :].partition("#:")[2].strip()
-
-
-def _above(lines: list[str], field: ast.AnnAssign) -> str:
-    first = field.lineno - 1
-    while lines[first - 1].strip().startswith("#:"):
-        first -= 1
-    return " ".join(line.strip()[2:].strip() for line in lines[first : field.lineno - 1])
 
 
 def in_words(field: FieldInfo) -> str:
@@ -137,35 +124,19 @@ def _words(kind: Any, constraints: list) -> str:
         return "tables" if origin is list else f"table `{model.__name__}`"
     if origin is dict:
         return f'`"a ~ b" = {_words(parts[1], [])}`, two {SOLVERS}'
+    # Field(ge=1, le=4) contains several constraints.
+    flat = [x for c in constraints for x in (c.metadata if isinstance(c, FieldInfo) else [c])]
+    named = [CHECKS[c.func.__name__] for c in flat if hasattr(c, "func")]
+    checks = "".join(f", {words}" for words in named if words)
     if origin is list:
-        return f"list of {_count(constraints)}{_plural(_words(parts[0], []))}{_checks(constraints)}"
-    return WORDS[kind] + _bounds(constraints) + _checks(constraints)
+        noun, space, rest = _words(parts[0], []).partition(" ")
+        return f"list of {_count(flat)}{noun}s{space}{rest}{checks}"
+    bounds = [(sign, getattr(c, k)) for c in flat for k, sign in BOUNDS.items() if hasattr(c, k)]
+    return WORDS[kind] + " and".join(f" {sign} {value:g}" for sign, value in bounds) + checks
 
 
-def _plural(words: str) -> str:
-    noun, space, rest = words.partition(" ")
-    return f"{noun}s{space}{rest}"
-
-
-def _flat(constraints: list) -> list:
-    """Return constraints one by one: Field(ge=1, le=4) contains several."""
-    return [one for c in constraints for one in (c.metadata if isinstance(c, FieldInfo) else [c])]
-
-
-def _bounds(constraints: list) -> str:
-    flat = _flat(constraints)
-    found = [(sign, getattr(c, k)) for c in flat for k, sign in BOUNDS.items() if hasattr(c, k)]
-    return " and".join(f" {sign} {value:g}" for sign, value in found)
-
-
-def _count(constraints: list) -> str:
-    flat = _flat(constraints)
+def _count(flat: list) -> str:
     found = {k: getattr(c, k) for c in flat for k in LENGTHS if hasattr(c, k)}
     if len(set(found.values())) == 1 and len(found) == 2:
         return f"{found['min_length']} "
     return "".join(f"{LENGTHS[k]} {n} " for k, n in found.items())
-
-
-def _checks(constraints: list) -> str:
-    named = [CHECKS[c.func.__name__] for c in _flat(constraints) if hasattr(c, "func")]
-    return "".join(f", {words}" for words in named if words)

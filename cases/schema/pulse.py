@@ -12,6 +12,7 @@ from jointwave.cases.schema.values import (
     Offset,
     Positive,
     Table,
+    check_keys,
     contradiction,
     contradiction_here,
     folder_of,
@@ -22,16 +23,15 @@ if TYPE_CHECKING:
 
 
 #: Required and optional keys of each shape.
-NEEDS: dict[str, set[str]] = {
-    "sine": {"period"},
-    "half-sine": {"period"},
-    "ricker": {"period"},
-    "gabor": {"period", "cycles"},
-    "triangle": {"rise", "decay"},
-    "step": set(),
-    "table": {"file"},
+KEYS: dict[str, tuple[set[str], set[str]]] = {
+    "sine": ({"period"}, {"cycles"}),
+    "half-sine": ({"period"}, set()),
+    "ricker": ({"period"}, set()),
+    "gabor": ({"period", "cycles"}, set()),
+    "triangle": ({"rise", "decay"}, set()),
+    "step": (set(), set()),
+    "table": ({"file"}, set()),
 }
-TAKES = {"sine": {"cycles"}}
 
 
 class Pulse(Table):
@@ -61,14 +61,7 @@ class Pulse(Table):
 
     @model_validator(mode="after")
     def _keys_of_shape(self) -> "Pulse":
-        needed = NEEDS[self.shape]
-        for key in ("period", "cycles", "rise", "decay", "file"):
-            value = getattr(self, key)
-            if key in needed and value is None:
-                allowed = f"is required for {{table}}.shape = '{self.shape}'"
-                raise contradiction_here(key, None, allowed)
-            if value is not None and key not in needed | TAKES.get(self.shape, set()):
-                raise contradiction_here(key, value, f"has no meaning for shape '{self.shape}'")
+        check_keys(self, "shape", KEYS)
         return self
 
     @model_validator(mode="after")
@@ -78,9 +71,8 @@ class Pulse(Table):
 
             folder, anywhere = folder_of(info, self.file_key)
             try:
-                self._history, self._timed = read_history(
-                    folder, self.file, self.quantity, anywhere
-                )
+                found = read_history(folder, self.file, self.quantity, anywhere)
+                self._history, self._timed = found
             except ValueError as error:
                 raise contradiction_here("file", self.file, str(error)) from None
         return self
@@ -125,12 +117,10 @@ class Load(Pulse):
     def _one_lever(self) -> "Load":
         if self.arm is not None and self.is_eccentric:
             raise contradiction("load.arm", self.arm, "is for a couple, which takes no load.at")
-        if self.is_motion:
-            for key, value in (("at", self.at if self.is_eccentric else None), ("arm", self.arm)):
-                if value is not None:
-                    raise contradiction(
-                        f"load.{key}", value, f"has no meaning for load.quantity '{self.quantity}'"
-                    )
+        for key, value in (("at", self.at), ("arm", self.arm)) if self.is_motion else ():
+            if self.gives(key):
+                allowed = f"has no meaning for load.quantity '{self.quantity}'"
+                raise contradiction(f"load.{key}", value, allowed)
         return self
 
     @property

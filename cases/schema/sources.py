@@ -11,6 +11,7 @@ from jointwave.cases.schema.values import (
     Point,
     UnitVector,
     check_dimension,
+    check_keys,
     contradiction_here,
     dimension,
 )
@@ -18,7 +19,7 @@ from jointwave.cases.schema.values import (
 Side = Literal["left", "right", "front", "back", "bottom", "top", "outline"]
 
 #: Required and optional keys of each kind of load, in addition to its pulse.
-KEYS = {
+KEYS: dict[str, tuple[set[str], set[str]]] = {
     "pressure": (set(), {"side", "opening", "between"}),
     "force": ({"at", "direction"}, set()),
     "base": ({"side", "direction"}, set()),
@@ -91,13 +92,7 @@ class PlaneLoad(Pulse):
     @model_validator(mode="after")
     def _keys_of_kind(self, info: ValidationInfo) -> "PlaneLoad":
         check_dimension(self, info, plane=("between",))
-        needed, taken = KEYS[self.kind]
-        for key in ("side", "opening", "between", "at", "direction"):
-            value = getattr(self, key)
-            if key in needed and value is None:
-                raise contradiction_here(key, None, f"is needed for {{table}}.kind = '{self.kind}'")
-            if value is not None and key not in needed | taken:
-                raise contradiction_here(key, value, f"has no meaning for kind '{self.kind}'")
+        check_keys(self, "kind", KEYS)
         if self.quantity not in QUANTITIES[self.kind]:
             allowed = " or ".join(f"'{one}'" for one in sorted(QUANTITIES[self.kind]))
             raise contradiction_here("quantity", self.quantity, f"must be {allowed} here")

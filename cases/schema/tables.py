@@ -42,15 +42,11 @@ class Pillar(Table):
     def _whole_blocks(self) -> "Pillar":
         count = self.length / self.block
         if not 1.5 < count <= MOST_BLOCKS:
-            raise contradiction(
-                "pillar.block", self.block, f"must give 2 to {MOST_BLOCKS:,} blocks, not {count:g}"
-            )
+            allowed = f"must give 2 to {MOST_BLOCKS:,} blocks, not {count:g}"
+            raise contradiction("pillar.block", self.block, allowed)
         if abs(count - round(count)) > 1e-9 * count:
-            raise contradiction(
-                "pillar.block",
-                self.block,
-                f"must divide pillar.length = {self.length:g} into a whole number of blocks",
-            )
+            allowed = f"must divide pillar.length = {self.length:g} into a whole number of blocks"
+            raise contradiction("pillar.block", self.block, allowed)
         return self
 
     @property

@@ -1,6 +1,7 @@
 """Types of values in a scene file, and the message for a value that does not fit."""
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -144,3 +145,18 @@ def contradiction_here(key: str, value: object, allowed: str) -> PydanticCustomE
     The reader puts the table's path before the key, and in place of `{table}` in what is allowed.
     """
     return contradiction(f".{key}", value, allowed)
+
+
+def check_keys(table: Table, by: str, known: Mapping[str, tuple[set[str], set[str]]]) -> None:
+    """Refuse a table that lacks a key which its kind needs, or has one of other kinds alone.
+
+    by : the key that names the kind. known : keys that each kind needs, and that it may have.
+    """
+    kind = getattr(table, by)
+    needed, taken = known[kind]
+    for key in sorted(set().union(*(keys for both in known.values() for keys in both))):
+        value = getattr(table, key)
+        if key in needed and value is None:
+            raise contradiction_here(key, None, f"is required for {{table}}.{by} = '{kind}'")
+        if value is not None and key not in needed | taken:
+            raise contradiction_here(key, value, f"has no meaning for {by} '{kind}'")
