@@ -6,10 +6,8 @@ The memory that a file needs is estimated from its size before it is read.
 import json
 import re
 import tomllib
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 from jointwave.cases.size import memory, spoken
 
@@ -28,11 +26,23 @@ def read_bytes(path: Path, largest: int, times: int) -> bytes:
     times : bytes of memory that each of the file would take. Raises ValueError, in one phrase. Only
     regular files are opened: a pipe would block.
     """
-    with _opened(path, largest, times) as file:
-        content = file.read(largest + 1)  # virtual files may report no size
-        if len(content) > largest:
-            raise ValueError(_too_large(largest))
-        return content
+    try:
+        if path.is_dir():
+            raise ValueError("is a directory, must be a file")
+        if path.exists() and not path.is_file():
+            raise ValueError("is not a regular file")
+        size = path.stat().st_size
+        if size <= largest:
+            if times * size > max(memory(), SMALL):
+                need = f"would need about {spoken(times * size)} of memory"
+                raise ValueError(f"{need}; {spoken(memory())} available")
+            with path.open("rb") as file:
+                content = file.read(largest + 1)  # virtual files may report no size
+            if len(content) <= largest:
+                return content
+    except OSError as error:
+        raise ValueError(f"cannot be read: {error.strerror}") from None
+    raise ValueError(f"is too large: at most {largest / 1e6:g} MB")
 
 
 def read_text(path: Path, largest: int, times: int = TEXT) -> str:
@@ -42,33 +52,6 @@ def read_text(path: Path, largest: int, times: int = TEXT) -> str:
         return content.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError:
         raise ValueError("is not UTF-8 text") from None
-
-
-@contextmanager
-def _opened(path: Path, largest: int, times: int) -> Iterator[BinaryIO]:
-    """Open a regular file whose size is allowed; what is wrong is a ValueError."""
-    try:
-        if path.is_dir():
-            raise ValueError("is a directory, must be a file")
-        if path.exists() and not path.is_file():
-            raise ValueError("is not a regular file")
-        size = path.stat().st_size
-        if size > largest:
-            raise ValueError(_too_large(largest))
-        _refuse_beyond_memory(times * size)
-        with path.open("rb") as file:
-            yield file
-    except OSError as error:
-        raise ValueError(f"cannot be read: {error.strerror}") from None
-
-
-def _too_large(largest: int) -> str:
-    return f"is too large: at most {largest / 1e6:g} MB"
-
-
-def _refuse_beyond_memory(size: float) -> None:
-    if size > max(memory(), SMALL):
-        raise ValueError(f"would need about {spoken(size)} of memory; {spoken(memory())} available")
 
 
 def read_toml(path: Path, largest: int) -> dict[str, Any]:

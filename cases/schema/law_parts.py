@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from math import atan, degrees
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from jointwave.cases.schema.joint import JointLaw
@@ -18,8 +19,8 @@ class LawPart(NamedTuple):
     part. others : keys that need not be given.
     without : the parameters of `joints.law.Law` that it brings, at their values in a joint without
     it beside ones with it. made : how those follow from the keys that are no keys themselves.
-    words : what a joint with it does. sample : keys at common values.
-    along : whether it acts in shear only. instead_of : keys that contradict it.
+    words : what a joint with it does. along : whether it acts in shear only. instead_of : keys that
+    contradict it.
     wrong : returns which key contradicts others and what is allowed, None where none does.
     """
 
@@ -27,8 +28,7 @@ class LawPart(NamedTuple):
     keys: tuple[str, ...]
     without: Mapping[str, float | Callable[[Any], float]]
     words: str
-    sample: dict[str, float]
-    made: dict[str, Callable[[Any], float]]
+    made: Mapping[str, Callable[[Any], float]] = MappingProxyType({})
     others: tuple[str, ...] = ()
     along: bool = True
     instead_of: tuple[str, ...] = ()
@@ -99,8 +99,6 @@ PARTS = (
         ("maximum_closure",),
         without={"maximum_closure": UNLIMITED},
         words="a joint stiffens as it closes",
-        sample={"maximum_closure": 1e-3},
-        made={},
         along=False,
     ),
     LawPart(
@@ -111,7 +109,6 @@ PARTS = (
             "dynamic_friction": lambda law: tangent(law.friction_angle),
         },
         words="slip weakens a joint",
-        sample={"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3},
         made={"dynamic_friction": lambda law: tangent(law.dynamic_friction_angle)},
         wrong=_needs_friction("dynamic_friction_angle"),
     ),
@@ -120,7 +117,6 @@ PARTS = (
         ("dilation_angle", "dilation_distance"),
         without={"dilation": 0.0, "dilation_distance": 1.0},
         words="a joint dilates as it slips",
-        sample={"dilation_angle": 5.0, "dilation_distance": 1e-2},
         made={"dilation": lambda law: tangent(law.dilation_angle)},
         wrong=_lifts_too_far,
     ),
@@ -130,8 +126,6 @@ PARTS = (
         without={"direct_effect": 0.0, "evolution_effect": 0.0}
         | {"critical_slip_distance": 1.0, "reference_rate": 1.0, "initial_state": 1.0},
         words="friction depends on the rate of slip",
-        sample={"direct_effect": 0.01, "evolution_effect": 0.015}
-        | {"critical_slip_distance": 1e-4, "reference_rate": 1e-6},
         others=("initial_state",),
         made={
             "initial_state": lambda law: (
@@ -149,7 +143,6 @@ PARTS = (
         ("tensile_strength", "fracture_energy"),
         without={"tensile_strength": UNLIMITED, "critical_opening": UNLIMITED},
         words="a joint has a tensile strength",
-        sample={"tensile_strength": 1e5, "fracture_energy": 100.0},
         made={"critical_opening": lambda law: 2 * law.fracture_energy / law.tensile_strength},
         along=False,
         instead_of=("tension",),

@@ -10,13 +10,22 @@ from jointwave.compare.studies.effect_removal import WITHOUT, left_out
 
 LAYER = [{"y": 20.0, "spacing_stiffness": 4e8, "damping_ratio": 0.05, "tension": False}]
 ACROSS = {"load__direction": [0.6, 0.8, 0.0]}
+#: Keys of the parts of the joint law, at common values.
+OF_PART = {
+    "closure": {"maximum_closure": 1e-3},
+    "weakening": {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3},
+    "dilation": {"dilation_angle": 5.0, "dilation_distance": 1e-2},
+    "rate and state": {"direct_effect": 0.01, "evolution_effect": 0.015}
+    | {"critical_slip_distance": 1e-4, "reference_rate": 1e-6},
+    "softening": {"tensile_strength": 1e5, "fracture_energy": 100.0},
+}
 FALL = {"direction": [0, 1, 0], "static": False}
 
 
 def law(part):
     """Return the keys of a part of the joint law, of a pillar struck across where it is of slip."""
     slides = ACROSS | {"joints__friction_angle": 30.0} if part.along else {}
-    return slides | {f"joints__{key}": value for key, value in part.sample.items()}
+    return slides | {f"joints__{key}": value for key, value in OF_PART[part.name].items()}
 
 
 CALLS = {part.name: law(part) for part in PARTS} | {
@@ -56,7 +65,7 @@ ACTS = {"loads", "incident waves", "shaken base"}
 def law_in_plane(part):
     """Return the joints of a part of the joint law."""
     slides = {"friction_angle": 30.0} if part.along else {}
-    return {"joint_sets": [ROWS | slides | part.sample, COLUMNS]}
+    return {"joint_sets": [ROWS | slides | OF_PART[part.name], COLUMNS]}
 
 
 IN_PLANE = {part.name: law_in_plane(part) for part in PARTS} | {
