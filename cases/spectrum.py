@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.histories import LoadHistory, Recorded, periodic
+from jointwave.cases.histories import LoadHistory, Recorded, Step, periodic
 from jointwave.cases.loads import history_of
 from jointwave.cases.material.calibrate import Properties
 from jointwave.cases.scene_type import AnyScene
@@ -66,36 +66,27 @@ def frequency_of(pulse: Pulse, duration: float) -> float | None:
     """Return that of one load or wave in a scene of this duration (s)."""
     if not pulse.amplitude:
         return None
-    if pulse.shape == "step":
-        return _step_frequency() / duration
-    if pulse.period is not None:
-        return _at_unit_period(pulse.shape, min(pulse.cycles or 1, MOST_CYCLES)) / pulse.period
+    if pulse.history is None and (pulse.period or pulse.shape == "step"):
+        cycles = min(pulse.cycles or 1, MOST_CYCLES)
+        return _at_unit_period(pulse.shape, cycles) / (pulse.period or duration)
     history = history_of(pulse, 1.0)
     assert isinstance(history, Recorded)
     if not history.stress.any():
         return None
-    return _of_record(history, pulse.quantity == "acceleration")
+    start, end = float(history.time[0]), float(history.time[-1])
+    if pulse.quantity == "acceleration":
+        edges = np.linspace(start, end, BINS)
+        return _below(history.impulse(edges), (end - start) / BINS)
+    a, b = history.stress[:-1], history.stress[1:]  # piecewise linear
+    energy = float(np.diff(history.time) @ (a * a + a * b + b * b)) / 3
+    return _below(*_means(history, start, end), energy)
 
 
 @lru_cache
 def _at_unit_period(shape: str, cycles: int) -> float:
-    load = periodic(shape, 1.0, 1.0, cycles)
-    return _below(_means(load, 0.0, load.end))
-
-
-@lru_cache
-def _step_frequency() -> float:
-    return _below((np.ones(BINS), 1.0 / BINS))
-
-
-def _of_record(history: Recorded, integrated: bool) -> float:
-    start, end = float(history.time[0]), float(history.time[-1])
-    if integrated:
-        edges = np.linspace(start, end, BINS)
-        return _below((history.impulse(edges), (end - start) / BINS))
-    a, b = history.stress[:-1], history.stress[1:]  # piecewise linear
-    energy = float(np.diff(history.time) @ (a * a + a * b + b * b)) / 3
-    return _below(_means(history, start, end), energy)
+    """Return the frequency of a pulse over its period, of a step over the time that it acts."""
+    load = Step(1.0) if shape == "step" else periodic(shape, 1.0, 1.0, cycles)
+    return _below(*_means(load, 0.0, load.end or 1.0))
 
 
 def _means(load: LoadHistory, start: float, end: float) -> tuple[np.ndarray, float]:
@@ -105,12 +96,11 @@ def _means(load: LoadHistory, start: float, end: float) -> tuple[np.ndarray, flo
     return np.diff(load.impulse(edges)) / length, length
 
 
-def _below(samples: tuple[np.ndarray, float], energy: float = 0.0) -> float:
+def _below(values: np.ndarray, length: float, energy: float = 0.0) -> float:
     """Return the frequency below which the share of the energy lies, at most the Nyquist one.
 
-    energy : that of the load itself, where its bins may have lost some.
+    energy : that of the load itself, where its bins of a length (s) may have lost some.
     """
-    values, length = samples
     count = PADDING * BINS
     power = np.abs(np.fft.rfft(values, count)) ** 2 * 2 * length / count
     power[0] /= 2
