@@ -25,7 +25,7 @@ ENGINES: dict[str, Solver] = {one.name: one for one in (DEM, JOINTED_ROCK, EQUIV
 #: The modules of the exact solutions by name, each of which ends with their records. The model
 #: that an engine discretises comes before coarser ones; a module is imported when it is asked for.
 EXACT = {
-    "lattice": "blocks.lattice",
+    "lattice": "blocks.row_of_blocks",
     "no-tension-chain": "blocks.no_tension",
     "jointed-bar": "bar.jointed_bar",
     "equivalent-bar": "bar.equivalent_bar",
@@ -34,7 +34,7 @@ EXACT = {
     "kelvin-voigt": "bar.kelvin_voigt",
     "one-joint": "joint.one_joint",
     "closing-joint": "joint.closing_joint",
-    "spatial-lattice": "blocks.spatial_lattice",
+    "spatial-lattice": "blocks.row_of_blocks",
     "slip-joint": "joint.sliding_joint",
     "sliding-block": "blocks.sliding_block",
     "normal-incidence": "rock_mass.normal_incidence",

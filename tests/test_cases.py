@@ -5,7 +5,7 @@ from jointwave import cases
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import applies, names, solve
-from jointwave.compare.exact.blocks import lattice
+from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.scenes import SHIPPED, shipped_files
 
@@ -26,7 +26,7 @@ def test_no_solution_of_axial_motion_claims_a_spatial_scene():
 def test_spall_with_strong_joints_is_the_linear_chain():
     """Joints whose strength the pulse does not reach carry it as those without a strength."""
     scene = cases.load_variant(SHIPPED / "beyond" / "spall.toml", "strong joints")
-    assert misfit(solve("dem", scene), lattice.solve(scene)) < 2e-3
+    assert misfit(solve("dem", scene), row_of_blocks.solve(scene)) < 2e-3
 
 
 def test_every_folder_ships_scenes():

@@ -14,12 +14,15 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import expm_multiply
 
 from jointwave.cases.histories import LoadHistory
 from jointwave.cases.size import require
 
 NEGLIGIBLE = 1e-18  # of a propagator whose largest entries are about 1: below round-off
-NOISE = 64 * float(np.finfo(float).eps)  # of the twin, in each interval
+NOISE = 256 * float(np.finfo(float).eps)  # of the twin, in each interval
 SMALL = 100  # states of which a full matrix is faster than a sparse one
 BATCH = 256  # instants whose loads and outputs are computed together
 MORE_POINTS = 7  # of integration, for the twin
@@ -47,11 +50,19 @@ def twins(
     load : f; smooth between its breaks, at most about one cycle per interval.
     times : equally spaced, s; the system is at rest at the first.
     """
-    from scipy.sparse import csr_array
-    from scipy.sparse.linalg import expm_multiply
+    A, total = csr_array(matrix), np.zeros((2, len(times), len(output)))
+    part = connected_components(A, directed=False)[1]
+    for k in np.unique(part[vector != 0]):
+        own = np.flatnonzero(part == k)
+        total += _coupled(A[own][:, own], vector[own], output[:, own], load, times)
+    return total
 
+
+def _coupled(
+    A: csr_array, vector: np.ndarray, output: np.ndarray, load: LoadHistory, times: np.ndarray
+) -> np.ndarray:
+    """Return the same of states that are coupled with each other."""
     h = float(times[1] - times[0])
-    A = csr_array(matrix)
     count = 12 + ceil(h * abs(A).sum(axis=0).max())
     size = float(len(vector))
     room = 3 * size**2 + 2 * size * count + 3 * float(count) ** 2 + 5.0 * len(times) * count

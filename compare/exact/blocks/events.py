@@ -1,19 +1,23 @@
-"""The motion of a chain whose joints open and close, from one event to the next.
+"""The motion of blocks by Taylor series, of chains whose joints open and close from one event to
+the next.
 
-While no joint opens or closes the chain is linear, and from rest under static gravity and prestress
-its motion is a Taylor series of x' = A x + b f(t): with steps of STEP over the norm of A the term
-of order ORDER is below round-off. The force of a joint and that of its spring are then polynomials,
-of one sign where all their Bernstein coefficients are; else their roots are looked at. At the first
-change of sign the step ends, the joint opens or closes, and the series restarts.
+While no joint opens or closes the blocks are linear, and from rest under static gravity and
+prestress their motion is a Taylor series of x' = A x + b f(t): with steps of STEP over the norm of
+A the term of order ORDER is below round-off (Hairer, Norsett & Wanner, Solving Ordinary
+Differential Equations I, 1993, I.8). The force of a joint and that of its spring are then
+polynomials, of one sign where all their Bernstein coefficients are; else their roots are looked at.
+At the first change of sign the step ends, the joint opens or closes, and the series restarts.
 
 A tension-free joint is closed while neither its spring nor spring and dashpot together pull. A
 damped one opens when their sum vanishes, with its spring still compressed, and closes when the gap
 vanishes, immediately with the force of its dashpot.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from math import comb
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts1
@@ -29,6 +33,7 @@ STEP = 2.0  # over the norm of A: the last term is 2^24 / 24! = 3e-17
 LOAD_STEP = 1 / 24  # of the load's period: its interpolation error is below 1e-15
 SETTLED = 4 / 3  # of the time at which a wavelet has fallen to 1e-8: it is 1e-24 then
 LEAST = 1e-6  # of a step: minimum time between changes of a joint that has just changed twice
+NOISE = 1024.0  # units of round-off of every step that bound what it does to the motion
 NEGLIGIBLE = 1e-18  # of the largest coefficient
 NOW = 1e-14  # of a step: a nearer root is that of its beginning, or round-off
 REAL = 1e-6  # largest imaginary part of a root that counts: round-off parts two that are close
@@ -41,9 +46,17 @@ _BERNSTEIN = np.array(
 )
 
 
+class Loads(NamedTuple):
+    """Several loads: their values [n, loads] at times [n] (s), and times at which they are not
+    smooth."""
+
+    value: Callable[[np.ndarray], np.ndarray]
+    breaks: np.ndarray
+
+
 @dataclass(frozen=True)
-class ChainMotion:
-    """A chain's states from rest on, and its events.
+class Motion:
+    """States of blocks from rest on, and their events.
 
     states : float array [n, m], of its `BlockSystem`. events : number of openings and closings.
     steps : number of Taylor series.
@@ -55,29 +68,29 @@ class ChainMotion:
 
 
 def integrate(
-    chain: BlockSystem,
-    load: LoadHistory,
+    system: BlockSystem,
+    load: LoadHistory | Loads,
     times: np.ndarray,
     period: float | None = None,
     noise: float = 0.0,
     seed: int = 0,
-) -> ChainMotion:
-    """Return the chain's motion.
+) -> Motion:
+    """Return the motion of blocks under their load or loads.
 
     Parameters
     ----------
-    times : increasing, s; the chain is at rest at the first.
+    times : increasing, s; the blocks are at rest at the first.
     period : of the load (s), if it has one.
     noise : random perturbation of every step, relative to its terms, to mimic round-off; the
         motion has the floating-point type of `times`.
     """
-    size = len(chain.load)
+    size = len(system.steady)
     require(3 * 8.0 * len(times) * size, f"{len(times):,} states of {size:,} numbers")
-    walk = _Walk(chain, load, times, period, noise, seed)
+    walk = _Walk(system, load, times, period, noise, seed)
     breaks = [t for t in load.breaks if times[0] < t < times[-1]]
     for start, end in pairwise([times[0], *breaks, times[-1]]):
         walk.to(start, end)
-    return ChainMotion(walk.states, walk.events, walk.steps)
+    return Motion(walk.states, walk.events, walk.steps)
 
 
 class _Walk:
@@ -87,29 +100,31 @@ class _Walk:
     joints], whether the force of spring, or spring and dashpot, is now zero.
     """
 
-    def __init__(self, chain, load, times, period, noise, seed) -> None:
-        self.chain, self.load, self.times, self.noise = chain, load, times, noise
+    def __init__(self, system, load, times, period, noise, seed) -> None:
+        self.system, self.load, self.times, self.noise = system, load, times, noise
         self.random = np.random.default_rng(seed)
-        self.x = np.zeros(len(chain.load), dtype=times.dtype)
+        self.x = np.zeros(len(system.steady), dtype=times.dtype)
         self.states = np.zeros((len(times), len(self.x)), dtype=times.dtype)
         self.known, self.events, self.steps = 1, 0, 0
-        norm = float(abs(chain.matrix).sum(axis=1).max())
+        self.matrix = system.matrix
+        norm = float(abs(self.matrix).sum(axis=1).max())
         self.longest = STEP / norm * (1.0 if noise == 0 else 0.77)
+        self.pushes = csr_array(system.load.reshape(-1, len(self.x)))
         self.pulse = (0.0, 0.0)
         if period is not None:
             self.pulse = (period * LOAD_STEP, SETTLED * load.end)
-        joints, count = chain.one_sided, len(chain.one_sided)
-        self.at_rest = chain.initial[joints]
+        joints, count = system.one_sided, len(system.one_sided)
+        self.at_rest = system.initial[joints]
         self.closed, self.changed = self.at_rest >= 0, np.zeros(count, int)
         self.zero = np.zeros((2, count), dtype=bool)
         self._release()
 
     def _release(self) -> None:
-        """Take the forces of open joints from the chain's equations of motion."""
-        chain, held = self.chain, np.ones(len(self.chain.initial))
-        held[chain.one_sided[~self.closed]] = 0.0
-        self.resists = csr_array(chain.resists.multiply(held[:, None]))
-        self.steady = chain.steady - chain.moves @ ((1 - held) * chain.initial)
+        """Take the forces of open joints from the equations of motion."""
+        system, held = self.system, np.ones(len(self.system.initial))
+        held[system.one_sided[~self.closed]] = 0.0
+        self.pushed = csr_array(system.moves.multiply(held)) @ system.resists
+        self.steady = system.steady - system.moves @ ((1 - held) * system.initial)
 
     def to(self, start: float, end: float) -> None:
         """Advance from `start` to `end` (s), between which the load is smooth."""
@@ -145,22 +160,30 @@ class _Walk:
 
     def _series(self, t: float, h: float) -> np.ndarray:
         """Return the state's series [ORDER + 1, m] in powers of the fraction of a step."""
-        chain = self.chain
-        drive = np.linalg.solve(_POWERS, self.load.value(t + h * _NODES).astype(float))
+        values = self.load.value(t + h * _NODES).astype(float)
+        drive = np.linalg.solve(_POWERS, values.reshape(len(_NODES), -1))
         rates = np.zeros((ORDER, len(self.x)), dtype=self.x.dtype)
-        rates[: len(drive)] = np.outer(drive, chain.load)
+        rates[: len(drive)] = drive @ self.pushes
         rates[0] += self.steady
         X = np.zeros((ORDER + 1, len(self.x)), dtype=self.x.dtype)
         X[0] = self.x
         for k, rate in enumerate(rates):
-            forces = self.resists @ (chain.strains @ X[k])
-            X[k + 1] = h / (k + 1) * (chain.free @ X[k] + chain.moves @ forces + rate)
+            X[k + 1] = h / (k + 1) * (self._rate(X[k]) + rate)
         return X
+
+    def _rate(self, x: np.ndarray) -> np.ndarray:
+        """Return A x; of joints that can open by their strains, lest blocks that move together
+        strain them by round-off."""
+        if not len(self.closed):
+            return self.matrix @ x
+        return self.system.free @ x + self.pushed @ (self.system.strains @ x)
 
     def _first_event(self, X: np.ndarray) -> tuple[float, tuple[int, int] | None]:
         """Return the fraction of the step at the first change of a joint, that joint and force."""
-        count = len(self.chain.initial)
-        strains, resists = self.chain.strains @ X.T, self.chain.resists[self.chain.one_sided]
+        system, count = self.system, len(self.system.initial)
+        if not len(system.one_sided):
+            return 1.0, None
+        strains, resists = system.strains @ X.T, system.resists[system.one_sided]
         springs = resists[:, :count] @ strains[:count]
         forces = np.array([springs.T, (resists @ strains).T])
         forces[:, 0] += self.at_rest

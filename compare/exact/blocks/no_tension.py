@@ -18,9 +18,9 @@ import xarray as xr
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.exact.blocks.events import ChainMotion, integrate
-from jointwave.compare.exact.blocks.lattice import HELD
-from jointwave.compare.exact.blocks.system import BlockSystem, chain, receivers
+from jointwave.compare.exact.blocks.events import NOISE, Motion, integrate
+from jointwave.compare.exact.blocks.row_of_blocks import HELD, receivers, system_of
+from jointwave.compare.exact.blocks.system import BlockSystem
 from jointwave.compare.exact.conditions import drive, holds
 from jointwave.compare.exact.linear import errors
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
@@ -28,7 +28,6 @@ from jointwave.results.dataset import dataset, scene_hash
 
 MOST_BLOCKS = 2000
 MANY = f"more than {MOST_BLOCKS:,} blocks: too many events"
-NOISE = 1024.0
 PARTED = 1e-6
 
 
@@ -41,14 +40,14 @@ def applies(scene: Scene) -> Answer:
         (carried, "every joint carries tension: see lattice"),
         (scene.block_count > MOST_BLOCKS, MANY),
     )
-    if answer and (one := chain(scene)).initial[one.one_sided].min() < 0:
+    if answer and (one := system_of(scene)).initial[one.one_sided].min() < 0:
         return Answer("a no-tension joint is in tension at rest")
     return answer
 
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement of the scene's rigid-block chain."""
-    model, signal, times = chain(scene), drive(scene), sample_times(scene)
+    model, signal, times = system_of(scene), drive(scene), sample_times(scene)
     own, other = _motions(scene)
     found, twin = (receivers(scene, model, m.states, signal.value(times)) for m in (own, other))
     known = _known(model, own.states, other.states)
@@ -59,20 +58,20 @@ def solve(scene: Scene) -> xr.Dataset:
     return dataset(scene, SOLVER.name, times, *found, **about)
 
 
-def _motions(scene: Scene) -> list[ChainMotion]:
+def _motions(scene: Scene) -> list[Motion]:
     """Return the chain's motion and the perturbed one, as long as none of another chain is asked
     for: they are the same wherever the receivers are."""
     record = scene.record.model_copy(update={"stress": [], "velocity": [], "fields": None})
     key = scene_hash(scene.model_copy(update={"record": record}))
     if key not in _last:
-        model, signal, times = chain(scene), drive(scene), sample_times(scene)
+        model, signal, times = system_of(scene), drive(scene), sample_times(scene)
         period = scene.load.time_scale
         _last.clear()
         _last[key] = [integrate(model, signal, times, period, noise) for noise in (0.0, NOISE)]
     return _last[key]
 
 
-_last: dict[str, list[ChainMotion]] = {}
+_last: dict[str, list[Motion]] = {}
 
 
 def _known(model: BlockSystem, states: np.ndarray, other: np.ndarray) -> int:

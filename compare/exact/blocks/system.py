@@ -1,15 +1,21 @@
-"""The row of rigid blocks as first-order systems x' = A x + b f(t) + g, one for each `plane`.
+"""Rigid blocks of small motion and their linear contacts as first-order systems x' = A x + b f + g,
+in one, two or three dimensions d.
 
-With the coordinates X (the blocks' u, the faces' w), the contacts' relative motions r = B X,
-stiffness D and viscosity C of the contacts, and alpha of mass-proportional damping
+A block has the motion (u, theta) of its centroid, d displacements and no, 1 or 3 rotations; a point
+at the arm a from it moves by u + theta x a. At its centroid, a contact of the bodies i and j has
+the relative motion r of j less that of i, and exerts the force and moment F on j. Springs K_n and
+K_s (Pa/m) on its area A, of second moments S, add up to its stiffness
 
-    M u'' + alpha M u' = [B^T F]_u + M gravity,   F = -(D r + C r') + load + prestress
-    Z w' = [B^T F]_w                              on a matched end's massless face
+    D = [[A k, 0], [0, sum_ab S_ab E_a^T k E_b]],   k = K_s 1 + (K_n - K_s) n n^T,
 
-while a held face is at rest, or moves with the base. The contact j exerts F_j on its right side;
-quiet and matched ends that bear the weight exert, beside, what they would if they were fixed. A
-joint of a chain that carries no tension exerts nothing while its spring, or spring and dashpot
-together, pull (Guo & Li 2002, equation 10).
+E_a theta = theta x e_a, and dashpots to its viscosity V likewise. With r = B X, X the motions of
+all bodies, and alpha of mass-proportional damping
+
+    M u'' + alpha M u' = [B^T F]_u + M gravity,   F = -(D r + V r') + push f + initial
+    0 = [B^T F]_w                                 on a face without mass
+
+while a wall is at rest, or moves with the base. A joint of a chain that carries no tension exerts
+nothing while its spring, or spring and dashpot together, pull (Guo & Li 2002, equation 10).
 
 States are relative to the initial one, weighted by the roots of masses, displacements also by the
 highest frequency of a long chain, so that the entries of A are of similar magnitude; by powers of
@@ -20,31 +26,72 @@ from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_array, diags, eye, hstack, vstack
+from scipy.sparse import bsr_array, csr_array, diags, eye, hstack, vstack
 
-from jointwave.cases.histories import Step
-from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.sampling import interpolation, sample_times
-from jointwave.cases.schema.scene import Scene
-from jointwave.compare.exact.blocks.plane import STRETCHING, plane
-from jointwave.compare.exact.conditions import drive, static_stress
-from jointwave.compare.exact.linear import twins
+from jointwave.cases.geometry.blocks import Blocks, Facets
+from jointwave.cases.geometry.cell_complex import OUTSIDE
+
+#: e_k x e_i as [i, :, k]: what a rotation about k moves at the end of an arm along i.
+TURN = np.cross(np.eye(3)[None], np.eye(3)[:, None]).swapaxes(1, 2)
+
+
+class Contacts(NamedTuple):
+    """Plane contacts of bodies i and j.
+
+    blocks : int array [c, 2]; OUTSIDE is the ground, at rest. arm : [c, 2, d], from the centroids
+    of i and j to that of the contact, m. normal : [c, d]. area : [c], m^(d-1). second : [c, d, d],
+    second moments of its points about its centroid, m^(d+1). springs, dashpots : [c, 2], normal and
+    shear, Pa/m and Pa s/m.
+    """
+
+    blocks: np.ndarray
+    arm: np.ndarray
+    normal: np.ndarray
+    area: np.ndarray
+    second: np.ndarray
+    springs: np.ndarray
+    dashpots: np.ndarray
+
+
+def contacts_of(
+    blocks: Blocks,
+    facets: Facets,
+    springs: np.ndarray,
+    dashpots: np.ndarray,
+    bending: np.ndarray | float = 1.0,
+    shift: np.ndarray | float = 0.0,
+) -> Contacts:
+    """Return pieces of the surfaces of blocks as contacts, those of the boundary with the ground.
+
+    springs, dashpots : [c, 2], of `Contacts`. bending : part of the second moments that the points
+    of each contact have [c]. shift : by which blocks j stand elsewhere, m [d].
+    """
+    i, j = facets.blocks.T
+    arms = [facets.centroid - blocks.centroid[i], facets.centroid - blocks.centroid[j] - shift]
+    second = np.broadcast_to(bending, i.shape)[:, None, None] * facets.second_moment
+    arm = np.stack(arms, axis=1)
+    return Contacts(facets.blocks, arm, facets.normal, facets.area, second, springs, dashpots)
 
 
 class BlockSystem(NamedTuple):
-    """The first-order form of one plane: n = N c degrees of freedom of the blocks in m states.
+    """The first-order form of blocks with n degrees of freedom in m states: their displacements,
+    their velocities, displacements of faces without mass, and that of the base.
 
+    mass : float array [n], kg or kg m2. stiffness : sparse [n, n], with all other bodies at rest.
     free : sparse [m, m] (1/s), A without the contacts.
-    load, steady : float arrays [m], b of a unit `drive` and g.
+    load, steady : float arrays [m] or, of several loads, [loads, m], b; and [m], g.
     displacement, velocity : sparse [n, m], from the state to the blocks' motion; m, m/s (rad,
         rad/s). rest : float array [n], their displacement at the start.
-    strains : sparse [2 (N + 1) c, m], relative displacements and velocities of the contacts.
-    resists : sparse [(N + 1) c, 2 (N + 1) c], their forces on the right side (N, N m) per strain.
-    direct, initial : float arrays [(N + 1) c], those of a unit drive and those at the start.
-    moves : sparse [m, (N + 1) c], rate of the state per force of a contact.
+    strains : sparse [2 k, m], relative displacements and velocities of the contacts.
+    resists : sparse [k, 2 k], their forces on bodies j (N, N m) per strain.
+    direct, initial : float arrays [k], those of a unit drive and those at the start.
+    driven, moves : sparse [m, n] and [m, k], rate of the state per force on the blocks' freedoms
+        and per force of a contact.
     one_sided : int array, the contacts of a chain that carry no tension.
     """
 
+    mass: np.ndarray
+    stiffness: csr_array
     free: csr_array
     load: np.ndarray
     steady: np.ndarray
@@ -55,12 +102,13 @@ class BlockSystem(NamedTuple):
     resists: csr_array
     direct: np.ndarray
     initial: np.ndarray
+    driven: csr_array
     moves: csr_array
     one_sided: np.ndarray
 
     @property
     def forces(self) -> csr_array:
-        """Forces of the contacts per state, sparse [(N + 1) c, m], N or N m."""
+        """Forces of the contacts per state, sparse [k, m], N or N m."""
         return self.resists @ self.strains
 
     @property
@@ -69,152 +117,108 @@ class BlockSystem(NamedTuple):
         return self.free + self.moves @ self.forces
 
 
-def chain(scene: Scene) -> BlockSystem:
-    """Return the first-order form of a scene's axial motion."""
-    return system(scene, STRETCHING)
+def carried(arm: np.ndarray, freedoms: int) -> np.ndarray:
+    """Return the matrices [p, f, f] from the motion of bodies to that at arms [p, d], m."""
+    dim = arm.shape[1]
+    found = np.tile(np.eye(freedoms), (len(arm), 1, 1))
+    found[:, :dim, dim:] = np.einsum("pi,ijk->pjk", arm, _turn(dim, freedoms))
+    return found
 
 
-def system(scene: Scene, freedoms: tuple[int, ...]) -> BlockSystem:
-    """Return the first-order form of a plane of a scene. A state holds displacements and velocities
-    of the blocks, displacements of the matched faces and of the base."""
-    own, p, part = list(freedoms), calibrate(scene), plane(scene, freedoms)
-    B, D, C, q, f = part.relative, part.stiffness, part.viscosity, part.blocks, part.faces
-    n, c, (contacts, count) = len(part.mass), len(own), B.shape
-    base, every = np.zeros((count, 1)), csr_array(eye(count))
-    if scene.shakes_base:
-        base[:c, 0] = np.array([*scene.load.direction, 0.0, 0.0, 0.0])[own]
-    still, faces = csr_array((count, n)), every[:, f]
-    position = csr_array(hstack([every[:, q], still, faces, base]))
-    velocity = csr_array(hstack([still, every[:, q], 0 * faces, 0 * base]))
-    pulled = -faces.T @ B.T @ (D @ B @ position + C @ B @ velocity)
-    dashpots = (faces.T @ B.T @ C @ B @ faces).toarray() + part.dashpots
+def relative(contacts: Contacts, bodies: int, freedoms: int) -> csr_array:
+    """Return B, the relative motions of contacts per motion of the bodies, sparse."""
+    i, j = (carried(contacts.arm[:, side], freedoms) for side in (0, 1))
+    blocks = np.where(contacts.blocks == OUTSIDE, bodies, contacts.blocks)
+    matrices = np.stack([-i, j], axis=1).reshape(-1, freedoms, freedoms)
+    first, shape = 2 * np.arange(len(blocks) + 1), (len(blocks), bodies + 1)
+    found = bsr_array((matrices, blocks.ravel(), first), shape=np.multiply(shape, freedoms))
+    return csr_array(found)[:, : bodies * freedoms]
+
+
+def resistance(contacts: Contacts, values: np.ndarray, freedoms: int) -> csr_array:
+    """Return D or V of contacts, sparse; values : normal and shear, [c, 2], Pa/m or Pa s/m."""
+    (count, dim), (normal, shear) = contacts.normal.shape, values.T[..., None, None]
+    each, turn = np.zeros((count, freedoms, freedoms)), _turn(dim, freedoms)
+    n = contacts.normal
+    k = shear * np.eye(dim) + (normal - shear) * n[:, :, None] * n[:, None]
+    each[:, :dim, :dim] = contacts.area[:, None, None] * k
+    each[:, dim:, dim:] = np.einsum("cab,aik,cij,bjl->ckl", contacts.second, turn, k, turn)
+    return csr_array(bsr_array((each, np.arange(count), np.arange(count + 1))))
+
+
+def stiffness_of(mass: np.ndarray, contacts: Contacts) -> csr_array:
+    """Return K of the bodies that have mass, all others at rest; mass : [bodies, f]."""
+    B = relative(contacts, *mass.shape)[:, np.flatnonzero(np.isfinite(mass) & (mass > 0))]
+    return B.T @ resistance(contacts, contacts.springs, mass.shape[1]) @ B
+
+
+def first_order(
+    mass: np.ndarray,
+    contacts: Contacts,
+    push: np.ndarray | None = None,
+    base: np.ndarray | None = None,
+    alpha: float = 0.0,
+    start: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None,
+    one_sided: np.ndarray | None = None,
+) -> BlockSystem:
+    """Return the first-order form of bodies.
+
+    Parameters
+    ----------
+    mass : [bodies, f], of their freedoms, kg and kg m2; 0 of faces without mass, which touch blocks
+        and the ground by dashpots, and infinite of walls. Blocks come first.
+    push : forces that a unit drive exerts on the first contact [f], N and N m.
+    base : motion of the walls [bodies, f] where the drive is the velocity of the base.
+    alpha : of mass-proportional damping, 1/s.
+    start : the blocks' displacement [n] and the contacts' forces [k] at first, gravity's
+        acceleration [n] that is not in equilibrium with these.
+    one_sided : contacts that carry no tension.
+    """
+    (bodies, c), own = mass.shape, mass.ravel()
+    B = relative(contacts, bodies, c)
+    D, V = (resistance(contacts, x, c) for x in (contacts.springs, contacts.dashpots))
+    q, f = np.flatnonzero(np.isfinite(own) & (own > 0)), np.flatnonzero(own == 0)
+    (count, size), n, masses = B.shape, len(q), own[q]
+    moved = np.zeros((size, 1)) if base is None else base.reshape(-1, 1)
+    every, still = csr_array(eye(size)), csr_array((size, n))
+    position = csr_array(hstack([every[:, q], still, every[:, f], moved]))
+    velocity = csr_array(hstack([still, every[:, q], 0 * every[:, f], 0 * moved]))
+    pulled = -B[:, f].T @ (D @ B @ position + V @ B @ velocity)
+    dashpots = (B[:, f].T @ V @ B[:, f]).toarray()
     rates = csr_array(np.linalg.solve(dashpots, pulled.toarray()))
-    velocity = velocity + faces @ rates
-    strains = vstack([B @ position, B @ velocity])
-    resists, direct = csr_array(hstack([-D, -C])), -(C @ B @ base)[:, 0]
-    direct[:c] += drive_vector(scene)[own]
-    rest, initial, sinks = _initial(scene, freedoms)
-    others = csr_array((len(f) + 1, contacts))
-    pushes = diags(1 / part.mass) @ B[:, q].T
-    moves = csr_array(vstack([csr_array((n, contacts)), pushes, others]))
-    alpha = p.mass_damping or 0.0
+    velocity = velocity + every[:, f] @ rates
+    direct = -(V @ B @ moved)[:, 0]
+    direct[:c] += 0.0 if push is None else push
+    rest, initial, sinks = start or (np.zeros(n), np.zeros(count), np.zeros(n))
+    driven = vstack([csr_array((n, n)), diags(1 / masses), csr_array((len(f) + 1, n))])
     free = vstack([velocity[q], -alpha * velocity[q], rates, 0 * position[:1]])
-    load = moves @ direct
-    load[-1] = scene.shakes_base
+    load = driven @ (B[:, q].T @ direct)
+    load[-1] = base is not None
     steady = np.concatenate([np.zeros(n), sinks, np.zeros(len(f) + 1)])
-    roots = np.sqrt(part.mass)
-    largest = (pushes @ D @ B[:, q]).diagonal().max()  # twice k / m
-    rate = sqrt(2 * largest) or 1.0
+    K, roots = B[:, q].T @ D @ B[:, q], np.sqrt(masses)
+    rate = sqrt(2 * (K.diagonal() / masses).max()) or 1.0  # of twice k / m
     scale = np.concatenate([rate * roots, roots, rate * np.resize(roots[:c], len(f) + 1)])
     scale = np.exp2(np.round(np.log2(scale)))
     to, back = csr_array(diags(scale)), csr_array(diags(1 / scale))
     return BlockSystem(
+        mass=masses,
+        stiffness=K,
         free=to @ free @ back,
         load=scale * load,
         steady=scale * steady,
         displacement=position[q] @ back,
         velocity=velocity[q] @ back,
         rest=rest,
-        strains=csr_array(strains) @ back,
-        resists=resists,
+        strains=csr_array(vstack([B @ position, B @ velocity])) @ back,
+        resists=csr_array(hstack([-D, -V])),
         direct=direct,
         initial=initial,
-        moves=to @ moves,
-        one_sided=1 + np.flatnonzero(~p.tension),
+        driven=to @ driven,
+        moves=to @ driven @ B[:, q].T,
+        one_sided=np.zeros(0, dtype=int) if one_sided is None else one_sided,
     )
 
 
-def drive_vector(scene: Scene) -> np.ndarray:
-    """Return the force and moment [6] at the start face's centre under an end stress of 1 Pa."""
-    load, vector = scene.load, np.zeros(6)
-    if scene.shakes_base:
-        return vector
-    if load.arm:
-        vector[3:] = load.arm * np.array(load.direction)
-    else:
-        vector[:3] = load.direction
-        vector[3:] = np.cross([load.at[0], 0.0, load.at[1]], load.direction)
-    return scene.pillar.area * vector
-
-
-def _initial(scene: Scene, freedoms: tuple[int, ...]) -> tuple[np.ndarray, ...]:
-    """Return the displacement of the blocks (m) and the forces of the contacts (N, N m) before the
-    load, at rest under static gravity, and the acceleration (m/s2) under sudden gravity."""
-    own, gravity, part = list(freedoms), scene.gravity, plane(scene, freedoms, held=True)
-    c, B = len(own), part.relative[:, part.blocks]
-    fall, pressed = np.zeros(6), np.zeros(6)
-    pressed[1] = static_stress(scene) * scene.pillar.area
-    if gravity is not None:
-        fall[:3] = gravity.acceleration * np.array(gravity.direction)
-    initial = np.tile(pressed[own], B.shape[0] // c)
-    sinks = np.tile(fall[own], B.shape[1] // c)
-    if gravity is None or not sinks.any() or not (gravity.static or any(scene.bears)):
-        return 0 * sinks, initial, sinks
-    rest = np.linalg.solve((B.T @ part.stiffness @ B).toarray(), part.mass * sinks)
-    borne = -part.stiffness @ (B @ rest)
-    if gravity.static:
-        return rest, initial + borne, 0 * sinks
-    start, end = scene.bears
-    borne[c:-c] = 0.0
-    borne[:c] *= start
-    borne[-c:] *= end
-    return 0 * rest, initial + borne, sinks + B.T @ borne / part.mass
-
-
-def contact_forces(
-    one: BlockSystem, states: np.ndarray, drive: np.ndarray | float = 0.0
-) -> np.ndarray:
-    """Return the forces of a chain's contacts [..., N + 1] in states [..., m] under a drive [...],
-    N, compression positive."""
-    strains, count, own = states @ one.strains.T, len(one.initial), one.one_sided
-    springs = strains[..., :count] @ one.resists[:, :count].T + one.initial
-    forces = strains @ one.resists.T + np.multiply.outer(drive, one.direct) + one.initial
-    forces[..., own] = np.where(springs[..., own] < 0, 0.0, np.maximum(forces[..., own], 0.0))
-    return forces
-
-
-def receivers(
-    scene: Scene, one: BlockSystem, states: np.ndarray, drive: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return stress (Pa), velocity (m/s) and displacement (m) [receivers, n] of a chain in states
-    [n, m] under a drive [n].
-
-    Stress is interpolated between the start, the contacts and the end; velocity and displacement
-    between the block centres.
-    """
-    sections, points = _read(scene, 1)
-    stress = sections @ contact_forces(one, states, drive).T / scene.pillar.area
-    moved = points @ (states @ one.displacement.T + one.rest).T
-    return stress, points @ (states @ one.velocity.T).T, moved
-
-
-def response(scene: Scene, freedoms: tuple[int, ...]) -> list[np.ndarray]:
-    """Return the forces (N, N m), velocities and displacements (m, rad) at the receivers
-    [2, receivers, c, n] of a linear plane and of its twin (`linear.twins`): the response to the
-    drive, that to sudden gravity, and the initial state."""
-    one, times = system(scene, freedoms), sample_times(scene)
-    signal, c = drive(scene), len(freedoms)
-    sections, points = _read(scene, c)
-    rows = np.concatenate([sections @ one.forces, points @ one.velocity, points @ one.displacement])
-    out, force = np.zeros((2, len(times), len(rows))), slice(len(sections))
-    for vector, history in ((one.load, signal), (one.steady, Step(1.0))):
-        if vector.any():
-            out += twins(one.matrix, vector, rows, history, times)
-    out[..., force] += np.outer(signal.value(times), sections @ one.direct) + sections @ one.initial
-    out[..., len(rows) - len(points) :] += points @ one.rest
-    cuts = len(sections) + len(points) * np.arange(2)
-    parts = np.split(out, cuts, axis=2)
-    return [part.reshape(2, len(times), -1, c).transpose(0, 2, 3, 1) for part in parts]
-
-
-def _read(scene: Scene, c: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the linear interpolations from contacts to sections and from blocks to points, as
-    matrices for c values each."""
-    p, record, found = calibrate(scene), scene.record, []
-    for nodes, places in ((p.contact_y, record.stress), (p.centre_y, record.velocity)):
-        left, right, weight = interpolation(nodes, places)
-        matrix, i = np.zeros((len(places), len(nodes))), np.arange(len(places))
-        matrix[i, left] += 1 - weight
-        matrix[i, right] += weight
-        found.append(np.kron(matrix, np.eye(c)))
-    return found[0], found[1]
+def _turn(dim: int, freedoms: int) -> np.ndarray:
+    """Return what rotations move at the end of arms, [d, d, rotations]."""
+    return TURN[:dim, :dim, 3 - (freedoms - dim) :]

@@ -1,8 +1,9 @@
-"""Scenes of rigid blocks between the joints of a rock mass, exactly in time (`plane.rigid_motion`).
+"""Scenes of rigid blocks between the joints of a rock mass, exactly in time (`blocks.system`).
 
 The model of the rigid-block engine without its time steps: joints with the stiffness of those
 between rigid blocks (`cases.material.rigid_blocks`), dashpots and the incident field on quiet
-sides, a cubic between IN_A_PERIOD samples per period; a twin with half as many bounds the error.
+sides, a cubic between IN_A_PERIOD samples per period. Taylor series (`blocks.events`) err by
+round-off; a perturbed twin with half as many samples bounds the error.
 
 Valid for linear joints without dashpots that cut all of the rock into blocks, waves only, sides
 that are quiet, free or periodic, and up to MOST_BLOCKS blocks.
@@ -10,31 +11,26 @@ that are quiet, free or periodic, and up to MOST_BLOCKS blocks.
 
 import numpy as np
 import xarray as xr
+from scipy.sparse import bsr_array, csr_array
 
 from jointwave.cases.geometry.cell_complex import NO_SET
+from jointwave.cases.geometry.periodic import contacts_across
 from jointwave.cases.incident import tractions
-from jointwave.cases.material.contact_points import contact_points
+from jointwave.cases.material.contact_points import points_of
 from jointwave.cases.material.quiet_sides import impedances
 from jointwave.cases.material.rigid_blocks import rigid_joints, welds
-from jointwave.cases.material.rock_mass import Stiffness, inertia
+from jointwave.cases.material.rock_mass import inertia
 from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.locate import sides_at
-from jointwave.cases.partition.periodic import across_periodic
+from jointwave.cases.partition.periodic import PAIRS
 from jointwave.cases.partition.scene import block_count, partition_of
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.compare.exact.blocks.events import NOISE, Loads, integrate
+from jointwave.compare.exact.blocks.system import Contacts, carried, contacts_of, first_order
 from jointwave.compare.exact.linear import bound
-from jointwave.compare.exact.plane.rigid_motion import (
-    Points,
-    RigidSystem,
-    forces_of,
-    motion,
-    points_on,
-    stiffness_of,
-    viscosity_of,
-)
 from jointwave.compare.exact.rock_mass.conditions import beyond_linear_rock
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
@@ -70,81 +66,102 @@ def applies(scene: RockMass) -> Answer:
 
 def solve(scene: RockMass) -> xr.Dataset:
     """Return velocity and displacement at the points of a scene."""
+    from scipy.interpolate import CubicSpline
+
     partition, times = partition_of(scene, further_sets(scene)), sample_times(scene)
     quiet = _quiet(scene, partition)
-    impedance = impedances(scene, quiet.normal, partition.region[quiet.block])
-    system = RigidSystem(
-        masses(scene, partition),
-        _stiffness(scene, partition),
-        viscosity_of(quiet, impedance, partition.count),
-    )
+    parts = zip(*_between_blocks(scene, partition), quiet, strict=True)
+    contacts = Contacts(*map(np.concatenate, parts))
     period = shortest_period(scene.waves)
     assert period is not None
     stride = 2 * int(np.ceil(scene.interval * IN_A_PERIOD / period / 2))
     fine = scene.interval / stride * np.arange(stride * (len(times) - 1) + 1)
-    field = field_of(scene)
-    face = tractions(field, quiet.place, quiet.normal, impedance, fine)
-    forces = forces_of(quiet, face.values, partition.count)
-    found, twin = (
-        [at_points(scene, partition, x) for x in motion(system, some, step, samples)]
-        for some, step, samples in (
-            (forces, fine[1], stride),
-            (forces[::2], 2 * fine[1], stride // 2),
-        )
-    )
+    freedoms, forces = _incident(scene, partition, quiet, fine)
+    system = first_order(masses(scene, partition), contacts)
+    system = system._replace(load=system.driven[:, freedoms].T)
+    points, found = reads(scene, partition), []
+    for step, noise in ((1, 0.0), (2, NOISE)):
+        loads = Loads(CubicSpline(fine[::step], forces[::step]), fine[::step])
+        states = integrate(system, loads, times, noise=noise).states.T
+        both = np.stack([points @ (x @ states) for x in (system.displacement, system.velocity)])
+        found.append(both.reshape(2, -1, 2, len(times)))
     names = ("displacement", "velocity")
-    values = {name: x.swapaxes(1, 2) for name, x in zip(names, found, strict=True)}
-    errors = {name: bound(*pair) for name, *pair in zip(names, found, twin, strict=True)}
+    values = {name: x.swapaxes(1, 2) for name, x in zip(names, found[0], strict=True)}
+    errors = {name: bound(*pair) for name, *pair in zip(names, *found, strict=True)}
     return rock_mass_dataset(scene, SOLVER.name, times, values, errors=errors)
 
 
-def _quiet(scene: RockMass, partition: Partition) -> Points:
-    """Return the points of the edges of quiet sides."""
-    edges, held = partition.boundary, scene.boundaries.model_dump()
-    names = np.array([held.get(name) == "quiet" for name in partition.sides])
-    own = names[edges.side]
-    chosen = (getattr(edges, key)[own] for key in ("block", "start", "end", "normal"))
-    return points_on(partition.centroid, *chosen)
-
-
 def masses(scene: RockMass, partition: Partition) -> np.ndarray:
-    """Return masses (kg) and moments of inertia (kg m2) of all degrees of freedom [3 N], per m."""
+    """Return masses (kg) and moments of inertia (kg m2) of all blocks [N, 3], per m."""
     own = inertia(partition, scene.rock.density)
-    return np.stack([own.mass, own.mass, own.moment], axis=1).ravel()
+    return np.stack([own.mass, own.mass, own.moment], axis=1)
 
 
-def _stiffness(scene: RockMass, partition: Partition):
-    """Return the stiffness of all contacts, those across periodic sides included."""
-    further, total = further_sets(scene), 0
+def _between_blocks(scene: RockMass, partition: Partition) -> list[Contacts]:
+    """Return the contacts of blocks, and those across periodic sides."""
+    further, blocks, parts = further_sets(scene), partition.blocks, []
     joints, sets = rigid_joints(scene, further), [*scene.joint_sets, *further]
-    parts = [(partition.contacts, np.zeros(2))]
-    parts += [(one.contacts, one.shift) for one in across_periodic(scene, partition)]
-    for contacts, shift in parts:
-        points = contact_points(partition, contacts, sets, shift)
-        own, rock = contacts.joint_set, contacts.joint_set == NO_SET
-        stiffness = Stiffness(joints.normal[own], joints.shear[own])
-        pairs, start, normal = contacts.blocks[rock], contacts.start[rock], contacts.normal[rock]
-        weld = welds(
-            scene, partition, further, pairs, start, normal, np.tile(shift, (len(pairs), 1))
-        )
-        stiffness.normal[rock], stiffness.shear[rock] = weld
-        total = total + stiffness_of(partition.count, contacts, points, stiffness)
-    return total
+    springs = np.stack([joints.normal, joints.shear], axis=1)
+    rules = [points_of(one.point_rule, one.contact_points) for one in sets]
+    bends = np.array([12 * weight @ (x - 0.5) ** 2 for x, weight in rules])
+    across = [(blocks.contacts, np.zeros(2))]
+    for side, (other, axis) in PAIRS.items():
+        if getattr(scene.boundaries, side) == "periodic":
+            shift = np.ptp(partition.corners, axis=0) * np.eye(2)[axis]
+            facets = contacts_across(blocks, axis, (side, other), partition.joint_sets)
+            across.append((facets, shift))
+    for facets, shift in across:
+        k, bending = springs[facets.joint_set], bends[facets.joint_set]
+        rock = facets.joint_set == NO_SET
+        weld = facets.blocks[rock], facets.centroid[rock], facets.normal[rock]
+        shifts = np.tile(shift, (len(weld[0]), 1))
+        k[rock] = np.stack(welds(scene, partition, further, *weld, shifts), axis=1)
+        bending[rock] = 1.0
+        parts.append(contacts_of(blocks, facets, k, 0 * k, bending, shift))
+    return parts
 
 
-def at_points(scene: RockMass, partition: Partition, values: np.ndarray) -> np.ndarray:
-    """Return the motion of the points of a scene [points, (x, y), n] from that of all blocks'
-    degrees of freedom [n, 3 N]; on joints the mean of the blocks there."""
+def _quiet(scene: RockMass, partition: Partition) -> Contacts:
+    """Return the dashpots of the facets of quiet sides."""
+    outer, held = partition.blocks.boundary, scene.boundaries.model_dump()
+    own = np.array([held.get(name) == "quiet" for name in partition.sides])[outer.side]
+    impedance = np.zeros((len(own), 2))
+    regions = partition.region[outer.blocks[own, 0]]
+    impedance[own] = impedances(scene, outer.normal[own], regions)
+    found = contacts_of(partition.blocks, outer, 0 * impedance, impedance)
+    return Contacts(*(x[own] for x in found))
+
+
+def _incident(
+    scene: RockMass, partition: Partition, quiet: Contacts, times: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the freedoms [k] of blocks on quiet sides, and the forces on them [n, k], N and N m
+    per m, of the incident field at two Gauss points of each facet."""
+    x, weight = points_of("gauss", 2)
+    along = np.stack([-quiet.normal[:, 1], quiet.normal[:, 0]], axis=1) * quiet.area[:, None]
+    arm = (quiet.arm[:, :1] + (x - 0.5)[:, None] * along[:, None]).reshape(-1, 2)
+    block, impedance = np.repeat(quiet.blocks[:, 0], 2), np.repeat(quiet.dashpots, 2, axis=0)
+    place, normal = partition.centroid[block] + arm, np.repeat(quiet.normal, 2, axis=0)
+    found = tractions(field_of(scene), place, normal, impedance, times)
+    pushes = np.outer(quiet.area, weight).ravel()[:, None, None] * carried(arm, 3)[:, :2]
+    own, which = np.unique(block, return_inverse=True)
+    forces = np.zeros((len(own), len(times), 3))
+    np.add.at(forces, which, np.einsum("npi,pij->pnj", found.values, pushes))
+    freedoms = (3 * own[:, None] + np.arange(3)).ravel()
+    return freedoms, forces.swapaxes(0, 1).reshape(len(times), -1)
+
+
+def reads(scene: RockMass, partition: Partition) -> csr_array:
+    """Return the matrix from the motion of all blocks to that of the points of a scene, sparse
+    [2 points, 3 N]; on joints the mean of the blocks there."""
     points = np.array(scene.record.points)
     sides = sides_at(partition, points)
-    share = np.array([1 / len(blocks) for blocks in sides for _ in blocks])[:, None]
-    which = np.repeat(np.arange(len(points)), [len(blocks) for blocks in sides])
-    block = np.concatenate(sides)
-    u, v, turn = values.reshape(len(values), -1, 3)[:, block].transpose(2, 1, 0)
-    x, y = (points[which] - partition.centroid[block]).T[..., None]
-    found = np.zeros((len(points), 2, len(values)))
-    np.add.at(found, which, np.stack([u - turn * y, v + turn * x], axis=1) * share[..., None])
-    return found
+    count = np.array([len(blocks) for blocks in sides])
+    which, block = np.repeat(np.arange(len(points)), count), np.concatenate(sides)
+    parts = carried(points[which] - partition.centroid[block], 3)[:, :2]
+    parts = parts / count[which][:, None, None]
+    first, shape = np.append(0, np.cumsum(count)), (2 * len(points), 3 * partition.count)
+    return csr_array(bsr_array((parts, block, first), shape=shape))
 
 
 SOLVER = Solver(

@@ -7,7 +7,7 @@ import pandas as pd
 
 from jointwave.cases.loads import load_history
 from jointwave.compare.exact.bar import equivalent_bar, jointed_bar
-from jointwave.compare.exact.blocks import lattice
+from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.metrics import mean_period, misfit, relative_l2
 from jointwave.compare.misfit.pairs import Comparison
@@ -110,8 +110,8 @@ def mostly_dispersion(comparisons: list[Comparison]) -> tuple[str, bool]:
     """The rigid blocks are less than half as far from the bar with joints as from the homogenised
     one."""
     results, scene = comparisons[0].results, comparisons[0].scene
-    exact = (lattice, equivalent_bar, jointed_bar)
-    own, bar, jointed = (results[one.SOLVER.name] for one in exact)
+    exact = (row_of_blocks.AXIAL, equivalent_bar.SOLVER, jointed_bar.SOLVER)
+    own, bar, jointed = (results[one.name] for one in exact)
     total, rigid = (misfit(results[DEM.name], one) for one in (bar, jointed))
     holds = rigid < 0.5 * total
     return (

@@ -16,8 +16,8 @@ from closed_forms.spall import advance
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar import equivalent_bar, images, jointed_bar, series
-from jointwave.compare.exact.blocks import lattice, sliding_block
-from jointwave.compare.exact.blocks.system import chain, contact_forces
+from jointwave.compare.exact.blocks import row_of_blocks, sliding_block
+from jointwave.compare.exact.blocks.row_of_blocks import contact_forces, system_of
 from jointwave.compare.exact.conditions import drive, joints_are_damped
 from jointwave.compare.exact.joint import one_joint
 
@@ -51,7 +51,7 @@ def along(variable):
 
 def test_two_blocks_under_a_step():
     """F / 2 (1 - cos w t) in the joint, F t / 2m of both together, w^2 = 2 k / m = 5000 / s2."""
-    found = lattice.solve(scene())
+    found = row_of_blocks.solve(scene())
     t = np.arange(6) * PERIOD / 4
     one = np.array([1 - cos(n * pi / 2) for n in range(6)])
     ends = [1000.0 if n else 500.0 for n in range(6)]
@@ -66,21 +66,21 @@ def test_two_blocks_apart_in_a_dashpot():
     """eta = 2 / w: the joint is critically damped, k g + c g' = F / 2 (1 - (1 - w t) e^-wt)."""
     w = sqrt(5000.0)
     ratio = 2 / w * sqrt(2500.0) / 2  # zeta of m and k gives 2 zeta sqrt(m / k)
-    found = lattice.solve(scene(joints={"damping_ratio": ratio}))
+    found = row_of_blocks.solve(scene(joints={"damping_ratio": ratio}))
     x = w * np.arange(6) * PERIOD / 4
     holds(found.stress.sel(stress_y=1.0), 500 * (1 - (1 - x) * np.exp(-x)))
 
 
 def test_mass_damping_of_a_lone_motion():
     """Both ends free: the mean velocity goes to F / (2 m alpha) with alpha."""
-    found = lattice.solve(scene(damping={"mass_proportional": 20.0}))
+    found = row_of_blocks.solve(scene(damping={"mass_proportional": 20.0}))
     t = np.arange(6) * PERIOD / 4
     holds(along(found.velocity).mean(axis=0), 1000 / 2000 / 20 * (1 - np.exp(-20 * t)))
 
 
 def test_static_gravity_and_prestress_of_blocks_that_hang():
     """Free above, fixed below, 10 m/s2: 1e4 N on the joint, 2e4 N on the base, 300 Pa on all."""
-    found = lattice.solve(
+    found = row_of_blocks.solve(
         scene(
             load={"shape": "step", "amplitude": 0.0},
             gravity={"direction": [0.0, 1.0, 0.0], "acceleration": 10.0},
@@ -107,7 +107,7 @@ def test_forces_and_rates_of_a_chain():
     kinds, ends = ("free", "quiet", "fixed", "matched"), [0.0, 3000.0, -4500.0]
     ends.append(5e4 * (5e6 * -1e-3 + 5e3 * 0.06) / (5e4 + 5e3))
     for kind, force in zip(kinds, ends, strict=True):
-        one = chain(scene(joints={"damping_ratio": ratio}, ends={"end": kind}))
+        one = system_of(scene(joints={"damping_ratio": ratio}, ends={"end": kind}))
         state = state_of(one, [1e-3, -1e-3], [0.16, 0.06])
         if kind == "fixed":
             force = 5e6 * -1e-3 + 5e3 * 0.06
@@ -132,7 +132,7 @@ def test_forces_of_a_held_start(kind, drive, start, face):
     quantity = {"quantity": "velocity"} if kind == "fixed" else {}
     load = {"shape": "step", "amplitude": 1000.0, **quantity}
     ratio = 0.5e-3 * sqrt(2500.0)  # eta = 1e-3 s
-    one = chain(scene(joints={"damping_ratio": ratio}, ends={"start": kind}, load=load))
+    one = system_of(scene(joints={"damping_ratio": ratio}, ends={"start": kind}, load=load))
     state = state_of(one, [1e-3, -1e-3], [0.16, 0.06])
     forces = contact_forces(one, state, drive)
     assert forces == pytest.approx([start, 5250.0, 0.0], rel=1e-12)
@@ -143,7 +143,7 @@ def test_forces_of_a_held_start(kind, drive, start, face):
 def test_no_tension_in_a_chain():
     """Open: nothing. Closed but parted faster than its dashpot lets it: nothing either."""
     ratio = 0.5e-3 * sqrt(2500.0)
-    one = chain(scene(joints={"damping_ratio": ratio, "tension": False}))
+    one = system_of(scene(joints={"damping_ratio": ratio, "tension": False}))
     for gap, rate, force in ((1e-6, -1.0, 0.0), (-1e-4, 0.2, 0.0), (-1e-4, 0.05, 125.0)):
         state = state_of(one, [0.0, gap], [0.0, rate])
         assert contact_forces(one, state)[1] == pytest.approx(force, abs=1e-9)
@@ -276,7 +276,7 @@ def test_how_far_images_and_matrices_go():
     assert images.applies(scene(7.99e4)) and not images.applies(scene(8.01e4))
     for blocks, held in ((2000, True), (2001, False)):
         pillar = {"length": float(blocks), "side": 1.0, "block": 1.0}
-        assert bool(lattice.applies(scene(pillar=pillar))) is held
+        assert bool(row_of_blocks.applies(scene(pillar=pillar))) is held
 
 
 def test_nothing_slides_along_where_gravity_pulls_across():

@@ -14,7 +14,7 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.exact.blocks import no_tension
 from jointwave.compare.exact.blocks.events import integrate
-from jointwave.compare.exact.blocks.system import chain, receivers
+from jointwave.compare.exact.blocks.row_of_blocks import receivers, system_of
 from jointwave.compare.exact.conditions import drive
 
 D, C = 0.5, 1350.0  # m, about the paper's bar speed, m/s
@@ -171,7 +171,7 @@ def of_modes(scene, times, finest=0.05):
 
 def own(scene, **options):
     """Return the result of `integrate`, and the samples."""
-    model, times = chain(scene), sample_times(scene)
+    model, times = system_of(scene), sample_times(scene)
     found = integrate(model, drive(scene), times, scene.load.period, **options)
     both = found.states @ model.displacement.T, found.states @ model.velocity.T
     return np.concatenate(both, axis=1)
@@ -215,7 +215,7 @@ def test_the_bound_of_the_error_holds(seed, tmp_path):
     if np.finfo(np.longdouble).eps > 1e-18:
         pytest.skip("no extended precision here")
     scene = random_chain(seed, tmp_path)
-    model, times, found = chain(scene), sample_times(scene), no_tension.solve(scene)
+    model, times, found = system_of(scene), sample_times(scene), no_tension.solve(scene)
     finer = integrate(
         model, drive(scene), times.astype(np.longdouble), scene.load.period
     ).states.astype(float)
@@ -243,7 +243,7 @@ def test_the_time_is_said_from_which_bouncing_is_chaotic(tmp_path):
         "record": {"stress": [2.5], "velocity": [1.0], "interval": 1e-4},
     }
     scene = Scene.model_validate(table)
-    model, times, found = chain(scene), sample_times(scene), no_tension.solve(scene)
+    model, times, found = system_of(scene), sample_times(scene), no_tension.solve(scene)
     until = found.attrs["known_until"]
     assert 0.03 < until < 0.09
     other = integrate(model, drive(scene), times, 0.002, noise=500.0, seed=7).states

@@ -6,8 +6,8 @@ import pytest
 from closed_forms import leapfrog
 from jointwave.cases.histories import Integrated, Recorded
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.compare.exact.blocks import lattice, no_tension
-from jointwave.compare.exact.blocks.system import chain
+from jointwave.compare.exact.blocks import no_tension, row_of_blocks
+from jointwave.compare.exact.blocks.row_of_blocks import system_of
 from jointwave.compare.exact.linear import twins
 
 FIELDS = ("stress", "velocity", "displacement")
@@ -22,7 +22,7 @@ def test_a_column_carries_its_own_weight(scene):
     block of intact rock at the wall: g rho S^2 (sum_{j = i}^{N - 1} j / E_eq + N / 2 E). Two
     solves, condition 1e4: 1e-11."""
     at = scene(**STILL, gravity=DOWN, ends={"end": "fixed"}, record=RECORD)
-    p, result = calibrate(at), lattice.solve(at)
+    p, result = calibrate(at), row_of_blocks.solve(at)
     weight = 2400 * 9.81 * np.array(RECORD["stress"])
     assert np.allclose(result.stress.values, weight[:, None], rtol=1e-11, atol=1e-5)
     below = np.array([sum(range(i, 100)) for i in (1, 41, 100)])
@@ -33,9 +33,9 @@ def test_a_column_carries_its_own_weight(scene):
 def test_the_static_state_adds_to_what_the_load_does(scene, misfit):
     common = {"ends": {"start": "quiet", "end": "fixed"}, "record": RECORD}
     pressed = {"prestress": {"normal": 2e5}}
-    both = lattice.solve(scene(**common, gravity=DOWN, **pressed))
-    load = lattice.solve(scene(**common, **pressed))
-    rest = lattice.solve(scene(**common, gravity=DOWN, load={"amplitude": 0.0}))
+    both = row_of_blocks.solve(scene(**common, gravity=DOWN, **pressed))
+    load = row_of_blocks.solve(scene(**common, **pressed))
+    rest = row_of_blocks.solve(scene(**common, gravity=DOWN, load={"amplitude": 0.0}))
     for variable in FIELDS:
         assert misfit(both[variable], load[variable] + rest[variable]) < 1e-12
 
@@ -49,12 +49,14 @@ def test_a_prestressed_row_stands_still_where_displacement_counts_from(scene, en
         ends={"start": ends[0], "end": ends[1]},
         record=RECORD,
     )
-    result = lattice.solve(at)
+    result = row_of_blocks.solve(at)
     assert not result.displacement.any()
     assert np.allclose(result.stress, 2e5, rtol=1e-12)
 
 
-@pytest.mark.parametrize("solution, joints", [(lattice, {}), (no_tension, {"tension": False})])
+@pytest.mark.parametrize(
+    "solution, joints", [(row_of_blocks, {}), (no_tension, {"tension": False})]
+)
 def test_an_accelerated_base_is_gravity_in_its_own_frame(scene, misfit, solution, joints):
     """With a from t = 0 the strains are those of a sudden weight -m a, which presses the joints
     until the echo of the free end is back, at L/c = 37 ms. Lattice: round-off of displacements; no
@@ -69,7 +71,7 @@ def test_an_accelerated_base_is_gravity_in_its_own_frame(scene, misfit, solution
     motion = step | {"quantity": "acceleration", "amplitude": 7.0}
     shaken = solution.solve(scene(**common, load=motion))
     gravity = {"direction": [0.0, -1.0, 0.0], "acceleration": 7.0, "static": False}
-    heavy = lattice.solve(
+    heavy = row_of_blocks.solve(
         scene(
             **common | {"joints": {"damping_ratio": 0.05}},
             load=step | {"amplitude": 0.0},
@@ -77,7 +79,7 @@ def test_an_accelerated_base_is_gravity_in_its_own_frame(scene, misfit, solution
         )
     )
     way = 7.0 * heavy.time.values**2 / 2
-    bound = 1e-10 if solution is lattice else 1e-6
+    bound = 1e-10 if solution is row_of_blocks else 1e-6
     assert misfit(shaken.stress, heavy.stress) < bound
     assert misfit(shaken.displacement[..., 0], heavy.displacement[..., 0] + way) < bound
 
@@ -88,7 +90,7 @@ def test_a_base_s_acceleration_is_the_velocity_that_it_integrates_to(scene, misf
     pulse = Recorded(np.array([0.0, 0.005]), np.array([7.0, 7.0]))
     ramp = Recorded(np.array([0.0, 0.005, 1.0]), np.array([0.0, 0.035, 0.035]))
     at = scene(**common, load={"quantity": "acceleration"})
-    model, times = chain(at), np.linspace(0, 0.02, 101)
+    model, times = system_of(at), np.linspace(0, 0.02, 101)
     every = np.eye(len(model.load))
     one, other = (
         twins(model.matrix, model.load, every, f, times)[0] for f in (Integrated(pulse), ramp)
@@ -101,7 +103,7 @@ def test_mass_proportional_damping_damps_each_mode_by_alpha_over_two_omega(scene
     at = scene(joints={"damping_ratio": 0.02}, damping={"mass_proportional": 50.0})
     p = calibrate(at)
     omega = leapfrog.frequencies(p.regular_stiffness * p.area, p.block_mass, 100)
-    roots = np.linalg.eigvals(chain(at).matrix.toarray())
+    roots = np.linalg.eigvals(system_of(at).matrix.toarray())
     found = np.sort(roots[roots.imag > 1].imag)
     rate = (50.0 + p.time_constant * omega[1:] ** 2) / 2
     assert np.abs(found / np.sort(np.sqrt(omega[1:] ** 2 - rate**2)) - 1).max() < 1e-9
@@ -131,7 +133,7 @@ def test_joints_pressed_beyond_the_wave_s_tension_are_the_lattice_s(scene, misfi
         "record": RECORD,
     }
     a = no_tension.solve(scene(**common, **BARRED))
-    b = lattice.solve(scene(**common))
+    b = row_of_blocks.solve(scene(**common))
     assert max(misfit(a[variable], b[variable]) for variable in FIELDS) < 1e-6
 
 
@@ -141,7 +143,7 @@ def test_prestress_delays_opening_until_the_tension_exceeds_it(scene):
     pressed = no_tension.solve(scene(**common, **BARRED, prestress={"normal": 2e5})).stress.values[
         0
     ]
-    linear = lattice.solve(scene(**common)).stress.values[0] + 2e5
+    linear = row_of_blocks.solve(scene(**common)).stress.values[0] + 2e5
     opens = int(np.argmax(linear <= 0))
     assert pressed.min() == 0 and linear.min() < -5e5
     assert np.abs(pressed - linear)[:opens].max() < 1e-6 * 1e6
@@ -156,6 +158,6 @@ def test_joints_that_bar_tension_are_not_pulled_at_rest(scene, tables):
 
 
 def test_a_load_against_the_axis_pulls(scene, misfit):
-    there = lattice.solve(scene())
-    back = lattice.solve(scene(load={"direction": [0.0, -1.0, 0.0]}))
+    there = row_of_blocks.solve(scene())
+    back = row_of_blocks.solve(scene(load={"direction": [0.0, -1.0, 0.0]}))
     assert misfit(back.stress, -there.stress) == 0

@@ -10,8 +10,8 @@ from jointwave.cases.histories import Recorded, Sine
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
-from jointwave.compare.exact.blocks import lattice, no_tension
-from jointwave.compare.exact.blocks.system import chain
+from jointwave.compare.exact.blocks import no_tension, row_of_blocks
+from jointwave.compare.exact.blocks.row_of_blocks import system_of
 
 FIELDS = ("stress", "velocity", "displacement")
 
@@ -25,7 +25,7 @@ def test_with_tension_it_is_the_lattice(scene, misfit, soft, end):
         ends={"start": "quiet", "end": end},
         time={"duration": 0.08},  # beyond the end's echo
     )
-    a, b = no_tension.solve(at), lattice.solve(at)
+    a, b = no_tension.solve(at), row_of_blocks.solve(at)
     assert max(misfit(a, b, variable) for variable in FIELDS) < 1e-11
 
 
@@ -33,7 +33,7 @@ def test_joints_that_are_only_compressed_are_the_lattice_s(scene, misfit):
     """Half a sine of pressure, read before anything turns to tension."""
     tables = {"time": {"duration": 5e-3}, "record": {"stress": [1.0], "velocity": [0.25]}}
     barred = no_tension.solve(scene(joints={"tension": False}, **tables))
-    linear = lattice.solve(scene(**tables))
+    linear = row_of_blocks.solve(scene(**tables))
     assert linear.stress.min() >= 0
     assert max(misfit(barred, linear, variable) for variable in FIELDS) < 1e-11
 
@@ -60,7 +60,7 @@ def test_barred_joints_never_pull_and_pass_nothing_while_open(scene, zeta):
 
 def test_momentum_is_the_load_s_impulse_between_free_ends(scene):
     at = scene(joints={"tension": False}, time={"duration": 0.03})
-    model, load, times = chain(at), load_history(at), sample_times(at)
+    model, load, times = system_of(at), load_history(at), sample_times(at)
     velocity = no_tension.integrate(model, load, times).states @ model.velocity.T
     momentum = calibrate(at).block_mass * velocity.sum(axis=1)
     impulse = load.impulse(times) * at.pillar.area
@@ -126,7 +126,7 @@ def test_a_chain_of_several_rocks_that_stays_closed_is_the_linear_one(scene, mis
         "prestress": {"normal": 5e6},
         "time": {"duration": 0.05},
     }
-    linear = lattice.solve(scene(**tables))
+    linear = row_of_blocks.solve(scene(**tables))
     found = no_tension.solve(scene(**tables, joints={"tension": False}))
     for variable in ("stress", "velocity", "displacement"):
         assert misfit(found, linear, variable) < 1e-11

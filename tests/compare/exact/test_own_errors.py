@@ -7,10 +7,9 @@ from jointwave.cases import Scene
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.exact.bar import images, kelvin_voigt, series
-from jointwave.compare.exact.blocks import lattice, spatial_lattice
+from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.exact.blocks.events import integrate
-from jointwave.compare.exact.blocks.plane import PLANES
-from jointwave.compare.exact.blocks.system import _read, chain, drive_vector, receivers, system
+from jointwave.compare.exact.blocks.row_of_blocks import drive_vector, reads, receivers, system_of
 from jointwave.compare.exact.conditions import drive
 from jointwave.compare.exact.joint import one_joint
 
@@ -67,11 +66,11 @@ def extended():
 def test_of_the_lattice(scene, extended, seed):
     """Against Taylor series of the chain in extended precision."""
     at = Scene.model_validate(random_table(scene, seed))
-    model, times, signal = chain(at), sample_times(at), drive(at)
+    model, times, signal = system_of(at), sample_times(at), drive(at)
     fine = integrate(model, signal, times.astype(np.longdouble), at.load.period).states
     exact = receivers(at, model, fine.astype(float), signal.value(times))
     for name, waves in zip(QUANTITIES, exact, strict=True):
-        holds(lattice.solve(at), name, waves)
+        holds(row_of_blocks.solve(at), name, waves)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -80,28 +79,18 @@ def test_of_the_spatial_lattice(scene, extended, seed):
     table = random_table(scene, seed)
     table["load"] = {"shape": "step", "amplitude": 1e6, "direction": [0.6, 0, 0.8], "at": [0.1, 0]}
     at = Scene.model_validate(table)
-    found, times, push = spatial_lattice.solve(at), sample_times(at), drive_vector(at)
-    forces, motion, rate = (np.zeros((6, 3, len(times))) for _ in range(3))
-    for freedoms in PLANES["small"]:
-        own = list(freedoms)
-        if not push[own].any():
-            continue
-        parts = system(at, freedoms)
-        sections, points = _read(at, len(own))
-        rows = np.concatenate(
-            [sections @ parts.forces, points @ parts.displacement, points @ parts.velocity]
-        )
-        states = of_step(parts.matrix.toarray(), 1e6 * parts.load, times)
-        read = (rows @ states.T).reshape(3, 3, len(own), len(times))
-        for field, part in zip((forces, motion, rate), read, strict=True):
-            field[own] = part.swapaxes(0, 1)
-    area = at.pillar.area
-    forces[:, 0] = np.outer(push, drive(at).value(times))
+    found, times, push = row_of_blocks.solve(at), sample_times(at), drive_vector(at)
+    one, (sections, points) = system_of(at), reads(at)
+    states = of_step(one.matrix.toarray(), 1e6 * one.load, times).T
+    forces = sections @ (one.forces @ states)[: sections.shape[1]]
+    moved = (points @ (x @ states) for x in (one.displacement, one.velocity))
+    forces, motion, rate = (x.reshape(3, 6, len(times)) for x in (forces, *moved))
+    forces[0] = np.outer(push / at.pillar.area, drive(at).value(times))
     if table["ends"]["start"] == "free":
-        holds(found, "shear", forces[[0, 2]].swapaxes(0, 1) / area)
-    holds(found, "velocity", rate[:3].swapaxes(0, 1))
-    holds(found, "displacement", motion[:3].swapaxes(0, 1))
-    holds(found, "rotation", motion[3:].swapaxes(0, 1))
+        holds(found, "shear", forces[:, [0, 2]])
+    holds(found, "velocity", rate[:, :3])
+    holds(found, "displacement", motion[:, :3])
+    holds(found, "rotation", motion[:, 3:])
 
 
 def of_step(matrix, vector, times):

@@ -7,7 +7,7 @@ from scipy.optimize import fsolve
 from closed_forms.spall import lattice_spall, spall
 from jointwave.cases.histories import Recorded, Ricker, Sine, Step
 from jointwave.compare.exact.bar import images
-from jointwave.compare.exact.blocks import lattice
+from jointwave.compare.exact.blocks import row_of_blocks
 
 L, C = 50.0, 1350.0
 
@@ -80,7 +80,7 @@ def test_the_chain_breaks_where_its_tension_is_the_strength(scene):
     found = lattice_spall(scene(joints=joints, load=load, time={"duration": 0.1}))
     y = [0.5 * j for j in range(1, 100)]
     at = scene(load=load, time={"duration": 0.1}, record={"stress": y, "velocity": []})
-    result = lattice.solve(at)
+    result = row_of_blocks.solve(at)
     excess = -result.stress.values.T - 4e5
     first = int(np.argmax((excess > 0).any(axis=1)))
     assert result.time.values[first - 1] < found.time <= result.time.values[first]

@@ -6,9 +6,9 @@ import pytest
 from closed_forms import cantilever, leapfrog
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.face import face_points
-from jointwave.compare.exact.blocks import spatial_lattice
-from jointwave.compare.exact.blocks.plane import PLANES, plane
-from jointwave.compare.exact.blocks.system import system
+from jointwave.compare.exact.blocks import row_of_blocks
+from jointwave.compare.exact.blocks.row_of_blocks import bodies, system_of
+from jointwave.compare.exact.blocks.system import relative
 
 SHORT = {
     "pillar": {"length": 3.0, "side": 0.7, "block": 0.5},
@@ -54,12 +54,7 @@ def test_springs_push_as_the_sum_over_the_points(scene, n, rule):
     stiffness = list(zip(p.stiffness, p.shear_stiffness, strict=True))
     points = face_points(0.7, n, rule)
     expected = block_forces(contact_forces(motions, stiffness, points, 0.5), 0.5)
-    found = np.zeros((6, 6))
-    for freedoms in PLANES["small"]:
-        part = plane(at, freedoms)
-        B, own = part.relative[:, part.blocks], list(freedoms)
-        forces = -B.T @ part.stiffness @ B @ q[:, own].ravel()
-        found[:, own] = forces.reshape(6, -1)
+    found = -(system_of(at).stiffness @ q.ravel()).reshape(6, 6)
     assert np.abs(found - expected).max() < 1e-13 * np.abs(expected).max()
 
 
@@ -67,30 +62,31 @@ def test_a_motion_of_the_whole_row_strains_nothing(scene):
     y, turn = 0.5 * np.arange(6) + 0.25, np.array([0.3, -0.2, 0.7])
     shift = np.array([1.0, 2.0, 3.0])
     q = np.array([np.r_[shift + np.cross(turn, [0, yi, 0]), turn] for yi in y])
-    for freedoms in PLANES["small"]:
-        part = plane(scene(**FREE), freedoms)
-        inner = slice(len(freedoms), -len(freedoms))
-        strain = part.relative[inner, part.blocks] @ q[:, list(freedoms)].ravel()
-        assert np.abs(strain).max() < 1e-14
+    mass, contacts = bodies(scene(**FREE))
+    strains = relative(contacts, *mass.shape)[6:-6, :36] @ q.ravel()
+    assert np.abs(strains).max() < 1e-14
 
 
 @pytest.mark.parametrize("freedom", [0, 1, 2, 4])
-def test_single_freedoms_are_lattices_of_their_own(scene, freedom):
+def test_single_freedoms_are_chains_of_their_own(scene, freedom):
     """omega_n = 2 sqrt(k/m) sin(n pi / 2N): shear K'_s A, stretching K'_n A, torsion K'_s J / I_y
-    with J = (1 - 1/n^2) a^4/6 of n x n midpoints."""
-    at = scene(**FREE)
-    p, part = calibrate(at), plane(at, (freedom,))
+    with J = (1 - 1/n^2) a^4/6 of n x n midpoints; of shape cos(n pi (j - 1/2) / N)."""
+    at = scene(**FREE, motion={"rotation": "small" if freedom == 4 else "none"})
+    p = calibrate(at)
     k = (p.regular_stiffness if freedom == 1 else p.regular_shear_stiffness) * p.area
     m = p.block_mass
     if freedom == 4:
         k, m = p.regular_shear_stiffness * 0.75 * 0.7**4 / 6, m * 0.7**2 / 6
-    found, expected = leapfrog.plane_modes(part).omega, leapfrog.frequencies(k, m, 6)
-    assert np.abs(np.sort(found) - expected).max() < 1e-13 * expected.max()
+    one, omega = system_of(at), leapfrog.frequencies(k, m, 6)
+    shapes = np.zeros((6, len(one.mass) // 6, 6))
+    shapes[:, freedom] = np.cos(np.outer(np.arange(6) + 0.5, np.arange(6)) * np.pi / 6)
+    shapes = shapes.reshape(-1, 6)
+    inertial = omega**2 * one.mass[:, None] * shapes
+    assert np.abs(one.stiffness @ shapes - inertial).max() < 1e-13 * np.abs(inertial).max()
 
 
-def test_bending_has_two_rigid_modes(scene):
-    part = plane(scene(**FREE), (0, 5))
-    assert np.count_nonzero(leapfrog.plane_modes(part).omega == 0) == 2
+def test_a_free_row_has_six_rigid_modes(scene):
+    assert np.count_nonzero(leapfrog.modes_of_blocks(*bodies(scene(**FREE))).omega == 0) == 6
 
 
 @pytest.mark.parametrize("axis, turns, sign", [(0, 2, 1), (2, 0, -1)])
@@ -109,7 +105,7 @@ def test_the_cantilever_hangs_as_the_explicit_sum(scene, axis, turns, sign, rule
         ends={"end": "fixed"},
         time={"duration": 1e-3},
     )
-    p, result = calibrate(at), spatial_lattice.solve(at)
+    p, result = calibrate(at), row_of_blocks.solve(at)
     u, theta = cantilever.deflection(
         6,
         0.5,
@@ -128,8 +124,8 @@ def test_a_couple_on_the_free_face_is_carried_to_the_wall(scene):
     """Statics: in any section the moment of a couple is the couple itself, and no force."""
     couple = {"direction": [0.0, 0.0, 1.0], "arm": 0.3}
     at = scene(**SHORT, ends={"end": "fixed"}, load=couple)
-    parts, moves = system(at, (0, 5)), slice(-1)  # all states but the base's
-    state = np.linalg.solve(parts.matrix.toarray()[moves, moves], -parts.load[moves])
-    forces = (parts.forces[:, moves] @ state + parts.direct).reshape(-1, 2)
+    one, moves = system_of(at), slice(-1)  # all states but the base's
+    state = np.linalg.solve(one.matrix.toarray()[moves, moves], -one.load[moves])
+    forces = (one.forces[:, moves] @ state + one.direct).reshape(-1, 6)
     moment = 0.3 * at.pillar.area
-    assert np.allclose(forces[:, 1], moment) and np.abs(forces[:, 0]).max() < 1e-9 * moment
+    assert np.allclose(forces[:, 5], moment) and np.abs(forces[:, :5]).max() < 1e-9 * moment

@@ -8,7 +8,7 @@ import pytest
 from matplotlib.image import imread
 from matplotlib.text import Text
 
-from jointwave.compare.exact.blocks import lattice
+from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.figures.charts.waveforms import draw_solutions
 from jointwave.compare.figures.export import write_drawing
 from jointwave.compare.figures.style import printed
@@ -28,7 +28,7 @@ def drawn(pillar):
         scenes = [pillar(**SHORT), pillar(**SHORT, joints__damping_ratio=0.05)]
         scenes[1] = scenes[1].model_copy(update={"name": name})
         found = [
-            Comparison(scene, dict.fromkeys(("lattice", "dem"), lattice.solve(scene)))
+            Comparison(scene, dict.fromkeys(("lattice", "dem"), row_of_blocks.solve(scene)))
             for scene in scenes
         ]
         return draw_solutions(found, False, printed(width, size))
@@ -81,7 +81,7 @@ def test_what_is_asked_for_is_drawn(pillar):
     assert {"rigid blocks", "rigid blocks, exact"} < set(lines)
     assert not any("jointed" in label for label in lines)
     assert done == sorted(done) and 0.5 in done and done[-1] == 1.0
-    exact = 1e-6 * lattice.solve(scene).stress.values[0]
+    exact = 1e-6 * row_of_blocks.solve(scene).stress.values[0]
     np.testing.assert_allclose(lines["rigid blocks, exact"].get_ydata(), exact)
 
 

@@ -8,7 +8,7 @@ import xarray as xr
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.schema.tables import Prestress
-from jointwave.compare.exact.blocks import lattice, spatial_lattice
+from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.figures.charts.waveforms import draw_solutions
 from jointwave.compare.figures.comparison import write_comparisons
 from jointwave.compare.figures.export import DIGITS, write_csv
@@ -52,14 +52,14 @@ def save(path, time, stress, header="time, stress@20"):
 def sampled(scene, interval):
     """Return the exact stress of the chain at 20 m, sampled at an interval of its own."""
     record = scene.record.model_copy(update={"interval": interval})
-    found = lattice.solve(scene.model_copy(update={"record": record}))
+    found = row_of_blocks.solve(scene.model_copy(update={"record": record}))
     return found.time.values, found.stress.values[0]
 
 
 def the_distance(file, scene, align=False):
     """Return the one distance of a file's curve from the exact solution, and how it was laid."""
     (curves,) = read_curves([str(file)], [scene])
-    results = {"lattice": lattice.solve(scene)}
+    results = {"lattice": row_of_blocks.solve(scene)}
     beside = align_curve(curves, scene, results, align)
     ((name, place, found),) = distances(beside, results)
     assert (name, place) == ("lattice", AT_20)
@@ -114,7 +114,7 @@ def test_columns_of_different_times_are_curves_of_their_own(written, scene):
 def test_a_column_of_our_own_table_is_selected_by_its_header(pillar, tmp_path):
     """Of one solution in one variant, to the table's digits; whole, the table is refused."""
     scene = pillar(time__duration=0.03)
-    result = lattice.solve(scene)
+    result = row_of_blocks.solve(scene)
     table = curve_table([Comparison(scene, {"lattice": result})])
     file = write_csv(tmp_path / "comparison.csv", table, DIGITS)
     header = next(name for name in table if "stress at y = 20 m" in name)
@@ -158,7 +158,7 @@ def test_result_in_space_is_its_own_curve(pillar, tmp_path):
     """Every component of every receiver, read back from a file, at no distance."""
     record = {"record__stress": [5.0], "record__velocity": [5.25], "time__duration": 0.01}
     scene = pillar(load__direction=[0.6, 0.8, 0.0], **record)
-    result = spatial_lattice.solve(scene)
+    result = row_of_blocks.solve(scene)
     result.to_netcdf(tmp_path / "run.nc")
     (curves,) = read_curves([str(tmp_path / "run.nc")], [scene])
     results = {"spatial-lattice": result}
@@ -262,7 +262,7 @@ def test_silent_curve_has_no_clock_to_move(scene, tmp_path):
 
 def test_clock_is_moved_onto_the_solution_that_fits_best(scene, tmp_path):
     """One clock for a file: the delay from the others is left in their rows."""
-    ours = lattice.solve(scene)
+    ours = row_of_blocks.solve(scene)
     other = ours.copy(deep=True)
     other["stress"] = other.stress.shift(time=40, fill_value=0.0) + 1e5
     time, stress = sampled(scene, scene.interval)
@@ -422,7 +422,7 @@ def test_faulty_netcdf_is_one_line(data, words, tmp_path, refused):
 def test_file_cut_anywhere_is_one_line(scene, tmp_path):
     """A download that stopped, at any tenth of its length; never an exception of a library."""
     whole, cut = tmp_path / "whole.nc", tmp_path / "cut.nc"
-    lattice.solve(scene).to_netcdf(whole)
+    row_of_blocks.solve(scene).to_netcdf(whole)
     content = whole.read_bytes()
     for tenth in range(10):
         cut.write_bytes(content[: len(content) * tenth // 10])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jointwave.compare.exact.blocks import lattice, spatial_lattice
+from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.misfit.pairs import measure
 
 RECORD = {"record__stress": [5.0], "record__velocity": [5.25], "time__duration": 0.01}
@@ -15,7 +15,7 @@ def rows(result, name):
 
 
 def test_shear_is_measured_and_a_silent_stress_decides_nothing(pillar):
-    result = spatial_lattice.solve(pillar(load__direction=[1.0, 0.0, 0.0], **RECORD))
+    result = row_of_blocks.solve(pillar(load__direction=[1.0, 0.0, 0.0], **RECORD))
     result["stress"] = result.stress + 1e-12
     found = [row for row in rows(result, "spatial-lattice") if not row.faint]
     places = [
@@ -30,7 +30,7 @@ def test_shear_is_measured_and_a_silent_stress_decides_nothing(pillar):
 def test_every_component_has_a_row_of_its_own(pillar):
     ends = {"ends__start": "matched", "ends__end": "matched"}
     load = {"load__direction": [0.6, 0.8, 0.0], "motion__rotation": "none"}
-    result = spatial_lattice.solve(pillar(**load, **ends, **RECORD | {"time__duration": 0.03}))
+    result = row_of_blocks.solve(pillar(**load, **ends, **RECORD | {"time__duration": 0.03}))
     late = result.shift(time=3, fill_value=0.0)
     interval = float(result.time[1])
     found = measure({"dem": late, "spatial-lattice": result})
@@ -41,6 +41,6 @@ def test_every_component_has_a_row_of_its_own(pillar):
 
 
 def test_displacement_is_measured(pillar):
-    found = rows(lattice.solve(pillar(**RECORD)), "lattice")
+    found = rows(row_of_blocks.solve(pillar(**RECORD)), "lattice")
     assert [row.quantity for row in found] == ["stress", "velocity", "displacement"]
     assert np.isfinite([row.distance.misfit for row in found]).all()

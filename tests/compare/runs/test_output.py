@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 
 from jointwave import dem
-from jointwave.compare.exact.blocks import spatial_lattice
+from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.runs.output import write, write_csv, write_dataset, write_text
 
 
@@ -47,7 +47,7 @@ def test_dataset_comes_back_as_it_was(pillar, tmp_path):
 def test_spatial_dataset_comes_back_as_it_was(pillar, tmp_path):
     """Shear, rotation and their axes survive, with places where nothing is recorded."""
     across = {"load__direction": [1.0, 0.0, 0.0], "time__duration": 0.01}
-    result = spatial_lattice.solve(pillar(record__stress=[], record__velocity=[19.75], **across))
+    result = row_of_blocks.solve(pillar(record__stress=[], record__velocity=[19.75], **across))
     back = xr.load_dataset(write_dataset(tmp_path / "exact.nc", result))
     xr.testing.assert_identical(back, result)
     assert list(back.across.values) == ["x", "z"] and back.rotation.attrs["units"] == "rad"

@@ -12,7 +12,7 @@ from jointwave import cases
 from jointwave.cases.errors import SceneError, StoppedError
 from jointwave.cases.schema.keys import keys
 from jointwave.compare.engines import solve
-from jointwave.compare.exact.blocks import lattice
+from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.places import Place
 from jointwave.compare.studies import fit_trials
@@ -50,7 +50,7 @@ def heard(scene, places=(AT_3,), values=TRUE, late=0.0, interval=None, noise=Non
         true = true.model_copy(
             update={"record": scene.record.model_copy(update={"interval": interval})}
         )
-    found = lattice.solve(true)
+    found = row_of_blocks.solve(true)
     time = found.time.values
     waveforms = {
         p: p.waveform(found) + (noise(i, len(time)) if noise else 0.0) for i, p in enumerate(places)

@@ -5,7 +5,7 @@ import pytest
 
 from jointwave import dem
 from jointwave.cases.errors import SceneError
-from jointwave.compare.exact.blocks import lattice, no_tension
+from jointwave.compare.exact.blocks import no_tension, row_of_blocks
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.results.dataset import energy_residual
 
@@ -57,7 +57,7 @@ QUANTITIES = ("stress", "velocity", "displacement")
 @pytest.mark.parametrize("changes", CHAINS.values(), ids=CHAINS)
 def test_fourth_order_against_the_time_exact_chain(fourth, changes):
     """Stress, velocity and displacement; jumps and kinks at whole steps cost no order."""
-    steps, errors, exact = [], [], lattice.solve(fourth(0.3, **changes))
+    steps, errors, exact = [], [], row_of_blocks.solve(fourth(0.3, **changes))
     for fraction in (0.3, 0.15, 0.075):
         result = dem.simulate(fourth(fraction, **changes))
         steps.append(result.attrs["dt"])
@@ -69,7 +69,7 @@ def test_fourth_order_against_the_time_exact_chain(fourth, changes):
 def test_beats_leapfrog_at_equal_work(fourth):
     """Three more digits than leapfrog where that is 0.3 % off, at as many forces."""
     scene = fourth(0.3)
-    exact, found = lattice.solve(scene), dem.simulate(scene)
+    exact, found = row_of_blocks.solve(scene), dem.simulate(scene)
     fraction = found.attrs["dt"] / found.attrs["critical_dt"] * LIMIT / 8 * (1 + 1e-9)
     leapfrog = dem.simulate(
         fourth(0.3, numerics__dem={"scheme": "leapfrog", "step_fraction": fraction})

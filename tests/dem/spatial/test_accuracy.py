@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jointwave import dem
-from jointwave.compare.exact.blocks import spatial_lattice
+from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.misfit.metrics import relative_l2
 
 SOFT = [{"y": 3.0, "spacing_stiffness": 4e8, "shear_stiffness": 5e8, "damping_ratio": 0.1}]
@@ -71,7 +71,7 @@ def test_second_order_against_the_time_exact_row(name, row, solved):
         scene = row(**ECCENTRIC | ROWS[name], numerics__dem__step_fraction=fraction)
         result = dem.simulate(scene)
         steps.append(result.attrs["dt"])
-        errors.append(error(result, solved(name, spatial_lattice.solve, scene)))
+        errors.append(error(result, solved(name, row_of_blocks.solve, scene)))
     order = np.diff(np.log(errors)) / np.diff(np.log(steps))
     assert order == pytest.approx(ORDER, abs=0.05)
 
@@ -80,7 +80,7 @@ def test_second_order_against_the_time_exact_row(name, row, solved):
 def test_default_step_is_accurate(name, row, solved):
     """Below 0.05 % relative L2 in every field with no key of [numerics] set."""
     scene = row(**ECCENTRIC | ROWS[name])
-    result, known = dem.simulate(scene), solved(name, spatial_lattice.solve, scene)
+    result, known = dem.simulate(scene), solved(name, row_of_blocks.solve, scene)
     misfits = {
         k: relative_l2(result[k].values, known[k].values)
         for k in FIELDS

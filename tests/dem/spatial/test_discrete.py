@@ -7,8 +7,8 @@ from closed_forms import leapfrog
 from jointwave import dem
 from jointwave.cases.loads import load_history, step_means
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.compare.exact.blocks.plane import PLANES, plane
-from jointwave.compare.exact.blocks.system import drive_vector
+from jointwave.compare.exact.blocks.row_of_blocks import bodies, drive_vector
+from jointwave.compare.exact.blocks.system import relative
 
 TWO_TILES = {"pillar__length": 50.0, "time__duration": 0.05}
 BLOWS = {
@@ -41,15 +41,13 @@ BLOWS = {
 
 def closed_form(scene, dt, steps):
     """Return displacements and rotations [6, N] of leapfrog after so many steps of dt (s)."""
-    push, count = drive_vector(scene), scene.block_count
-    stress = step_means(load_history(scene), dt, steps)
+    stress, (mass, contacts) = step_means(load_history(scene), dt, steps), bodies(scene)
+    count, c = scene.block_count, mass.shape[1]
+    place = relative(contacts, *mass.shape)[:c, : count * c].T @ drive_vector(scene)[:c]
+    modes = leapfrog.modes_of_blocks(mass, contacts)
+    u = leapfrog.of_modes(modes, place, stress, np.array([steps]), dt)
     found = np.zeros((6, count))
-    for freedoms in PLANES[scene.motion.rotation]:
-        part, own = plane(scene, freedoms), list(freedoms)
-        place = part.relative[: len(own), part.blocks].T @ push[own]
-        modes = leapfrog.plane_modes(part)
-        u = leapfrog.of_modes(modes, place, stress, np.array([steps]), dt)
-        found[own] = u.reshape(count, len(own)).T
+    found[:c] = u.reshape(count, c).T
     return found
 
 

@@ -1,78 +1,60 @@
-"""Waves in any periodic arrangement of rigid blocks with point contacts in the plane.
+"""Waves in any periodic arrangement of rigid blocks, in the plane and in space.
 
-A block has the freedoms (u, v, phi), phi anticlockwise, and moves at the place r by
-(u, v) + phi (-y, x), (x, y) = r - centroid. A contact of normal n, tangent t = n turned
-anticlockwise, between block i and the image of block j that lies the lattice vector L away has the
-energy (k_n d_n^2 + k_s d_t^2) / 2 of the relative displacement d there. In a wave
+A contact of block i with the image of block j that the lattice vector L takes there has the energy
+r D r / 2 of the relative motion r at its centre (`compare.exact.blocks.system`). In a wave
 q e^{i (k . L - omega t)} of the images,
 
-    d = B(k) q,   K(k) = sum over contacts of B^H diag(k_n, k_s) B,   K(k) q = omega^2 M q
+    r = B(k) q,   K(k) = B^H D B,   K(k) q = omega^2 M q
 
 (Floquet-Bloch; Brillouin, Wave Propagation in Periodic Structures, 1946). The phase of a block is
-that of its cell. Holds for small motions of contacts that stay closed and do not slip.
+that of its cell. Holds for small motions of contacts that stay closed and do not slip. Leapfrog on
+it is exact too (`leapfrog`).
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
+
+from jointwave.cases.geometry.blocks import Blocks, Facets
+from jointwave.cases.geometry.cell_complex import OUTSIDE
+from jointwave.cases.geometry.periodic import contacts_across
+from jointwave.cases.partition.scene import blocks_of_domain
+from jointwave.cases.schema.domain import Domain
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.compare.exact.blocks.system import Contacts, contacts_of, relative, resistance
 
 
-@dataclass(frozen=True)
-class Cell:
-    """One cell of B blocks and C contacts.
+class Cell(NamedTuple):
+    """The blocks and contacts of a cell.
 
-    Attributes
-    ----------
-    vectors : of the lattice, rows [2, 2], m.
-    centroid, mass, inertia : of the blocks: [B, 2], [B], [B]; m, kg, kg m2 (each per m thickness in
-        plane strain, as are the stiffnesses).
-    point, normal : of the contacts, beside the first block, [C, 2]; m, unit vectors.
-    pair : first and second block, integers [C, 2].
-    shift : cells from the first to the second, integers [C, 2].
-    normal_stiffness, shear_stiffness : [C], N/m.
+    mass : [blocks, freedoms], kg and kg m2 (in the plane per m). contacts : of blocks i with images
+    of blocks j. shift : of the images [contacts, d], m.
     """
 
-    vectors: np.ndarray
-    centroid: np.ndarray
     mass: np.ndarray
-    inertia: np.ndarray
-    point: np.ndarray
-    normal: np.ndarray
-    pair: np.ndarray
+    contacts: Contacts
     shift: np.ndarray
-    normal_stiffness: np.ndarray
-    shear_stiffness: np.ndarray
 
 
 def stiffness(cell: Cell, wave_vectors: np.ndarray) -> np.ndarray:
-    """Return K(k), Hermitian complex array [..., 3 B, 3 B] in N/m, N and N m.
-
-    wave_vectors : k, [..., 2], rad/m.
-    """
-    k = np.asarray(wave_vectors, dtype=float)
-    lattice = np.asarray(cell.shift) @ cell.vectors
-    blocks = 3 * len(cell.mass)
-    K = np.zeros((*k.shape[:-1], blocks, blocks), dtype=complex)
-    for c, (i, j) in enumerate(cell.pair):
-        rows = np.array([cell.normal[c], (-cell.normal[c][1], cell.normal[c][0])])
-        B = np.zeros((*k.shape[:-1], 2, blocks), dtype=complex)
-        B[..., 3 * i : 3 * i + 3] -= rows @ _motion(cell.point[c] - cell.centroid[i])
-        phase = np.exp(1j * k @ lattice[c])[..., None, None]
-        B[..., 3 * j : 3 * j + 3] += (
-            rows @ _motion(cell.point[c] - lattice[c] - cell.centroid[j]) * phase
-        )
-        weights = np.array([[cell.normal_stiffness[c]], [cell.shear_stiffness[c]]])
-        K += np.swapaxes(B.conj(), -2, -1) @ (weights * B)
-    return K
+    """Return K(k), Hermitian complex array [..., n, n], of wave vectors [..., d], rad/m."""
+    count, freedoms = cell.mass.shape
+    ends = []
+    for side in (1, 0):
+        blocks = cell.contacts.blocks.copy()
+        blocks[:, side] = OUTSIDE
+        ends.append(relative(cell.contacts._replace(blocks=blocks), count, freedoms).toarray())
+    phase = np.exp(1j * np.asarray(wave_vectors, dtype=float) @ cell.shift.T)
+    B = ends[0] + np.repeat(phase, freedoms, axis=-1)[..., None] * ends[1]
+    D = resistance(cell.contacts, cell.contacts.springs, freedoms).toarray()
+    return np.swapaxes(B.conj(), -2, -1) @ (D @ B)
 
 
 def modes(cell: Cell, wave_vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return omega [..., 3 B] (rad/s), ascending, and the modes [..., 3 B, mode], of unit modal
-    mass: columns q of (u, v, phi) of each block, m and rad."""
-    masses = np.stack([cell.mass, cell.mass, cell.inertia], axis=-1).ravel()
-    return natural(stiffness(cell, wave_vectors), masses)
+    """Return omega [..., n] (rad/s), ascending, and the modes [..., n, mode], of unit modal mass:
+    columns q of the freedoms of each block, m and rad."""
+    return natural(stiffness(cell, wave_vectors), cell.mass.ravel())
 
 
 def natural(K: np.ndarray, masses: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -88,55 +70,109 @@ def leapfrog(omega: np.ndarray, step: float) -> np.ndarray:
     return 2 / step * np.arcsin(np.asarray(omega) * step / 2)
 
 
+def periodic(
+    blocks: Blocks,
+    density: float,
+    springs: np.ndarray,
+    sets: Sequence[str],
+    axes: Sequence[int],
+    bending: float = 1.0,
+) -> Cell:
+    """Return a domain with periodic sides across these axes as a cell.
+
+    springs : normal and shear stiffness of each joint set and, last, of cuts through rock, Pa/m.
+    sets : their names. bending : part of the second moments that the points of contacts have.
+    """
+    extent = np.ptp(blocks.body.vertices, axis=0)
+    parts = [(blocks.contacts, 0 * extent)]
+    for axis in axes:
+        facets = contacts_across(blocks, axis, ("high", "low"), sets)
+        parts.append((facets, extent * np.eye(len(extent))[axis]))
+    contacts = [_contacts(blocks, facets, springs, bending, shift) for facets, shift in parts]
+    shifts = [np.tile(shift, (len(facets), 1)) for facets, shift in parts]
+    whole = Contacts(*map(np.concatenate, zip(*contacts, strict=True)))
+    return Cell(masses(blocks, density), whole, np.concatenate(shifts))
+
+
+def cell_of(
+    blocks: Blocks,
+    chosen: Sequence[int],
+    vectors: np.ndarray,
+    density: float,
+    springs: np.ndarray,
+    bending: float = 1.0,
+) -> Cell:
+    """Return the cell of some blocks that repeat along lattice vectors [d, d], m; all that they
+    touch must be there."""
+    own, centre = np.asarray(chosen), blocks.centroid
+    apart = (centre[:, None] - centre[own]) @ np.linalg.inv(vectors)
+    like = np.abs(apart - np.rint(apart)).max(axis=2).argmin(axis=1)
+    moved = np.rint(apart[np.arange(len(like)), like]) @ vectors
+    i, j = blocks.contacts.blocks.T
+    # A contact of two chosen blocks is in the cell once, one with another block twice, as its own
+    # image is seen from there.
+    weight = (np.isin(i, own) + np.isin(j, own).astype(float)) / 2
+    found = _contacts(blocks, blocks.contacts, springs, bending, 0.0)
+    found = found._replace(
+        blocks=like[found.blocks],
+        area=weight * found.area,
+        second=weight[:, None, None] * found.second,
+    )
+    kept, shift = weight > 0, moved[j] - moved[i]
+    return Cell(masses(blocks, density)[own], Contacts(*(x[kept] for x in found)), shift[kept])
+
+
 def brickwork(
-    length: float,
-    height: float,
+    size: Sequence[float],
     offset: float,
     density: float,
     head: tuple[float, float],
     bed: tuple[float, float],
-    points: int = 2,
+    bending: float = 1.0,
+    courses: int = 1,
 ) -> Cell:
-    """Return courses of equal bricks, each shifted against the one below; one brick is a cell.
+    """Return courses of equal bricks, each shifted against the one below, by one brick of so many
+    courses; in the plane or, with collar joints like beds, in space.
 
-    Parameters
-    ----------
-    length, height : of a brick along x and y, m.
-    offset : of a course against that below it over `length`, 0 (a stack) to 1; 0.5 is running bond.
-    density : kg/m3; the thickness is 1 m.
-    head, bed : normal and shear stiffness of the upright and the lying joints, Pa/m.
-    points : Gauss points of each contact; 2 have the whole bending stiffness of the joint.
+    size : of a brick: along the courses, (through,) up, m. offset : of a course against that below
+    it over the length, 0 (a stack) to 1; 0.5 is running bond. head, bed : normal and shear
+    stiffness of the upright and the lying joints, Pa/m.
     """
-    mass = density * length * height
-    rows = list(_joint((1, 0), (1.0, 0.0), (length / 2, -height / 2), height, head, points))
-    beds = (((0, 1), offset - 0.5, 1 - offset), ((-1, 1), -0.5, offset))
-    for shift, start, share in beds:
-        if share > 0:
-            corner = (start * length, height / 2)
-            rows += _joint(shift, (0.0, 1.0), corner, share * length, bed, points)
-    shifts, normals, places, normal, shear = (np.array(x) for x in zip(*rows, strict=True))
-    return Cell(
-        vectors=np.array([[length, 0.0], [offset * length, height]]),
-        centroid=np.zeros((1, 2)),
-        mass=np.array([mass]),
-        inertia=np.array([mass * (length**2 + height**2) / 12]),
-        point=places,
-        normal=normals,
-        pair=np.zeros((len(rows), 2), dtype=int),
-        shift=shifts,
-        normal_stiffness=normal,
-        shear_stiffness=shear,
-    )
+    along, *through, up = size
+    sets = [("bed", 0.0, 0.0, up), ("head", 90.0, 90.0, along)]
+    sets += [("collar", 90.0, 0.0, y) for y in through]
+    tables = [
+        {"name": name, "dip": dip, "spacing": spacing}
+        | {"normal_stiffness": 1.0, "shear_stiffness": 1.0}
+        | ({"dip_direction": direction} if through else {})
+        | ({"ends_at": ["bed"], "offset": offset} if name == "head" else {})
+        for name, dip, direction, spacing in sets
+    ]
+    space = {"dimension": len(size)}
+    sets = [JointSet.model_validate(table, context=space) for table in tables]
+    blocks = blocks_of_domain(Domain(size=[5 * along, *(3 * x for x in through), 4 * up]), sets)
+    middle = np.array([2.5 * along, *(1.5 * x for x in through), 1.5 * up])
+    vectors, step = np.diag([along, *through, courses * up]), np.zeros(len(size))
+    vectors[-1, 0] = courses * offset % 1 * along
+    step[[0, -1]] = offset * along, up
+    first = np.linalg.norm((blocks.centroid - middle) / size, axis=1).argmin()
+    places = blocks.centroid[first] + np.arange(courses)[:, None] * step
+    chosen = [np.linalg.norm(blocks.centroid - x, axis=1).argmin() for x in places]
+    return cell_of(blocks, chosen, vectors, density, np.array([bed, head, bed]), bending)
 
 
-def _joint(shift, normal, corner, size, stiffnesses, points) -> Iterator[tuple]:
-    """Yield shift, normal, point and both stiffnesses (N/m) of each contact of a joint."""
-    along = np.array([normal[1], normal[0]])
-    for x, weight in zip(*leggauss(points), strict=True):
-        share = weight / 2 * size
-        yield shift, normal, corner + (x + 1) / 2 * size * along, *(share * k for k in stiffnesses)
+def masses(blocks: Blocks, density: float) -> np.ndarray:
+    """Return the masses and moments of inertia of blocks [n, freedoms] whose principal axes are
+    those of the coordinates."""
+    mass, second = density * blocks.volume, density * blocks.second_moment
+    dim, around = second.shape[1], np.trace(second, axis1=1, axis2=2)[:, None]
+    if dim == 3:
+        around = around - np.diagonal(second, axis1=1, axis2=2)
+    return np.concatenate([np.tile(mass, (dim, 1)).T, around], axis=1)
 
 
-def _motion(r: np.ndarray) -> np.ndarray:
-    """Return what (u, v, phi) of a block do at r (m) from its centroid, [2, 3]."""
-    return np.array([[1.0, 0.0, -r[1]], [0.0, 1.0, r[0]]])
+def _contacts(
+    blocks: Blocks, facets: Facets, springs: np.ndarray, bending: float, shift: np.ndarray | float
+) -> Contacts:
+    own = np.asarray(springs, dtype=float)[facets.joint_set]
+    return contacts_of(blocks, facets, own, 0 * own, bending, shift)

@@ -1,9 +1,9 @@
-"""Leapfrog on chains and on planes of the row in space, in closed form."""
+"""Leapfrog on chains and on blocks in any dimension, in closed form."""
 
 import numpy as np
 
 from closed_forms.modes import Modes, modes, of_modes
-from jointwave.compare.exact.blocks.plane import Plane
+from jointwave.compare.exact.blocks.system import Contacts, relative, resistance
 
 
 def frequencies(stiffness: float, mass: float, block_count: int) -> np.ndarray:
@@ -34,9 +34,10 @@ def displacements(
     return of_modes(chain, np.eye(block_count)[0], force, steps, dt)
 
 
-def plane_modes(plane: Plane) -> Modes:
-    """Return the modes of a plane of the spatial row, undamped, whose ends are free or
-    fixed."""
-    stiffness = plane.stiffness.diagonal()
-    relative = plane.relative[:, plane.blocks].toarray()
-    return modes(plane.mass, np.sqrt(stiffness)[:, None] * relative)
+def modes_of_blocks(mass: np.ndarray, contacts: Contacts) -> Modes:
+    """Return the modes of blocks, undamped, whose contacts' stiffness is diagonal; all bodies
+    without a finite mass are at rest."""
+    own = np.flatnonzero(np.isfinite(mass))
+    stiffness = resistance(contacts, contacts.springs, mass.shape[1]).diagonal()
+    moved = relative(contacts, *mass.shape)[:, own].toarray()
+    return modes(mass.ravel()[own], np.sqrt(stiffness)[:, None] * moved)

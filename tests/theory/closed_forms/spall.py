@@ -23,7 +23,7 @@ from jointwave.cases.histories import LoadHistory, Recorded, Step
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.exact.blocks.system import chain, contact_forces
+from jointwave.compare.exact.blocks.row_of_blocks import contact_forces, system_of
 from jointwave.compare.exact.conditions import drive
 from jointwave.compare.exact.linear import _load_on_nodes, gauss, twins
 
@@ -167,7 +167,7 @@ def lattice_spall(scene: Scene) -> Spall | None:
 
     The chain is linear until then, so its exact solution holds; gravity, if any, is static.
     """
-    p, model, times = calibrate(scene), chain(scene), sample_times(scene)
+    p, model, times = calibrate(scene), system_of(scene), sample_times(scene)
     strength = p.tensile_strength
     if strength is None:
         raise ValueError("no joint has a tensile strength")

@@ -1,0 +1,307 @@
+"""Rows of rigid blocks, exact in time: the equations of the rigid-block engine.
+
+The row of `system` that a pillar's blocks make, in one dimension or, where it moves across its axis
+or turns, in three; solved by matrix exponentials (`linear`). Contact j, from the start's face
+(j = 0) over the joints to the end's (j = N), is between the bodies j - 1 and j. The ends have no
+contact (free), a dashpot Z A on the block (quiet, Guo & Li 2002, equation 9), a dashpot Z A on a
+face without mass behind half a block 2k (matched), or half a block of rock to a wall (fixed).
+
+Without dashpots and with free ends the axial modes are omega_n = 2 sqrt(k/m) sin(n pi / 2N) of
+shape cos(n pi (j - 1/2) / N), j = 1..N; Kelvin-Voigt dashpots are proportional and damp each mode
+at the rate eta omega_n^2 / 2 (Brillouin, Wave Propagation in Periodic Structures, 1946).
+
+Its only error is round-off, bounded by the difference from a perturbed twin solution.
+
+Valid for loads of any direction, eccentricity or couple, shaken bases, soft layers, segments,
+dashpots, mass-proportional damping, any ends, gravity and prestress; no joint opens, slips or
+softens.
+"""
+
+import numpy as np
+import xarray as xr
+from scipy.sparse.linalg import spsolve
+
+from jointwave.cases.effects import is_spatial
+from jointwave.cases.geometry.cell_complex import OUTSIDE
+from jointwave.cases.histories import Step
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.face import face_points
+from jointwave.cases.material.jointed_rock import JointedRock
+from jointwave.cases.sampling import interpolation, sample_times
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.blocks.system import (
+    BlockSystem,
+    Contacts,
+    first_order,
+    relative,
+    resistance,
+)
+from jointwave.compare.exact.conditions import DAMPED, LAYERS, drive, holds, static_stress
+from jointwave.compare.exact.linear import bound, twins
+from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
+from jointwave.results.dataset import dataset
+
+MOST_BLOCKS = {1: 2000, 3: 500}
+HELD = (
+    "reversed load",
+    "segments",
+    "scatter",
+    "gravity",
+    "prestress",
+    "mass damping",
+    "fixed start",
+    *DAMPED,
+    *LAYERS,
+)
+
+
+def applies(scene: Scene) -> Answer:
+    """Return whether the scene's chain of rigid blocks is linear and not too long."""
+    return holds(scene, HELD, _too_many(scene, 1))
+
+
+def applies_in_space(scene: Scene) -> Answer:
+    """Return whether the scene's row of blocks is spatial, linear and not too long."""
+    p = calibrate(scene)
+    if not is_spatial(scene):
+        return Answer("the motion is axial: see lattice")
+    return holds(
+        scene,
+        ("spatial motion", *HELD),
+        (p.friction is not None or p.cohesion is not None, "a joint can slip"),
+        (scene.motion.rotation == "finite", "rotations are finite"),
+        _too_many(scene, 3),
+    )
+
+
+def _too_many(scene: Scene, dim: int) -> tuple[bool, str]:
+    most = MOST_BLOCKS[dim]
+    many = f"more than {most:,} blocks: the matrix exponential is dense"
+    return scene.block_count > most, many
+
+
+def solve(scene: Scene) -> xr.Dataset:
+    """Return stress, velocity and displacement of the scene's row of blocks; in space also shear
+    and rotation."""
+    forces, rate, motion = response(scene)
+    waves = {"stress": forces[:, :, 0], "velocity": rate[:, :, 0], "displacement": motion[:, :, 0]}
+    spatial = is_spatial(scene)
+    if spatial:
+        turned = motion[:, :, 3:] if scene.motion.rotation != "none" else 0 * motion
+        waves = {"stress": forces[:, :, 1], "shear": forces[:, :, [0, 2]], "rotation": turned}
+        waves |= {"velocity": rate[:, :, :3], "displacement": motion[:, :, :3]}
+    errors = {name: bound(*pair) for name, pair in waves.items()}
+    fields = {name: x[0] if x.ndim == 3 else x[0].swapaxes(1, 2) for name, x in waves.items()}
+    name = (IN_SPACE if spatial else AXIAL).name
+    return dataset(scene, name, sample_times(scene), errors=errors, **fields)
+
+
+def response(scene: Scene) -> list[np.ndarray]:
+    """Return the tractions (Pa), velocities and displacements (m, rad) at the receivers
+    [2, receivers, freedoms, n] of a linear row and of its twin (`linear.twins`): the response to
+    the drive, that to sudden gravity, and the initial state."""
+    one, times, signal = system_of(scene), sample_times(scene), drive(scene)
+    sections, points = reads(scene)
+    force, passes = slice(len(sections)), slice(sections.shape[1])
+    rows = [sections @ one.forces[passes], points @ one.velocity, points @ one.displacement]
+    out = sum(
+        twins(one.matrix, vector, np.concatenate(rows), history, times)
+        for vector, history in ((one.load, signal), (one.steady, Step(1.0)))
+    )
+    pushed = np.outer(signal.value(times), one.direct[passes]) + one.initial[passes]
+    out[..., force] += pushed @ sections.T
+    out[..., out.shape[2] - len(points) :] += points @ one.rest
+    parts = np.split(out, len(sections) + len(points) * np.arange(2), axis=2)
+    c = len(own_freedoms(scene))
+    return [part.reshape(2, len(times), -1, c).transpose(0, 2, 3, 1) for part in parts]
+
+
+def system_of(scene: Scene) -> BlockSystem:
+    """Return the first-order form of a scene's row."""
+    own, base, p = own_freedoms(scene), None, calibrate(scene)
+    mass, contacts = bodies(scene)
+    if scene.shakes_base:
+        base = np.zeros(mass.shape)
+        base[p.block_count] = np.array([*scene.load.direction, 0.0, 0.0, 0.0])[own]
+    return first_order(
+        mass,
+        contacts,
+        push=drive_vector(scene)[own],
+        base=base,
+        alpha=p.mass_damping or 0.0,
+        start=_at_start(scene, contacts),
+        one_sided=1 + np.flatnonzero(~p.tension),
+    )
+
+
+def own_freedoms(scene: Scene) -> list[int]:
+    """Return which of (u_x, u_y, u_z, theta_x, theta_y, theta_z) the blocks of a scene have."""
+    if not is_spatial(scene):
+        return [1]
+    return list(range(3 if scene.motion.rotation == "none" else 6))
+
+
+def bodies(scene: Scene, held: bool = False) -> tuple[np.ndarray, Contacts]:
+    """Return the masses of the blocks, the start's face and the end's face, [N + 2, freedoms], and
+    the contacts, those of the faces with the ground last; without slip, opening and softening.
+
+    held : as the row stands under gravity, its ends fixed where they bear it, else free.
+    """
+    p, own = calibrate(scene), own_freedoms(scene)
+    n = p.block_count
+    kinds = [str(scene.ends.start), str(scene.ends.end)]
+    if held:
+        bears = (kind == "fixed" or b for kind, b in zip(kinds, scene.bears, strict=True))
+        kinds = ["fixed" if one else "free" for one in bears]
+    rocks = p.at_start, p.at_end
+    start, end = map(_end, kinds, rocks)
+    springs = np.stack([p.stiffness, p.shear_stiffness], axis=1)
+    etas = np.zeros(n - 1) if p.joint_time_constant is None else p.joint_time_constant
+    springs, dashpots = (
+        np.concatenate([[a], joints, [b]])
+        for a, joints, b in zip(start, (springs, etas[:, None] * springs), end, strict=True)
+    )
+    masses = np.full(n, p.block_mass) if p.masses is None else p.masses
+    inertia = np.array([p.inertia_across, p.inertia_along, p.inertia_across])
+    blocks = np.concatenate([np.tile(masses, (3, 1)).T, np.tile(inertia, (n, 1))], axis=1)[:, own]
+    matched = np.flatnonzero([kind == "matched" for kind in kinds])
+    faces = np.full((2, len(own)), np.inf)
+    faces[matched] = 0.0
+    y, pairs = p.contact_y, np.stack([np.r_[n, :n], np.r_[:n, n + 1]], axis=1)
+    along = y[:, None] - np.concatenate([p.centre_y, y[[0, -1]]])[pairs]
+    axis = np.array([[0.0, 1.0, 0.0]]) if len(own) > 1 else np.ones((1, 1))
+    x, z, area = face_points(
+        scene.pillar.side, scene.joints.contact_points, scene.joints.point_rule
+    )
+    second = np.diag([area @ x**2, 0.0, area @ z**2])
+    behind = np.array([[one.impedance, one.shear_impedance] for one in rocks])[matched]
+    ground = np.stack([n + matched, np.full(len(matched), OUTSIDE)], axis=1)
+    count = n + 1 + len(matched)
+    contacts = Contacts(
+        blocks=np.concatenate([pairs, ground]),
+        arm=np.concatenate([along, np.zeros(ground.shape)])[..., None] * axis,
+        normal=np.tile(axis, (count, 1)),
+        area=np.full(count, p.area),
+        second=np.tile(second if len(own) > 1 else 0.0, (count, 1, 1)),
+        springs=np.concatenate([springs, 0 * behind]),
+        dashpots=np.concatenate([dashpots, behind]),
+    )
+    return np.concatenate([blocks, faces]), contacts
+
+
+def _end(kind: str, rock: JointedRock) -> tuple[np.ndarray, np.ndarray]:
+    """Return the springs and the dashpots of the contact at an end, normal and shear."""
+    springs = np.zeros(2)
+    if kind in ("free", "quiet"):
+        return springs, (kind == "quiet") * np.array([rock.impedance, rock.shear_impedance])
+    springs = 2 * np.array([rock.regular_stiffness, rock.regular_shear_stiffness])
+    if kind == "fixed":
+        springs = np.array([rock.wall_stiffness, rock.wall_shear_stiffness])
+    return springs, (rock.time_constant or 0.0) * springs
+
+
+def drive_vector(scene: Scene) -> np.ndarray:
+    """Return the force and moment [6] at the start face's centre under an end stress of 1 Pa."""
+    load, vector = scene.load, np.zeros(6)
+    if scene.shakes_base:
+        return vector
+    if load.arm:
+        vector[3:] = load.arm * np.array(load.direction)
+    else:
+        vector[:3] = load.direction
+        vector[3:] = np.cross([load.at[0], 0.0, load.at[1]], load.direction)
+    return scene.pillar.area * vector
+
+
+def _at_start(scene: Scene, contacts: Contacts) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the displacement of the blocks (m) and the forces of the contacts (N, N m) before the
+    load, at rest under static gravity, and the acceleration (m/s2) under sudden gravity.
+
+    Quiet and matched ends that bear the weight exert what they would if they were fixed.
+    """
+    own, gravity = own_freedoms(scene), scene.gravity
+    mass, held = bodies(scene, held=True)
+    count, c = len(mass) - 2, len(own)
+    fall, pressed = np.zeros(6), np.zeros(6)
+    pressed[1] = static_stress(scene) * scene.pillar.area
+    if gravity is not None:
+        fall[:3] = gravity.acceleration * np.array(gravity.direction)
+    initial, sections = np.zeros(c * len(contacts.area)), slice(c * (count + 1))
+    initial[sections] = np.tile(pressed[own], count + 1)
+    sinks = np.tile(fall[own], count)
+    if gravity is None or not sinks.any() or not (gravity.static or any(scene.bears)):
+        return 0 * sinks, initial, sinks
+    B, masses = relative(held, *mass.shape)[:, : c * count], mass[:count].ravel()
+    D = resistance(held, held.springs, c)
+    rest = spsolve((B.T @ D @ B).tocsc(), masses * sinks)
+    borne = -(D @ (B @ rest))
+    if gravity.static:
+        initial[sections] += borne
+        return rest, initial, 0 * sinks
+    start, end = scene.bears
+    borne[c:-c] = 0.0
+    borne[:c] *= start
+    borne[-c:] *= end
+    initial[sections] += borne
+    return 0 * rest, initial, sinks + B.T @ borne / masses
+
+
+def contact_forces(
+    one: BlockSystem, states: np.ndarray, drive: np.ndarray | float = 0.0
+) -> np.ndarray:
+    """Return the forces of a chain's contacts [..., N + 1] in states [..., m] under a drive [...],
+    N, compression positive."""
+    strains, count, own = states @ one.strains.T, len(one.initial), one.one_sided
+    springs = strains[..., :count] @ one.resists[:, :count].T + one.initial
+    forces = strains @ one.resists.T + np.multiply.outer(drive, one.direct) + one.initial
+    forces[..., own] = np.where(springs[..., own] < 0, 0.0, np.maximum(forces[..., own], 0.0))
+    return forces[..., : len(one.mass) + 1]
+
+
+def receivers(
+    scene: Scene, one: BlockSystem, states: np.ndarray, drive: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return stress (Pa), velocity (m/s) and displacement (m) [receivers, n] of a chain in states
+    [n, m] under a drive [n].
+
+    Stress is interpolated between the start, the contacts and the end; velocity and displacement
+    between the block centres.
+    """
+    sections, points = reads(scene)
+    stress = sections @ contact_forces(one, states, drive).T
+    moved = points @ (states @ one.displacement.T + one.rest).T
+    return stress, points @ (states @ one.velocity.T).T, moved
+
+
+def reads(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """Return the linear interpolations from the forces of contacts to tractions in sections, and
+    from the motion of blocks to that of points, as matrices."""
+    p, record, found = calibrate(scene), scene.record, []
+    for nodes, places in ((p.contact_y, record.stress), (p.centre_y, record.velocity)):
+        left, right, weight = interpolation(nodes, places)
+        matrix, i = np.zeros((len(places), len(nodes))), np.arange(len(places))
+        matrix[i, left] += 1 - weight
+        matrix[i, right] += weight
+        found.append(np.kron(matrix, np.eye(len(own_freedoms(scene)))))
+    return found[0] / p.area, found[1]
+
+
+AXIAL = Solver(
+    name="lattice",
+    rock=Rock.RIGID_BLOCKS,
+    label="rigid blocks, exact",
+    line=thin("#00349a", 9, (0, 4)),
+    applies=applies,
+    run=solve,
+    distances={Kind.NUMERICAL: {"dem": "time stepping of the rigid blocks"}},
+)
+IN_SPACE = Solver(
+    name="spatial-lattice",
+    rock=Rock.RIGID_BLOCKS,
+    dimension=3,
+    label="blocks in space, exact",
+    line=thin("#00349a", 9, (0, 9)),
+    applies=applies_in_space,
+    run=solve,
+    distances={Kind.NUMERICAL: {"dem": "time stepping of the rigid blocks in space"}},
+)
