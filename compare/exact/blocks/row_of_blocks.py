@@ -103,14 +103,13 @@ def response(scene: Scene) -> list[np.ndarray]:
     one, times, signal = system_of(scene), sample_times(scene), drive(scene)
     sections, points = reads(scene)
     force, passes = slice(len(sections)), slice(sections.shape[1])
-    rows = [sections @ one.forces[passes], points @ one.velocity, points @ one.displacement]
-    out = sum(
-        twins(one.matrix, vector, np.concatenate(rows), history, times)
-        for vector, history in ((one.load, signal), (one.steady, Step(1.0)))
-    )
+    parts = [sections @ one.forces[passes], points @ one.velocity, points @ one.displacement]
+    rows = np.concatenate(parts)
+    out = twins(one.matrix, one.load, rows, signal, times)
+    out += twins(one.matrix, one.steady, rows, Step(1.0), times)
     pushed = np.outer(signal.value(times), one.direct[passes]) + one.initial[passes]
     out[..., force] += pushed @ sections.T
-    out[..., out.shape[2] - len(points) :] += points @ one.rest
+    out[..., len(rows) - len(points) :] += points @ one.rest
     parts = np.split(out, len(sections) + len(points) * np.arange(2), axis=2)
     c = len(own_freedoms(scene))
     return [part.reshape(2, len(times), -1, c).transpose(0, 2, 3, 1) for part in parts]
@@ -191,13 +190,15 @@ def bodies(scene: Scene, held: bool = False) -> tuple[np.ndarray, Contacts]:
 
 def _end(kind: str, rock: JointedRock) -> tuple[np.ndarray, np.ndarray]:
     """Return the springs and the dashpots of the contact at an end, normal and shear."""
-    springs = np.zeros(2)
-    if kind in ("free", "quiet"):
-        return springs, (kind == "quiet") * np.array([rock.impedance, rock.shear_impedance])
-    springs = 2 * np.array([rock.regular_stiffness, rock.regular_shear_stiffness])
-    if kind == "fixed":
-        springs = np.array([rock.wall_stiffness, rock.wall_shear_stiffness])
-    return springs, (rock.time_constant or 0.0) * springs
+    springs = {
+        "matched": (2 * rock.regular_stiffness, 2 * rock.regular_shear_stiffness),
+        "fixed": (rock.wall_stiffness, rock.wall_shear_stiffness),
+    }
+    if kind not in springs:
+        Z = np.array([rock.impedance, rock.shear_impedance])
+        return 0 * Z, Z if kind == "quiet" else 0 * Z
+    own = np.array(springs[kind])
+    return own, (rock.time_constant or 0.0) * own
 
 
 def drive_vector(scene: Scene) -> np.ndarray:
