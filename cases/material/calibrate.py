@@ -47,78 +47,73 @@ def _properties(scene: Scene) -> Properties:
     blocks = blocks_of_pillar(scene)
     law, segment = blocks.contacts.joint_set, blocks.body.region
     y = np.concatenate([[0.0], blocks.contacts.centroid[:, 0], [scene.pillar.length]])
-    bars, weld = tuple(rock_of(scene.alone(one)) for one in scene.parts), law == NO_SET
+    rocks, weld = tuple(rock_of(scene.alone(one)) for one in scene.parts), law == NO_SET
     changed = np.flatnonzero(law > 0)
     soft = changed[np.argsort(law[changed])]
     laws = [scene.joints, *scene.layers, *[JointLaw()] * bool(weld.any())]
     return Properties(
         contact_y=y,
         segment=segment,
-        parts=() if scene.is_uniform else bars,
+        parts=() if scene.is_uniform else rocks,
         soft=soft,
         weld=weld,
         tension=np.array([one.tension is not False for one in laws])[law],
-        **_springs(scene, bars, segment, np.diff(y), soft),
-        **vars(mean_of(bars)),
+        **_springs(scene, rocks, segment, np.diff(y), soft),
+        **vars(mean_of(rocks)),
         **vars(strength_of(laws, law)),
     )
 
 
 def _springs(
     scene: Scene,
-    bars: tuple[JointedRock, ...],
+    rocks: tuple[JointedRock, ...],
     segment: np.ndarray,
     thickness: np.ndarray,
     soft: np.ndarray,
 ) -> dict[str, Any]:
     """Return stiffness and time constants of each joint, ordinary ones and soft layers."""
 
-    def of_blocks(name: str, absent: float = 0.0) -> np.ndarray:
-        values = [getattr(one, name) for one in bars]
-        return np.array([absent if one is None else one for one in values])[segment]
+    def of_blocks(*names: str, absent: float = 0.0) -> np.ndarray:
+        values = [[getattr(one, name) for one in rocks] for name in names]
+        return np.array([[absent if x is None else x for x in row] for row in values])[:, segment]
 
-    spacing, density, eta = map(of_blocks, ("spacing", "density", "time_constant"))
-    modulus, shear_modulus = map(of_blocks, ("modulus", "shear_modulus"))
-    intact, shear_intact = (
-        of_blocks(name, inf) for name in ("intact_modulus", "intact_shear_modulus")
-    )
+    spacing, density, eta = of_blocks("spacing", "density", "time_constant")
     thickness = thickness if scene.scatter and scene.scatter.spacing else spacing
-    half, half_rock = spacing * (1 / modulus - 1 / intact) / 2, thickness / intact / 2
+    moduli = of_blocks("modulus", "shear_modulus")
+    intact = of_blocks("intact_modulus", "intact_shear_modulus", absent=inf)
+    half, half_rock = spacing * (1 / moduli - 1 / intact) / 2, thickness / intact / 2
     own, rock = _of_pairs(half) * _scattered(scene, segment), _of_pairs(half_rock)
-    compliance = own + rock
-    own_eta = _weighted(half, eta)
-    joint_eta = _joined(own, own_eta, rock, _weighted(half_rock, eta))
-    regular, ordinary_eta = 1 / compliance, joint_eta.copy()
-    shear, shear_rock = (
-        _of_pairs(spacing / shear_modulus / 2),
-        _of_pairs(spacing / shear_intact / 2),
-    )
+    own_eta = _weighted(half[0], eta)
+    joint_eta = _joined(own[0], own_eta, rock[0], _weighted(half_rock[0], eta))
+    regular, ordinary_eta = 1 / (own[0] + rock[0]), joint_eta.copy()
     apart, areal_mass = _of_pairs(spacing / 2), _of_pairs(density * spacing / 2)
 
     for j, given, layer in zip(soft, scene.soft_layers, scene.layers, strict=True):
         if k := given.own_stiffness(apart[j]):
-            own[j], compliance[j] = 1 / k, 1 / k + rock[j]
+            own[0, j] = 1 / k
+        compliance = own[0, j] + rock[0, j]
         if given.shear_stiffness:
-            shear[j] = 1 / given.shear_stiffness + shear_rock[j]
+            own[1, j] = 1 / given.shear_stiffness
         elif k and not scene.joints.shear_stiffness:
-            shear[j] = compliance[j] * modulus[j] / shear_modulus[j]
+            own[1, j] = compliance * moduli[0, j] / moduli[1, j] - rock[1, j]
         if scene.damping.rayleigh is not None or layer.damping_ratio is not None:
-            of = areal_mass[j], 1 / compliance[j]
+            of = areal_mass[j], 1 / compliance
             own_eta[j] = joint_eta[j] = joint_time_constant(scene, layer.damping_ratio, *of)
 
     known, damped = bool(np.isfinite(intact).all()), bool(eta.any() or joint_eta.any())
+    normal, shear = 1 / (own + rock)
     with np.errstate(divide="ignore"):
-        own_stiffness, own_shear = 1 / own, 1 / np.maximum(shear - shear_rock, 0.0)
+        own_normal, own_shear = 1 / np.maximum(own, 0.0)
     return {
-        "stiffness": 1 / compliance,
-        "shear_stiffness": 1 / shear,
-        "own_stiffness": own_stiffness if known else None,
+        "stiffness": normal,
+        "shear_stiffness": shear,
+        "own_stiffness": own_normal if known else None,
         "own_shear_stiffness": own_shear if known else None,
         "joint_time_constant": joint_eta if damped else None,
         "own_time_constant": own_eta if damped else None,
         "ordinary_time_constant": ordinary_eta,
         "regular": regular,
-        "rock_between": rock,
+        "rock_between": rock[0],
     }
 
 
@@ -133,8 +128,8 @@ def _scattered(scene: Scene, segment: np.ndarray) -> np.ndarray:
 
 
 def _of_pairs(half: np.ndarray) -> np.ndarray:
-    """Return the sum of two neighbours [N - 1]."""
-    return half[1:] + half[:-1]
+    """Return the sum of two neighbours [..., N - 1]."""
+    return half[..., 1:] + half[..., :-1]
 
 
 def _joined(one: np.ndarray, eta: np.ndarray, other: np.ndarray, beta: np.ndarray) -> np.ndarray:

@@ -187,25 +187,25 @@ def joint_time_constant(
     return 2 * (ratio or 0.0) * sqrt(areal_mass / stiffness)
 
 
-def mean_of(bars: Sequence[JointedRock]) -> JointedRock:
-    """Return the bar that a row of bars is for long waves, of their mean density and compliance
+def mean_of(rocks: Sequence[JointedRock]) -> JointedRock:
+    """Return the rock that a row of rocks is for long waves, of their mean density and compliance
     (Backus, J. Geophys. Res. 67, 1962), damped like the one that is damped most."""
-    if len(bars) == 1:
-        return bars[0]
-    lengths = np.array([one.block_count * one.spacing for one in bars])
-    count = sum(one.block_count for one in bars)
+    if len(rocks) == 1:
+        return rocks[0]
+    lengths = np.array([one.block_count * one.spacing for one in rocks])
+    count = sum(one.block_count for one in rocks)
 
     def in_series(name: str) -> Any:
-        values = [getattr(one, name) for one in bars]
+        values = [getattr(one, name) for one in rocks]
         return float(lengths.sum() / (lengths / np.array(values)).sum()) if all(values) else None
 
     moduli = ("modulus", "shear_modulus", "intact_modulus", "intact_shear_modulus")
     return replace(
-        bars[0],
+        rocks[0],
         block_count=count,
         spacing=float(lengths.sum()) / count,
-        density=float(np.average([one.density for one in bars], weights=lengths)),
-        poisson=max((one.poisson for one in bars), key=abs),
-        time_constant=max(one.time_constant or 0.0 for one in bars) or None,
+        density=float(np.average([one.density for one in rocks], weights=lengths)),
+        poisson=max((one.poisson for one in rocks), key=abs),
+        time_constant=max(one.time_constant or 0.0 for one in rocks) or None,
         **{name: in_series(name) for name in moduli},
     )
