@@ -103,7 +103,7 @@ def blocks_of(body: Complex, tolerance: float, in_rows: bool = True) -> Blocks:
 
     tolerance : m, below which vertices lie in a line. in_rows : False numbers them as the cells.
     """
-    moments = facet_moments(body, np.arange(len(body.sides)))
+    moments = facet_moments(body)
     half = body.halves()
     m = cell_moments(body, half, Moments(*(array[half.facet] for array in moments)))
     order = _in_rows(body, m) if in_rows else np.flatnonzero(m.size > 0)

@@ -6,16 +6,18 @@ bounds: whatever is cut, removed or joined, volumes add up and an inner facet be
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.geometry.relations import composed, distinct, ordered
+from jointwave.cases.geometry.relations import composed, distinct, merged
 
 OUTSIDE = -1  #: in place of a cell: beyond the domain, or in an opening
 NO_SET = -1  #: in place of a joint set: the boundary, or a cut through intact rock
+GENERIC = np.array([0.5488, 0.7152, 0.4332])  # no plane of a scene is likely to hold it
 PARALLEL = 1e-12  #: sine of the angle between planes below which they have one normal
 
 
@@ -123,6 +125,11 @@ class Complex:
         """Return the pairs (cell, vertex) of halves, int array [m, 2], sorted, each once."""
         return self.vertices_of(np.stack([half.cell, half.facet], axis=1))
 
+    def corners_of_facets(self) -> np.ndarray:
+        """Return the pairs (facet, vertex) of all facets, int array [m, 2], sorted, each once."""
+        number = np.arange(len(self.sides))
+        return self.vertices_of(np.stack([number, number], axis=1))
+
     def centres(self, half: Halves | None = None) -> np.ndarray:
         """Return the mean of each cell's vertices [count, d], which lies inside; nan of none."""
         return self.means(self.corners(half or self.halves()), self.count)
@@ -188,69 +195,60 @@ class Complex:
         return np.concatenate([self.normals, normal[None]]), len(self.normals), False
 
 
+def from_facets(
+    x: np.ndarray, loops: Sequence[Sequence[int]], sides: np.ndarray, normal: np.ndarray
+) -> Complex:
+    """Return the complex of facets, by their vertices in order around them.
+
+    x : float array [v, d], m. sides : the cells that the unit normals [n, d] of facets point out of
+    and into, int array [n, 2].
+    """
+    turned = (normal @ GENERIC[: x.shape[1]] < 0)[:, None]
+    normals, plane = np.unique(
+        merged(np.where(turned, -normal, normal), PARALLEL), return_inverse=True
+    )
+    plane, normals = plane.reshape(-1), normal[normals]
+    turned = (normal * normals[plane]).sum(axis=1) < 0
+    used, vertex = np.unique(np.concatenate(loops), return_inverse=True)
+    vertex, size = vertex.reshape(-1), np.array(list(map(len, loops)))
+    facet, bounds = np.repeat(np.arange(len(loops)), size), []
+    if x.shape[1] == 2:
+        bounds = [np.stack([facet, vertex], axis=1)]
+    elif x.shape[1] == 3:
+        after = np.arange(1, len(vertex) + 1)
+        after[np.cumsum(size) - 1] = np.cumsum(size) - size
+        steps = np.sort(np.stack([vertex, vertex[after]], axis=1), axis=1)
+        edges, edge = np.unique(steps, axis=0, return_inverse=True)
+        bounds = [np.stack([np.repeat(np.arange(len(edges)), 2), edges.ravel()], axis=1)]
+        bounds.append(np.stack([facet, edge.reshape(-1)], axis=1))
+    return Complex(
+        vertices=x[used],
+        bounds=tuple(bounds),
+        sides=np.where(turned[:, None], sides[:, ::-1], sides),
+        plane=plane,
+        joint_set=np.full(len(sides), NO_SET),
+        side=np.zeros(len(sides), np.int64),
+        normals=normals,
+        region=np.full(sides.max() + 1, -1),
+        count=int(sides.max()) + 1,
+    )
+
+
 def box(low: np.ndarray, high: np.ndarray) -> Complex:
     """Return a box in any dimension as one cell; low, high : its corners, float arrays [d], m."""
     dim = len(low)
-    ends = np.array([low, high], dtype=float)
-    cells = [list(product((0, 1, 2), repeat=dim))]  # 2: from the low to the high end of an axis
-    of_dim = [[one for one in cells[0] if one.count(2) == k] for k in range(dim + 1)]
-    place = [{one: i for i, one in enumerate(ones)} for ones in of_dim]
-    bounds = [
-        np.array(
-            [
-                (i, place[k - 1][(*one[:axis], end, *one[axis + 1 :])])
-                for i, one in enumerate(of_dim[k])
-                for axis in range(dim)
-                if one[axis] == 2
-                for end in (0, 1)
-            ]
-        )
-        for k in range(1, dim)
-    ]
-    axes = [next(axis for axis in range(dim) if one[axis] != 2) for one in of_dim[dim - 1]]
-    high_end = np.array([one[axis] == 1 for one, axis in zip(of_dim[dim - 1], axes, strict=True)])
-    return _one_cell(
-        np.array([[ends[one[axis], axis] for axis in range(dim)] for one in of_dim[0]]),
-        tuple(bounds),
-        np.array(axes),
-        high_end,
-        np.eye(dim),
-    )
+    x = np.array(list(product(*zip(low, high, strict=True))), dtype=float)
+    corner = np.arange(2**dim).reshape((2,) * dim)
+    ends = [np.take(corner, end, axis).ravel() for axis in range(dim) for end in (0, 1)]
+    loops = [one[[0, 1, 3, 2]] if dim == 3 else one for one in ends]
+    outward = np.repeat(np.eye(dim), 2, axis=0)
+    sides = np.tile([[OUTSIDE, 0], [0, OUTSIDE]], (dim, 1))
+    return from_facets(x, loops, sides, outward)
 
 
 def polygon(corners: np.ndarray) -> Complex:
     """Return a convex polygon (float array [n, 2], m, counter-clockwise) as one cell."""
-    n = len(corners)
-    at, along = np.arange(n), np.roll(corners, -1, axis=0) - corners
+    n, along = len(corners), np.roll(corners, -1, axis=0) - corners
     outward = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.hypot(*along.T)[:, None]
-    bounds = np.stack([np.repeat(at, 2), np.stack([at, np.roll(at, -1)], axis=1).ravel()], axis=1)
-    found = _one_cell(corners, (bounds,), at, np.ones(n, bool), outward[:0])
-    for k, normal in enumerate(outward):
-        normals, plane, turned = found.with_normal(normal)
-        found.plane[k] = plane
-        found.sides[k] = [OUTSIDE, 0] if turned else [0, OUTSIDE]
-        found = replace(found, normals=normals)
-    return found
-
-
-def _one_cell(
-    vertices: np.ndarray,
-    bounds: tuple[np.ndarray, ...],
-    plane: np.ndarray,
-    out: np.ndarray,
-    normals: np.ndarray,
-) -> Complex:
-    """Return one cell; out : whether the normals of its facets point out of it, bool array [f]."""
-    sides = np.where(out[:, None], [[0, OUTSIDE]], [[OUTSIDE, 0]])
-    none = np.full(len(out), NO_SET)
-    return Complex(
-        vertices=vertices,
-        bounds=tuple(ordered(one) for one in bounds),
-        sides=sides,
-        plane=plane.copy(),
-        joint_set=none,
-        side=np.zeros(len(out), np.int64),
-        normals=normals,
-        region=np.full(1, -1),
-        count=1,
-    )
+    loops = [[k, (k + 1) % n] for k in range(n)]
+    return from_facets(corners, loops, np.tile([0, OUTSIDE], (n, 1)), outward)

@@ -23,8 +23,9 @@ class Moments(NamedTuple):
     second: np.ndarray
 
 
-def facet_moments(body: Complex, facets: np.ndarray) -> Moments:
-    """Return the moments of some facets, int array [n]."""
+def facet_moments(body: Complex, facets: np.ndarray | None = None) -> Moments:
+    """Return the moments of some facets, int array [n], or of all."""
+    facets = np.arange(len(body.sides)) if facets is None else facets
     number = len(facets)
     if body.dim == 1:
         simplices, which = body.vertices[facets][:, None], np.arange(number)

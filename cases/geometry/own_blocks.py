@@ -1,92 +1,138 @@
-"""Blocks of the user's own as a cell complex.
+"""Blocks of the user's own, and the cells of a mesh, as a cell complex.
 
-Vertices within a tolerance are one. Each face of a block is a convex polygon, in the plane an edge.
-Faces in space of two blocks that lie in one plane and overlap in part are cut into what they share
-and convex pieces of the rest. Then edges are split at the vertices on them: pieces that two blocks
-share have the same vertices, and the surface of each block is closed.
+Vertices within a tolerance are one. Faces of two blocks that lie in one plane are cut into what
+they share and convex pieces of the rest. Then edges are split at the vertices on them, so that
+pieces have the same edges as those beside them.
 """
 
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from itertools import chain
+from itertools import chain, pairwise, product
 from pathlib import Path
 
 import numpy as np
+import shapely
+from scipy.spatial import cKDTree
 
-from jointwave.cases.geometry.assembly import assembled, joined, merged
-from jointwave.cases.geometry.block_faces import faces_of, near, overlaid, steps
-from jointwave.cases.geometry.cell_complex import NO_SET, OUTSIDE, Complex
-from jointwave.cases.geometry.convex import ConvexBlocks
-from jointwave.cases.geometry.read_blocks import Given, read_blocks, read_cells
+from jointwave.cases.geometry.cell_complex import NO_SET, OUTSIDE, Complex, from_facets
+from jointwave.cases.geometry.measure import facet_moments
+from jointwave.cases.geometry.read_blocks import Given, Loop, read_blocks, read_cells
+from jointwave.cases.geometry.relations import joined, merged
+from jointwave.cases.geometry.solid_blocks import near, pieces_between, solids_of
+from jointwave.cases.geometry.solids import corners_of
 from jointwave.cases.gmsh_file import MeshError
 
-SAME = 1e-6  # of the extent: the default of the tolerance
-SAME_VERTEX = 1e-9  # of a mesh: vertices that are one
+SAME = 1e-6  # of the extent: corners of blocks that are one
 ALIKE = 1.0  # degrees: sets that are as near to a contact's plane but for this are not told apart
 
 
-def complex_of_file(
-    path: Path, names: Sequence[str], normals: np.ndarray, tolerance: float | None = None
-) -> Complex:
-    """Return the blocks of a file; names and normals (float array [sets, d]) : of the joint sets.
-
-    Contacts belong to the set of their group "joint NAME", and are intact rock in none; in a file
-    without groups to the only set, or to the one whose planes are nearest to theirs. tolerance : m,
-    default a millionth of the extent. Raises MeshError, in one phrase.
-    """
-    given = read_blocks(path)
-    return with_sets(complex_of(given, tolerance), given.joints, names, normals)
-
-
-def complex_of(given: Given, tolerance: float | None = None) -> Complex:
-    """Return blocks as a complex, whose joint sets are the groups of the file, in their order."""
-    if tolerance is None:
-        tolerance = SAME * float(np.ptp(given.x, axis=0).max())
-    x, number = merged(given.x, tolerance)
-    joints = enumerate((given.joints or {}).values())
-    group = {frozenset(number[facet].tolist()): k for k, own in joints for facet in own}
-    faces = faces_of(
-        x, [[number[loop] for loop in one] for one in given.blocks], group, given.names, tolerance
-    )
-    solids = ConvexBlocks(faces, given.names, tolerance)
-    solids.check_convex()
-    solids.check_apart()
-    if x.shape[1] == 3:
-        faces = overlaid(faces, solids.normal, tolerance)
-    return _with_sides(assembled(faces, x, given.names, tolerance))
-
-
-def complex_of_blocks(path: Path) -> tuple[Complex, list[str] | None]:
-    """Return the blocks of a file as a complex, and the names of its groups of joints, which are
-    its joint sets; None of a file without groups. Raises MeshError, in one phrase."""
-    given = read_blocks(path)
-    return complex_of(given), None if given.joints is None else list(given.joints)
+def complex_of_file(path: Path, mesh: bool = False) -> tuple[Complex, list[str] | None]:
+    """Return the blocks of a file, or the cells of a mesh, as a complex, and the names of its
+    groups of joints, which are its joint sets; None of a file without groups. Raises MeshError, in
+    one phrase."""
+    given = read_cells(path) if mesh else read_blocks(path)
+    tolerance = SAME * float(np.ptp(given.x, axis=0).max())
+    number = merged(given.x, tolerance)
+    x, blocks = given.x, [[[number[f] for f in part] for part in one] for one in given.blocks]
+    solids = solids_of(x, blocks, given.names, tolerance)
+    pieces = pieces_between(solids, given.names, tolerance)
+    face, beyond = (np.array([one[k] for one in pieces]) for k in (1, 2))
+    cell = np.repeat(np.arange(len(solids)), [len(one.faces) for one in solids])
+    normals = np.concatenate([one.normals for one in solids])
+    shared = beyond != OUTSIDE  # faces that share a piece have one normal, that of the first
+    group = joined(np.stack([face[shared], beyond[shared]], axis=1), len(normals))
+    of_group = normals[np.unique(group, return_index=True)[1]][group]
+    normal = of_group * np.sign((of_group * normals).sum(axis=1))[:, None]
+    sides = np.stack([cell[face], np.where(shared, cell[beyond], OUTSIDE)], axis=1)
+    places = np.concatenate([x, *(one.corners for one in pieces)])
+    ends = np.cumsum([len(x), *(len(one.corners) for one in pieces)])
+    around = np.split(merged(places, tolerance), ends[:-1])[1:]
+    loops = _with_vertices(places, around, tolerance)
+    held = [k for k, loop in enumerate(loops) if len(loop) >= x.shape[1]]
+    body = from_facets(places, [loops[k] for k in held], sides[held], normal[face[held]])
+    if given.joints is None:
+        return _with_sides(body), None
+    if mesh:
+        _check_whole(given, number)
+    return _with_sides(_with_joints(body, blocks, given, number)), list(given.joints)
 
 
-def complex_of_cells(path: Path) -> tuple[Complex, list[str]]:
-    """Return the cells of a gmsh file in the plane as a complex, and the names of its groups of
-    joints, which are its joint sets. Raises MeshError, where rock is cut without a joint, too."""
-    given = read_cells(path)
-    tolerance = SAME_VERTEX * float(np.ptp(given.x, axis=0).max())
-    body, number = complex_of(given, tolerance), merged(given.x, tolerance)[1]
-    edges = np.sort([edge for (loop,) in given.blocks for edge in steps(loop)], axis=1)
-    own = np.unique(np.concatenate([np.sort(number[edges], axis=1), edges], axis=1), axis=0)[:, :2]
-    twice = set(map(frozenset, own[1:][(own[1:] == own[:-1]).all(axis=1)].tolist()))
-    joints = chain.from_iterable((given.joints or {}).values())
-    if loose := list(twice - {frozenset(number[facet].tolist()) for facet in joints}):
-        no_group = f"no group 'joint ...', the first{near(given.x[list(loose[0])])}"
-        raise MeshError(f"{len(loose)} edges coincide with others and are in {no_group}")
-    return body, list(given.joints or {})
+def _check_whole(given: Given, number: np.ndarray) -> None:
+    """Raise MeshError where vertices of a mesh coincide, but for those of its joints."""
+    used = np.unique([v for part in chain.from_iterable(given.blocks) for v in part[0]])
+    times = np.bincount(number[used], minlength=len(number))
+    assert given.joints is not None
+    times[number[[v for facets in given.joints.values() for facet in facets for v in facet]]] = 0
+    if (times > 1).any():
+        no_group = f"no group 'joint ...', the first{near(given.x[times > 1][:1])}"
+        raise MeshError(f"{(times > 1).sum()} vertices coincide with others and are in {no_group}")
+
+
+def _with_joints(body: Complex, blocks: list, given: Given, number: np.ndarray) -> Complex:
+    """Return a complex with the joints of a file: what two blocks share is of the group that all
+    facets of both are in. Raises MeshError for facets elsewhere, or in several groups."""
+    assert given.joints is not None
+    owners, groups = defaultdict[frozenset, set](set), defaultdict[frozenset, set](set)
+    for cell, parts in enumerate(blocks):
+        for loop in (loop.tolist() for part in parts for loop in part):
+            steps = zip(loop, [*loop[1:], loop[0]], strict=True)
+            for facet in [loop] if body.dim == 3 else steps:
+                owners[frozenset(facet)].add(cell)
+    of = {
+        frozenset(number[facet].tolist()): k
+        for k, facets in enumerate(given.joints.values())
+        for facet in facets
+    }
+    for facet, cells in owners.items():
+        groups[frozenset(cells)].add(of.get(facet, NO_SET))
+    index = {frozenset(pair): k for k, pair in enumerate(body.sides.tolist())}
+    if lost := [facet for facet in of if frozenset(owners[facet]) not in index]:
+        at = near(given.x[list(lost[0])])
+        raise MeshError(
+            f"{len(lost)} facets of its joints lie between no two blocks, the first{at}"
+        )
+    joint_set = body.joint_set.copy()
+    for pair in groups.keys() & index.keys():
+        joint_set[index[pair]], *others = groups[pair]
+        if others:
+            at = near(facet_moments(body).centroid[index[pair]][None])
+            raise MeshError(f"what two of its blocks share{at} is in no one group of joints")
+    return replace(body, joint_set=joint_set)
+
+
+def _with_vertices(x: np.ndarray, pieces: list[np.ndarray], tolerance: float) -> list[Loop]:
+    """Return pieces by their vertices, each once, in space with those of others on their edges."""
+    loops = [one[one != np.roll(one, 1)].tolist() for one in pieces]
+    if x.shape[1] == 2:
+        return loops
+    around = [list(pairwise([*loop, *loop[:1]])) for loop in loops]
+    one, other = np.unique(np.sort([step for own in around for step in own], axis=1), axis=0).T
+    used = np.unique([one, other])
+    along = x[other] - x[one]
+    length = np.linalg.norm(along, axis=1)
+    found = cKDTree(x[used]).query_ball_point((x[one] + x[other]) / 2, length / 2)
+    edge = np.repeat(np.arange(len(one)), list(map(len, found)))
+    vertex = used[np.concatenate(found).astype(np.int64)]
+    away = x[vertex] - x[one[edge]]
+    t = (away * along[edge]).sum(axis=1) / length[edge] ** 2
+    close = np.linalg.norm(away - t[:, None] * along[edge], axis=1) <= tolerance
+    close &= (vertex != one[edge]) & (vertex != other[edge])
+    on: dict[tuple[int, int], Loop] = defaultdict(list)
+    for k in np.flatnonzero(close)[np.argsort(t[close], kind="stable")]:
+        on[one[edge[k]], other[edge[k]]].append(int(vertex[k]))
+    return [
+        [v for a, b in own for v in (a, *on.get((a, b), ()), *on.get((b, a), ())[::-1])]
+        for own in around
+    ]
 
 
 def with_sets(
-    body: Complex,
-    groups: Iterable[str] | None,
-    names: Sequence[str],
-    normals: np.ndarray,
+    body: Complex, groups: Iterable[str] | None, names: Sequence[str], normals: np.ndarray
 ) -> Complex:
-    """Return a complex with the joint sets of a scene in place of the groups of a file, or of none:
-    see `complex_of_file`. Raises MeshError."""
+    """Return a complex whose joint sets are those of a scene, by their names and unit normals
+    [sets, d]: for groups of a file those of their names, in a file without groups the only set, or
+    the one whose planes are nearest to those of a contact. Raises MeshError."""
     plain, joint_set = [name.lower() for name in names], body.joint_set.copy()
     if groups is not None:
         groups = list(groups)
@@ -108,7 +154,7 @@ def with_sets(
         if (apart < ALIKE).any():
             k = int(np.argmin(apart))
             one, other = (repr(names[i]) for i in order[k])
-            at = near(body.vertices[_corners(body)[np.isin(_corners(body)[:, 0], inner[k]), 1]])
+            at = near(facet_moments(body, inner[k : k + 1]).centroid)
             raise MeshError(f"has a contact{at} whose plane is as near to set {one} as to {other}")
         joint_set[inner] = order[:, 0]
     return replace(body, joint_set=joint_set)
@@ -116,9 +162,9 @@ def with_sets(
 
 def _with_sides(body: Complex) -> Complex:
     """Return a complex with sides: 0 of the outer boundary, 1 + k of opening k, from left to right.
-    Raises MeshError for rock in pieces and for joints on the boundary."""
-    middle = body.means(_corners(body), len(body.sides))
-    wrong = (body.joint_set != NO_SET) & ~body.inner
+    Raises MeshError for rock in pieces, for an outline that touches itself and for joints on it."""
+    middle, outer = facet_moments(body).centroid, ~body.inner
+    wrong = (body.joint_set != NO_SET) & outer
     if wrong.any():
         at = f"the first{near(middle[wrong][:1])}"
         raise MeshError(f"{wrong.sum()} facets of its joints are on its boundary, {at}")
@@ -126,59 +172,32 @@ def _with_sides(body: Complex) -> Complex:
     if piece.any():
         at = near(body.centres()[piece != piece[0]][:1])
         raise MeshError(f"its rock is in {piece.max() + 1} separate pieces, one{at}")
-    rows = body.bounds[-1][~body.inner[body.bounds[-1][:, 0]]]
-    rows = rows[np.argsort(rows[:, 1], kind="stable")]
-    beside = np.flatnonzero(np.diff(rows[:, 1]) == 0)
-    surface = joined(np.stack([rows[beside, 0], rows[beside + 1, 0]], axis=1), len(body.sides))
-    rank = np.empty(len(body.vertices), np.int64)
-    rank[np.lexsort(body.vertices.T[::-1])] = np.arange(len(rank))
-    facet, vertex = _corners(body).T
-    leftmost = np.full(surface.max() + 1, len(rank))
-    outside = ~body.inner[facet]
-    np.minimum.at(leftmost, surface[facet[outside]], rank[vertex[outside]])
-    side = np.argsort(np.argsort(leftmost, kind="stable"))[surface]
-    return replace(body, side=np.where(body.inner, 0, side))
-
-
-def _corners(body: Complex) -> np.ndarray:
-    """Return the pairs (facet, vertex) of a complex."""
-    number = np.arange(len(body.sides))
-    return body.vertices_of(np.stack([number, number], axis=1))
-
-
-def around_rock(body: Complex) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
-    """Return the ends of all facets in the plane, int array [f, 2], with a cell to the left; the
-    cells to the left and right of them, int array [f, 2]; and the facets around the rock in order,
-    counter-clockwise, and around each opening, clockwise. Raises MeshError where they touch."""
-    ends = body.bounds[0][:, 1].reshape(-1, 2)
-    x, y = np.diff(body.vertices[ends], axis=1)[:, 0].T
-    out = body.normals[body.plane]
-    cells = np.where((out[:, 0] * y > out[:, 1] * x)[:, None], body.sides, body.sides[:, ::-1])
-    turned = (cells[:, 0] == OUTSIDE)[:, None]
-    ends, cells = np.where(turned, ends[:, ::-1], ends), np.where(turned, cells[:, ::-1], cells)
-    outer = np.flatnonzero(~body.inner)
-    start, times = np.unique(ends[outer, 0], return_counts=True)
-    if times.max() > 1:
-        at = body.vertices[start[times > 1][:1]]
-        raise MeshError(f"its outline touches itself{near(at)}")
-    after = dict(zip(ends[outer, 0].tolist(), outer.tolist(), strict=True))
-    loops = []
-    for side in range(body.side.max() + 1):
-        loop = [int(outer[body.side[outer] == side][0])]
-        while (facet := after[int(ends[loop[-1], 1])]) != loop[0]:
-            loop.append(facet)
-        loops.append(np.array(loop))
-    return ends, cells, loops
+    facet, ridge = body.bounds[-1][outer[body.bounds[-1][:, 0]]].T
+    if body.dim == 2 and (touches := np.bincount(ridge) > 2).any():
+        raise MeshError(
+            f"its outline touches itself{near(body.vertices[: len(touches)][touches][:1])}"
+        )
+    order = np.argsort(ridge, kind="stable")
+    same = np.flatnonzero(np.diff(ridge[order]) == 0)
+    beside = np.stack([facet[order][same], facet[order][same + 1]], axis=1)
+    surface = np.where(outer, joined(beside, len(outer)), -1)
+    number, vertex = body.corners_of_facets().T
+    number, vertex = number[outer[number]], vertex[outer[number]]
+    order = np.lexsort(body.vertices[vertex].T[::-1])
+    found, first = np.unique(surface[number][order], return_index=True)
+    side = np.zeros(len(outer) + 1, np.int64)
+    side[found[np.argsort(first)]] = np.arange(len(found))
+    return replace(body, side=np.where(outer, side[surface], 0))
 
 
 def outlines_of(body: Complex) -> list[np.ndarray]:
     """Return the corners of rock in the plane, or of the box around it in space, and of each of its
     openings, float arrays [n, d], m."""
-    if body.dim == 3:
-        facet, vertex = _corners(body).T
-        outer = np.where(body.inner, -1, body.side)[facet]
-        ends = np.stack([body.vertices.min(axis=0), body.vertices.max(axis=0)])
-        openings = (body.vertices[np.unique(vertex[outer == k])] for k in range(1, outer.max() + 1))
-        return [np.stack(np.meshgrid(*ends.T), axis=-1).reshape(-1, 3), *openings]
-    ends, _, loops = around_rock(body)
-    return [body.vertices[ends[loop, 0]] for loop in loops]
+    facet, vertex = body.corners_of_facets().T
+    side = np.where(body.inner, -1, body.side)
+    own = [body.vertices[vertex[side[facet] == k]] for k in range(side.max() + 1)]
+    if body.dim == 2:
+        rings = (shapely.polygonize(shapely.linestrings(x.reshape(-1, 2, 2))) for x in own)
+        return [corners_of(ring.geoms[0]) for ring in rings]
+    low, high = body.vertices.min(axis=0), body.vertices.max(axis=0)
+    return [np.array(list(product(*zip(low, high, strict=True)))), *own[1:]]

@@ -141,6 +141,8 @@ def clipped(corners: np.ndarray, s: np.ndarray) -> np.ndarray:
     each corner, is not negative."""
     after, ahead = np.roll(corners, -1, axis=0), np.roll(s, -1)
     crosses = s * ahead < 0
+    if len(corners) == 2:
+        crosses[1] = False  # no way back
     t = np.where(crosses, s / np.where(crosses, s - ahead, 1.0), 0.0)[:, None]
     pairs = np.stack([corners, corners + t * (after - corners)], axis=1)
     return pairs.reshape(-1, corners.shape[1])[np.stack([s >= 0, crosses], axis=1).ravel()]

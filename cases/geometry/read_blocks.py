@@ -33,24 +33,24 @@ POLYGONS = ("triangle", "quad", "polygon")
 AROUND = {"triangle": [0, 1, 2], "quadrilateral": [0, 1, 3, 2]}
 
 Loop = list[int]
-Loops = list[Loop]
+Part = list[Loop]
 
 
 class Given(NamedTuple):
     """The blocks of a file.
 
     x : float array [v, d], m; in the plane if all have one z.
-    blocks : polygons by their vertices. In the plane the parts of each block, in space the faces
-        of it or of its parts, counter-clockwise as seen from outside.
+    blocks : the parts of each, by polygons of vertices: a part in the plane is one, in space it is
+        bounded by some, all counter-clockwise as seen from outside, or all clockwise.
     names : of the blocks, in messages.
     joints : facets by their vertices, for the name of each group "joint NAME" in small letters;
         None of a file that has no groups.
     """
 
     x: np.ndarray
-    blocks: list[Loops]
+    blocks: list[list[Part]]
     names: list[str]
-    joints: dict[str, list[list[int]]] | None
+    joints: dict[str, list[Loop]] | None
 
 
 def read_blocks(path: Path) -> Given:
@@ -66,11 +66,17 @@ def read_blocks(path: Path) -> Given:
         raise MeshError(f"cannot be read as {path.suffix.lower()}: {one_line(error)}") from None
     if not given.blocks:
         raise MeshError("has no blocks")
-    used = np.unique([vertex for loops in given.blocks for loop in loops for vertex in loop])
+    used = np.unique([v for block in given.blocks for part in block for loop in part for v in loop])
     if used[0] < 0 or used[-1] >= len(given.x) or not np.isfinite(given.x[used]).all():
         raise MeshError("has a block with a corner that is no vertex of the file")
     extent = np.ptp(given.x[used], axis=0)
-    return given._replace(x=given.x[:, :2]) if extent[2] <= FLAT * extent.max() else given
+    if extent[2] > FLAT * extent.max():
+        return given
+    blocks = [[[loop] for part in block for loop in part] for block in given.blocks]
+    if len(blocks) == 1 and path.suffix.lower() in (".json", ".obj"):
+        blocks = [[face] for face in blocks[0]]
+        given = given._replace(names=[f"face {k}" for k in range(len(blocks))])
+    return given._replace(x=given.x[:, :2], blocks=blocks)
 
 
 def read_cells(path: Path) -> Given:
@@ -83,7 +89,7 @@ def read_cells(path: Path) -> Given:
     found = {name: one for name, one in tagged.facets.items() if name.startswith(JOINT)}
     joints = {_plain(name): one.tolist() for name, one in found.items()}
     names = [f"cell {k}" for k in range(len(cells))]
-    return Given(tagged.x[:, :2], [[cell] for cell in cells], names, joints)
+    return Given(tagged.x[:, :2], [[[cell]] for cell in cells], names, joints)
 
 
 def _plain(name: str) -> str:
@@ -96,13 +102,14 @@ def _vtu(path: Path) -> Given:
     if "cannot handle" in said or read_bytes(path, LARGEST, 1).count(b"<Piece") > 1:
         raise MeshError("must be one piece of polygons or polyhedra, tetrahedra, hexahedra")
     kinds = [block for block in mesh.cells if block.dim > 1]
-    blocks = [loops for one in kinds for loops in _cells(mesh.points, one.type, one.data)]
     if len({block.dim for block in kinds}) > 1:
         raise MeshError("has both polygons and polyhedra")
-    return Given(mesh.points, blocks, [f"cell {k}" for k in range(len(blocks))], None)
+    parts = [part for one in kinds for part in _parts(one.type, one.data)]
+    names = [f"cell {k}" for k in range(len(parts))]
+    return Given(mesh.points, [[part] for part in parts], names, None)
 
 
-def _cells(x: np.ndarray, kind: str, cells: np.ndarray) -> list[Loops]:
+def _parts(kind: str, cells: np.ndarray) -> list[Part]:
     """Return the polygons of each cell of a kind that meshio knows."""
     if kind in POLYGONS:
         return [[cell] for cell in np.asarray(cells).tolist()]
@@ -111,15 +118,7 @@ def _cells(x: np.ndarray, kind: str, cells: np.ndarray) -> list[Loops]:
     if kind not in FACES:
         known = ", ".join([*POLYGONS, "polyhedron", *FACES])
         raise MeshError(f"has {kind} cells, must be of {known}")
-    found = []
-    for face in FACES[kind]:
-        corners = x[cells[:, face]]
-        one, other = corners[:, 2] - corners[:, 0], corners[:, -1] - corners[:, 1]
-        out = corners.mean(axis=1) - x[cells].mean(axis=1)
-        inward = (np.cross(one, other) * out).sum(axis=1) < 0
-        loops = np.where(inward[:, None], cells[:, face[::-1]], cells[:, face])
-        found.append(loops.tolist())
-    return [list(faces) for faces in zip(*found, strict=True)]
+    return [[[cell[k] for k in face] for face in FACES[kind]] for cell in cells.tolist()]
 
 
 def _gmsh(path: Path) -> Given:
@@ -130,21 +129,21 @@ def _gmsh(path: Path) -> Given:
     none = [np.zeros(len(block.data), np.int64) for block in mesh.cells]
     physical = mesh.cell_data.get("gmsh:physical", none)
     names = {tag: name for name, (tag, of) in mesh.field_data.items() if of == dim}
-    kind, blocks = {2: "surface", 3: "volume"}.get(dim, ""), dict[str, Loops]()
+    kind, blocks = {2: "surface", 3: "volume"}.get(dim, ""), dict[str, list[Part]]()
     grouped = any(p.any() for b, p in zip(mesh.cells, physical, strict=True) if b.dim == dim)
     for block, groups, entities in zip(
         mesh.cells, physical, mesh.cell_data["gmsh:geometrical"], strict=True
     ):
         if block.dim != dim or dim < 2:
             continue
-        for loops, group, entity in zip(
-            _cells(mesh.points, block.type, block.data), groups, entities, strict=True
+        for part, group, entity in zip(
+            _parts(block.type, block.data), groups, entities, strict=True
         ):
             if grouped and not group:
                 raise MeshError(f"has a cell of {kind} {entity} in no group")
             name = names.get(group, f"group {group}" if grouped else ROCK)
             key = f"{kind} {entity}" if name.lower().startswith(ROCK) else repr(name)
-            blocks.setdefault(key, []).extend(loops)
+            blocks.setdefault(key, []).append(part)
     joints = {
         _plain(name): [
             facet
@@ -160,12 +159,16 @@ def _gmsh(path: Path) -> Given:
 def _compas(path: Path) -> Given:
     """Meshes and polyhedra in any of COMPAS's structures: assemblies, models or lists of them."""
     x: list[list[float]] = []
-    blocks: list[Loops] = []
+    objects: dict[str, list[Loop]] = {}
     for vertices, faces in _meshes(read_json(path, LARGEST)):
         number = {str(key): len(x) + k for k, key in enumerate(vertices)}
         x += vertices.values()
-        blocks.append([[number[str(key)] for key in face] for face in faces])
-    return _of_objects(x, {f"block {k}": loops for k, loops in enumerate(blocks)})
+        if faces:
+            name = f"block {len(objects)}"
+            objects[name] = [[number[str(key)] for key in face] for face in faces]
+    return Given(
+        np.reshape(x, (-1, 3)), [[faces] for faces in objects.values()], list(objects), None
+    )
 
 
 def _meshes(node) -> Iterator[tuple[dict, list]]:
@@ -194,7 +197,7 @@ def _obj(path: Path) -> Given:
     lines = [line.split() for line in read_text(path, LARGEST).replace("\\\n", " ").splitlines()]
     mark = "o" if any(words[:1] == ["o"] for words in lines) else "g"
     x: list[list[float]] = []
-    objects: dict[str, Loops] = {}
+    objects: dict[str, list[Loop]] = {}
     name = ""
     for words in lines:
         kind, *rest = words or [""]
@@ -206,14 +209,6 @@ def _obj(path: Path) -> Given:
             corners = [int(word.split("/")[0]) for word in rest]
             loop = [k - 1 if k > 0 else len(x) + k if k else -1 for k in corners]
             objects.setdefault(name, []).append(loop)
-    return _of_objects(x, {repr(name): loops for name, loops in objects.items()})
-
-
-def _of_objects(x: list[list[float]], objects: dict[str, Loops]) -> Given:
-    """Return blocks; of one flat object each face is one."""
-    places = np.array(x, dtype=float).reshape(-1, 3)
-    blocks, names = list(objects.values()), list(objects)
-    if len(blocks) == 1 and np.ptp(places[:, 2]) <= FLAT * np.ptp(places, axis=0).max():
-        blocks = [[face] for face in blocks[0]]
-        names = [f"face {k}" for k in range(len(blocks))]
-    return Given(places, blocks, names, None)
+    return Given(
+        np.reshape(x, (-1, 3)), [[faces] for faces in objects.values()], [*map(repr, objects)], None
+    )

@@ -1,6 +1,9 @@
 """Relations between numbered things: int arrays [m, 2] of pairs, sorted by the first of them."""
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 
 def ranges(first: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -27,9 +30,20 @@ def distinct(pairs: np.ndarray) -> np.ndarray:
     return np.stack(np.divmod(np.unique(pairs[:, 0] * width + pairs[:, 1]), width), axis=1)
 
 
-def ordered(pairs: np.ndarray) -> np.ndarray:
-    """Return pairs sorted by the first of them."""
-    return pairs[np.argsort(pairs[:, 0], kind="stable")]
+def joined(pairs: np.ndarray, number: int) -> np.ndarray:
+    """Return the group of each of a number of things that pairs connect."""
+    one, other = np.reshape(pairs, (-1, 2)).T.astype(np.int64)
+    return connected_components(coo_array((np.ones(len(one)), (one, other)), (number, number)))[1]
+
+
+def merged(x: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return for each of some points [n, d] the first of those that are within the tolerance (m) of
+    it, or of others that are, int array [n]."""
+    places, first, which = np.unique(x, axis=0, return_index=True, return_inverse=True)
+    group = joined(cKDTree(places).query_pairs(tolerance, output_type="ndarray"), len(places))
+    least = np.full(len(places), len(x))
+    np.minimum.at(least, group, first)
+    return least[group][which.reshape(-1)]
 
 
 class Lookup:

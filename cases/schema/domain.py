@@ -91,10 +91,7 @@ class Domain(Table):
         from jointwave.cases.gmsh_file import MeshError
 
         try:
-            read = (
-                own_blocks.complex_of_blocks if self.mesh is None else own_blocks.complex_of_cells
-            )
-            self._body, self._groups = read(path)
+            self._body, self._groups = own_blocks.complex_of_file(path, self.mesh is not None)
             self._outlines = [one.tolist() for one in own_blocks.outlines_of(self._body)]
         except MeshError as error:
             assert self.file_key is not None
