@@ -48,6 +48,16 @@ class Facets:
     def __len__(self) -> int:
         return len(self.area)
 
+    @property
+    def start(self) -> np.ndarray:
+        """In the plane one end of each [c, 2], m: to the other block i lies to the left."""
+        return self.outlines.corners[0::2]
+
+    @property
+    def end(self) -> np.ndarray:
+        """In the plane the other end of each [c, 2], m."""
+        return self.outlines.corners[1::2]
+
     def of_joints(self, sets: int) -> np.ndarray:
         """Return which lie on joints of a scene with this number of sets, bool array [c]."""
         return (self.joint_set >= 0) & (self.joint_set < sets)

@@ -15,19 +15,25 @@ import numpy as np
 
 from jointwave.cases.material.contact_points import ContactPoints
 from jointwave.cases.material.rock_mass import Stiffness
-from jointwave.cases.partition.blocks import Contacts
 
 
 def block_stiffness(
-    count: int, contacts: Contacts, points: ContactPoints, stiffness: Stiffness
+    count: int,
+    blocks: np.ndarray,
+    normals: np.ndarray,
+    points: ContactPoints,
+    stiffness: Stiffness,
 ) -> np.ndarray:
     """Return the stiffness of each block against its neighbours [count, 3, 3], N/m2 for
-    displacements along x and y, and N for the rotation, per metre of thickness."""
+    displacements along x and y, and N for the rotation, per metre of thickness.
+
+    blocks : i and j of contacts [c, 2]. normals : unit vectors from i to j [c, 2].
+    """
     total = np.zeros((count, 3, 3))
-    normal = contacts.normal[points.contact]
+    normal = normals[points.contact]
     tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
     for side in (0, 1):
-        block, arm = contacts.blocks[points.contact, side], points.arm[:, side]
+        block, arm = blocks[points.contact, side], points.arm[:, side]
         for along, k in ((normal, stiffness.normal), (tangent, stiffness.shear)):
             row = jump(along, arm)
             weight = k[points.contact] * points.length

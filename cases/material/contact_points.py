@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from jointwave.cases.geometry.blocks import Facets
 from jointwave.cases.geometry.cell_complex import NO_SET
-from jointwave.cases.partition.blocks import Contacts, Partition
+from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.schema.joint_set import JointSet
 
 #: Rule and number of points of a cut through intact rock.
@@ -32,7 +33,7 @@ class ContactPoints:
 
 def contact_points(
     partition: Partition,
-    contacts: Contacts,
+    contacts: Facets,
     sets: Sequence[JointSet],
     shift: np.ndarray | tuple[float, float] = (0.0, 0.0),
 ) -> ContactPoints:
@@ -57,7 +58,7 @@ def contact_points(
     at = contacts.start[contact] * (1 - place) + contacts.end[contact] * place
     i, j = contacts.blocks[contact].T
     arm = np.stack([at - partition.centroid[i], at - partition.centroid[j] - np.array(shift)], 1)
-    return ContactPoints(contact, arm, np.concatenate(weights)[order] * contacts.length[contact])
+    return ContactPoints(contact, arm, np.concatenate(weights)[order] * contacts.area[contact])
 
 
 def lever(rule: str, count: int) -> float:

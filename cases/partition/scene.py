@@ -115,25 +115,21 @@ def blocks_of_scene(scene: RockMass, further: Sequence[JointSet] = ()) -> Blocks
     indices beyond those of the scene's sets.
 
     Raises SceneError, in one line with place and cause, where it cannot be cut into convex blocks,
-    or the blocks would take more memory than a run may.
+    periodic sides do not fit each other, or the blocks would take more memory than a run may.
     """
     refuse_too_many(scene, further)
     try:
-        return blocks_of_domain(scene.domain, scene.joint_sets, further, scene.regions)
-    except GeometryError as error:
-        raise SceneError(scene.where, error.key, None, str(error)) from None
-
-
-def partition_of(scene: RockMass, further: Sequence[JointSet] = ()) -> Partition:
-    """Return the blocks of a rock mass in the plane, as `blocks_of_scene` does, as arrays for
-    engines; raises SceneError, too, where periodic sides do not fit each other."""
-    blocks = blocks_of_scene(scene, further)
-    found = plane_partition(blocks, shape_of(scene.domain).sides, scene.joint_sets)
-    try:
+        found = blocks_of_domain(scene.domain, scene.joint_sets, further, scene.regions)
         across_periodic(scene, found)  # whether its sides fit each other
     except GeometryError as error:
         raise SceneError(scene.where, error.key, None, str(error)) from None
     return found
+
+
+def partition_of(scene: RockMass, further: Sequence[JointSet] = ()) -> Partition:
+    """Return the blocks of a rock mass in the plane, as `blocks_of_scene` does, with corners."""
+    sides, names = shape_of(scene.domain).sides, tuple(one.name for one in scene.joint_sets)
+    return plane_partition(blocks_of_scene(scene, further), sides, names)
 
 
 def block_count(domain: Domain, sets: Sequence[JointSet]) -> float:

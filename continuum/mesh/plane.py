@@ -58,7 +58,9 @@ def plane_mesh(
     size = sizes[kind]
     counts = cells_along(segments, loops, size, kind == "quadrilateral")
     x, cells, block, edges = meshed_blocks(segments, loops, counts, size, kind)
-    joint_set = np.append(of_all(partition, across, "joint_set"), NO_SET)  # the last: boundary's
+    joint_set = np.append(
+        of_all(partition.blocks, across, "joint_set"), NO_SET
+    )  # the last: boundary's
     cuts = joint_set[segments.contact[edges.segment]] != NO_SET
     cut = np.zeros((len(cells), len(FACETS[kind])), dtype=bool)
     cut[edges.cell[cuts], edges.facet[cuts]] = True
@@ -133,7 +135,7 @@ def _facing(
     """Return those of some edges that are of their contact's block i, and of its block j, each by
     contact and along it."""
     contact = segments.contact[edges.segment[own]]
-    blocks = of_all(partition, across, "blocks")
+    blocks = of_all(partition.blocks, across, "blocks")
     is_left = (edges.block[own] == blocks[contact, 0]) & (
         segments.like[edges.segment[own]] == edges.segment[own]
     )

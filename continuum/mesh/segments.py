@@ -76,7 +76,7 @@ def segments_of(partition: Partition, across: list[Across]) -> tuple[Segments, L
         number += len(one)
     free = int(kept.sum())
     ends.append(np.stack([boundary.start, boundary.end], axis=1)[kept])
-    blocks.append((count + np.arange(free), boundary.block[kept]))
+    blocks.append((count + np.arange(free), boundary.blocks[kept, 0]))
     contact.append(np.full(free, -1))
     side.append(boundary.side[kept])
     like.append(count + np.arange(free))

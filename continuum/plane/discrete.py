@@ -38,7 +38,7 @@ class PlaneDiscrete(NamedTuple):
 
 def blocks_of(found: PlaneDiscrete) -> np.ndarray:
     """Return the two blocks of every contact, those across periodic sides last [c, 2]."""
-    return of_all(found.partition, found.across, "blocks")
+    return of_all(found.partition.blocks, found.across, "blocks")
 
 
 def motion_of_blocks(found: PlaneDiscrete, u: np.ndarray) -> np.ndarray:

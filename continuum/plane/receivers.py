@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import block_diag, csr_matrix, vstack
 
-from jointwave.cases.partition.locate import contact_at
+from jointwave.cases.geometry.locate import contact_at
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.model import Receivers
 from jointwave.continuum.plane.discrete import PlaneDiscrete, stress_of
@@ -85,7 +85,8 @@ def _joints(scene: RockMass, discrete: PlaneDiscrete) -> JointReaders | None:
         )
     mine = body.cells[facets.left, 0] >= 0
     row, point, weight = [], [], []
-    for r, one in enumerate(contact_at(discrete.partition, places)):
+    blocks, sets = discrete.partition.blocks, len(discrete.partition.joint_sets)
+    for r, one in enumerate(contact_at(blocks, places, sets)):
         on = np.flatnonzero(facets.joint == one)
         at = _along(facets.corners[on], places[r])
         nearest = np.abs(at - 0.5).argmin()

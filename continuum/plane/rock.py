@@ -44,7 +44,7 @@ def discretise(scene: RockMass, model: str, comm=None) -> PlaneDiscrete:
     kept = [one for one in scene.joint_sets if one not in sets]
     resolved = scene.model_copy(update={"joint_sets": kept})
     partition = partition_of(resolved)
-    across = across_periodic(scene, partition)
+    across = across_periodic(scene, partition.blocks)
     relaxes = mechanisms_of(scene, model)
     unrelaxed = 1.0 if relaxes is None else relaxes.unrelaxed
     *regions, rest = (
@@ -94,7 +94,7 @@ def _rayleigh(scene: RockMass) -> float:
 
 def contact_law(scene: RockMass, found: PlaneDiscrete, contact: np.ndarray) -> Law:
     """Return the law at points [q] of these contacts, in its smallest form."""
-    sets, of = scene.joint_sets, of_all(found.partition, found.across, "joint_set")[contact]
+    sets, of = scene.joint_sets, of_all(found.partition.blocks, found.across, "joint_set")[contact]
     etas = set_time_constants(scene)
     tension = np.array([one.tension is not False for one in sets])[of]
     normal, shear = (
@@ -115,7 +115,7 @@ def _carried(scene: RockMass, found: PlaneDiscrete, contact: np.ndarray) -> np.n
     normal and its right: as `Jumps` has them; None without."""
     if scene.prestress is None:
         return None
-    n = of_all(found.partition, found.across, "normal")[contact].T
+    n = of_all(found.partition.blocks, found.across, "normal")[contact].T
     xx, yy, xy = stress_of(scene)
     t = np.array([xx * n[0] + xy * n[1], xy * n[0] + yy * n[1]])
     return np.array([(t * n).sum(axis=0), t[0] * n[1] - t[1] * n[0]])

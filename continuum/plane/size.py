@@ -34,7 +34,7 @@ def refuse_large_mesh(scene: RockMass, partition: Partition, size: float) -> Non
     """Raise SceneError where elements of this size (m) would not fit in memory."""
     order = scene.numerics.continuum.order
     contacts = partition.contacts
-    along = float(contacts.length.sum() + partition.boundary.length.sum())
+    along = float(contacts.area.sum() + partition.boundary.area.sum())
     cells = float(partition.area.sum()) / size**2 + along / size + partition.count
     nodes, entries = cells * (order + 0.5) ** 2, 2 * (order + 1) ** 2
     parts = {

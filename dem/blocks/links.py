@@ -45,18 +45,19 @@ def links_of(scene: RockMass, partition: Partition, further: list[JointSet]) -> 
     A fixed side is a wall behind the rock from each block's centroid to the side, as stiff as that
     rock is: half a block. So is intact rock between blocks where no set made the cut.
     """
-    across = across_periodic(scene, partition)
+    across = across_periodic(scene, partition.blocks)
     parts = [partition.contacts, *(one.contacts for one in across)]
     beside = [np.zeros(2), *(one.shift for one in across)]
     shift = np.repeat(beside, [len(one) for one in parts], axis=0)
     pairs, start, end, normal, joint_set = (
-        of_all(partition, across, key) for key in ("blocks", "start", "end", "normal", "joint_set")
+        of_all(partition.blocks, across, key)
+        for key in ("blocks", "start", "end", "normal", "joint_set")
     )
     walls = _walls(scene, partition)
     edges = partition.boundary
     names = [partition.sides[k] for k in edges.side]
     held = np.array([name in walls for name in names], dtype=bool)
-    block = edges.block[held]
+    block = edges.blocks[held, 0]
     wall = partition.count + np.array([walls.index(n) for n in names if n in walls], dtype=int)
     centre = (edges.start[held] + edges.end[held]) / 2
     reach = ((centre - partition.centroid[block]) * edges.normal[held]).sum(axis=1)

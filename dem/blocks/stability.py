@@ -17,7 +17,6 @@ import numpy as np
 from jointwave.cases.material.block_stiffness import block_stiffness
 from jointwave.cases.material.contact_points import ContactPoints
 from jointwave.cases.material.rock_mass import Inertia, Stiffness
-from jointwave.cases.partition.blocks import Contacts
 from jointwave.dem.blocks.joints import Columns
 from jointwave.dem.blocks.links import Links
 from jointwave.numerics.critical_step import critical_step
@@ -67,6 +66,5 @@ def _stiffness(
     arm = np.stack([at - links.beside_i[contact], at - links.beside_j[contact]], axis=1)
     points = ContactPoints(contact, arm, weights[contact, k] * length[contact])
     normal, shear = (x[links.column] for x in values)
-    contacts = Contacts(links.blocks, links.start, links.end, links.normal, length, links.column)
-    beyond = int(links.blocks.max(initial=-1)) + 1
-    return block_stiffness(max(count, beyond), contacts, points, Stiffness(normal, shear))[:count]
+    beyond, own = int(links.blocks.max(initial=-1)) + 1, Stiffness(normal, shear)
+    return block_stiffness(max(count, beyond), links.blocks, links.normal, points, own)[:count]

@@ -139,9 +139,7 @@ class PlaneRelaxation:
         self.mass = blocks.masses.ravel()
         g = np.hypot(own.gravity_x, own.gravity_y)
         pressed = 0.0 if stress is None else max(map(abs, (stress.xx, stress.yy, stress.xy)))
-        self.scale = float(
-            g * blocks.inertia.mass.sum() + pressed * partition.boundary.length.sum()
-        )
+        self.scale = float(g * blocks.inertia.mass.sum() + pressed * partition.boundary.area.sum())
         self.most_steps = 40_000 + 40_000 * int(np.sqrt(self.count))
         self.centroid = partition.centroid
 

@@ -7,12 +7,12 @@ import pytest
 
 from closed_forms.modes import modes, of_modes
 from hard_runs import CUBES, EPS, ERROR, FIFTHS, REFEREE, ROUND_OFF, HardRun
+from jointwave.cases.geometry.locate import blocks_at
 from jointwave.cases.loads import history_of, step_means
 from jointwave.cases.material.block_stiffness import jump
 from jointwave.cases.material.contact_points import contact_points
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.locate import block_at
 from jointwave.cases.partition.scene import partition_of
 from jointwave.compare.engines import solve
 from jointwave.compare.exact.rock_mass.block_lattice import masses, reads
@@ -77,7 +77,7 @@ def unit_force(scene, partition):
     """Return the forces on all degrees of freedom [3 N] per unit of the load."""
     (load,) = scene.loads
     at = np.array([load.at])
-    (block,) = block_at(partition, at)
+    ((block, *_),) = blocks_at(partition.blocks, at)
     found = np.zeros((partition.count, 3))
     found[block] = jump(np.array([load.direction]), at - partition.centroid[block])[0]
     return found.ravel()

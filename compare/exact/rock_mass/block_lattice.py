@@ -14,7 +14,7 @@ import xarray as xr
 from scipy.sparse import bsr_array, csr_array
 
 from jointwave.cases.geometry.cell_complex import NO_SET
-from jointwave.cases.geometry.periodic import contacts_across
+from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.incident import tractions
 from jointwave.cases.material.contact_points import points_of
 from jointwave.cases.material.quiet_sides import impedances
@@ -22,8 +22,7 @@ from jointwave.cases.material.rigid_blocks import rigid_joints, welds
 from jointwave.cases.material.rock_mass import inertia
 from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.lattice import further_sets
-from jointwave.cases.partition.locate import sides_at
-from jointwave.cases.partition.periodic import PAIRS
+from jointwave.cases.partition.periodic import across_periodic
 from jointwave.cases.partition.scene import block_count, partition_of
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.pulse import shortest_period
@@ -104,13 +103,8 @@ def _between_blocks(scene: RockMass, partition: Partition) -> list[Contacts]:
     springs = np.stack([joints.normal, joints.shear], axis=1)
     rules = [points_of(one.point_rule, one.contact_points) for one in sets]
     bends = np.array([12 * weight @ (x - 0.5) ** 2 for x, weight in rules])
-    across = [(blocks.contacts, np.zeros(2))]
-    for side, (other, axis) in PAIRS.items():
-        if getattr(scene.boundaries, side) == "periodic":
-            shift = np.ptp(partition.corners, axis=0) * np.eye(2)[axis]
-            facets = contacts_across(blocks, axis, (side, other), partition.joint_sets)
-            across.append((facets, shift))
-    for facets, shift in across:
+    across = [(one.contacts, one.shift) for one in across_periodic(scene, blocks)]
+    for facets, shift in [(blocks.contacts, np.zeros(2)), *across]:
         k, bending = springs[facets.joint_set], bends[facets.joint_set]
         rock = facets.joint_set == NO_SET
         weld = facets.blocks[rock], facets.centroid[rock], facets.normal[rock]
@@ -155,7 +149,7 @@ def reads(scene: RockMass, partition: Partition) -> csr_array:
     """Return the matrix from the motion of all blocks to that of the points of a scene, sparse
     [2 points, 3 N]; on joints the mean of the blocks there."""
     points = np.array(scene.record.points)
-    sides = sides_at(partition, points)
+    sides = sides_at(partition.blocks, points, len(scene.joint_sets))
     count = np.array([len(blocks) for blocks in sides])
     which, block = np.repeat(np.arange(len(points)), count), np.concatenate(sides)
     parts = carried(points[which] - partition.centroid[block], 3)[:, :2]

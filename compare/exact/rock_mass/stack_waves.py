@@ -17,8 +17,8 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.geometry.cell_complex import OUTSIDE
+from jointwave.cases.geometry.locate import contact_at, sides_at
 from jointwave.cases.incident import plane_wave
-from jointwave.cases.partition.locate import contact_at, sides_at
 from jointwave.cases.partition.shape import TOLERANCE
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.rock_mass import RockMass
@@ -134,7 +134,7 @@ def point_receivers(
         return points, np.zeros(0, dtype=bool), points
     apart = (points @ stack.normal)[:, None] - stack.offsets
     apart = np.take_along_axis(apart, np.abs(apart).argmin(axis=1)[:, None], axis=1)
-    sides = sides_at(stack.partition, points)
+    sides = sides_at(stack.partition.blocks, points, len(scene.joint_sets))
     inward = stack.partition.centroid[[min(blocks, default=OUTSIDE) for blocks in sides]] - points
     side = _beside(stack) * np.sign(inward @ stack.normal)[:, None]
     near = np.abs(apart) <= TOLERANCE / BESIDE * _beside(stack)
@@ -147,10 +147,12 @@ def joint_receivers(scene: RockMass, stack: JointStack) -> tuple[np.ndarray, np.
     """Return the places on joints [m, 2] (m) nearest to those given by a scene, and the axes there
     [m, (n, s), 2]: the outward normal of the block with the smaller number, and its left."""
     asked, contacts = np.array(scene.record.joints).reshape(-1, 2), stack.partition.contacts
-    chosen = contact_at(stack.partition, asked) if len(asked) else np.zeros(0, dtype=int)
+    chosen = np.zeros(0, dtype=int)
+    if len(asked):
+        chosen = contact_at(stack.partition.blocks, asked, len(scene.joint_sets))
     start, normal = contacts.start[chosen], contacts.normal[chosen]
     way = contacts.end[chosen] - start
-    share = ((asked - start) * way).sum(axis=1) / contacts.length[chosen] ** 2
+    share = ((asked - start) * way).sum(axis=1) / contacts.area[chosen] ** 2
     axes = np.stack([normal, np.stack([-normal[:, 1], normal[:, 0]], axis=1)], axis=1)
     return start + np.clip(share, 0, 1)[:, None] * way, axes
 

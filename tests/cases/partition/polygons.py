@@ -5,6 +5,9 @@ Polygons are given by their corners [k, 2], counter-clockwise, and the first cor
 
 import numpy as np
 
+from jointwave.cases.geometry.cell_complex import OUTSIDE
+from jointwave.cases.geometry.locate import blocks_at
+from jointwave.cases.geometry.periodic import contacts_across
 from jointwave.cases.partition.blocks import plane_partition
 from jointwave.cases.partition.scene import blocks_of_domain
 from jointwave.cases.partition.shape import shape_of
@@ -13,7 +16,18 @@ from jointwave.cases.partition.shape import shape_of
 def cut(domain, sets, further=(), regions=()):
     """A domain in blocks, as arrays."""
     blocks = blocks_of_domain(domain, sets, further, regions)
-    return plane_partition(blocks, shape_of(domain).sides, sets)
+    return plane_partition(blocks, shape_of(domain).sides, tuple(one.name for one in sets))
+
+
+def block_at(found, points):
+    """The first block that each point lies in, or OUTSIDE."""
+    return np.array([min(some, default=OUTSIDE) for some in blocks_at(found.blocks, points)])
+
+
+def periodic_contacts(found, side):
+    """Contacts across the left and the right, or the bottom and the top."""
+    pair = {"left": ("left", "right"), "bottom": ("bottom", "top")}[side]
+    return contacts_across(found.blocks, int(side == "bottom"), pair, found.joint_sets)
 
 
 def following(first: np.ndarray) -> np.ndarray:

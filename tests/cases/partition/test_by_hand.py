@@ -16,9 +16,9 @@ def test_two_orthogonal_sets_make_a_lattice(rectangle, joints):
     found = cut(rectangle(10.0, 6.0), sets)
     assert found.count == 60 and found.joint_sets == ("flat", "steep")
     assert np.bincount(found.contacts.joint_set).tolist() == [50, 54]
-    np.testing.assert_array_equal(found.contacts.length, 1.0)
+    np.testing.assert_array_equal(found.contacts.area, 1.0)
     np.testing.assert_array_equal(found.area, 1.0)
-    np.testing.assert_allclose(found.second_moment, [[1 / 12, 1 / 12, 0.0]] * 60, atol=1e-15)
+    np.testing.assert_allclose(found.blocks.second_moment, [np.eye(2) / 12] * 60, atol=1e-15)
     np.testing.assert_allclose(found.polar_moment, 1 / 6, rtol=1e-15)
     centres = {tuple(c) for c in np.round(found.centroid, 12)}
     assert centres == {(x + 0.5, y + 0.5) for x in range(10) for y in range(6)}
@@ -44,7 +44,7 @@ def test_brickwork(rectangle, joints):
     areas, count = np.unique(np.round(found.area, 12), return_counts=True)
     assert areas.tolist() == [1.0, 2.0] and count.tolist() == [6, 27]
     beds = found.contacts.joint_set == 1
-    assert beds.sum() == 5 * 10 and (found.contacts.length == 1.0).all()
+    assert beds.sum() == 5 * 10 and (found.contacts.area == 1.0).all()
     assert (~beds).sum() == 3 * 4 + 3 * 5
     degree = np.bincount(found.contacts.blocks.ravel())
     inner = (np.abs(found.centroid[:, 0] - 5) < 3) & (np.abs(found.centroid[:, 1] - 3) < 2)
@@ -77,7 +77,7 @@ def test_one_joint(rectangle, joints):
     """At 45 degrees through the centre of a square of 2 m: two triangles, one contact."""
     found = cut(rectangle(2.0, 2.0), [joints("fault", 45.0, through=[1.0, 1.0])])
     assert found.count == 2 and len(found.contacts) == 1
-    assert found.contacts.length == pytest.approx(2 * 2**0.5, rel=1e-15)
+    assert found.contacts.area == pytest.approx(2 * 2**0.5, rel=1e-15)
     np.testing.assert_allclose(found.area, 2.0, rtol=1e-15)
     i, j = found.contacts.blocks[0]
     away = found.centroid[j] - found.centroid[i]
@@ -91,7 +91,7 @@ def test_one_joint_that_ends_at_others(rectangle, joints):
     found = cut(rectangle(5.0, 3.0), [*grid, one])
     assert found.count == 16
     own = np.flatnonzero(found.contacts.joint_set == 2)
-    assert len(own) == 1 and found.contacts.length[own[0]] == pytest.approx(2**0.5)
+    assert len(own) == 1 and found.contacts.area[own[0]] == pytest.approx(2**0.5)
 
 
 def test_three_sets_through_common_points(rectangle, joints):
@@ -112,7 +112,7 @@ def test_a_tunnel_is_cut_out_and_its_blocks_are_cut_along_its_faces(rectangle, j
     assert found.area.sum() == pytest.approx(96.0, rel=1e-14)
     assert found.count == 5 and (found.contacts.joint_set == -1).sum() == 4
     faces = found.boundary.side == found.sides.index("opening 0")
-    assert found.boundary.length[faces].sum() == pytest.approx(8.0, rel=1e-14)
+    assert found.boundary.area[faces].sum() == pytest.approx(8.0, rel=1e-14)
     assert np.abs(found.boundary.normal[faces].sum(axis=0)).max() < 1e-14
 
 
@@ -142,7 +142,7 @@ def test_a_slope_is_an_outline_that_is_not_convex(joints):
     sets = [joints("a", 35.0, spacing=1.0), joints("b", -50.0, spacing=1.0)]
     found = cut(Domain(outline=corners, non_convex="cut"), sets)
     assert found.area.sum() == pytest.approx(80 + 9 * 6, rel=1e-13)
-    length = np.bincount(found.boundary.side, weights=found.boundary.length)
+    length = np.bincount(found.boundary.side, weights=found.boundary.area)
     np.testing.assert_allclose(length, [4, 10, 20, 6, 8 + 6 * 2**0.5], rtol=1e-13)
 
 
@@ -152,7 +152,7 @@ def test_an_opening_may_open_the_boundary(rectangle, joints):
     sets = [joints("rows", 0.0, spacing=1.0), joints("columns", 90.0, spacing=1.0)]
     found = cut(rectangle(10.0, 6.0, openings=[bench]), sets)
     assert found.count == 60 - 12
-    length = np.bincount(found.boundary.side, weights=found.boundary.length)
+    length = np.bincount(found.boundary.side, weights=found.boundary.area)
     np.testing.assert_allclose(length, [6, 3, 10, 6, 0, 7], rtol=1e-14)
 
 

@@ -6,10 +6,9 @@ import pytest
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError, NonConvex, Sliver
-from jointwave.cases.partition.periodic import periodic_contacts
 from jointwave.cases.partition.scene import block_count, partition_bytes, partition_of
 from jointwave.cases.read import load_variant
-from tests.cases.partition.polygons import cut
+from tests.cases.partition.polygons import cut, periodic_contacts
 
 SCENE = """\
 title = "rows"
@@ -194,8 +193,8 @@ def test_periodic_sides_of_other_rows_split_each_other(rectangle, joints):
     columns = joints("columns", 90.0, spacing=2.0)
     bricks = joints("bricks", 0.0, spacing=1.0, ends_at=["columns"], offset=0.5)
     across = periodic_contacts(cut(rectangle(4.0, 4.0), [columns, bricks]), "left")
-    assert across.length.sum() == pytest.approx(4.0, rel=1e-14)
-    assert len(across) == 8 and across.length.max() == pytest.approx(0.5)
+    assert across.area.sum() == pytest.approx(4.0, rel=1e-14)
+    assert len(across) == 8 and across.area.max() == pytest.approx(0.5)
 
 
 def test_a_periodic_scene_needs_faces_that_match(scene, rectangle, joints):

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from jointwave.cases.errors import SceneError
+from jointwave.cases.geometry.locate import contact_at
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.partition.lattice import further_sets
-from jointwave.cases.partition.locate import contact_at
 from jointwave.cases.partition.scene import blocks_of_scene, partition_of
 from jointwave.cases.validate import validated
 from tests.cases.partition.polygons import widths
@@ -65,9 +65,9 @@ def test_a_joint_alone_lies_on_a_line_of_squares_along_it(dip):
     alone, found = partition_of(own), cut(own)
     assert alone.count == 2
     mine = found.contacts.of_joints(1)
-    assert found.contacts.length[mine].sum() == pytest.approx(alone.contacts.length[0], rel=1e-9)
+    assert found.contacts.area[mine].sum() == pytest.approx(alone.contacts.area[0], rel=1e-9)
     assert np.median(found.area) == pytest.approx(1.0, rel=1e-9)
-    assert (contact_at(found, np.array([[1.0, 1.0]])) == np.flatnonzero(mine)).any()
+    assert (contact_at(found.blocks, np.array([[1.0, 1.0]]), 1) == np.flatnonzero(mine)).any()
 
 
 def test_rock_with_a_poisson_effect_is_cut_in_triangles():
@@ -145,7 +145,7 @@ def test_slivers_of_a_lattice_are_joined_along_joints_not_across_them():
     own = scene({"dip": -40.0, "through": [5.3, 4.1]}, block=1.1, poisson=0.25)
     found, alone = cut(own), partition_of(own)
     mine = found.contacts.of_joints(1)
-    assert found.contacts.length[mine].sum() == pytest.approx(alone.contacts.length[0], rel=1e-9)
+    assert found.contacts.area[mine].sum() == pytest.approx(alone.contacts.area[0], rel=1e-9)
     assert widths(found.corners, found.first).min() > 0.03 * 1.1
 
 

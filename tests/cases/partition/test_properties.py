@@ -7,14 +7,14 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from jointwave.cases.geometry.cell_complex import GeometryError, Sliver
+from jointwave.cases.geometry.locate import contact_at
 from jointwave.cases.geometry.sets import _scattered
 from jointwave.cases.partition.joints import direction_of, plane_sets
-from jointwave.cases.partition.locate import block_at, contact_at
 from jointwave.cases.partition.scene import least_width
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
-from tests.cases.partition.polygons import cut, following, least_angles, owner, widths
+from tests.cases.partition.polygons import block_at, cut, following, least_angles, owner, widths
 
 LAW = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 HEXAGON = [[0.0, 1.0], [4.0, 0.0], [9.0, 0.5], [10.0, 4.0], [6.0, 7.0], [1.0, 5.0]]
@@ -147,9 +147,9 @@ def test_contacts_are_what_pairs_of_blocks_share(domain, sets):
     assert (i < j).all() and len(np.unique(contacts.blocks, axis=0)) == len(contacts)
     assert (np.lexsort([j, i]) == np.arange(len(i))).all()
     chord = contacts.end - contacts.start
-    np.testing.assert_allclose(np.hypot(*chord.T), contacts.length, rtol=1e-12)
+    np.testing.assert_allclose(np.hypot(*chord.T), contacts.area, rtol=1e-12)
     tangent = np.stack([-contacts.normal[:, 1], contacts.normal[:, 0]], axis=1)
-    np.testing.assert_allclose(tangent * contacts.length[:, None], chord, atol=1e-8)
+    np.testing.assert_allclose(tangent * contacts.area[:, None], chord, atol=1e-8)
     for which, sign in ((i, -1), (j, 1)):
         away = sign * ((found.centroid[which] - contacts.start) * contacts.normal).sum(axis=1)
         assert away.min(initial=1.0) > 0
@@ -167,14 +167,18 @@ def test_each_outline_is_closed_by_its_contacts_and_boundary(domain, sets):
     found = partition(domain, sets)
     c, b = found.contacts, found.boundary
     total, around = np.zeros((found.count, 2)), np.zeros(found.count)
-    for block, sign, edges in ((c.blocks[:, 0], 1, c), (c.blocks[:, 1], -1, c), (b.block, 1, b)):
-        np.add.at(total, block, sign * edges.normal * edges.length[:, None])
-        np.add.at(around, block, edges.length)
+    for block, sign, edges in (
+        (c.blocks[:, 0], 1, c),
+        (c.blocks[:, 1], -1, c),
+        (b.blocks[:, 0], 1, b),
+    ):
+        np.add.at(total, block, sign * edges.normal * edges.area[:, None])
+        np.add.at(around, block, edges.area)
     assert np.abs(total).max() < 1e-8
     after = following(found.first)
     sides = np.hypot(*(found.corners[after] - found.corners).T)
     np.testing.assert_allclose(around, np.add.reduceat(sides, found.first[:-1]), rtol=1e-8)
-    assert b.length.sum() == pytest.approx(rock_by_shapely(domain).length, rel=1e-9)
+    assert b.area.sum() == pytest.approx(rock_by_shapely(domain).length, rel=1e-9)
 
 
 @settings(max_examples=25)
@@ -200,7 +204,9 @@ def test_moments_are_those_of_triangles(domain, sets):
         axis=1,
     )
     expected = np.add.reduceat(parts, found.first[:-1])
-    np.testing.assert_allclose(found.second_moment, expected, rtol=1e-8, atol=1e-12)
+    np.testing.assert_allclose(
+        found.blocks.second_moment[:, [0, 1, 0], [0, 1, 1]], expected, rtol=1e-8, atol=1e-12
+    )
     np.testing.assert_allclose(np.add.reduceat(double / 2, found.first[:-1]), found.area, rtol=1e-9)
 
 
@@ -218,15 +224,19 @@ def test_points_are_found_in_their_blocks(domain, sets):
     middle = (contacts.start + contacts.end)[inner] / 2
     np.testing.assert_array_equal(block_at(found, middle), contacts.blocks[inner, 0])
     # Nearer than any end: where rows nearly meet, a contact is no longer than what sets them apart.
-    beside = middle + 1e-6 * contacts.length[inner, None] * contacts.normal[inner]
-    np.testing.assert_array_equal(contact_at(found, beside), inner)
+    beside = middle + 1e-6 * contacts.area[inner, None] * contacts.normal[inner]
+    np.testing.assert_array_equal(contact_at(found.blocks, beside, len(sets)), inner)
 
 
 @settings(max_examples=25)
 @given(domain=domains, sets=joint_sets())
 def test_same_seed_same_blocks_to_the_bit(domain, sets):
     one, other = partition(domain, sets), cut(domain, sets)
-    for a, b in ((one, other), (one.contacts, other.contacts), (one.boundary, other.boundary)):
+    for a, b in (
+        (one.blocks, other.blocks),
+        (one.contacts, other.contacts),
+        (one.boundary, other.boundary),
+    ):
         for key, array in vars(a).items():
             if isinstance(array, np.ndarray):
                 np.testing.assert_array_equal(array, vars(b)[key])

@@ -33,7 +33,7 @@ def test_layers_share_the_domain_by_their_areas(rectangle, joints, dip):
     assert [of_region(found, k) for k in (ROCK, 0, 1)] == pytest.approx([24, 24, 32], rel=1e-12)
     welded = between(found)
     assert (found.contacts.joint_set[welded] == NO_SET).all()
-    assert found.contacts.length[welded].sum() == pytest.approx(
+    assert found.contacts.area[welded].sum() == pytest.approx(
         2 * 8 / np.cos(np.radians(dip)), rel=1e-12
     )
     assert (found.region == region_at(layers, found.centroid)).all()
@@ -52,7 +52,7 @@ def test_sets_cut_the_regions_that_they_name_alone(rectangle, joints):
     beds = joints("bed", 0.0, spacing=1.0, regions=["rock"])
     cross = joints("cross", 90.0, spacing=2.5, regions=["upper"])
     found = cut(rectangle(10.0, 5.0), [beds, cross], (), [region("upper", 3.5)])
-    of_set = [found.contacts.length[found.contacts.joint_set == k].sum() for k in (0, 1)]
+    of_set = [found.contacts.area[found.contacts.joint_set == k].sum() for k in (0, 1)]
     assert of_set == pytest.approx([30.0, 3 * 1.5], rel=1e-12)
     assert found.count == 4 + 4
     assert (found.region[found.contacts.blocks[found.contacts.joint_set == 0]] == ROCK).all()
@@ -97,9 +97,9 @@ def test_an_outline_holds_its_own_area(rectangle, joints, corners):
     )
     assert (found.region == region_at(both, found.centroid)).all()
     welded = between(found) & (found.region[found.contacts.blocks] == 1).any(axis=1)
-    assert found.contacts.length[welded].sum() == pytest.approx(around, rel=1e-12)
+    assert found.contacts.area[welded].sum() == pytest.approx(around, rel=1e-12)
     plain = cut(domain, sets)
-    of_sets = [c.contacts.length[c.contacts.joint_set >= 0].sum() for c in (plain, found)]
+    of_sets = [c.contacts.area[c.contacts.joint_set >= 0].sum() for c in (plain, found)]
     assert of_sets[0] == pytest.approx(of_sets[1], rel=1e-12)
 
 

@@ -176,7 +176,7 @@ def test_joints_of_a_mesh_may_bend_and_end_inside_the_rock(given):
     contacts, body = found.partition.contacts, found.body
     length = np.sqrt(20) + np.hypot(3, 0.5), np.hypot(1, 5)
     for k, expected in enumerate(length):
-        own = contacts.length[contacts.joint_set == k].sum()
+        own = contacts.area[contacts.joint_set == k].sum()
         assert own == pytest.approx(expected, rel=1e-12)
     assert found.jumps.weight.sum() == pytest.approx(sum(length), rel=1e-12)
     assert np.isclose(found.partition.area.sum(), 100 - np.pi, rtol=0.01)

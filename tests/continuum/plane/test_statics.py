@@ -39,7 +39,7 @@ def strain(scene, stress):
 def jumps_of(found, scene, stress):
     """Return the displacement of each cell's block less that of uniform strain [blocks, 2], where
     every contact has the jump of its traction, and one of block 0 is none."""
-    contacts, n = found.partition.contacts, of_all(found.partition, found.across, "normal")
+    contacts, n = found.partition.contacts, of_all(found.partition.blocks, found.across, "normal")
     tensor = np.array([[stress[0], stress[2]], [stress[2], stress[1]]])
     traction = n @ tensor
     normal = (traction * n).sum(axis=1)[:, None] * n
@@ -199,7 +199,7 @@ def add_tractions(found, load, rock):
     body = found.body
     joints = body.mesh.joints
     points = facet_points(body, joints.corners, 2 * body.order + 4)
-    n = of_all(found.partition, found.across, "normal")[joints.joint[points.facet]]
+    n = of_all(found.partition.blocks, found.across, "normal")[joints.joint[points.facet]]
     pull = np.einsum("nij,nj->ni", stress(rock, points.x), n) * points.weight[:, None]
     for cells, sign in ((joints.left, 1.0), (joints.right, -1.0)):
         cell = cells[points.facet]

@@ -69,9 +69,9 @@ def released(system):
     part = system.blocks.partition
     edges, force = part.boundary, np.zeros((part.count, 3))
     for k in np.flatnonzero(edges.side == part.sides.index("opening 0")):
-        pull = edges.length[k] * TENSOR @ edges.normal[k]
-        arm = (edges.start[k] + edges.end[k]) / 2 - part.centroid[edges.block[k]]
-        force[edges.block[k]] += [*pull, arm[0] * pull[1] - arm[1] * pull[0]]
+        pull = edges.area[k] * TENSOR @ edges.normal[k]
+        arm = (edges.start[k] + edges.end[k]) / 2 - part.centroid[edges.blocks[k, 0]]
+        force[edges.blocks[k, 0]] += [*pull, arm[0] * pull[1] - arm[1] * pull[0]]
     return force.ravel()
 
 
