@@ -12,7 +12,6 @@ from jointwave.cases.schema.values import (
     Positive,
     Table,
     contradiction,
-    contradiction_here,
 )
 
 WIDEST = 1e4  # of a band: its ends, one over the other
@@ -68,12 +67,12 @@ class Rayleigh(Table):
         low, high = self.frequencies
         if not low < high:
             allowed = "must be two increasing numbers"
-            raise contradiction_here("frequencies", self.frequencies, allowed)
+            raise contradiction(".frequencies", self.frequencies, allowed)
         alpha, beta = self.coefficients
         if alpha < 0 or beta < 0:
             gives = f"alpha = {alpha:.4g} 1/s and beta = {beta:.4g} s"
-            raise contradiction_here(
-                "ratios", self.ratios, f"would give {gives}; neither may be negative"
+            raise contradiction(
+                ".ratios", self.ratios, f"would give {gives}; neither may be negative"
             )
         return self
 
@@ -96,7 +95,7 @@ class Damping(Table):
     def _one_alpha(self) -> "Damping":
         if self.rayleigh is not None and self.mass_proportional is not None:
             allowed = "damping.rayleigh already sets it: give one of them"
-            raise contradiction_here("mass_proportional", self.mass_proportional, allowed)
+            raise contradiction(".mass_proportional", self.mass_proportional, allowed)
         return self
 
     @property

@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from jointwave.cases.schema.values import NonNegative, Positive, Table, contradiction_here
+from jointwave.cases.schema.values import NonNegative, Positive, Table, contradiction
 
 OF_ALL_JOINTS = ("contact_points", "point_rule")
 
@@ -61,14 +61,14 @@ class SoftLayer(JointLaw):
         for key in OF_ALL_JOINTS:
             if isinstance(table, dict) and key in table:
                 allowed = f"applies to all joints: set joints.{key}"
-                raise contradiction_here(key, table[key], allowed)
+                raise contradiction(f".{key}", table[key], allowed)
         return table
 
     @model_validator(mode="after")
     def _one_stiffness(self) -> "SoftLayer":
         if self.spacing_stiffness is not None and self.normal_stiffness is not None:
             allowed = "give this or normal_stiffness, not both"
-            raise contradiction_here("spacing_stiffness", self.spacing_stiffness, allowed)
+            raise contradiction(".spacing_stiffness", self.spacing_stiffness, allowed)
         return self
 
     def own_stiffness(self, spacing: float) -> float | None:

@@ -15,7 +15,7 @@ from jointwave.cases.schema.values import (
     Table,
     UnitVector,
     check_dimension,
-    contradiction_here,
+    contradiction,
     dimension,
 )
 
@@ -76,7 +76,7 @@ class InSituStress(Table):
     @model_validator(mode="after")
     def _fits_dimension(self, info: ValidationInfo) -> "InSituStress":
         if check_dimension(self, info, space=("zz", "yz", "xz")) and self.zz is None:
-            raise contradiction_here("zz", None, "is required in space")
+            raise contradiction(".zz", None, "is required in space")
         return self
 
     @property

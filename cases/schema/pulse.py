@@ -14,7 +14,6 @@ from jointwave.cases.schema.values import (
     Table,
     check_keys,
     contradiction,
-    contradiction_here,
     folder_of,
 )
 
@@ -74,7 +73,7 @@ class Pulse(Table):
                 found = read_history(folder, self.file, self.quantity, anywhere)
                 self._history, self._timed = found
             except ValueError as error:
-                raise contradiction_here("file", self.file, str(error)) from None
+                raise contradiction(".file", self.file, str(error)) from None
         return self
 
     @property

@@ -13,7 +13,7 @@ from jointwave.cases.schema.values import (
     Words,
     check_attitude,
     check_dimension,
-    contradiction_here,
+    contradiction,
 )
 
 #: Name, for joint sets, of rock outside all regions.
@@ -42,9 +42,9 @@ class Region(Table):
         check_dimension(self, info, plane=("outline",))
         check_attitude(self, info)
         if (self.through is None) == (self.outline is None):
-            raise contradiction_here("through", self.through, "give through or outline, not both")
+            raise contradiction(".through", self.through, "give through or outline, not both")
         if self.outline is not None and self.dip:
-            raise contradiction_here("dip", self.dip, "has no meaning with an outline")
+            raise contradiction(".dip", self.dip, "has no meaning with an outline")
         return self
 
     def rock(self, rest: IntactRock) -> IntactRock:

@@ -23,7 +23,6 @@ from jointwave.cases.schema.values import (
     Table,
     Words,
     contradiction,
-    contradiction_here,
 )
 
 CLOSE = 1e-6  # of a block: rounding of lengths
@@ -51,16 +50,16 @@ class Segment(Table):
     @model_validator(mode="after")
     def _is_one(self) -> "Segment":
         if not self.y[0] < self.y[1]:
-            raise contradiction_here("y", self.y, "must be two increasing numbers")
+            raise contradiction(".y", self.y, "must be two increasing numbers")
         for key in OF_JOINTED:
             if not self.joints and getattr(self, key) is not None:
                 allowed = "applies to jointed rock: with {table}.joints = false give intact_modulus"
-                raise contradiction_here(key, getattr(self, key), allowed)
+                raise contradiction(f".{key}", getattr(self, key), allowed)
         if sorted(map(len, given := given_pairs(self))) not in ([0, 0], [0, 2]):
             key = (given[0] + given[1])[0]
-            raise contradiction_here(key, getattr(self, key), f"give one pair or none: {PAIRS}")
+            raise contradiction(f".{key}", getattr(self, key), f"give one pair or none: {PAIRS}")
         if wrong := wrong_speeds(self):
-            raise contradiction_here("p_speed", self.p_speed, wrong)
+            raise contradiction(".p_speed", self.p_speed, wrong)
         check_given_once("{table}", self, "", self)
         return self
 

@@ -12,7 +12,7 @@ from jointwave.cases.schema.values import (
     UnitVector,
     check_dimension,
     check_keys,
-    contradiction_here,
+    contradiction,
     dimension,
 )
 
@@ -58,12 +58,12 @@ class Wave(Pulse):
     def _is_polarised(self, info: ValidationInfo) -> "Wave":
         in_space = check_dimension(self, info, space=("polarisation",))
         if self.kind == "P" and self.polarisation is not None:
-            raise contradiction_here("polarisation", self.polarisation, "is of S waves")
+            raise contradiction(".polarisation", self.polarisation, "is of S waves")
         if in_space and self.kind == "S":
             along = np.dot(self.polarisation or self.direction, self.direction)
             if abs(along) > 1 - LEAST_ACROSS:
                 allowed = "is required for an S wave in space: not along its direction"
-                raise contradiction_here("polarisation", self.polarisation, allowed)
+                raise contradiction(".polarisation", self.polarisation, allowed)
         return self
 
 
@@ -95,7 +95,7 @@ class PlaneLoad(Pulse):
         check_keys(self, "kind", KEYS)
         if self.quantity not in QUANTITIES[self.kind]:
             allowed = " or ".join(f"'{one}'" for one in sorted(QUANTITIES[self.kind]))
-            raise contradiction_here("quantity", self.quantity, f"must be {allowed} here")
+            raise contradiction(".quantity", self.quantity, f"must be {allowed} here")
         if self.kind == "pressure" and (self.side is None) == (self.opening is None):
-            raise contradiction_here("side", self.side, "give exactly one of side and opening")
+            raise contradiction(".side", self.side, "give exactly one of side and opening")
         return self

@@ -90,7 +90,11 @@ class Table(BaseModel):
 
 
 def contradiction(key: str, value: object, allowed: str) -> PydanticCustomError:
-    """Return the error for a value that does not fit the rest of the scene, under its full key."""
+    """Return the error for a value that does not fit the rest of the scene, under its full key, or
+    the rest of its own table, wherever that stands, under `.key`.
+
+    The reader puts the table's path before such a key, and for `{table}` in what is allowed.
+    """
     return PydanticCustomError(
         "contradiction", "{allowed}", {"allowed": allowed, "key": key, "found": value}
     )
@@ -105,7 +109,7 @@ def check_dimension(
     for key in plane if in_space else space:
         if table.gives(key):
             allowed = f"has no meaning in {'space' if in_space else 'the plane'}"
-            raise contradiction_here(key, getattr(table, key), allowed)
+            raise contradiction(f".{key}", getattr(table, key), allowed)
     return in_space
 
 
@@ -114,7 +118,7 @@ def check_attitude(table: Any, info: ValidationInfo) -> None:
     in_space = check_dimension(table, info, space=("dip_direction",))
     if in_space and table.dip % 180 and table.dip_direction is None:
         allowed = "is required in space: of the line of dip, degrees clockwise from north (y)"
-        raise contradiction_here("dip_direction", None, allowed)
+        raise contradiction(".dip_direction", None, allowed)
 
 
 def folder_of(info: ValidationInfo, key: str) -> tuple[Path, bool]:
@@ -139,14 +143,6 @@ def named_file(info: ValidationInfo, key: str, name: str) -> Path:
     return path
 
 
-def contradiction_here(key: str, value: object, allowed: str) -> PydanticCustomError:
-    """Return the error for a key that does not fit its own table, wherever that table stands.
-
-    The reader puts the table's path before the key, and in place of `{table}` in what is allowed.
-    """
-    return contradiction(f".{key}", value, allowed)
-
-
 def check_keys(table: Table, by: str, known: Mapping[str, tuple[set[str], set[str]]]) -> None:
     """Refuse a table that lacks a key which its kind needs, or has one of other kinds alone.
 
@@ -157,6 +153,6 @@ def check_keys(table: Table, by: str, known: Mapping[str, tuple[set[str], set[st
     for key in sorted(set().union(*(keys for both in known.values() for keys in both))):
         value = getattr(table, key)
         if key in needed and value is None:
-            raise contradiction_here(key, None, f"is required for {{table}}.{by} = '{kind}'")
+            raise contradiction(f".{key}", None, f"is required for {{table}}.{by} = '{kind}'")
         if value is not None and key not in needed | taken:
-            raise contradiction_here(key, value, f"has no meaning for {by} '{kind}'")
+            raise contradiction(f".{key}", value, f"has no meaning for {by} '{kind}'")

@@ -9,6 +9,8 @@ from jointwave.cases.schema.tables import Rock
 from jointwave.cases.spectrum import LEAST_BLOCKS, ShortestWave, shortest_wave
 from jointwave.cases.warnings.shared import (
     of_a_jump,
+    of_arrivals,
+    of_half,
     of_lever,
     of_pulses,
     onset,
@@ -47,13 +49,9 @@ def _of_times(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterato
 
 def _of_half_a_load(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
     """Say where a dashpot takes half of a load."""
-    load, start = scene.load, scene.ends.start
-    if load.quantity == "stress" and load.amplitude and start in ("quiet", "matched"):
-        yield (
-            f"load.amplitude = {load.amplitude:g} acts on the dashpot of ends.start = '{start}', "
-            f"too, which takes half: {load.amplitude / 2:g} enters; load.quantity = "
-            "'incident-stress' is the stress that enters"
-        )
+    load, instead = scene.load, "load.quantity = 'incident-stress' is the stress that enters"
+    if load.quantity == "stress":
+        yield from of_half("load", load.amplitude, "ends.start", scene.ends.start, instead)
 
 
 def _of_wavelength(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
@@ -92,20 +90,17 @@ def _of_a_jump(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterat
 
 def _of_arrivals(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
     """Say which receivers the wave does not reach before the end of the scene."""
-    falls = scene.gravity is not None and not scene.gravity.static
-    if wave is None or falls:
+    if wave is None:
         return
-    begin, end, speed = onset(scene.load), scene.time.duration, _fastest(scene, p)
-    for key in ("stress", "velocity"):
-        for y in getattr(scene.record, key):
-            way = y / speed if p.is_uniform else p.travel_time(y)
-            reached = begin + way
-            if reached >= end:
-                yield (
-                    f"record.{key} = {y:g} m is reached at {reached:.4g} s, at "
-                    f"{y / way if way else speed:.4g} m/s: after the end of the scene at "
-                    f"time.duration = {end:g} s"
-                )
+    begin, speed = onset(scene.load), _fastest(scene, p)
+    yield from of_arrivals(
+        scene,
+        (
+            (f"{key} = {y:g} m", begin + (y / speed if p.is_uniform else p.travel_time(y)))
+            for key in ("stress", "velocity")
+            for y in getattr(scene.record, key)
+        ),
+    )
 
 
 def _fastest(scene: Scene, p: Properties) -> float:

@@ -21,7 +21,14 @@ from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad, Wave
 from jointwave.cases.spectrum import LEAST_BLOCKS, highest_frequency
-from jointwave.cases.warnings.shared import of_a_jump, of_lever, of_pulses, onset
+from jointwave.cases.warnings.shared import (
+    of_a_jump,
+    of_arrivals,
+    of_half,
+    of_lever,
+    of_pulses,
+    onset,
+)
 
 NEAR = 0.05  # of the domain's size: distance of a receiver from the joint that it is meant for
 COINCIDENT = 1e-9  # of the domain's size: distance of two joints that are one
@@ -115,13 +122,10 @@ def _of_directions(scene: RockMass) -> Iterator[str]:
 def _of_half_a_load(scene: RockMass) -> Iterator[str]:
     """Say where the dashpots of a quiet side take half of a pressure on it."""
     for i, load in enumerate(scene.loads):
-        held = getattr(scene.boundaries, load.side or "", None)
-        if load.kind == "pressure" and load.amplitude and held == "quiet":
-            yield (
-                f"loads[{i}].amplitude = {load.amplitude:g} acts on the dashpots of "
-                f"boundaries.{load.side} = 'quiet', too, which take half: {load.amplitude / 2:g} "
-                "enters; one of the [[waves]] enters with its own amplitude"
-            )
+        if load.kind == "pressure" and load.side is not None:
+            side, held = f"boundaries.{load.side}", getattr(scene.boundaries, load.side)
+            instead = "one of the [[waves]] enters with its own amplitude"
+            yield from of_half(f"loads[{i}]", load.amplitude, side, held, instead)
 
 
 def _of_a_jump(scene: RockMass) -> Iterator[str]:
@@ -202,18 +206,12 @@ def _of_parts(scene: RockMass) -> Iterator[str]:
 
 def _of_arrivals(scene: RockMass) -> Iterator[str]:
     """Warn of receivers that no wave in intact rock reaches before the end of the scene."""
-    falls = scene.gravity is not None and not scene.gravity.static
-    sources, end = _acting(scene), scene.time.duration
-    if falls or not sources:
+    if not (sources := _acting(scene).values()):
         return
     for key in ("points", "joints"):
         for i, place in enumerate(getattr(scene.record, key)):
-            at = min(_arrival(scene, pulse, np.array(place)) for pulse in sources.values())
-            if at >= end:
-                yield (
-                    f"record.{key}[{i}] = {_at(place)} is reached at {at:.4g} s: "
-                    f"after the end of the scene at time.duration = {end:g} s"
-                )
+            at = min(_arrival(scene, pulse, np.array(place)) for pulse in sources)
+            yield from of_arrivals(scene, [(f"{key}[{i}] = {_at(place)}", at)])
 
 
 def _of_starts(scene: RockMass) -> Iterator[str]:

@@ -1,6 +1,6 @@
 """Warnings that pillars and rock masses share, of pulses and contact points."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from math import nan
 
 import numpy as np
@@ -103,6 +103,26 @@ def of_a_jump(table: str, pulse: Pulse, block: float, speed: float) -> Iterator[
             f"{OF_A_RISE * block / speed:.3g} s (a 'triangle' of long decay, a 'table') overshoots "
             "by at most 2 %"
         )
+
+
+def of_half(table: str, amplitude: float, side: str, held: str, instead: str) -> Iterator[str]:
+    """Say that the dashpots of a side take half of a load on it, and what would enter whole."""
+    if amplitude and held in ("quiet", "matched"):
+        yield (
+            f"{table}.amplitude = {amplitude:g} acts on the dashpot of {side} = '{held}', too, "
+            f"which takes half: {amplitude / 2:g} enters; {instead}"
+        )
+
+
+def of_arrivals(scene: AnyScene, arrivals: Iterable[tuple[str, float]]) -> Iterator[str]:
+    """Warn of receivers that waves reach (s) after the end of the scene, unless it falls."""
+    falls, end = scene.gravity is not None and not scene.gravity.static, scene.time.duration
+    for receiver, at in arrivals if not falls else ():
+        if at >= end:
+            yield (
+                f"record.{receiver} is reached at {at:.4g} s: after the end of the scene at "
+                f"time.duration = {end:g} s"
+            )
 
 
 def onset(pulse: Pulse) -> float:
