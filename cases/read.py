@@ -97,7 +97,7 @@ class _Tables(NamedTuple):
     def scene(self, index: int) -> AnyScene:
         """Return a variant by its number; -1 is the scene itself."""
         table, key = dict(self.base), f"variants[{index}]." if index >= 0 else ""
-        for parts, value in _leaves(self.variants[index]) if key else ():
+        for parts, value in _leaves(self.variants[index], table) if key else ():
             _assign(table, parts, value, key + ".".join(parts), self.path)
         _override(table, self.overrides if key else {}, self.path)
         name = table.get("name")
@@ -142,11 +142,12 @@ def parse_override(text: str) -> tuple[str, Any]:
         return key.strip(), value
 
 
-def _leaves(changes: dict[str, Any], above: tuple[str, ...] = ()) -> Iterator[tuple]:
-    """Yield what a table changes, by the names of the tables and keys down to it."""
+def _leaves(changes: dict[str, Any], base: Any, above: tuple[str, ...] = ()) -> Iterator[tuple]:
+    """Yield what a table changes in another, by the names of the tables and keys down to it."""
     for name, value in changes.items():
-        if isinstance(value, dict):
-            yield from _leaves(value, (*above, name))
+        old = base.get(name) if isinstance(base, dict) else None
+        if isinstance(value, dict) and (value or isinstance(old, dict)):
+            yield from _leaves(value, old, (*above, name))
         else:
             yield (*above, name), value
 

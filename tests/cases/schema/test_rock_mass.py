@@ -444,6 +444,13 @@ def test_a_pillar_imports_nothing_of_rock_masses(tmp_path):
     assert done.stdout.split() == []
 
 
+def test_an_empty_table_of_a_variant_has_its_defaults_unless_it_is_there(written):
+    text = '\n[[variants]]\nname = "heavy"\ngravity = {}\nboundaries = {}\n'
+    first, *_, heavy = load(written(GOOD.replace("[gravity]\nstatic = false\n", "") + text))
+    assert first.gravity is None and heavy.gravity.acceleration == 9.81
+    assert heavy.boundaries == first.boundaries
+
+
 def test_a_variant_changes_one_of_a_list_of_tables(written):
     path = written(GOOD + '\n[[variants]]\nname = "steep"\njoint_sets.1.dip = 80.0\n')
     first, *_, steep = load(path)
