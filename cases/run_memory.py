@@ -82,9 +82,11 @@ def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
             "record.stress": (len(record.stress), across, axes),
         }
     else:
+        dim = scene.domain.dimension
+        stresses = dim * (dim + 1) // 2
         rows = {
-            "record.points": (len(record.points), 3, 7),
-            "record.joints": (len(record.joints), 2, 4),
+            "record.points": (len(record.points), stresses, 2 * dim + stresses),
+            "record.joints": (len(record.joints), dim, 2 * dim),
         }
     samples = samples_of(scene)
     key, (places, most, _) = max(rows.items(), key=lambda row: row[1][0] * row[1][1])

@@ -11,7 +11,7 @@ and left out.
 
 Samples of contacts have the rows, in the contact's frame: force on block j [d], first moments of
 the traction over the face about its centre, by axes in the face and then components [d - 1, d],
-opening and slips [d].
+opening and slips [d]. Blocks that do not rotate have no such moments.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 
 from jointwave.dem.receivers import Receivers
-from jointwave.results.labels import stress_components
+from jointwave.results.stress import stress_components
 
 
 def quantities(
@@ -74,10 +74,11 @@ def mean_stress(
     faces, (row, place, side) = receivers.faces, receivers.touching.T
     dim, count = faces.frame.shape[1], contact.shape[-1]
     force = np.einsum("cak,can->ckn", faces.frame, contact[:, :dim])
-    moment = contact[:, dim : dim * dim].reshape(len(contact), dim - 1, dim, count)
-    spread = np.einsum("cbi,cak,cban->cikn", faces.frame[:, 1:], faces.frame, moment)
+    own = faces.arm[row, side][:, :, None, None] * force[row, None]
+    if contact.shape[1] > 2 * dim:
+        moment = contact[:, dim:-dim].reshape(len(contact), dim - 1, dim, count)
+        own += np.einsum("cbi,cak,cban->cikn", faces.frame[:, 1:], faces.frame, moment)[row]
     sums = np.zeros((len(receivers.places), dim, dim, count)) if outside is None else outside
-    own = faces.arm[row, side][:, :, None, None] * force[row, None] + spread[row]
     np.add.at(sums, place, np.where(side, 1.0, -1.0)[:, None, None, None] * own)
     mean = -(sums + sums.swapaxes(1, 2)) / (2 * receivers.volume)[:, None, None, None]
     return np.stack([mean[:, i, j] for i, j in stress_components(dim).values()], axis=-1)

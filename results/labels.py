@@ -64,10 +64,3 @@ def label(name: str) -> dict[str, str]:
     """Return the attributes `long_name` and, for a physical quantity, `units` of a variable."""
     long_name, unit = LABELS[name]
     return {"long_name": long_name} | ({"units": unit} if unit else {})
-
-
-def stress_components(dim: int) -> dict[str, tuple[int, int]]:
-    """Return the components of a stress in so many dimensions, xx, yy, ..., xy, ..., with their
-    indices."""
-    pairs = [*((k, k) for k in range(dim)), *((0, 1), (1, 2), (0, 2))[: dim * (dim - 1) // 2]]
-    return {AXES[i] + AXES[j]: (i, j) for i, j in pairs}

@@ -8,7 +8,8 @@ import xarray as xr
 
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.results.dataset import assemble, attributes_of
-from jointwave.results.labels import AXES, stress_components
+from jointwave.results.labels import AXES
+from jointwave.results.stress import stress_components
 
 #: Dimensions of each quantity except time, its receivers or the terms of the ledger first.
 DIMENSIONS: dict[str, tuple[str, ...]] = {

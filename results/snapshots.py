@@ -13,7 +13,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.size import LARGEST_VARIABLE
 from jointwave.results.arrays import copied
 from jointwave.results.dataset import labelled
-from jointwave.results.labels import stress_components
+from jointwave.results.stress import stress_components
 
 AXES = {1: [1], 2: [0, 1], 3: [0, 1, 2]}  # of x, y, z, by the number of components
 DIMENSIONS = {
@@ -139,7 +139,7 @@ def with_snapshots(result: xr.Dataset, s: Snapshots) -> xr.Dataset:
         "component": ("component", list("xyz")),
     }
     if s.stress is not None and s.stress.ndim == 3:
-        names = list(stress_components(3 if s.stress.shape[2] == 6 else 2))
+        names = list(stress_components(2 if s.stress.shape[2] == 3 else 3))
         coords["stress_component"] = ("stress_component", names)
     found = result.assign(labelled(variables)).assign_coords(labelled(coords))
     found["field_cells"].attrs["kind"] = s.kind

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from jointwave.cases.geometry.blocks import Blocks
-from jointwave.cases.geometry.measure import Outlines
 
 SAME = 1e-9  #: of the size of all blocks: the distance below which places are one
 
@@ -71,27 +70,24 @@ def contact_at(blocks: Blocks, points: np.ndarray, sets: int) -> np.ndarray:
     chosen = np.flatnonzero(blocks.contacts.of_joints(sets))
     if not len(chosen):
         raise ValueError("there is no contact")
-    outlines, normal = blocks.contacts.outlines, blocks.contacts.normal
+    outlines, centres = blocks.contacts.outlines, blocks.contacts.centroid[chosen]
+    owner = np.repeat(np.arange(len(blocks.contacts)), np.diff(outlines.first))
+    reach = np.linalg.norm(outlines.corners - blocks.contacts.centroid[owner], axis=1)
+    reach = np.maximum.reduceat(reach, outlines.first[:-1])[chosen]
     beyond, found = tolerance_of(blocks), []
     for point in points:
-        off = distances(outlines, normal, point)[chosen]
-        found.append(chosen[np.argmax(off <= off.min() + beyond)])
+        away = np.linalg.norm(centres - point, axis=1)
+        near = chosen[away - reach <= away.min() + beyond]
+        off = np.array([distance(outlines.of(k), blocks.contacts.normal[k], point) for k in near])
+        found.append(near[np.argmax(off <= off.min() + beyond)])
     return np.array(found, dtype=np.int64)
 
 
-def distances(pieces: Outlines, normal: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """Return the distance of a point [d] from convex pieces of planes with normals [n, d], m."""
-    x, first = pieces
-    after = np.arange(1, len(x) + 1)
-    after[first[1:] - 1] = first[:-1]
-    owner = np.repeat(np.arange(len(normal)), np.diff(first))
-    edge, off = x[after] - x, point - x
+def distance(corners: np.ndarray, normal: np.ndarray, point: np.ndarray) -> float:
+    """Return the distance of a point [d] from a convex piece of a plane, m; corners [n, d]."""
+    edge, off = np.roll(corners, -1, axis=0) - corners, point - corners
+    if corners.shape[1] == 3 and (np.cross(edge, off) @ normal >= 0).all():
+        return abs(float(off[0] @ normal))  # before the piece itself, not beyond one of its edges
     along = (edge * off).sum(axis=1) / np.maximum((edge**2).sum(axis=1), np.finfo(float).tiny)
     away = np.linalg.norm(off - np.clip(along, 0.0, 1.0)[:, None] * edge, axis=1)
-    found = np.minimum.reduceat(away, first[:-1])
-    if x.shape[1] == 3:  # before the piece itself, not beyond one of its edges
-        turn = (np.cross(edge, off) * normal[owner]).sum(axis=1)
-        before = np.minimum.reduceat(turn, first[:-1]) >= 0
-        height = np.abs((off[first[:-1]] * normal).sum(axis=1))
-        found[before] = height[before]
-    return found
+    return float(away.min())

@@ -19,7 +19,7 @@ from jointwave.compare.misfit.metrics import (
 )
 from jointwave.compare.misfit.places import UNITS, shown
 from jointwave.compare.misfit.weight import FAINT
-from jointwave.results.labels import stress_components
+from jointwave.results.stress import stress_components, tensors
 
 VELOCITY, STRESS = "PPV", "peak stress"
 _OF = {"velocity": VELOCITY, "stress": STRESS, "shear": STRESS}
@@ -61,12 +61,10 @@ def peak_differences(one: xr.Dataset, other: xr.Dataset) -> dict[str, PeakDiffer
 def _peak(components: dict[str, np.ndarray]) -> float:
     """Return the largest length of a vector, or principal value of a tensor; a component of a
     tensor that nothing excites is absent."""
-    if components.keys() <= (tensor := stress_components(3)).keys():
-        values = np.zeros((*next(iter(components.values())).shape, 3, 3))
-        for name, wave in components.items():
-            i, j = tensor[name]
-            values[:, i, j] = values[:, j, i] = wave
-        return float(np.abs(np.linalg.eigvalsh(values)).max())
+    if components.keys() <= (names := stress_components(3)).keys():
+        absent = np.zeros_like(next(iter(components.values())))
+        stress = np.stack([components.get(name, absent) for name in names], axis=-1)
+        return float(np.abs(np.linalg.eigvalsh(tensors(stress))).max())
     return float(np.sqrt(sum(wave**2 for wave in components.values())).max())
 
 

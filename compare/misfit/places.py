@@ -12,8 +12,9 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
-from jointwave.results.labels import AXES, RECEIVERS, stress_components
+from jointwave.results.labels import AXES, RECEIVERS
 from jointwave.results.rock_mass import JOINT_AXES
+from jointwave.results.stress import stress_components
 
 #: Dimensions of components in results.
 COMPONENT_DIMENSIONS = ("axis", "across", "stress_component", "joint_axis", "slip_axis")

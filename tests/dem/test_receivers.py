@@ -1,13 +1,19 @@
 """Receivers, mean stresses and snapshots of rigid blocks in one, two and three dimensions."""
 
+from pathlib import Path
+
+import meshio
 import numpy as np
 import pytest
 from scipy.linalg import null_space
 
+from jointwave.cases import load
 from jointwave.cases.geometry.blocks import blocks_of
 from jointwave.cases.geometry.cell_complex import box
 from jointwave.cases.geometry.locate import blocks_at, contact_at, sides_at
 from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
+from jointwave.cases.partition.scene import blocks_of_scene
+from jointwave.compare.runs.field_files import write_pvd
 from jointwave.dem.receivers import (
     Faces,
     everywhere,
@@ -18,9 +24,12 @@ from jointwave.dem.receivers import (
     turning,
 )
 from jointwave.dem.record import at_points, jumps, mean_stress, quantities
-from jointwave.dem.snapshots import corner_motion, triangles
-from jointwave.results.labels import stress_components
+from jointwave.dem.snapshots import BlockFrame, BlockRecorder, corner_motion, triangles
+from jointwave.results.rock_mass import rock_mass_dataset
+from jointwave.results.snapshots import snapshots_of
+from jointwave.results.stress import stress_components
 
+WALL = Path(__file__).parents[2] / "cases/rock-mass/masonry-wall.toml"
 SIZE, TOLERANCE = np.array([6.0, 5.0, 4.0]), 1e-9
 DIMENSIONS = pytest.mark.parametrize("dim", (1, 2, 3))
 ROTATIONS = {1: 0, 2: 1, 3: 3}
@@ -177,6 +186,17 @@ def test_a_stress_in_equilibrium_is_the_mean_stress_of_every_block(dim, uniform)
 
 
 @DIMENSIONS
+def test_blocks_that_do_not_rotate_have_no_moments_to_read(dim):
+    found = blocks(dim)
+    faces, centroid, second = all_faces(found)
+    contact = samples_of(faces, centroid, second, *field(dim)[:1], np.zeros((dim,) * 3))
+    fewer = np.concatenate([contact[:, :dim], contact[:, -dim:]], axis=1)
+    receivers = everywhere(found.volume, faces)
+    whole, part = mean_stress(receivers, contact), mean_stress(receivers, fewer)
+    np.testing.assert_allclose(part, whole, rtol=0, atol=1e-13 * np.abs(whole).max())
+
+
+@DIMENSIONS
 def test_what_acts_from_outside_counts_as_contacts_do(dim):
     """The boundary as walls, or as sums of arm times force."""
     found = blocks(dim)
@@ -292,3 +312,30 @@ def test_snapshots_show_whole_blocks_that_move_rigidly(dim):
     pair = np.flatnonzero(np.diff(block) == 0)
     edge, stretch = np.diff(arms, axis=0)[pair], np.diff(moved, axis=1)[:, pair]
     assert np.abs((edge * stretch).sum(axis=2)).max() < 1e-13  # lengths stay, to first order
+
+
+def test_snapshots_of_a_scene_in_space(tmp_path):
+    """The faces of all bricks, as they move, with six stresses; displacement from the start on."""
+    (scene,) = load(WALL, {"record.fields": 0.2})
+    found = blocks_of_scene(scene)
+    owner, _, pieces = found.faces(TOLERANCE)
+    draw, count = np.random.default_rng(8).normal, found.count
+    frames = [
+        BlockFrame(draw(size=(count, 6)), draw(size=(count, 6)), draw(size=(count, 6)), np.zeros(0))
+        for _ in range(3)
+    ]
+    recorder = BlockRecorder(scene, found, pieces, owner, lambda k: frames[k // recorder.every])
+    times = np.arange(2 * recorder.every + 1) * scene.interval
+    for k in range(len(times)):
+        recorder.record_if_due(k)
+    s = snapshots_of(recorder.add_to(rock_mass_dataset(scene, "dem", times, {})))
+    assert s.kind == "triangle" and len(s.time) == 3 and s.stress.shape[2] == 6
+    assert len(np.unique(s.block)) == count and not s.displacement[0].any()
+    block = np.repeat(owner, np.diff(pieces.first))
+    arm = pieces.corners - found.centroid[block]
+    own = frames[2].velocity[block]
+    np.testing.assert_allclose(s.velocity[2], own[:, :3] + np.cross(own[:, 3:], arm), atol=1e-12)
+    np.testing.assert_array_equal(s.stress[1], frames[1].stress[s.block])
+    path = write_pvd(tmp_path / "wall.pvd", s)
+    held = meshio.read(path.with_name("wall-fields") / "0002.vtu")
+    assert held.cell_data["stress"][0].shape == (len(s.cells), 6)

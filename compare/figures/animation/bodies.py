@@ -21,6 +21,7 @@ from jointwave.compare.figures.animation.settings import (
 )
 from jointwave.compare.figures.style import FIELD, UNSIGNED
 from jointwave.results.snapshots import Snapshots
+from jointwave.results.stress import tensors
 
 #: Corners of the faces of a cell.
 FACES = {
@@ -95,7 +96,10 @@ def _values(
 
 
 def _principal(stress: np.ndarray) -> np.ndarray:
-    """Return the principal stress of larger size of stresses [..., (xx, yy, xy)]."""
+    """Return the principal stress of larger size of stresses [..., components]."""
+    if stress.shape[-1] == 6:
+        low, _, high = np.moveaxis(np.linalg.eigvalsh(tensors(stress)), -1, 0)
+        return np.where(-low > high, low, high)
     xx, yy, xy = np.moveaxis(stress, -1, 0)
     middle = (xx + yy) / 2
     return middle + np.where(middle < 0, -1.0, 1.0) * np.hypot((xx - yy) / 2, xy)

@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 
 from jointwave.compare.figures.animation.bodies import body_of
-from jointwave.compare.figures.animation.settings import SPEED, STRESS, VELOCITY, ViewSettings
+from jointwave.compare.figures.animation.settings import (
+    PRINCIPAL,
+    SPEED,
+    STRESS,
+    VELOCITY,
+    ViewSettings,
+)
 
 X, Z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 
@@ -80,3 +86,15 @@ def test_colours_of_a_shear_wave_are_the_velocity_upwards(row, body_at):
 def test_speed_is_that_of_the_corners(row, body_at):
     body = body_at(row(displacement=lambda x: 0 * x + [0.0, 3e-3, 4e-3]), quantity=SPEED)
     np.testing.assert_allclose(body.values, np.outer([0.0, 5.0], np.ones(18)))
+
+
+def test_the_principal_stress_of_larger_size_in_the_plane_and_in_space(row):
+    """Of 3, -5 (and 1) MPa in random axes, and of a state in one plane by either rule."""
+    turn = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
+    stress = turn @ np.diag([3e6, -5e6, 1e6]) @ turn.T
+    of_space = [stress[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))]
+    flat = [2e6, 1e6, 0.0, 3e6, 0.0, 0.0]
+    settings = ViewSettings(Z, 1.0, 1.0, PRINCIPAL)
+    space = body_of(row(1, "quad", stress=[[of_space], [flat]]), None, settings)
+    plane = body_of(row(1, "quad", stress=[[[0] * 3], [[2e6, 1e6, 3e6]]]), None, settings)
+    np.testing.assert_allclose(space.values[:, 0], [-5.0, plane.values[1, 0]], rtol=1e-12)
