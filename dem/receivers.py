@@ -27,8 +27,6 @@ FLAT = 0.05
 SHARED = 0.5
 #: Of a contact's size: the distance below which it shares a corner, or lies in one plane.
 SAME = 1e-6
-#: The axes that each rotation turns into each other, by the number of dimensions.
-TURNS: dict[int, tuple[tuple[int, int], ...]] = {1: (), 2: ((0, 1),), 3: ((1, 2), (2, 0), (0, 1))}
 
 
 class Faces(NamedTuple):
@@ -87,10 +85,10 @@ class Receivers(NamedTuple):
     joints: csr_matrix
 
 
-def receivers_of(scene: RockMass, blocks: Blocks, faces: Faces, freedoms: int) -> Receivers:
+def receivers_of(scene: RockMass, blocks: Blocks, faces: Faces, onto: np.ndarray) -> Receivers:
     """Return the receivers of a scene; raises SceneError for a point outside the rock.
 
-    faces : all contacts, those of the blocks first. freedoms : of a block.
+    faces : all contacts, those of the blocks first. onto : of a block, by `boundaries.freedoms`.
     """
     sets, dim = len(scene.joint_sets), blocks.body.dim
     points, joints = (
@@ -105,7 +103,7 @@ def receivers_of(scene: RockMass, blocks: Blocks, faces: Faces, freedoms: int) -
     at_points = stencils_in_rock(blocks, points, sides, sets, shared)
     along = scene.numerics.dem.block is not None
     at_joints = stencils_on_joints(blocks, joints, sets, along) if len(joints) else []
-    return read_by(blocks.volume, faces, freedoms, at_points, at_joints)
+    return read_by(blocks.volume, faces, onto, at_points, at_joints)
 
 
 def stencils_in_rock(
@@ -171,18 +169,22 @@ def _stencil(
 def read_by(
     volume: np.ndarray,
     faces: Faces,
-    freedoms: int,
+    onto: np.ndarray,
     points: list[Stencil],
     joints: list[Stencil],
 ) -> Receivers:
-    """Return receivers by their stencils, of blocks at points and of contacts at joints."""
+    """Return receivers by their stencils, of blocks at points and of contacts at joints.
+
+    onto : matrix [F, d + d^2], whose transpose gives the motion of a centroid and its gradient.
+    """
     places = np.unique([b for one in points for b in one.at]).astype(np.int64)
     contact, side = np.nonzero(np.isin(faces.blocks, places))
     watched = np.unique([*contact, *(c for one in joints for c in one.at)]).astype(np.int64)
     place = np.searchsorted(places, faces.blocks[contact, side])
     weights, dim = _matrix(points, places), faces.frame.shape[1]
-    motion = kron(weights, np.eye(dim, freedoms))
-    for axis, turn in enumerate(turning(np.eye(dim), freedoms)):
+    moves, *turns = onto.T.reshape(-1, dim, len(onto))
+    motion = kron(weights, moves)
+    for axis, turn in enumerate(turns):
         arms = [one._replace(at=one.at[:1], weight=one.arm[[axis]]) for one in points]
         motion += kron(_matrix(arms, places), turn)
     return Receivers(
@@ -212,13 +214,3 @@ def _matrix(stencils: list[Stencil], columns: np.ndarray) -> csr_matrix:
     weight = [w for one in stencils for w in one.weight]
     shape = max((one.receiver + 1 for one in stencils), default=0), len(columns)
     return csr_matrix((weight, (row.astype(int), at.astype(int))), shape)
-
-
-def turning(arm: np.ndarray, freedoms: int) -> np.ndarray:
-    """Return what the rotations of a block add to the motion at the end of an arm [..., d], m:
-    matrices [..., d, F], phi x r."""
-    dim = arm.shape[-1]
-    found = np.zeros((*arm.shape, freedoms))
-    for k, (i, j) in enumerate(TURNS[dim][: freedoms - dim]):
-        found[..., j, dim + k], found[..., i, dim + k] = arm[..., i], -arm[..., j]
-    return found

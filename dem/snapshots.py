@@ -12,7 +12,7 @@ import xarray as xr
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.measure import Outlines
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.dem.receivers import turning
+from jointwave.dem.boundaries import freedoms
 from jointwave.results.snapshots import (
     SnapshotRecorder,
     in_space,
@@ -60,7 +60,7 @@ class BlockRecorder(SnapshotRecorder):
         time = result["time"].values[:: self.every]
         u, v, stress, slip = (np.stack(x) for x in zip(*self.frames[: len(time)], strict=True))
         arms = self.points - self.blocks.centroid[self.owner]
-        moved, moving = (corner_motion(x[:, self.owner], arms) for x in (u - u[0], v))
+        moved, moving = (corner_motion(x, self.owner, arms) for x in (u - u[0], v))
         own = stress[:, self.block]
         cells = self.points, "triangle", self.cells, self.block
         found = with_snapshots(result, snapshots(time, *cells, moved, moving, own))
@@ -80,9 +80,12 @@ def triangles(pieces: Outlines) -> tuple[np.ndarray, np.ndarray]:
     return np.stack([first[piece[at]], at, at + 1], axis=1), piece[at]
 
 
-def corner_motion(motion: np.ndarray, arms: np.ndarray) -> np.ndarray:
-    """Return the motion of corners [..., k, d] of that of their blocks [..., k, F], by the arms
-    from their centroids [k, d], m."""
-    dim, freedoms = arms.shape[1], motion.shape[-1]
-    turned = np.einsum("kaf,...kf->...ka", turning(arms, freedoms), motion)
-    return motion[..., :dim] + turned
+def corner_motion(motion: np.ndarray, owner: np.ndarray, arms: np.ndarray) -> np.ndarray:
+    """Return the motion of corners [..., k, d] of that of blocks [..., N, F].
+
+    owner : the block of each corner [k]. arms : from its centroid [k, d], m.
+    """
+    dim = arms.shape[1]
+    moved = motion @ freedoms(dim, motion.shape[-1] - dim)
+    gradient = moved[..., owner, dim:].reshape(*moved.shape[:-2], len(owner), dim, dim)
+    return moved[..., owner, :dim] + np.einsum("ki,...kij->...kj", arms, gradient)

@@ -14,6 +14,7 @@ from jointwave.cases.geometry.locate import blocks_at, contact_at, sides_at
 from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.compare.runs.field_files import write_pvd
+from jointwave.dem.boundaries import freedoms as freedoms_of
 from jointwave.dem.receivers import (
     Faces,
     everywhere,
@@ -21,7 +22,6 @@ from jointwave.dem.receivers import (
     read_by,
     stencils_in_rock,
     stencils_on_joints,
-    turning,
 )
 from jointwave.dem.record import at_points, jumps, mean_stress, quantities
 from jointwave.dem.snapshots import BlockFrame, BlockRecorder, corner_motion, triangles
@@ -33,6 +33,17 @@ WALL = Path(__file__).parents[2] / "cases/rock-mass/masonry-wall.toml"
 SIZE, TOLERANCE = np.array([6.0, 5.0, 4.0]), 1e-9
 DIMENSIONS = pytest.mark.parametrize("dim", (1, 2, 3))
 ROTATIONS = {1: 0, 2: 1, 3: 3}
+
+
+def turning(arm, freedoms):
+    """What rotations add to the motion at the ends of arms: phi x r, matrices [..., d, F]."""
+    dim = arm.shape[-1]
+    found = np.zeros((*arm.shape, freedoms))
+    if dim == 2:
+        found[..., 0, 2], found[..., 1, 2] = -arm[..., 1], arm[..., 0]
+    elif dim == 3:
+        found[..., 3:] = -np.cross(arm[..., None, :], np.eye(3)).swapaxes(-1, -2)
+    return found
 
 
 def blocks(dim, tilt=0.2):
@@ -69,6 +80,13 @@ def all_faces(found):
     return faces, centroid, second
 
 
+def at(found, stencils):
+    """Receivers at points of blocks that rotate."""
+    dim = found.body.dim
+    onto = freedoms_of(dim, ROTATIONS[dim])
+    return read_by(found.volume, all_faces(found)[0], onto, stencils, [])
+
+
 def inside(found, count, seed=0):
     """Places in the rock."""
     dim = found.body.dim
@@ -95,7 +113,9 @@ def test_an_affine_motion_of_blocks_in_rock_is_that_of_every_point(dim):
     points, freedoms = inside(found, 40), dim + ROTATIONS[dim]
     sides = sides_at(found, points, 0)
     stencils = stencils_in_rock(found, points, sides, 0)
-    receivers = read_by(found.volume, all_faces(found)[0], freedoms, stencils, [])
+    receivers = read_by(
+        found.volume, all_faces(found)[0], freedoms_of(dim, ROTATIONS[dim]), stencils, []
+    )
     A, b = draw(size=(dim, dim)), draw(size=dim)
     motion = draw(size=(found.count, freedoms, 1))
     motion[:, :dim, 0] = b + found.centroid @ A.T
@@ -116,7 +136,9 @@ def test_points_between_joints_move_with_their_rigid_block(dim):
     sides = sides_at(found, points, dim)
     assert [len(own) for own in sides] == [1] * 20 + [2] * 5
     stencils = stencils_in_rock(found, points, sides, dim)
-    receivers = read_by(found.volume, all_faces(found)[0], freedoms, stencils, [])
+    receivers = read_by(
+        found.volume, all_faces(found)[0], freedoms_of(dim, ROTATIONS[dim]), stencils, []
+    )
     b, phi = draw(size=dim), draw(size=freedoms - dim)
 
     def rigid(x):
@@ -255,7 +277,7 @@ def test_joint_receivers_read_the_nearest_contact_or_along_the_joint(dim):
     faces = Faces(*(array[:inner] for array in faces))
     for along in (False, True):
         stencils = stencils_on_joints(found, points, 1, along)
-        receivers = read_by(found.volume, faces, dim, [], stencils)
+        receivers = read_by(found.volume, faces, freedoms_of(dim, 0), [], stencils)
         two = contact[receivers.watched] * [0.0, 1.0]  # the first sample counts as the start
         got = quantities(receivers, *np.zeros((2, 0, dim, 2)), two)
         assert set(got) == {"traction", "gap", *(("slip",) if dim > 1 else ())}
@@ -308,7 +330,7 @@ def test_snapshots_show_whole_blocks_that_move_rigidly(dim):
     block = np.repeat(owner, np.diff(pieces.first))
     motion = draw(size=(3, found.count, freedoms))
     arms = pieces.corners - found.centroid[block]
-    moved = corner_motion(motion[:, block], arms)
+    moved = corner_motion(motion, block, arms)
     pair = np.flatnonzero(np.diff(block) == 0)
     edge, stretch = np.diff(arms, axis=0)[pair], np.diff(moved, axis=1)[:, pair]
     assert np.abs((edge * stretch).sum(axis=2)).max() < 1e-13  # lengths stay, to first order
