@@ -78,12 +78,14 @@ def contact_at(blocks: Blocks, points: np.ndarray, sets: int) -> np.ndarray:
     for point in points:
         away = np.linalg.norm(centres - point, axis=1)
         near = chosen[away - reach <= away.min() + beyond]
-        off = np.array([distance(outlines.of(k), blocks.contacts.normal[k], point) for k in near])
+        off = np.array(
+            [distance_from(outlines.of(k), blocks.contacts.normal[k], point) for k in near]
+        )
         found.append(near[np.argmax(off <= off.min() + beyond)])
     return np.array(found, dtype=np.int64)
 
 
-def distance(corners: np.ndarray, normal: np.ndarray, point: np.ndarray) -> float:
+def distance_from(corners: np.ndarray, normal: np.ndarray, point: np.ndarray) -> float:
     """Return the distance of a point [d] from a convex piece of a plane, m; corners [n, d]."""
     edge, off = np.roll(corners, -1, axis=0) - corners, point - corners
     if corners.shape[1] == 3 and (np.cross(edge, off) @ normal >= 0).all():

@@ -8,7 +8,7 @@ import shapely
 
 from jointwave.cases.geometry.blocks import Facets
 from jointwave.cases.geometry.cell_complex import Complex, GeometryError, box, polygon
-from jointwave.cases.geometry.locate import distances
+from jointwave.cases.geometry.locate import distance_from
 from jointwave.cases.geometry.measure import Outlines, cell_moments, outlines
 from jointwave.cases.geometry.solids import (
     ROCK,
@@ -150,7 +150,7 @@ def _outlines(faces: list[Face]) -> Outlines:
 
 def distance(point: np.ndarray, faces: list[Face]) -> float:
     """Return the distance of a point [d] from the nearest of some faces, m."""
-    return float(distances(_outlines(faces), np.array([n for _, n in faces]), point).min())
+    return min(distance_from(*face, point) for face in faces)
 
 
 def _faces(body: Complex, side: int, tolerance: float) -> list[Face]:
