@@ -11,7 +11,7 @@ from jointwave.cases.geometry.cell_complex import GeometryError
 from jointwave.cases.geometry.sets import cut_by_sets
 from jointwave.cases.partition.joints import attitude, plane_sets
 from jointwave.cases.partition.scene import rock_of
-from jointwave.cases.partition.shape import Shape, shape_of
+from jointwave.cases.partition.shape import Shape, distance, shape_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.cases.schema.tables import LEAN
@@ -128,8 +128,9 @@ def _of_load(load: PlaneLoad, scene: RockMass, outline: Shape) -> Iterator[Wrong
             allowed = f"needs boundaries.{load.side} = '{one}' or '{other}', not '{held}'"
             yield "side", load.side, allowed
     if load.between is not None:
+        faces = outline.faces_of(load.side, load.opening)
         for point in load.between:
-            if outline.away(np.array(point), load.side, load.opening) > BESIDE * outline.size:
+            if distance(np.array(point), faces) > BESIDE * outline.size:
                 yield "between", point, f"must lie on {load.side or f'openings[{load.opening}]'}"
         if np.hypot(*np.diff(load.between, axis=0)[0]) <= BESIDE * outline.size:
             yield "between", load.between, "must be two points"

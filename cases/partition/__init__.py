@@ -1,4 +1,1 @@
-"""A rock mass in the plane: its domain cut by joint sets into convex polygonal blocks.
-
-`cut` gives the `Partition`: blocks, contacts and boundary edges as plain arrays.
-"""
+"""A rock mass: the domain of a scene cut by joint sets into convex blocks, in any dimension."""

@@ -136,14 +136,13 @@ def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
 
 def _across(groups: list[list[JointSet]], dim: int) -> list[np.ndarray]:
     """Return unit vectors in the directions in which no joints cut, upwards first without any."""
-    if not groups:
-        return list(np.eye(dim)[::-1])
-    normals = np.array([attitude(group[0], dim)[0] for group in groups])
-    rank = np.linalg.matrix_rank(normals, tol=ALIKE)
-    if rank == 1 or rank == dim:
-        return list(attitude(groups[0][0], dim)[1]) if rank < dim else []
-    axis = np.cross(*normals[:2])
-    return [axis / np.linalg.norm(axis)]
+    frames = [attitude(group[0], dim) for group in groups]
+    normals = np.array([normal for normal, _ in frames]).reshape(-1, dim)
+    rank = np.linalg.matrix_rank(normals, tol=ALIKE) if frames else 0
+    if rank == 2 < dim:
+        axis = np.cross(*normals[:2])
+        return [axis / np.linalg.norm(axis)]
+    return [*np.eye(dim)[::-1]] if rank == 0 else [*frames[0][1]] if rank == 1 else []
 
 
 def _seams(scene: RockMass, thin: np.ndarray) -> list[JointSet]:

@@ -1,6 +1,7 @@
 """The part of the boundary that a pressure acts on."""
 
 import numpy as np
+import shapely
 
 from jointwave.cases.partition.shape import Shape, shape_of
 from jointwave.cases.schema.domain import Domain
@@ -40,15 +41,14 @@ def loaded_lines(outline: Shape, load: PlaneLoad) -> list[tuple[np.ndarray, np.n
     load: of one face what is between them; of a side that has ends, from one to the other; else,
     as of an opening, from the first to the second counter-clockwise around it."""
     lines, between = outline.edges(load.side, load.opening), np.array(load.between)
-    near = [_off(lines, point) <= BESIDE * outline.size for point in between]
-    if (near[0] & near[1]).any():
+    if (_off(lines, between) <= BESIDE * outline.size).all(axis=0).any():
         return [(between[0], between[1])]
     gaps = np.flatnonzero((lines[:, 0] != np.roll(lines[:, 1], 1, axis=0)).any(axis=1))
     if gaps.size:
         lines = np.roll(lines, -gaps[0], axis=0)
-    (i, s), (j, t) = (_place(lines, point) for point in between)
-    if gaps.size and (j, t) < (i, s):
-        (i, s), (j, t), between = (j, t), (i, s), between[::-1]
+    i, j = _off(lines, between).argmin(axis=1)
+    if gaps.size and j < i:
+        i, j, between = j, i, between[::-1]
     found = [(between[0], lines[i, 1])]
     k = (i + 1) % len(lines)
     while k != j:
@@ -57,15 +57,7 @@ def loaded_lines(outline: Shape, load: PlaneLoad) -> list[tuple[np.ndarray, np.n
     return [*found, (lines[j, 0], between[1])]
 
 
-def _place(lines: np.ndarray, point: np.ndarray) -> tuple[int, float]:
-    """Return the line that is nearest to a point, and where on it, of its length."""
-    k = int(_off(lines, point).argmin())
-    start, along = lines[k, 0], lines[k, 1] - lines[k, 0]
-    return k, float(np.clip((point - start) @ along / (along @ along), 0.0, 1.0))
-
-
-def _off(lines: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """Return the distance of a point from each line [n], m."""
-    start, along = lines[:, 0], np.diff(lines, axis=1)[:, 0]
-    t = np.clip(((point - start) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
-    return np.hypot(*(start + t[:, None] * along - point).T)
+def _off(lines: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Return the distances of points [m, 2] from lines, [m, n], m."""
+    found = shapely.distance(shapely.linestrings(lines), shapely.points(points)[:, None])
+    return np.asarray(found)

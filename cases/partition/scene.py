@@ -1,6 +1,7 @@
 """The blocks of a rock-mass scene, and their memory, estimated in advance."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from itertools import combinations
 from math import prod
@@ -27,10 +28,10 @@ from jointwave.cases.size import LIMIT, memory, spoken
 
 #: Default least width of a block over the smallest spacing, or the size of the domain without one.
 THIN = 1e-2
-#: The same where cuts through intact rock make a lattice, in the order in which they are tried. The
-#: thinnest block decides the step, but what is joined has no strain: with a third of the spacing a
-#: wave's error does not fall with the blocks, with 0.03 it does and steps are three times as many.
-LATTICE = (0.03, THIN)
+#: The same where cuts through intact rock make a lattice, if that is possible. The thinnest block
+#: decides the step, but what is joined has no strain: with a third of the spacing a wave's error
+#: does not fall with the blocks, with 0.03 it does and steps are three times as many.
+LATTICE = 0.03
 #: Bytes of memory for each block while a domain of two or three dimensions is cut.
 OF_BLOCK = {2: 2500, 3: 16_000}
 
@@ -71,41 +72,31 @@ def _body(
     further: Sequence[JointSet],
     regions: Sequence[Region],
 ) -> Complex:
-    """Return a domain in cells."""
-    body, tolerance = rock_of(shape, regions), shape.tolerance
-    planes = plane_sets([*sets, *further], regions, domain.dimension)
-    body = taken_out(cut_by_sets(body, planes, tolerance, len(sets)), shape.solids, tolerance)
+    """Return a domain in cells without slivers; of a lattice without thin blocks at its sides, as
+    far as they can be joined to others: they would decide the step."""
+    body, tolerance, every = rock_of(shape, regions), shape.tolerance, [*sets, *further]
+    body = cut_by_sets(body, plane_sets(every, regions, body.dim), tolerance, len(sets))
+    body = taken_out(body, shape.solids, tolerance)
     if domain.non_convex == "refuse":
         check_convex(body, shape.solids)
-    kept = len(sets) if further else None
-    return _without_slivers(body, domain, [*sets, *further], kept, tolerance)
+
+    def joined(thin: float) -> Complex:
+        limits = Limits(least_width(domain, every, thin), domain.least_angle)
+        kept = len(sets) if further else 0
+        return without_slivers(body, limits, domain.slivers == "merge", tolerance, kept)
+
+    if further and domain.least_width is None:
+        with suppress(Sliver):
+            return joined(LATTICE)
+    return joined(THIN)
 
 
 def least_width(domain: Domain, sets: Sequence[JointSet], thin: float = THIN) -> float:
     """Return the width below which a block is a sliver, m; thin : the default over a spacing."""
     if domain.least_width is not None:
         return domain.least_width
-    corners = np.array(domain.corners)
     spacings = [one.spacing for one in sets if one.spacing is not None]
-    return thin * min([*spacings, float(np.ptp(corners, axis=0).min())])
-
-
-def _without_slivers(
-    body: Complex, domain: Domain, sets: Sequence[JointSet], kept: int | None, tolerance: float
-) -> Complex:
-    """Return a complex without slivers; of a lattice without thin blocks at its sides, as far as
-    they can be joined to others: they would decide the step.
-
-    kept : how many of the sets, the first ones, are the joints of a lattice; None without one.
-    """
-    for thin in LATTICE if kept is not None and domain.least_width is None else (THIN,):
-        limits = Limits(least_width(domain, sets, thin), domain.least_angle)
-        try:
-            return without_slivers(body, limits, domain.slivers == "merge", tolerance, kept or 0)
-        except Sliver:
-            if thin == THIN:
-                raise
-    raise AssertionError
+    return thin * min([*spacings, float(np.ptp(domain.corners, axis=0).min())])
 
 
 def blocks_of_scene(scene: RockMass, further: Sequence[JointSet] = ()) -> Blocks:

@@ -107,10 +107,6 @@ class Shape:
         found = {side: self.faces_of(side) for side in SIDES[self.hull.dim]}
         return {side: np.array([n for _, n in faces]) for side, faces in found.items() if faces}
 
-    def away(self, point: np.ndarray, side: str | None = None, opening: int | None = None) -> float:
-        """Return the distance of a point from a side, or from an opening, m."""
-        return distance(point, self.faces_of(side, opening))
-
     def holds(self, point: list[float]) -> bool:
         """Return whether a point lies in the domain or on its boundary, and in no opening."""
         place, body = np.array(point), self.hull if self.given is None else self.given

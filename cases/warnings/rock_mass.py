@@ -15,7 +15,7 @@ from jointwave.cases.partition.joints import attitude
 from jointwave.cases.partition.parts import loaded_lines
 from jointwave.cases.partition.regions import rocks_of
 from jointwave.cases.partition.scene import blocks_of_scene
-from jointwave.cases.partition.shape import shape_of
+from jointwave.cases.partition.shape import distance, shape_of
 from jointwave.cases.plausible import LENGTH, of_dip, of_value
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
@@ -241,7 +241,7 @@ def _nearest(scene: RockMass, load: PlaneLoad, place: np.ndarray) -> float:
     """Return the distance of a point from a load, m."""
     if load.at is not None:
         return float(np.linalg.norm(place - load.at))
-    return shape_of(scene.domain).away(place, load.side, load.opening)
+    return distance(place, shape_of(scene.domain).faces_of(load.side, load.opening))
 
 
 def _of_points_on_joints(scene: RockMass) -> Iterator[str]:

@@ -7,6 +7,7 @@ import pytest
 
 from jointwave import cases
 from jointwave.cases.errors import SceneError
+from jointwave.cases.material.block_summary import block_summary
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import SIDES
 from jointwave.cases.warnings import warnings
@@ -316,3 +317,24 @@ def test_receivers_that_nothing_reaches_are_named(tables, at):
         line.startswith(f"record.points[0] = [1, 1, 1.5] is reached at {at:.4g} s")
         for line in found
     )
+
+
+def test_periodic_sides_that_do_not_fit_are_refused():
+    """Beds along them do; dipping ones end at one side where no other begins."""
+    periodic = dict.fromkeys(("left", "right", "front", "back"), "periodic")
+    assert blocks_of_scene(scene(boundaries=periodic)).count == 4
+    dipping = BED | {"dip": 10.0, "dip_direction": 90.0}
+    with pytest.raises(
+        SceneError, match=r"boundaries\.left: is periodic, but a joint of 'bed'"
+    ) as e:
+        blocks_of_scene(scene(joint_sets=[dipping], boundaries=periodic))
+    assert "\n" not in str(e.value)
+
+
+def test_the_summary_counts_rigid_blocks():
+    """Of rock cut into cubes and into tetrahedra, which lack nothing of its stiffness."""
+    fine = {"numerics": {"dem": {"block": 1.0}}}
+    cubes = block_summary(scene(rock=ROCK | {"intact_poisson": 0.0}, **fine))
+    tetrahedra = block_summary(scene(**fine))
+    assert (cubes["blocks"], cubes["rigid_blocks"], tetrahedra["rigid_blocks"]) == (4, 192, 960)
+    assert cubes["rigid_blocks_lack"] < 1e-6 and tetrahedra["rigid_blocks_lack"] < 1e-6
