@@ -1,4 +1,4 @@
-"""The critical step of rigid blocks in the plane, bounded block by block.
+"""The critical step of rigid blocks, bounded block by block.
 
 Leapfrog without damping is stable up to 2 / omega, omega the highest natural frequency. The energy
 of a spring between two blocks, k (a - b)^2, is at most 2 k a^2 + 2 k b^2, so that the stiffness
@@ -13,36 +13,34 @@ fastest it is equal to it.
 
 import numpy as np
 
-from jointwave.cases.material.contact_points import ContactPoints
-from jointwave.cases.material.rock_mass import Stiffness
+#: The axes that each rotation turns into each other, by the number of dimensions.
+TURNS: dict[int, tuple[list[int], list[int]]] = {
+    1: ([], []),
+    2: ([0], [1]),
+    3: ([1, 2, 0], [2, 0, 1]),
+}
 
 
 def block_stiffness(
-    count: int,
-    blocks: np.ndarray,
-    normals: np.ndarray,
-    points: ContactPoints,
-    stiffness: Stiffness,
+    count: int, blocks: np.ndarray, frame: np.ndarray, arm: np.ndarray, springs: np.ndarray
 ) -> np.ndarray:
-    """Return the stiffness of each block against its neighbours [count, 3, 3], N/m2 for
-    displacements along x and y, and N for the rotation, per metre of thickness.
+    """Return the stiffness of each block against its neighbours [count, freedoms, freedoms], N/m of
+    displacements, N of rotations, N m; in the plane per metre of thickness.
 
-    blocks : i and j of contacts [c, 2]. normals : unit vectors from i to j [c, 2].
+    blocks : i and j of each point [p, 2]. frame : axes there [p, axes, d]. arm : [p, 2, d], from
+    the centroids of i and j, m. springs : of each axis [p, axes], N/m.
     """
-    total = np.zeros((count, 3, 3))
-    normal = normals[points.contact]
-    tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
-    for side in (0, 1):
-        block, arm = blocks[points.contact, side], points.arm[:, side]
-        for along, k in ((normal, stiffness.normal), (tangent, stiffness.shear)):
-            row = jump(along, arm)
-            weight = k[points.contact] * points.length
-            np.add.at(total, block, weight[:, None, None] * row[:, :, None] * row[:, None, :])
+    rows = jump(frame[:, None], arm[:, :, None])
+    own = np.einsum("pa,psaf,psag->psfg", springs, rows, rows)
+    total = np.zeros((count, *own.shape[2:]))
+    np.add.at(total, blocks, own)
     return total
 
 
 def jump(along: np.ndarray, arm: np.ndarray) -> np.ndarray:
-    """Return what a block's displacements and rotation give of motion along a vector [p, 2] at the
-    end of an arm [p, 2], m: rows [p, 3]."""
-    turning = arm[:, 0] * along[:, 1] - arm[:, 1] * along[:, 0]
-    return np.concatenate([along, turning[:, None]], axis=1)
+    """Return what a block's displacements and rotations give of motion along a vector [..., d] at
+    the end of an arm [..., d], m: rows [..., freedoms]."""
+    along, arm = np.broadcast_arrays(along, arm)
+    i, j = TURNS[along.shape[-1]]
+    turning = arm[..., i] * along[..., j] - arm[..., j] * along[..., i]
+    return np.concatenate([along, turning], axis=-1)

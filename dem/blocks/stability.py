@@ -15,10 +15,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointwave.cases.material.block_stiffness import block_stiffness
-from jointwave.cases.material.contact_points import ContactPoints
-from jointwave.cases.material.rock_mass import Inertia, Stiffness
+from jointwave.cases.material.rock_mass import Inertia
 from jointwave.dem.blocks.joints import Columns
 from jointwave.dem.blocks.links import Links
+from jointwave.dem.receivers import frames_of
 from jointwave.numerics.critical_step import critical_step
 
 
@@ -57,14 +57,14 @@ def _stiffness(
     """Return the matrix of each block against what it touches [count, 3, 3], of stiffness or
     viscosity per length in each column, normal and in shear."""
     length = np.hypot(*(links.end - links.start).T)
-    along = np.stack([-links.normal[:, 1], links.normal[:, 0]], axis=1)
+    frame = frames_of(links.normal)
     centre = (links.start + links.end) / 2
     ruled = len(columns.rules) > 1
     places, weights = np.moveaxis(columns.rules[links.column if ruled else [0] * len(length)], 1, 0)
     contact, k = np.indices(places.shape).reshape(2, -1)
-    at = centre[contact] + (places[contact, k] * length[contact])[:, None] * along[contact]
+    at = centre[contact] + (places[contact, k] * length[contact])[:, None] * frame[contact, 1]
     arm = np.stack([at - links.beside_i[contact], at - links.beside_j[contact]], axis=1)
-    points = ContactPoints(contact, arm, weights[contact, k] * length[contact])
-    normal, shear = (x[links.column] for x in values)
-    beyond, own = int(links.blocks.max(initial=-1)) + 1, Stiffness(normal, shear)
-    return block_stiffness(max(count, beyond), links.blocks, links.normal, points, own)[:count]
+    each = np.stack([x[links.column] * length for x in values], axis=1)
+    springs = weights[contact, k, None] * each[contact]
+    beyond = max(count, int(links.blocks.max(initial=-1)) + 1)
+    return block_stiffness(beyond, links.blocks[contact], frame[contact], arm, springs)[:count]

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.material.calibrate import Properties
-from jointwave.cases.material.face import face_points
+from jointwave.cases.material.contact_points import face_points
 from jointwave.cases.schema.scene import Scene
 from jointwave.dem.spatial.model import Block
 from jointwave.joints.ends import half_spring

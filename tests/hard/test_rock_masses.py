@@ -10,13 +10,13 @@ from hard_runs import CUBES, EPS, ERROR, FIFTHS, REFEREE, ROUND_OFF, HardRun
 from jointwave.cases.geometry.locate import blocks_at
 from jointwave.cases.loads import history_of, step_means
 from jointwave.cases.material.block_stiffness import jump
-from jointwave.cases.material.contact_points import contact_points
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.scene import partition_of
 from jointwave.compare.engines import solve
 from jointwave.compare.exact.rock_mass.block_lattice import masses, reads
 from jointwave.compare.misfit.metrics import relative_l2
+from tests.cases.partition.polygons import points_between
 
 BRICKS, GRAZING, SLIDING = "hard/struck-bricks", "hard/grazing-wave", "hard/sliding-bricks"
 LAW = {"normal_stiffness": 2e10, "shear_stiffness": 8e9}
@@ -60,17 +60,14 @@ def test_free_blocks_move_as_leapfrog_in_closed_form(changes, variant):
 def root_of(scene, partition):
     """Return R [2 p, 3 N] of K = R^T R: sqrt(k) times the opening and the slip of every point."""
     contacts, joints = partition.contacts, rigid_joints(scene, [])
-    points = contact_points(partition, contacts, scene.joint_sets)
-    normal, own = contacts.normal[points.contact], contacts.joint_set[points.contact]
-    along = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
-    found = np.zeros((2, len(own), partition.count, 3))
-    each = np.arange(len(own))
-    for row, axis, k in zip(found, (normal, along), (joints.normal, joints.shear), strict=True):
-        weight = np.sqrt(k[own] * points.length)[:, None]
-        for side, sign in ((0, -1), (1, 1)):
-            block = contacts.blocks[points.contact, side]
-            row[each, block] = sign * weight * jump(axis, points.arm[:, side])
-    return found.reshape(2 * len(own), -1)
+    stiffness = (k[contacts.joint_set] for k in (joints.normal, joints.shear))
+    blocks, frame, arm, springs = points_between(partition, contacts, scene.joint_sets, *stiffness)
+    rows = np.sqrt(springs)[:, None, :, None] * jump(frame[:, None], arm[:, :, None])
+    found = np.zeros((*springs.shape, partition.count, 3))
+    each = np.arange(len(springs))
+    found[each, :, blocks[:, 0]] = -rows[:, 0]
+    found[each, :, blocks[:, 1]] = rows[:, 1]
+    return found.reshape(springs.size, -1)
 
 
 def unit_force(scene, partition):

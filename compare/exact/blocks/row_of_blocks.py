@@ -25,7 +25,7 @@ from jointwave.cases.effects import is_spatial
 from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.histories import Step
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.material.face import face_points
+from jointwave.cases.material.contact_points import face_points
 from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.sampling import interpolation, sample_times
 from jointwave.cases.schema.scene import Scene

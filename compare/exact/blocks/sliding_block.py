@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.material.face import face_points
+from jointwave.cases.material.contact_points import face_points
 from jointwave.cases.sampling import interpolation, sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.conditions import DAMPED, LAYERS, holds

@@ -10,12 +10,12 @@ from scipy.linalg import eigh
 
 from jointwave.cases.geometry.cell_complex import GeometryError
 from jointwave.cases.material.block_stiffness import block_stiffness, jump
-from jointwave.cases.material.contact_points import contact_points, points_of
-from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus, inertia
+from jointwave.cases.material.contact_points import points_of
+from jointwave.cases.material.rock_mass import constrained_modulus, inertia
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.plane import IntactRock
-from tests.cases.partition.polygons import cut, periodic_contacts
+from tests.cases.partition.polygons import cut, periodic_contacts, points_between
 
 DENSITY, NORMAL, SHEAR = 2500.0, 1.1e10, 4e9
 
@@ -28,17 +28,14 @@ def joint_set(name, dip, **keys):
 def assembled(count, pieces):
     """The stiffness matrix of all blocks [3 count, 3 count], spring by spring."""
     total = np.zeros((3 * count, 3 * count))
-    for contacts, points, stiffness in pieces:
-        normal = contacts.normal[points.contact]
-        tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
-        for along, k in ((normal, stiffness.normal), (tangent, stiffness.shear)):
-            rows = [jump(along, points.arm[:, side]) for side in (0, 1)]
-            for p, c in enumerate(points.contact):
-                row = np.zeros(3 * count)
-                for side, sign in ((0, -1), (1, 1)):
-                    first = 3 * contacts.blocks[c, side]
-                    row[first : first + 3] += sign * rows[side][p]
-                total += k[c] * points.length[p] * np.outer(row, row)
+    for blocks, frame, arm, springs in pieces:
+        rows = jump(frame[:, None], arm[:, :, None])
+        for p, axis in np.ndindex(springs.shape):
+            row = np.zeros(3 * count)
+            for side, sign in ((0, -1), (1, 1)):
+                first = 3 * blocks[p, side]
+                row[first : first + 3] += sign * rows[p, side, axis]
+            total += springs[p, axis] * np.outer(row, row)
     return total
 
 
@@ -49,8 +46,10 @@ def bound(own, weight):
     return 2 / np.sqrt(2 * largest)
 
 
-def uniform(contacts, normal=NORMAL, shear=SHEAR):
-    return Stiffness(np.full(len(contacts), normal), np.full(len(contacts), shear))
+def uniform(found, contacts, sets, shear=SHEAR, shift=(0.0, 0.0)):
+    """Return the points of contacts that are alike."""
+    stiffness = np.full((2, len(contacts)), [[NORMAL], [shear]])
+    return points_between(found, contacts, sets, *stiffness, shift)
 
 
 def test_inertia_of_a_rectangle():
@@ -71,23 +70,23 @@ def test_rules_integrate_what_they_should(count):
     assert w @ (x - 0.5) ** 2 == pytest.approx((1 - 1 / count**2) / 12, abs=1e-15)
 
 
-@given(a=st.floats(-80, 80), b=st.floats(-80, 80), count=st.integers(1, 4))
-@settings(max_examples=30)
-def test_points_carry_the_length_of_their_contacts(a, b, count):
-    """Weights add up to the length, and their centre is the middle of the edge."""
-    sets = [joint_set("a", a, spacing=1.0, contact_points=count), joint_set("b", b, spacing=1.5)]
-    found = cut(Domain(size=[5.0, 4.0], slivers="merge", least_angle=0.0), sets)
-    c = found.contacts
-    points = contact_points(found, c, sets)
-    length = np.bincount(points.contact, weights=points.length)
-    np.testing.assert_allclose(length, c.area, rtol=1e-13)
-    per_contact = np.bincount(points.contact)
-    assert set(per_contact[c.joint_set == 0]) <= {count}
-    for side in (0, 1):
-        at = found.centroid[c.blocks[points.contact, side]] + points.arm[:, side]
-        sums = [np.bincount(points.contact, weights=points.length * at[:, k]) for k in (0, 1)]
-        middle = (c.start + c.end) / 2
-        np.testing.assert_allclose(np.stack(sums, 1) / length[:, None], middle, atol=1e-9)
+@pytest.mark.parametrize("dim", [1, 2, 3])
+def test_a_block_resists_what_its_points_take_of_its_motion(dim):
+    """k (a . (u + phi x r))^2, twice the energy of each spring, of any motion."""
+    rng = np.random.default_rng(dim)
+    turns = dim * (dim - 1) // 2
+    frame, arm = rng.normal(size=(5, dim, dim)), rng.normal(size=(5, 2, dim))
+    blocks, springs = np.array([[0, 1]] * 3 + [[1, 2]] * 2), rng.uniform(1, 2, size=(5, dim))
+    found = block_stiffness(3, blocks, frame, arm, springs)
+    motion = rng.normal(size=dim + turns)
+    u, phi = motion[:dim], np.zeros(3)
+    phi[3 - turns :] = motion[dim:]
+    for block, side in ((0, 0), (2, 1)):
+        own = blocks[:, side] == block
+        raised = np.pad(arm[own, side], ((0, 0), (0, 3 - dim)))
+        moved = u + np.cross(phi, raised)[:, :dim]
+        energy = (springs[own] * np.einsum("pad,pd->pa", frame[own], moved) ** 2).sum()
+        assert motion @ found[block] @ motion == pytest.approx(energy, rel=1e-12)
 
 
 def test_confined_rock_of_a_quarter_is_a_fifth_stiffer():
@@ -115,12 +114,8 @@ def test_critical_step_is_bounded_on_both_sides(sets, ratio):
         found = cut(Domain(size=[4.0, 3.0], least_width=1e-5, least_angle=0.0), sets)
     except GeometryError:  # joints that end at others may all miss so small a domain
         reject()
-    stiffness, weight = uniform(found.contacts, shear=ratio * NORMAL), inertia(found, DENSITY)
-    points = contact_points(found, found.contacts, sets)
-    own = block_stiffness(
-        found.count, found.contacts.blocks, found.contacts.normal, points, stiffness
-    )
-    whole = assembled(found.count, [(found.contacts, points, stiffness)])
+    points, weight = uniform(found, found.contacts, sets, ratio * NORMAL), inertia(found, DENSITY)
+    own, whole = block_stiffness(found.count, *points), assembled(found.count, [points])
     for k in range(found.count):
         np.testing.assert_allclose(
             own[k], whole[3 * k : 3 * k + 3, 3 * k : 3 * k + 3], rtol=1e-9, atol=1e-3
@@ -148,7 +143,7 @@ def test_periodic_square_lattice_has_its_closed_form(count):
     shifts = {"left": (nx * side, 0.0), "bottom": (0.0, ny * side)}
     parts = [(found.contacts, (0.0, 0.0))]
     parts += [(periodic_contacts(found, name), shift) for name, shift in shifts.items()]
-    pieces = [(c, contact_points(found, c, sets, shift), uniform(c)) for c, shift in parts]
+    pieces = [uniform(found, c, sets, shift=shift) for c, shift in parts]
     weight = inertia(found, DENSITY)
     masses = np.stack([weight.mass, weight.mass, weight.moment], axis=1).ravel()
     numbers = eigh(assembled(found.count, pieces), np.diag(masses), eigvals_only=True)
@@ -169,7 +164,7 @@ def test_periodic_square_lattice_has_its_closed_form(count):
         expected += eigh(matrix, np.diag(masses[:3]), eigvals_only=True).tolist()
     np.testing.assert_allclose(numbers, np.sort(expected), rtol=1e-9, atol=1e-9 * numbers[-1])
 
-    own = sum(block_stiffness(found.count, c.blocks, c.normal, *rest) for c, *rest in pieces)
+    own = sum(block_stiffness(found.count, *piece) for piece in pieces)
     held = 2 * (kn + ks) / masses[0], (ks * side**2 + 4 * kb) / masses[2]
     assert bound(own, weight) == pytest.approx(2 / np.sqrt(2 * max(held)), rel=1e-12)
     if count == 1:

@@ -8,6 +8,7 @@ import numpy as np
 from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.geometry.locate import blocks_at
 from jointwave.cases.geometry.periodic import contacts_across
+from jointwave.cases.material.contact_points import points_of
 from jointwave.cases.partition.blocks import plane_partition
 from jointwave.cases.partition.scene import blocks_of_domain
 from jointwave.cases.partition.shape import shape_of
@@ -28,6 +29,21 @@ def periodic_contacts(found, side):
     """Contacts across the left and the right, or the bottom and the top."""
     pair = {"left": ("left", "right"), "bottom": ("bottom", "top")}[side]
     return contacts_across(found.blocks, int(side == "bottom"), pair, found.joint_sets)
+
+
+def points_between(found, contacts, sets, normal, shear, shift=(0.0, 0.0)):
+    """Blocks [p, 2], frame [p, 2, 2], arms [p, 2, 2] and springs [p, 2] of the points of contacts
+    of these stiffnesses [c], where all sets have as many; blocks j stand elsewhere by `shift`."""
+    rules = np.array([points_of(one.point_rule, one.contact_points) for one in sets])
+    x, weight = np.moveaxis(rules[contacts.joint_set], 1, 0)
+    contact = np.repeat(np.arange(len(contacts)), x.shape[1])
+    x, weight = x.reshape(-1, 1), weight.reshape(-1, 1)
+    at = contacts.start[contact] * (1 - x) + contacts.end[contact] * x
+    blocks, axis = contacts.blocks[contact], contacts.normal[contact]
+    arm = at[:, None] - found.centroid[blocks] - np.array([(0.0, 0.0), shift])
+    frame = np.stack([axis, np.stack([-axis[:, 1], axis[:, 0]], axis=1)], axis=1)
+    stiffness = np.stack([normal, shear], axis=1) * contacts.area[:, None]
+    return blocks, frame, arm, weight * stiffness[contact]
 
 
 def following(first: np.ndarray) -> np.ndarray:

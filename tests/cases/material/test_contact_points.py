@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jointwave.cases.material.face import face_points
+from jointwave.cases.material.contact_points import face_points
 
 SIDE = 0.5
 RULES = ["midpoint", "gauss"]
