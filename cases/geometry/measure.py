@@ -157,23 +157,29 @@ def outlines(
         pairs = pairs[times == 1]
         for bound in reversed(body.bounds[:-1]):
             pairs = distinct(composed(pairs, bound)[0])
-    number = len(normal)
-    x, of = body.vertices[pairs[:, 1]], pairs[:, 0]
-    if body.dim == 2:
+    return around(body.vertices[pairs[:, 1]], pairs[:, 0], normal, tolerance)
+
+
+def around(x: np.ndarray, of: np.ndarray, normal: np.ndarray, tolerance: float) -> Outlines:
+    """Return convex pieces by the corners that they have, in any order, float array [m, d].
+
+    of : int array [m], the piece of each corner, in order. normal : float array [n, d], of each.
+    """
+    number, dim = len(normal), x.shape[1]
+    if dim == 2:
         along = np.stack([-normal[:, 1], normal[:, 0]], axis=1)[of]
         order = np.lexsort([(x * along).sum(axis=1), of])
-    elif body.dim == 3:
+    elif dim == 3:
         one, other = frames(normal)
-        away = x - body.means(pairs, number)[of]
+        sums = np.stack([np.bincount(of, weights=each, minlength=number) for each in x.T], axis=1)
+        away = x - (sums / np.bincount(of, minlength=number)[:, None])[of]
         u, v = (away * one[of]).sum(axis=1), (away * other[of]).sum(axis=1)
         order = np.lexsort([np.arctan2(v, u), of])
     else:
         order = np.arange(len(x))
     x, of = x[order], of[order]
     first = np.searchsorted(of, np.arange(number + 1))
-    if body.dim == 3:
-        return without_straight(x, first, tolerance)
-    return Outlines(x, first)
+    return without_straight(x, first, tolerance) if dim == 3 else Outlines(x, first)
 
 
 def without_straight(x: np.ndarray, first: np.ndarray, tolerance: float) -> Outlines:

@@ -8,7 +8,7 @@ import shapely
 
 from jointwave.cases.geometry.blocks import Blocks, Facets
 from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError
-from jointwave.cases.geometry.measure import Outlines, outline_moments
+from jointwave.cases.geometry.measure import around, outline_moments
 
 SAME = 1e-9  #: of the domain's extent: lengths below which places on a side are one
 
@@ -86,18 +86,11 @@ def _facets(
     sets: np.ndarray,
 ) -> Facets:
     """Return overlaps of facets as contacts."""
-    outer, dim = blocks.boundary, blocks.body.dim
-    rings = []
-    for shape in shared:
-        ring = shapely.get_coordinates(shapely.geometry.polygon.orient(shape).exterior)[:-1]
-        if dim == 2:  # block i lies to the left on the way
-            low, _, high, _ = shape.bounds
-            ring = np.array([[low], [high]] if axis == 0 else [[high], [low]])
-        ring = np.insert(ring[:, : dim - 1] if dim > 1 else ring[:1, :0], axis, here.place, axis=1)
-        rings.append(ring if axis != 1 or dim < 3 else ring[::-1])
-    first = np.append(0, np.cumsum([len(ring) for ring in rings]))
-    outlines = Outlines(np.concatenate(rings), first)
-    normal = outer.normal[here.facets[pairs[0]]]
+    outer, normal = blocks.boundary, blocks.boundary.normal[here.facets[pairs[0]]]
+    corners, of = shapely.get_coordinates(shared, return_index=True)
+    own = np.unique(np.column_stack([of, corners[:, : blocks.body.dim - 1]]), axis=0)
+    x = np.insert(own[:, 1:], axis, here.place, axis=1)
+    outlines = around(x, own[:, 0].astype(np.int64), normal, 0.0)
     m = outline_moments(outlines)
     return Facets(
         blocks=np.stack(

@@ -13,7 +13,8 @@ from jointwave.cases.geometry.measure import frames, without_straight
 from jointwave.cases.geometry.pieces import clipped
 from jointwave.cases.gmsh_file import MeshError
 
-GRAZING = 1e-6  # sine of the angle between planes below which they do not cut each other
+GRAZING = 1e-12  # sine of the angle between planes below which they are parallel
+AGAINST = -0.999  # cosine of the angle between normals of faces that may lie against each other
 CHUNK = 10_000_000  # heights of corners above faces that are compared at a time
 
 
@@ -37,17 +38,19 @@ class Solid(NamedTuple):
         return x @ self.normals.T - self.places
 
     def split(
-        self, x: np.ndarray, normal: np.ndarray, tolerance: float
+        self, x: np.ndarray, face: int, tolerance: float
     ) -> tuple[np.ndarray | None, list[np.ndarray]]:
-        """Return the part of a convex piece of a plane, by its corners, that lies in the block, and
-        convex pieces of the rest; None and the piece where there is none."""
-        sine = np.sqrt(np.maximum(1 - (self.normals @ normal) ** 2, 0.0))
-        across = np.flatnonzero(sine > GRAZING)
-        heights = self.heights(x)[:, across] / sine[across]
+        """Return the part of a convex piece, by its corners, that lies on a face of the block, in
+        whose plane it is, and convex pieces of the rest; None and the piece where there is none."""
+        sine = np.linalg.norm(
+            self.normals - np.outer(self.normals @ self.normals[face], self.normals[face]), axis=1
+        )
+        heights = self.heights(x) / np.maximum(sine, GRAZING)
+        heights[:, face] = -np.inf
         if (heights.min(axis=0) >= -tolerance).any():
             return None, [x]
         inside, rest = x, []
-        for k in across[heights.max(axis=0) > tolerance]:
+        for k in np.flatnonzero(heights.max(axis=0) > tolerance):
             away = self.heights(inside)[:, k] / sine[k]
             if away.max() <= tolerance:
                 continue
@@ -173,15 +176,12 @@ def pieces_between(solids: list[Solid], names: list[str], tolerance: float) -> l
     found, left = list[Piece](), [[face] for one in solids for face in one.faces]
     for i, j, k, m in _touching(solids, names, tolerance):
         one, other = solids[i], solids[j]
-        common, _ = other.split(one.faces[k], one.normals[k], tolerance)
+        common, _ = other.split(one.faces[k], m, tolerance)
         if common is None or np.abs(other.heights(common)[:, m]).max() > 2 * tolerance:
             continue
         found.append(Piece(common, first[i] + k, first[j] + m))
-        for face, normal, by in (
-            (first[i] + k, one.normals[k], other),
-            (first[j] + m, other.normals[m], one),
-        ):
-            left[face] = [x for piece in left[face] for x in by.split(piece, normal, tolerance)[1]]
+        for face, by, against in ((first[i] + k, other, m), (first[j] + m, one, k)):
+            left[face] = [x for piece in left[face] for x in by.split(piece, against, tolerance)[1]]
     return [*found, *(Piece(x, face, OUTSIDE) for face, own in enumerate(left) for x in own)]
 
 
@@ -209,12 +209,12 @@ def _touching(
         apart = np.max([(height >= -tolerance).any(axis=1) for height in heights], axis=0)
         for k in np.flatnonzero(~apart):
             _check_apart(solids, names, int(i[k]), int(j[k]), tolerance)
-        cosine = normals[i] @ normals[j].swapaxes(1, 2)
-        on, beside = (np.abs(height) <= tolerance for height in heights)
-        cosine[~(on[:, :, None] & beside[:, None])] = 1.0
-        best = cosine.reshape(len(i), normals.shape[1] ** 2).argmin(axis=1)
+        height, other = (np.where(one <= tolerance, one, -np.inf) for one in heights)
+        score = height[:, :, None] + other[:, None]
+        score[normals[i] @ normals[j].swapaxes(1, 2) > AGAINST] = -np.inf
+        best = score.reshape(len(i), normals.shape[1] ** 2).argmax(axis=1)
         k, m = np.divmod(best, normals.shape[1])
-        for row in np.flatnonzero(cosine[np.arange(len(i)), k, m] < 0):
+        for row in np.flatnonzero(np.isfinite(score[np.arange(len(i)), k, m])):
             yield int(i[row]), int(j[row]), int(k[row]), int(m[row])
 
 

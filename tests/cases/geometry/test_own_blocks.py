@@ -6,7 +6,7 @@ from itertools import pairwise
 import meshio
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from jointwave.cases.errors import SceneError
@@ -198,6 +198,23 @@ def test_blocks_of_a_file_are_those_that_were_written(dim, kind, seed, tmp_path_
     middle = np.array([5.0, 4.0, 3.0])[:dim] @ normal
     again = blocks_of(cut_by(body, normal, [middle]), TOLERANCE)  # surfaces are closed
     assert again.count > cells and again.volume.sum() == pytest.approx(expected.volume.sum())
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@given(seed=st.integers(0, 10**6))
+def test_blocks_of_rounded_corners_touch_as_far_as_without(dim, seed, tmp_path_factory):
+    """To seven digits, a tenth of the tolerance: then faces are neither plane nor in one plane."""
+    expected = random_blocks(dim, seed)
+    path = tmp_path_factory.mktemp("blocks") / "blocks.obj"
+    write_obj(path, [[np.round(face, 6) for face in faces] for faces in polygons(expected)])
+    try:
+        found = blocks_of(complex_of_file(path)[0], 1e-5)
+    except MeshError as error:
+        assert "is flat" in str(error)  # a block as thin as the tolerance
+        assume(False)
+    for one in ("contacts", "boundary"):
+        area = getattr(expected, one).area.sum()
+        assert getattr(found, one).area.sum() == pytest.approx(area, abs=1e-3)
 
 
 def bricks(dim):
