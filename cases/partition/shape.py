@@ -176,8 +176,6 @@ def _openings(domain: Domain) -> Iterator[tuple[str, Solid]]:
     for k, one in enumerate(domain.prisms):
         axis, key = "xyz".index(one.axis), f"domain.prisms[{k}]"
         low, top = one.ends or np.array(domain.corners)[[0, -1], axis]
-        if not low < top:
-            raise GeometryError(None, "must be two increasing numbers", f"{key}.ends")
         corners = np.array(_polygon(one.polygon, f"{key}.polygon").exterior.coords[:-1])
         yield key, prism(corners[:, ::-1] if one.axis == "y" else corners, axis, (low, top))
 

@@ -8,9 +8,11 @@ from pydantic import Field, model_validator
 
 from jointwave.cases.schema.pulse import Pulse, shortest_period
 from jointwave.cases.schema.values import (
+    Increasing,
     NonNegative,
     Positive,
     Table,
+    Two,
     contradiction,
 )
 
@@ -26,7 +28,7 @@ class Attenuating(Table):
     #: Hz, at which the moduli give the wave speeds; absent: 1 / shortest period
     reference_frequency: Positive | None = None
     #: Hz, band of constant Q, within 4 %; absent: 0.1 to 10 times reference_frequency
-    quality_band: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = None
+    quality_band: Annotated[list[Positive], Two] | None = None
 
     @model_validator(mode="after")
     def _is_a_band(self) -> "Attenuating":
@@ -59,15 +61,11 @@ class Attenuating(Table):
 class Rayleigh(Table):
     """Damping ratios at two frequencies, with zeta = alpha / (2 omega) + beta omega / 2."""
 
-    frequencies: Annotated[list[Positive], Field(min_length=2, max_length=2)]  #: Hz
-    ratios: Annotated[list[NonNegative], Field(min_length=2, max_length=2)]  #: zeta at them
+    frequencies: Annotated[list[Positive], Two, Increasing]  #: Hz
+    ratios: Annotated[list[NonNegative], Two]  #: zeta at them
 
     @model_validator(mode="after")
     def _both_damp(self) -> "Rayleigh":
-        low, high = self.frequencies
-        if not low < high:
-            allowed = "must be two increasing numbers"
-            raise contradiction(".frequencies", self.frequencies, allowed)
         alpha, beta = self.coefficients
         if alpha < 0 or beta < 0:
             gives = f"alpha = {alpha:.4g} 1/s and beta = {beta:.4g} s"

@@ -10,11 +10,13 @@ from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from jointwave.cases.geometry.cell_complex import NO_SET, Complex
 from jointwave.cases.schema.values import (
+    Increasing,
     Number,
     Offset,
     Point,
     Positive,
     Table,
+    Two,
     check_dimension,
     contradiction,
     named_file,
@@ -28,7 +30,7 @@ class Prism(Table):
     polygon: Annotated[list[Offset], Field(min_length=3)]
     axis: Literal["x", "y", "z"]  #: along which it reaches
     #: m, from where to where along the axis; absent: all through the domain
-    ends: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = None
+    ends: Annotated[list[Number], Two, Increasing] | None = None
 
 
 class Domain(Table):

@@ -30,6 +30,7 @@ FIELD = re.compile(r"    (\w+): ")  # of a model
 CHECKS = {"_magnitude": "", "_words": ""} | {
     "_unit": "of length 1",
     "_per_axis": "one for each axis",
+    "_increasing": "increasing",
 }
 
 

@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from jointwave.cases.schema.joint import Joints
 from jointwave.cases.schema.tables import (
@@ -17,10 +17,12 @@ from jointwave.cases.schema.tables import (
     wrong_speeds,
 )
 from jointwave.cases.schema.values import (
+    Increasing,
     NonNegative,
     Poisson,
     Positive,
     Table,
+    Two,
     Words,
     contradiction,
 )
@@ -33,7 +35,7 @@ OF_JOINTED = (*SPEEDS, *CONSTANTS, "normal_stiffness", "damping_ratio")
 class Segment(Table):
     """A length of the pillar; absent keys are taken from [rock], [joints] and [pillar]."""
 
-    y: Annotated[list[NonNegative], Field(min_length=2, max_length=2)]  #: m, its start and end
+    y: Annotated[list[NonNegative], Two, Increasing]  #: m, its start and end
     name: Words | None = None  #: used in drawings and `explain`
     joints: bool = True  #: False: an intact bar, divided into welded blocks
     block: Positive | None = None  #: m, block thickness = joint spacing
@@ -49,8 +51,6 @@ class Segment(Table):
 
     @model_validator(mode="after")
     def _is_one(self) -> "Segment":
-        if not self.y[0] < self.y[1]:
-            raise contradiction(".y", self.y, "must be two increasing numbers")
         for key in OF_JOINTED:
             if not self.joints and getattr(self, key) is not None:
                 allowed = "applies to jointed rock: with {table}.joints = false give intact_modulus"

@@ -9,6 +9,7 @@ from jointwave.cases.schema.pulse import Pulse
 from jointwave.cases.schema.values import (
     Number,
     Point,
+    Two,
     UnitVector,
     check_dimension,
     check_keys,
@@ -84,7 +85,7 @@ class PlaneLoad(Pulse):
     opening: Annotated[int, Field(ge=0)] | None = None  #: loaded by a pressure, counted from 0
     #: m, in the plane two points of the boundary: the pressure acts only between them; around an
     #: opening counter-clockwise from the first to the second, unless both are on one face
-    between: Annotated[list[Point], Field(min_length=2, max_length=2)] | None = None
+    between: Annotated[list[Point], Two] | None = None
     at: Point | None = None  #: m, where a force acts
     #: x, y, in space x, y, z: of a force or of the motion of a base
     direction: UnitVector | None = None

@@ -48,6 +48,13 @@ def _unit(vector: list[float]) -> list[float]:
     return vector
 
 
+def _increasing(pair: list[float]) -> list[float]:
+    """Refuse the start and end of a span that is empty or runs backwards."""
+    if not pair[0] < pair[1]:
+        raise PydanticCustomError("increasing", "must be two increasing numbers")
+    return pair
+
+
 def dimension(info: ValidationInfo) -> int:
     """Return in how many dimensions the scene is that a value belongs to: 2, or 3 in space."""
     return int((info.context or {}).get("dimension", 2))
@@ -62,6 +69,10 @@ def _per_axis(vector: list[float], info: ValidationInfo) -> list[float]:
     return vector
 
 
+#: Constraints of a list.
+Two = Field(min_length=2, max_length=2)
+Increasing = AfterValidator(_increasing)
+
 Words = Annotated[str, AfterValidator(_words)]
 Number = Annotated[float, AfterValidator(_magnitude)]
 Positive = Annotated[float, Field(gt=0), AfterValidator(_magnitude)]
@@ -69,7 +80,7 @@ NonNegative = Annotated[float, Field(ge=0), AfterValidator(_magnitude)]
 Dip = Annotated[float, Field(ge=-180, le=180)]
 DipDirection = Annotated[float, Field(ge=0, le=360)]
 Poisson = Annotated[float, Field(gt=-1, lt=0.5)]
-Offset = Annotated[list[Number], Field(min_length=2, max_length=2)]
+Offset = Annotated[list[Number], Two]
 Point = Annotated[list[Number], AfterValidator(_per_axis)]  #: of a rock mass
 UnitVector = Annotated[list[Number], AfterValidator(_per_axis), AfterValidator(_unit)]
 Direction = Annotated[list[Number], Field(min_length=3, max_length=3), AfterValidator(_unit)]

@@ -13,6 +13,7 @@ from jointwave.cases.warnings.shared import (
     of_half,
     of_lever,
     of_pulses,
+    of_resolution,
     onset,
 )
 
@@ -67,16 +68,10 @@ def _of_wavelength(scene: Scene, p: Properties, wave: ShortestWave | None) -> It
             f"Hz; the load reaches {wave.frequency:.4g} Hz, below which 95 % of its energy lies"
         )
     else:
-        yield (
-            f"{block} gives {wave.blocks:.3g} blocks per wavelength {where}; "
-            f"at least {LEAST_BLOCKS:g} resolve it"
-        )
-    count = scene.numerics.continuum.elements_per_block
-    if count is not None and count * wave.blocks < LEAST_BLOCKS:
-        yield (
-            f"numerics.continuum.elements_per_block = {count} gives {count * wave.blocks:.3g} "
-            f"elements per wavelength {where}; at least {LEAST_BLOCKS:g} resolve it"
-        )
+        yield from of_resolution(f"{block} gives", wave.blocks, f"blocks per wavelength {where}")
+    if (count := scene.numerics.continuum.elements_per_block) is not None:
+        gives, what = f"numerics.continuum.elements_per_block = {count} gives", "elements per"
+        yield from of_resolution(gives, count * wave.blocks, f"{what} wavelength {where}")
 
 
 def _of_a_jump(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:

@@ -27,6 +27,7 @@ from jointwave.cases.warnings.shared import (
     of_half,
     of_lever,
     of_pulses,
+    of_resolution,
     onset,
 )
 
@@ -155,18 +156,14 @@ def _of_wavelength(scene: RockMass) -> Iterator[str]:
     where = f"per wavelength of S at {frequency:.4g} Hz, below which 95 % of the energy lies"
     size, given = scene.numerics.continuum.size, scene.numerics.dem.block
     block = given or _block_size(scene)
-    if block is not None and wave / block < LEAST_BLOCKS:
+    if block is not None:
         key = "domain.blocks of" if scene.domain.blocks else "numerics.dem.block ="
-        yield (
-            f"{f'numerics.dem.block = {given:g} m gives' if given else 'the joint sets give'} "
-            f"{wave / block:.3g} rigid blocks {where}; at least {LEAST_BLOCKS:g} "
-            f"resolve it: {key} {wave / LEAST_BLOCKS:.2g} m"
-        )
-    if size is not None and wave / size < LEAST_BLOCKS:
-        yield (
-            f"numerics.continuum.size = {size:g} m gives {wave / size:.3g} elements {where}; at "
-            f"least {LEAST_BLOCKS:g} resolve it"
-        )
+        gives = f"numerics.dem.block = {given:g} m gives" if given else "the joint sets give"
+        remedy = f": {key} {wave / LEAST_BLOCKS:.2g} m"
+        yield from of_resolution(gives, wave / block, f"rigid blocks {where}", remedy)
+    if size is not None:
+        gives = f"numerics.continuum.size = {size:g} m gives"
+        yield from of_resolution(gives, wave / size, f"elements {where}")
 
 
 def _block_size(scene: RockMass) -> float | None:

@@ -10,7 +10,7 @@ from jointwave.cases.material.contact_points import lever
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import Joints
 from jointwave.cases.schema.pulse import Pulse
-from jointwave.cases.spectrum import frequency_of
+from jointwave.cases.spectrum import LEAST_BLOCKS, frequency_of
 
 LEAST_LEVER = 0.75  # of contact points where a face opens, over half its width
 ONSET = 0.01  # of a load's peak: defines its beginning
@@ -112,6 +112,12 @@ def of_half(table: str, amplitude: float, side: str, held: str, instead: str) ->
             f"{table}.amplitude = {amplitude:g} acts on the dashpot of {side} = '{held}', too, "
             f"which takes half: {amplitude / 2:g} enters; {instead}"
         )
+
+
+def of_resolution(gives: str, count: float, what: str, remedy: str = "") -> Iterator[str]:
+    """Say that blocks or elements are too few in a wavelength."""
+    if count < LEAST_BLOCKS:
+        yield f"{gives} {count:.3g} {what}; at least {LEAST_BLOCKS:g} resolve it{remedy}"
 
 
 def of_arrivals(scene: AnyScene, arrivals: Iterable[tuple[str, float]]) -> Iterator[str]:

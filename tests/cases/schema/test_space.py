@@ -184,7 +184,7 @@ MISTAKES = {
                 ]
             }
         },
-        "domain.prisms[0].ends: must be two increasing numbers",
+        "domain.prisms[0].ends = [3.0, 2.0]: must be two increasing numbers",
     ),
     "a wave through a free side": (
         {"waves": [WAVE | {"direction": [0.0, 1.0, 0.0]}]},
