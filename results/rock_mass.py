@@ -57,9 +57,11 @@ def rock_mass_dataset(
         of each waveform, by quantity: float arrays of its shape without time.
     attributes : numbers and texts about the run (dt, steps, seconds, ...).
 
-    Joint receivers are identified by their places in [record]. A joint's normal points out of the
-    block with the smaller number. Its tangent is the normal rotated to the left; in space its
-    tangents are the strike and the line of dip, upwards, in a right-handed frame with the normal.
+    Joint receivers are identified by their places in [record]. Traction acts on the side that the
+    joint's normal points into, whose motion relative to the other side is gap and slip. The tangent
+    is the normal rotated to the left. In space the normal points up (of a vertical joint to the
+    north, or else east), and the tangents are the strike, horizontal, and the line of dip, upwards,
+    in a right-handed frame with it.
     """
     dim = scene.domain.dimension
     coords: dict[str, tuple[tuple[str, ...], np.ndarray]] = {"time": (("time",), time)}

@@ -17,6 +17,7 @@ from jointwave.compare.runs.field_files import write_pvd
 from jointwave.dem.boundaries import freedoms as freedoms_of
 from jointwave.dem.receivers import (
     Faces,
+    Stencil,
     everywhere,
     frames_of,
     read_by,
@@ -271,6 +272,7 @@ def test_joint_receivers_read_the_nearest_contact_or_along_the_joint(dim):
     slope = np.random.default_rng(6).normal(size=(dim, dim))
     slope[:, 0] = 0  # it varies along the joint alone
     values = found.contacts.centroid @ slope.T
+    values[found.contacts.normal[:, 0] < 0, 2:] *= -1  # up the dip, of block j
     contact = np.zeros((inner, dim * (dim + 1), 1))
     contact[:, :dim, 0] = values * found.contacts.area[:, None]
     contact[:, -dim:, 0] = 7 * values
@@ -294,6 +296,38 @@ def test_joint_receivers_read_the_nearest_contact_or_along_the_joint(dim):
         if dim > 1:
             slip = got["slip"][~last, 1].reshape(-1, dim - 1)
             np.testing.assert_allclose(slip, (7 + 3e-10) * expected[~last, 1:], rtol=0, atol=1e-12)
+
+
+@DIMENSIONS
+def test_traction_and_slip_do_not_depend_on_the_numbers_of_blocks(dim):
+    """Of the side above a joint: contacts are the same with their blocks exchanged."""
+    draw, count = np.random.default_rng(9).normal, 12
+    normal = draw(size=(count, dim))
+    normal[:dim], normal[-1, -1] = np.eye(dim), 1e-17 if dim > 1 else 1.0
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    jump, force, found = draw(size=(count, dim)), draw(size=(count, dim)), []
+    for sign in (1.0, -1.0):
+        frame = frames_of(sign * normal)
+        rows = [np.einsum("cak,ck->ca", frame, sign * one) for one in (force, jump)]
+        faces = Faces(
+            np.tile([0, 1], (count, 1)),
+            np.ones(count),
+            frame,
+            arm=np.zeros((count, 2, dim)),
+            excess=np.zeros((count, 2)),
+        )
+        stencils = [Stencil(k, [k], np.ones(1), np.zeros(dim)) for k in range(count)]
+        receivers = read_by(np.ones(2), faces, freedoms_of(dim, 0), [], stencils)
+        contact = np.concatenate(rows, axis=1)[:, :, None] * [0.0, 1.0]
+        found.append(quantities(receivers, *np.zeros((2, 0, dim, 2)), contact))
+    for name, values in found[0].items():
+        np.testing.assert_allclose(found[1][name], values, rtol=0, atol=1e-14)
+    if dim == 3:  # by hand: neither vertical nor level ones
+        n, above = normal[3:-1], np.sign(normal[3:-1, 2:])
+        strike = above * np.cross([0.0, 0.0, 1.0], n)
+        axes = strike, above * np.cross(n, strike)
+        slip = [(above * jump[3:-1] * x).sum(axis=1) / np.linalg.norm(x, axis=1) for x in axes]
+        np.testing.assert_allclose(found[0]["slip"][3:-1, 1].T, slip, rtol=0, atol=1e-13)
 
 
 @DIMENSIONS
