@@ -82,8 +82,7 @@ def further_sets(scene: RockMass) -> list[JointSet]:
         cells = rock.body.region == (k if k < len(scene.regions) else ROCK)
         sets = _cuts(own, _place(scene, rock, cells), block or inf)
         found += [one.model_copy(update={"regions": names[k : k + 1]}) for one in sets]
-    names = [f"cut {k}" for k in range(len(found))]
-    return [one.model_copy(update={"name": name}) for one, name in zip(found, names, strict=True)]
+    return [one.model_copy(update={"name": f"cut {k}"}) for k, one in enumerate(found)]
 
 
 def _place(scene: RockMass, rock: Blocks, cells: np.ndarray) -> Place:
@@ -163,8 +162,8 @@ def squared(scene: RockMass) -> bool:
     Triangles and tetrahedra can have any Poisson's ratio (`material.rigid_fit`), boxes none; but
     the faces of boxes can run along periodic sides, which cut no block in two then.
     """
-    dim = scene.domain.dimension
-    fit = all(np.abs(attitude(one, dim)[0]).max() == 1 for one in scene.joint_sets)
+    normals = (attitude(one, scene.domain.dimension)[0] for one in scene.joint_sets)
+    fit = all(np.abs(normal).max() == 1 for normal in normals)
     return scene.rock.intact_poisson == 0 or (fit and bool(scene.boundaries.sides("periodic")))
 
 
@@ -172,13 +171,11 @@ def by_direction(sets: list[JointSet], dim: int) -> list[list[JointSet]]:
     """Return joint sets in groups of one direction."""
     groups: list[list[JointSet]] = []
     for one in sets:
-        for group in groups:
-            normals = [attitude(each, dim)[0] for each in (one, group[0])]
-            if np.linalg.matrix_rank(normals, tol=ALIKE) == 1:
-                group.append(one)
-                break
-        else:
-            groups.append([one])
+        pairs = [[attitude(each, dim)[0] for each in (one, group[0])] for group in groups]
+        ranks = [int(np.linalg.matrix_rank(pair, tol=ALIKE)) for pair in pairs]
+        if 1 not in ranks:
+            groups.append([])
+        groups[ranks.index(1) if 1 in ranks else -1].append(one)
     return groups
 
 
