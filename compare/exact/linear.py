@@ -6,7 +6,6 @@ give it everywhere to round-off; only f determines the quadrature, which is spli
 smooth (Moler & Van Loan, SIAM Review 45, 2003, for the exponential).
 """
 
-from collections.abc import Sequence
 from functools import cache
 from itertools import pairwise
 from math import ceil
@@ -24,43 +23,35 @@ from jointwave.cases.size import require
 NEGLIGIBLE = 1e-18  # of a propagator whose largest entries are about 1: below round-off
 NOISE = 256 * float(np.finfo(float).eps)  # of the twin, in each interval
 SMALL = 100  # states of which a full matrix is faster than a sparse one
-BATCH = 256  # instants whose loads and outputs are computed together
 MORE_POINTS = 7  # of integration, for the twin
 PART, TERMS = 3.5, 30  # largest |A| t of a Taylor series, and its most terms: 3.5^30 / 30! = 8e-17
 SAFETY = 4.0  # factor on the difference of a solution and its twin
 _points = cache(leggauss)
 
 
-def twins(
-    matrix: Any,
-    vector: np.ndarray,
-    output: np.ndarray,
-    load: LoadHistory,
-    times: np.ndarray,
-) -> np.ndarray:
-    """Return output @ x at `times`, and that of a twin whose difference shows the error, [2, n,
-    outputs]: the twin has more points of integration and, in every interval, each state perturbed
-    by NOISE of itself, always with the same sign.
+def twins(matrix: Any, vector: np.ndarray, load: LoadHistory, times: np.ndarray) -> np.ndarray:
+    """Return x at `times`, and that of a twin whose difference shows the error, [2, n, m]: the twin
+    has more points of integration and, in every interval, each state perturbed by NOISE of itself,
+    always with the same sign.
 
     Parameters
     ----------
     matrix, vector : A [m, m] (1/s), dense or sparse, and b [m], in units that make A's entries
         similar in size.
-    output : float array [outputs, m].
     load : f; smooth between its breaks, at most about one cycle per interval.
     times : equally spaced, s; the system is at rest at the first.
     """
-    A, total = csr_array(matrix), np.zeros((2, len(times), len(output)))
+    A, size = csr_array(matrix), len(vector)
+    require(3 * 16.0 * len(times) * size, f"{len(times):,} states of {size:,} numbers")
+    found = np.zeros((2, len(times), size))
     part = connected_components(A, directed=False)[1]
     for k in np.unique(part[vector != 0]):
         own = np.flatnonzero(part == k)
-        total += _coupled(A[own][:, own], vector[own], output[:, own], load, times)
-    return total
+        found[..., own] = _coupled(A[own][:, own], vector[own], load, times)
+    return found
 
 
-def _coupled(
-    A: csr_array, vector: np.ndarray, output: np.ndarray, load: LoadHistory, times: np.ndarray
-) -> np.ndarray:
+def _coupled(A: csr_array, vector: np.ndarray, load: LoadHistory, times: np.ndarray) -> np.ndarray:
     """Return the same of states that are coupled with each other."""
     h = float(times[1] - times[0])
     count = 12 + ceil(h * abs(A).sum(axis=0).max())
@@ -79,27 +70,17 @@ def _coupled(
     off = 1 + NOISE * np.random.default_rng(0).uniform(-1, 1, len(vector))
     off = np.stack([np.ones(len(vector)), off], axis=1)
     x = np.zeros((len(vector), 2))
-    out = np.zeros((2, len(times), len(output)))
-    for first in range(1, len(times), BATCH):
-        some = slice(first, min(first + BATCH, len(times)))
-        states = np.stack([F[some.start - 1 : some.stop - 1] @ G.T for G, F in driven], axis=-1)
-        for n, share in enumerate(states):
-            x = off * (P @ x + share)
-            states[n] = x
-        out[:, some] = (output @ states).transpose(2, 0, 1)
-    return out
+    states = np.stack([np.pad(F @ G.T, ((1, 0), (0, 0))) for G, F in driven], axis=-1)
+    for n, share in enumerate(states[1:], 1):
+        x = off * (P @ x + share)
+        states[n] = x
+    return np.moveaxis(states, -1, 0)
 
 
 def bound(one: np.ndarray, twin: np.ndarray) -> np.ndarray:
     """Return the bound on the root-mean-square error of waveforms [..., n] from their twins."""
     apart = np.sqrt(np.mean((one - twin) ** 2, axis=-1))
     return SAFETY * apart + 4 * np.finfo(float).eps * np.abs(one).max(axis=-1, initial=0.0)
-
-
-def errors(found: Sequence[np.ndarray], twin: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
-    """Return error bounds of stress, velocity and displacement [..., n] from their twins."""
-    bounds = [bound(one, other) for one, other in zip(found, twin, strict=True)]
-    return dict(zip(("stress", "velocity", "displacement"), bounds, strict=True))
 
 
 def _moved(A, vector: np.ndarray, times: np.ndarray) -> np.ndarray:
@@ -128,33 +109,16 @@ def gauss(h: float, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _load_on_nodes(load, starts, h, nodes, weights) -> np.ndarray:
-    """Return the weights [intervals, nodes] that integrate a smooth function times the load."""
-    shares = weights * load.value(starts[:, None] + nodes)
-    count = len(nodes)
-    to_lagrange = _legendre(count)
-    for n, cuts in _cut_intervals(load, starts, h):
+    """Return the weights [intervals, nodes] that integrate a smooth function times the load: in an
+    interval with breaks those of the load's projection on polynomials, piece by piece."""
+    shares, count = weights * load.value(starts[:, None] + nodes), len(nodes)
+    project = (2 * np.arange(count) + 1) * legvander(2 * nodes / h - 1, count - 1)
+    at = (np.asarray(load.breaks) - starts[0]) / h
+    inside = np.floor(at)
+    for n in np.unique(inside[(inside >= 0) & (inside < len(starts))]).astype(int):
         shares[n] = 0
-        for a, b in pairwise(cuts):
+        for a, b in pairwise([0.0, *h * (at[inside == n] - n), h]):
             s, w = gauss(b - a, count)
-            basis = legvander(2 * (a + s) / h - 1, count - 1) @ to_lagrange.T * (weights / h)
+            basis = legvander(2 * (a + s) / h - 1, count - 1) @ project.T * (weights / h)
             shares[n] += (w * load.value(starts[n] + a + s)) @ basis
     return shares
-
-
-@cache
-def _legendre(count: int) -> np.ndarray:
-    """Return (2 k + 1) P_k at the points of integration [points, k]."""
-    return legvander(_points(count)[0], count - 1) * (2 * np.arange(count) + 1)
-
-
-def _cut_intervals(load, starts, h) -> list[tuple[int, np.ndarray]]:
-    """Return the intervals that contain breaks of the load, with their cuts from 0 to h."""
-    breaks = np.asarray(load.breaks)
-    inside = np.floor((breaks - starts[0]) / h)
-    offset = breaks - starts[0] - h * inside
-    edge = 1e-9 * h
-    held = (inside >= 0) & (inside < len(starts)) & (offset > edge) & (offset < h - edge)
-    return [
-        (n, np.concatenate([[0.0], offset[held & (inside == n)], [h]]))
-        for n in np.unique(inside[held]).astype(int)
-    ]

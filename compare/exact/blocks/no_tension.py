@@ -10,8 +10,6 @@ Valid for any load or shaken base, soft layers, dashpots, mass-proportional damp
 along the axis and prestress, if no tension-free joint would be pulled at rest.
 """
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
@@ -19,12 +17,11 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.blocks.events import NOISE, Motion, integrate
-from jointwave.compare.exact.blocks.row_of_blocks import HELD, receivers, system_of
+from jointwave.compare.exact.blocks.row_of_blocks import HELD, receivers, result, system_of
 from jointwave.compare.exact.blocks.system import BlockSystem
 from jointwave.compare.exact.conditions import drive, holds
-from jointwave.compare.exact.linear import errors
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
-from jointwave.results.dataset import dataset, scene_hash
+from jointwave.results.dataset import scene_hash
 
 MOST_BLOCKS = 2000
 MANY = f"more than {MOST_BLOCKS:,} blocks: too many events"
@@ -47,15 +44,12 @@ def applies(scene: Scene) -> Answer:
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement of the scene's rigid-block chain."""
-    model, signal, times = system_of(scene), drive(scene), sample_times(scene)
+    model, times = system_of(scene), sample_times(scene)
     own, other = _motions(scene)
-    found, twin = (receivers(scene, model, m.states, signal.value(times)) for m in (own, other))
+    found, twin = (receivers(scene, model, one.states) for one in (own, other))
     known = _known(model, own.states, other.states)
-    bounds = errors([x[:, :known] for x in found], [x[:, :known] for x in twin])
-    about: dict[str, Any] = {"errors": bounds, "events": own.events}
-    if known < len(times):
-        about["known_until"] = float(times[known - 1])
-    return dataset(scene, SOLVER.name, times, *found, **about)
+    until = {"known_until": float(times[known - 1])} if known < len(times) else {}
+    return result(scene, SOLVER.name, found, twin, known, events=own.events, **until)
 
 
 def _motions(scene: Scene) -> list[Motion]:

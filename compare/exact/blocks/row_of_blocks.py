@@ -17,6 +17,8 @@ dashpots, mass-proportional damping, any ends, gravity and prestress; no joint o
 softens.
 """
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from scipy.sparse.linalg import spsolve
@@ -41,6 +43,7 @@ from jointwave.compare.exact.linear import bound, twins
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
+Waves = dict[str, np.ndarray]
 MOST_BLOCKS = {1: 2000, 3: 500}
 HELD = (
     "reversed load",
@@ -82,37 +85,25 @@ def _too_many(scene: Scene, dim: int) -> tuple[bool, str]:
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement of the scene's row of blocks; in space also shear
-    and rotation."""
-    forces, rate, motion = response(scene)
-    waves = {"stress": forces[:, :, 0], "velocity": rate[:, :, 0], "displacement": motion[:, :, 0]}
-    spatial = is_spatial(scene)
-    if spatial:
-        turned = motion[:, :, 3:] if scene.motion.rotation != "none" else 0 * motion
-        waves = {"stress": forces[:, :, 1], "shear": forces[:, :, [0, 2]], "rotation": turned}
-        waves |= {"velocity": rate[:, :, :3], "displacement": motion[:, :, :3]}
-    errors = {name: bound(*pair) for name, pair in waves.items()}
-    fields = {name: x[0] if x.ndim == 3 else x[0].swapaxes(1, 2) for name, x in waves.items()}
-    name = (IN_SPACE if spatial else AXIAL).name
-    return dataset(scene, name, sample_times(scene), errors=errors, **fields)
+    and rotation. They are the response to the drive, that to sudden gravity, and the initial state.
+    """
+    one, times = system_of(scene), sample_times(scene)
+    states = twins(one.matrix, one.load, drive(scene), times)
+    states += twins(one.matrix, one.steady, Step(1.0), times)
+    found, twin = (receivers(scene, one, x) for x in states)
+    return result(scene, (IN_SPACE if is_spatial(scene) else AXIAL).name, found, twin)
 
 
-def response(scene: Scene) -> list[np.ndarray]:
-    """Return the tractions (Pa), velocities and displacements (m, rad) at the receivers
-    [2, receivers, freedoms, n] of a linear row and of its twin (`linear.twins`): the response to
-    the drive, that to sudden gravity, and the initial state."""
-    one, times, signal = system_of(scene), sample_times(scene), drive(scene)
-    sections, points = reads(scene)
-    force, passes = slice(len(sections)), slice(sections.shape[1])
-    parts = [sections @ one.forces[passes], points @ one.velocity, points @ one.displacement]
-    rows = np.concatenate(parts)
-    out = twins(one.matrix, one.load, rows, signal, times)
-    out += twins(one.matrix, one.steady, rows, Step(1.0), times)
-    pushed = np.outer(signal.value(times), one.direct[passes]) + one.initial[passes]
-    out[..., force] += pushed @ sections.T
-    out[..., len(rows) - len(points) :] += points @ one.rest
-    parts = np.split(out, len(sections) + len(points) * np.arange(2), axis=2)
-    c = len(own_freedoms(scene))
-    return [part.reshape(2, len(times), -1, c).transpose(0, 2, 3, 1) for part in parts]
+def result(
+    scene: Scene, name: str, found: Waves, twin: Waves, known: int | None = None, **about: Any
+) -> xr.Dataset:
+    """Return waveforms as the result of a solver, with the bounds that their twins give.
+
+    known : number of samples before these diverge.
+    """
+    errors = {key: bound(x[..., :known], twin[key][..., :known]) for key, x in found.items()}
+    fields = {key: x if x.ndim == 2 else x.swapaxes(1, 2) for key, x in found.items()}
+    return dataset(scene, name, sample_times(scene), errors=errors, **fields, **about)
 
 
 def system_of(scene: Scene) -> BlockSystem:
@@ -250,28 +241,40 @@ def _at_start(scene: Scene, contacts: Contacts) -> tuple[np.ndarray, np.ndarray,
 def contact_forces(
     one: BlockSystem, states: np.ndarray, drive: np.ndarray | float = 0.0
 ) -> np.ndarray:
-    """Return the forces of a chain's contacts [..., N + 1] in states [..., m] under a drive [...],
-    N, compression positive."""
+    """Return the forces of contacts [..., k] in states [..., m] under a drive [...], N and N m,
+    compression positive."""
     strains, count, own = states @ one.strains.T, len(one.initial), one.one_sided
-    springs = strains[..., :count] @ one.resists[:, :count].T + one.initial
     forces = strains @ one.resists.T + np.multiply.outer(drive, one.direct) + one.initial
-    forces[..., own] = np.where(springs[..., own] < 0, 0.0, np.maximum(forces[..., own], 0.0))
-    return forces[..., : len(one.mass) + 1]
+    springs = strains[..., :count] @ one.resists[own, :count].T + one.initial[own]
+    forces[..., own] = np.where(springs < 0, 0.0, np.maximum(forces[..., own], 0.0))
+    return forces
 
 
-def receivers(
-    scene: Scene, one: BlockSystem, states: np.ndarray, drive: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return stress (Pa), velocity (m/s) and displacement (m) [receivers, n] of a chain in states
-    [n, m] under a drive [n].
+def receivers(scene: Scene, one: BlockSystem, states: np.ndarray) -> Waves:
+    """Return stress (Pa), velocity (m/s) and displacement (m) [receivers, n] of a row in states
+    [n, m]; in space these along each axis [receivers, 3, n], shear and rotation (rad).
 
     Stress is interpolated between the start, the contacts and the end; velocity and displacement
     between the block centres.
     """
-    sections, points = reads(scene)
-    stress = sections @ contact_forces(one, states, drive).T
-    moved = points @ (states @ one.displacement.T + one.rest).T
-    return stress, points @ (states @ one.velocity.T).T, moved
+    (sections, points), c = reads(scene), len(own_freedoms(scene))
+    forces = contact_forces(one, states, drive(scene).value(sample_times(scene)))
+    waves = [
+        (matrix @ x.T).reshape(-1, c, len(states))
+        for matrix, x in (
+            (sections, forces[:, : sections.shape[1]]),
+            (points, states @ one.velocity.T),
+            (points, states @ one.displacement.T + one.rest),
+        )
+    ]
+    if c == 1:
+        return dict(
+            zip(("stress", "velocity", "displacement"), (x[:, 0] for x in waves), strict=True)
+        )
+    forces, rate, moved = waves
+    turned = moved[:, 3:] if c == 6 else 0 * moved
+    along = {"velocity": rate[:, :3], "displacement": moved[:, :3], "rotation": turned}
+    return {"stress": forces[:, 1], "shear": forces[:, [0, 2]], **along}
 
 
 def reads(scene: Scene) -> tuple[np.ndarray, np.ndarray]:

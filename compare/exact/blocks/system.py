@@ -146,12 +146,6 @@ def resistance(contacts: Contacts, values: np.ndarray, freedoms: int) -> csr_arr
     return csr_array(bsr_array((each, np.arange(count), np.arange(count + 1))))
 
 
-def stiffness_of(mass: np.ndarray, contacts: Contacts) -> csr_array:
-    """Return K of the bodies that have mass, all others at rest; mass : [bodies, f]."""
-    B = relative(contacts, *mass.shape)[:, np.flatnonzero(np.isfinite(mass) & (mass > 0))]
-    return B.T @ resistance(contacts, contacts.springs, mass.shape[1]) @ B
-
-
 def first_order(
     mass: np.ndarray,
     contacts: Contacts,

@@ -27,7 +27,7 @@ from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.images import ENTERS
 from jointwave.compare.exact.conditions import holds, static_stress
-from jointwave.compare.exact.linear import errors, twins
+from jointwave.compare.exact.linear import bound, twins
 from jointwave.compare.solvers.record import Answer, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
@@ -88,7 +88,8 @@ def behind_and_before(
         )
         stress = stress[0] + stress_back[0] + static_stress(scene)
         found.append([stress, *((motion - motion_back) / p.impedance)])
-    return dataset(scene, name, times, *found[0], errors=errors(*found))
+    bounds = zip(("stress", "velocity", "displacement"), map(bound, *found), strict=True)
+    return dataset(scene, name, times, *found[0], errors=dict(bounds))
 
 
 def around(
@@ -140,7 +141,7 @@ def transmitted(
     tau = joint.time_constant + impedance / (2 * joint.stiffness)
     share = joint.time_constant / tau
     rate, one = np.array([[-1 / tau]]), np.ones(1)
-    smooth = twins(rate, one / tau, one[None], load, times)[which, :, 0]
+    smooth = twins(rate, one / tau, load, times)[which, :, 0]
     stress = share * load.value(times) + (1 - share) * smooth
     impulse = load.impulse(times) - (1 - share) * tau * smooth
     return stress, impulse

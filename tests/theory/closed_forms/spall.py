@@ -172,10 +172,11 @@ def lattice_spall(scene: Scene) -> Spall | None:
     if strength is None:
         raise ValueError("no joint has a tensile strength")
     signal, matrix, vector = drive(scene), model.matrix, model.load
-    states = twins(matrix, vector, np.eye(len(vector)), signal, times)[0]
+    states = twins(matrix, vector, signal, times)[0]
 
     def excess(moved: np.ndarray) -> np.ndarray:
-        return -contact_forces(model, moved)[..., 1:-1] / p.area - strength
+        joints = contact_forces(model, moved)[..., 1 : scene.block_count]
+        return -joints / p.area - strength
 
     broken = (excess(states) >= 0).any(axis=1)
     if not broken.any():

@@ -41,9 +41,9 @@ def test_a_column_under_a_p_wave_is_the_chain(blocks):
     A[count, count] = A[-1, -1] = -Z / mass
     b = np.zeros(2 * count)
     b[count] = 2 / mass
-    output = np.diag(np.concatenate([np.full(count, 1 / scale), np.ones(count)]))
     found = solve("block-lattice", scene)
-    states = twins(A, b, output, Ricker(1e6, 0.005), found.time.values)[0]
+    states = twins(A, b, Ricker(1e6, 0.005), found.time.values)[0]
+    states[:, :count] /= scale
     for point, block in enumerate((0, 6, 11)):
         for name, column in (("displacement", block), ("velocity", count + block)):
             expected, bound = states[:, column], found[f"{name}_error"][point, 1]
