@@ -41,7 +41,8 @@ IN_A_PERIOD = 400  #: samples of the field per period per period
 
 def applies(scene: RockMass) -> Answer:
     """Return whether only waves act, on blocks between linear joints."""
-    held, sets = scene.boundaries.model_dump().values(), scene.joint_sets
+    held, sets = set(scene.boundaries.model_dump().values()), scene.joint_sets
+    stuck = sorted(held - {None, "quiet", "free", "periodic"})
     gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
     many = f"more than {MOST_BLOCKS:,} blocks"
     reasons = [
@@ -50,7 +51,7 @@ def applies(scene: RockMass) -> Answer:
         (gravity, "gravity acts"),
         (scene.prestress is not None, "the rock is prestressed"),
         (bool(scene.regions), "regions differ in rock"),
-        ("fixed" in held, "a side is fixed"),
+        (bool(stuck), f"a side is {' and '.join(stuck)}"),
         (scene.numerics.dem.block is not None, "intact rock is subdivided into blocks"),
         (not any(one.spacing for one in sets), "no joint set has a spacing"),
         (any(one.damping_ratio for one in sets), "the joints are damped"),
