@@ -102,8 +102,8 @@ def result(
     known : number of samples before these diverge.
     """
     errors = {key: bound(x[..., :known], twin[key][..., :known]) for key, x in found.items()}
-    fields = {key: x if x.ndim == 2 else x.swapaxes(1, 2) for key, x in found.items()}
-    return dataset(scene, name, sample_times(scene), errors=errors, **fields, **about)
+    about |= {key: x if x.ndim == 2 else x.swapaxes(1, 2) for key, x in found.items()}
+    return dataset(scene, name, sample_times(scene), errors=errors, **about)
 
 
 def system_of(scene: Scene) -> BlockSystem:
