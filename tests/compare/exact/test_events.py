@@ -19,7 +19,6 @@ from jointwave.compare.exact.conditions import drive
 
 D, C = 0.5, 1350.0  # m, about the paper's bar speed, m/s
 ENDS = [("free", "free"), ("free", "fixed"), ("quiet", "fixed"), ("free", "quiet")]
-QUANTITIES = ("stress", "velocity", "displacement")
 
 RATTLING = {
     "title": "soft joints that rattle under a short wavelet",
