@@ -11,7 +11,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 
 NO_SHEAR = "the joints carry no shear"
-SIDES = ("quiet", "fixed", "periodic")
+SIDES = ("quiet", "fixed", "roller", "periodic")
 SLIPS = "friction_angle or cohesion is given"
 STICKS = "neither friction_angle nor cohesion"
 

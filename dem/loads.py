@@ -129,12 +129,16 @@ def mean_of(
     return (after - before) / dt
 
 
-def reactions(blocks: Blocks, facets: np.ndarray, stress: np.ndarray) -> Pattern:
+def reactions(
+    blocks: Blocks, facets: np.ndarray, stress: np.ndarray, along: bool = False
+) -> Pattern:
     """Return the forces by which the rock beyond boundary facets, int array, goes on to bear a
-    stress [d, d], Pa, compression positive."""
+    stress [d, d], Pa, compression positive; along : those along the facets alone."""
     points = points_on(blocks, facets)
-    force = -points.area[:, None] * (points.normal @ stress)
-    return Pattern(points.block, points.arm, force, None)
+    traction = -points.normal @ stress
+    if along:
+        traction -= (traction * points.normal).sum(axis=1)[:, None] * points.normal
+    return Pattern(points.block, points.arm, points.area[:, None] * traction, None)
 
 
 def load_pattern(

@@ -46,13 +46,18 @@ def _of_support(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
     quiet = [side for side in scene.boundaries.sides("quiet") if side in normals]
     if gravity is None or scene.boundaries.sides("fixed"):
         return
-    if any((normals[side] @ np.array(gravity.direction)).max() > LEAN for side in quiet):
+    down = np.array(gravity.direction)
+    if any((normals[side] @ down).max() > LEAN for side in quiet):
+        return
+    rollers = [normals[side][0] for side in scene.boundaries.sides("roller") if side in normals]
+    if np.linalg.norm(down - sum(max(n @ down, 0.0) * n for n in rollers)) < GRAZING:
         return
     if gravity.static:
-        allowed = "needs a fixed side, a quiet one below the rock, or gravity.static = false"
+        allowed = "needs a fixed side, a quiet or roller one below it, or gravity.static = false"
         yield "gravity.static", True, allowed
     if quiet and gravity.acceleration:
-        allowed = "does not bear the weight of the rock: needs a fixed side, or a quiet one below"
+        allowed = "does not bear the weight of the rock: needs a fixed side, a quiet or roller one"
+        allowed += " below"
         yield f"boundaries.{quiet[0]}", "quiet", allowed
 
 

@@ -25,7 +25,7 @@ from jointwave.cases.schema.region import REST
 from jointwave.cases.schema.rock_mass import RockMass
 
 #: Blocks from a side to the nearest plane, by the side's boundary condition.
-AT_SIDE = {"quiet": 0.5, "periodic": 0.0, "free": 1.0, "fixed": 1.0}
+AT_SIDE = {"quiet": 0.5, "periodic": 0.0, "free": 1.0, "fixed": 1.0, "roller": 1.0}
 ALIKE = 1e-11  #: sine of the angle between directions that are one
 ACROSS = 3**0.5 / 2
 #: By the number of directions in which rock is cut, planes beside those across the first direction

@@ -19,7 +19,7 @@ from jointwave.cases.schema.values import (
     dimension,
 )
 
-Held = Literal["quiet", "free", "fixed", "periodic"]
+Held = Literal["quiet", "free", "fixed", "roller", "periodic"]
 
 
 class IntactRock(Attenuating):
@@ -31,7 +31,8 @@ class IntactRock(Attenuating):
 
 
 class Boundaries(Table):
-    """Boundary conditions of the sides of the domain; openings are free."""
+    """Boundary conditions of the sides of the domain; openings are free. Rock slides freely along a
+    roller side, as along a plane of symmetry, and does not move normal to it."""
 
     left: Held = "free"  #: side of least x
     right: Held = "free"  #: side of largest x
@@ -47,9 +48,10 @@ class Boundaries(Table):
 
 
 class GravityOfRock(Table):
-    """A body force. Fixed sides bear the weight, and quiet ones, which exert beside their dashpots
-    what held sides would at rest: below the rock (within 45 degrees) held in all directions, beside
-    it along their normal. A quiet side above the rock bears the in-situ stress alone."""
+    """A body force. Fixed and roller sides bear the weight, and quiet ones, which exert beside
+    their dashpots what held sides would at rest: below the rock (within 45 degrees) held in all
+    directions, beside it along their normal. A quiet side above the rock bears the in-situ stress
+    alone."""
 
     direction: UnitVector = Field(default=[0.0, -1.0])  #: x, y, in space x, y, z and [0, 0, -1]
     acceleration: NonNegative = 9.81  #: m/s2

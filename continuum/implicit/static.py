@@ -160,6 +160,13 @@ def _stiffest(rock: Matrices) -> float:
     return rock.communicator.largest(float((k[m > 0] / m[m > 0]).max()))
 
 
+def _holds(body: Body, fixed: np.ndarray) -> bool:
+    """Return whether fixed freedoms hold a body in every direction."""
+    nodes, somewhere = np.arange(len(body.x)), body.communicator.any
+    along = range(body.section.components)
+    return all([somewhere(bool(np.isin(body.freedom(nodes, c), fixed).any())) for c in along])
+
+
 class _Static:
     """The forces of a model at rest, without what absorbs at its ends and without its load.
 
@@ -189,7 +196,7 @@ class _Static:
         fixed = np.zeros(0, dtype=int) if model.ends.fixed is None else model.ends.fixed.freedom
         if hold is not None:
             stiffness = stiffness + hold
-        elif model.ends.fixed is None:
+        elif not _holds(body, fixed):
             stiffness = stiffness + LOOSE * self.stiffest * self.rock.mass
         self.system = System(model, self.rock, fixed, [stiffness, self.rock.mass])
         self.acceleration = np.zeros(self.system.free.size)

@@ -40,7 +40,7 @@ class SidePoints(NamedTuple):
 
 
 def sides_that_are(scene: RockMass, body: Body, kind: str) -> list[str]:
-    """Return the sides that are "quiet" or "fixed"."""
+    """Return the sides that are "quiet", "fixed" or "roller"."""
     return [name for name in scene.boundaries.sides(kind) if name in body.mesh.sides]
 
 
@@ -109,15 +109,14 @@ def dashpots_on(
     np.add.at(share[0], own, of_point[:, [0, 1], [0, 1]])
     np.add.at(share[1], own[:, 0], of_point[:, 0, 1])
     whole, freedom = body.communicator.total(share), np.unique(freedoms_of(body), axis=0)
-    chosen = (whole[0, freedom] > 0).all(axis=1)
-    if fixed is not None:
-        chosen &= ~np.isin(freedom, fixed.freedom).any(axis=1)
-    freedom = freedom[chosen]
+    moves = ~np.isin(freedom, [] if fixed is None else fixed.freedom)
+    chosen = (whole[0, freedom] > 0).all(axis=1) & moves.any(axis=1)
+    freedom, moves = freedom[chosen], moves[chosen]
     if not freedom.size:
         return None
-    x, y = freedom.T
+    (x, y), moves = freedom.T, np.column_stack([moves, moves.all(axis=1)])  # one slides on rollers
     viscosity, every = (
-        np.stack([part[0, x], part[0, y], part[1, x]], axis=1) for part in (share, whole)
+        moves * np.stack([part[0, x], part[0, y], part[1, x]], axis=1) for part in (share, whole)
     )
     braked = 1 + (scene.damping.alpha or 0.0) * dt / 2  # as in the step over the mass
     return Dashpots(freedom, viscosity, every * dt / (2 * braked * mass[x, None]))
@@ -144,9 +143,9 @@ def freedoms_of(body: Body) -> np.ndarray:
 
 
 def fixed_sides(scene: RockMass, body: Body, time: Clock | None = None) -> Fixed | None:
-    """Return the freedoms of the fixed sides, with the motion of one that is shaken; None
-    without."""
-    names = sides_that_are(scene, body, "fixed")
+    """Return the freedoms of the fixed sides, with the motion of one that is shaken, and those
+    normal to roller sides; None without."""
+    names = [*sides_that_are(scene, body, "fixed"), *sides_that_are(scene, body, "roller")]
     if not names:
         return None
     base = next(iter(scene.bases), None)
@@ -158,7 +157,8 @@ def fixed_sides(scene: RockMass, body: Body, time: Clock | None = None) -> Fixed
         nodes = np.flatnonzero(body.communicator.total(touched)[every[:, 0]])
         shaken = base is not None and base.side == name
         given = np.array(base.direction) if shaken and base is not None else np.zeros(2)
-        for c in range(2):
+        rolls = getattr(scene.boundaries, name) == "roller"
+        for c in [int(name in ("bottom", "top"))] if rolls else range(2):
             of = body.freedom(nodes, c)
             direction[of] = np.where(np.isnan(direction[of]) | shaken, given[c], direction[of])
     freedom, step = np.flatnonzero(~np.isnan(direction)), None

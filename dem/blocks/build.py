@@ -142,5 +142,6 @@ def carried(blocks: RigidBlocks) -> np.ndarray:
     along = np.stack([-links.normal[:, 1], links.normal[:, 0]], axis=1)
     t_n, t_s = ((traction * axis).sum(axis=1) for axis in (links.normal, along))
     law = Law(*(x[links.column] if np.ndim(x) else x for x in own.law))
-    gap, slip = gap_under(law, parts_of(law), t_n), -t_s / own.shear[links.column]
-    return np.stack([gap, slip], axis=1)
+    shear = own.shear[links.column]
+    slip = -np.divide(t_s, shear, out=np.zeros(len(t_s)), where=shear > 0)  # none on rollers
+    return np.stack([gap_under(law, parts_of(law), t_n), slip], axis=1)

@@ -24,7 +24,7 @@ class Links(NamedTuple):
     m. normal : from i to j [c, 2]. beside_i, beside_j : the centroids where they touch [c, 2], m.
     column : of the law [c]. kinds : of the columns of sets, `RigidJoints` [columns, 3]. others :
     stiffness of the contacts that no set has, by column after those. walls : names of the fixed
-    sides.
+    and the roller sides.
     """
 
     blocks: np.ndarray
@@ -43,7 +43,8 @@ def links_of(scene: RockMass, partition: Partition, further: list[JointSet]) -> 
     """Return all contacts of a scene, some by further sets of cuts.
 
     A fixed side is a wall behind the rock from each block's centroid to the side, as stiff as that
-    rock is: half a block. So is intact rock between blocks where no set made the cut.
+    rock is: half a block. So is intact rock between blocks where no set made the cut. A roller side
+    is such a wall without stiffness in shear.
     """
     across = across_periodic(scene, partition.blocks)
     parts = [partition.contacts, *(one.contacts for one in across)]
@@ -66,7 +67,10 @@ def links_of(scene: RockMass, partition: Partition, further: list[JointSet]) -> 
     column = np.concatenate([column, np.full(len(block), NO_SET)])
     column[column == NO_SET] = len(kinds) + np.arange(len(cuts) + len(block))
     sides = pairs[cuts], start[cuts], normal[cuts], shift[cuts]
-    others = [welds(scene, partition, further, *sides), _of_walls(scene, partition, block, reach)]
+    sticks = np.array([getattr(scene.boundaries, one) == "fixed" for one in walls], dtype=float)
+    of_walls = _of_walls(scene, partition, block, reach)
+    of_walls = of_walls._replace(shear=of_walls.shear * sticks[wall - partition.count])
+    others = [welds(scene, partition, further, *sides), of_walls]
     return Links(
         blocks=np.concatenate([pairs, np.stack([block, wall], axis=1)]),
         start=np.concatenate([start, edges.start[held]]),
@@ -82,9 +86,9 @@ def links_of(scene: RockMass, partition: Partition, further: list[JointSet]) -> 
 
 
 def _walls(scene: RockMass, partition: Partition) -> tuple[str, ...]:
-    """Return the fixed sides."""
+    """Return the fixed and the roller sides."""
     present = {partition.sides[k] for k in np.unique(partition.boundary.side)}
-    return tuple(name for name in scene.boundaries.sides("fixed") if name in present)
+    return tuple(name for name in scene.boundaries.sides("fixed", "roller") if name in present)
 
 
 def _columns(

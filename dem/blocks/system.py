@@ -111,8 +111,12 @@ def held_blocks(
     patterns = [load_pattern(scene, cut, sides, one) for one in scene.pushes]
     if scene.prestress is not None:
         # Openings have been excavated: nothing holds their walls.
-        bear = facets_on(cut, sides, scene.boundaries.sides("free", "quiet"))
+        bear, slide = (
+            facets_on(cut, sides, scene.boundaries.sides(*kinds))
+            for kinds in (("free", "quiet"), ("roller",))
+        )
         patterns.append(reactions(cut, bear, scene.prestress.tensor))
+        patterns.append(reactions(cut, slide, scene.prestress.tensor, along=True))
     rows = np.unique(np.concatenate([quiet.block, *(one.block for one in patterns)]))
     period, waves = shortest_period(scene.waves), []
     if scene.waves and len(quiet.block):

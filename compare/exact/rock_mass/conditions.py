@@ -55,11 +55,15 @@ def beyond_linear_law(one: JointSet) -> str | None:
 def reflecting_side(scene: RockMass, face: Face | None = None) -> str | None:
     """Return why waves do not leave through all sides but a free face, None if they do: each other
     side must be quiet, or periodic with waves and joints uniform along the direction to its
-    partner."""
+    partner, or rollers beside such P waves."""
     for side, normals in shape_of(scene.domain).normals().items():
         held = getattr(scene.boundaries, side)
         if held == "periodic" and not _is_invariant(scene, side):
             return f"the {side} is periodic, and waves or joints vary along it"
+        if held == "roller" and not (
+            _is_invariant(scene, side) and all(one.kind == "P" for one in scene.waves)
+        ):
+            return f"the {side} is on rollers, and waves do not run along it as P waves"
         is_face = held == "free" and face is not None and (normals @ face.normal).min() > ALONG
         if held in ("free", "fixed") and not is_face:
             return f"the {side} is {held} and reflects waves"

@@ -21,6 +21,7 @@ SIDES: dict[str, tuple[float, Any]] = {
     "quiet": (2.2, (0, (3.0, 1.2))),
     "matched": (2.2, (0, (3.0, 1.2, 1.0, 1.2))),
     "fixed": (3.4, "-"),
+    "roller": (3.4, (0, (0.6, 0.6))),
     "periodic": (1.4, (0, (1.0, 1.5))),
 }
 MANY = 3000  # lines of one name above which they are an image in the drawing

@@ -85,6 +85,7 @@ NO = [
     ({"gravity": {"static": False}}, "gravity acts"),
     ({"prestress": {"xx": 1e6, "yy": 1e6}}, "the rock is prestressed"),
     ({"boundaries": {"top": "fixed"}}, "a side is fixed"),
+    ({"boundaries": {"top": "roller"}}, "a side is roller"),
     ({"numerics": {"dem": {"block": 0.5}}}, "intact rock is subdivided into blocks"),
     ({"damping": {"mass_proportional": 1.0}}, "the damping is proportional to mass"),
     ({"domain": {"size": [60.0, 60.0]}}, "more than 1,000 blocks"),
