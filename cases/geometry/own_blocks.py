@@ -19,7 +19,7 @@ from jointwave.cases.geometry.cell_complex import NO_SET, OUTSIDE, Complex, from
 from jointwave.cases.geometry.measure import facet_moments
 from jointwave.cases.geometry.read_blocks import Given, Loop, read_blocks, read_cells
 from jointwave.cases.geometry.relations import joined, merged
-from jointwave.cases.geometry.solid_blocks import near, pieces_between, solids_of
+from jointwave.cases.geometry.solid_blocks import near, pieces_between, solids_of, width_of
 from jointwave.cases.geometry.solids import corners_of
 from jointwave.cases.gmsh_file import MeshError
 
@@ -40,16 +40,22 @@ def complex_of_file(path: Path, mesh: bool = False) -> tuple[Complex, list[str] 
     face, beyond = (np.array([one[k] for one in pieces]) for k in (1, 2))
     cell = np.repeat(np.arange(len(solids)), [len(one.faces) for one in solids])
     normals = np.concatenate([one.normals for one in solids])
-    shared = beyond != OUTSIDE  # faces that share a piece have one normal, that of the first
+    shared = beyond != OUTSIDE  # faces that share a piece have one normal, that of the longest
     group = joined(np.stack([face[shared], beyond[shared]], axis=1), len(normals))
-    of_group = normals[np.unique(group, return_index=True)[1]][group]
+    length = [np.linalg.norm(np.ptp(x, axis=0)) for one in solids for x in one.faces]
+    order = np.argsort(length)[::-1]
+    of_group = normals[order[np.unique(group[order], return_index=True)[1]]][group]
     normal = of_group * np.sign((of_group * normals).sum(axis=1))[:, None]
     sides = np.stack([cell[face], np.where(shared, cell[beyond], OUTSIDE)], axis=1)
     places = np.concatenate([x, *(one.corners for one in pieces)])
     ends = np.cumsum([len(x), *(len(one.corners) for one in pieces)])
     around = np.split(merged(places, tolerance), ends[:-1])[1:]
     loops = _with_vertices(places, around, tolerance)
-    held = [k for k, loop in enumerate(loops) if len(loop) >= x.shape[1]]
+    held = [
+        k
+        for k, loop in enumerate(loops)
+        if len(loop) >= x.shape[1] and width_of(places[loop]) > tolerance
+    ]
     body = from_facets(places, [loops[k] for k in held], sides[held], normal[face[held]])
     if given.joints is None:
         return _with_sides(body), None

@@ -59,10 +59,10 @@ class Solid(NamedTuple):
             away[np.abs(away) <= tolerance] = 0.0  # on the line
             rest.append(clipped(inside, away))
             inside = clipped(inside, -away)
-        return (inside, rest) if _width(inside) > tolerance else (None, [x])
+        return (inside, rest) if width_of(inside) > tolerance else (None, [x])
 
 
-def _width(x: np.ndarray) -> float:
+def width_of(x: np.ndarray) -> float:
     """Return the length of a piece in the plane, in space its area over its length, m."""
     length = float(np.linalg.norm(np.ptp(x, axis=0)))
     if x.shape[1] == 2:
