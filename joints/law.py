@@ -16,8 +16,9 @@ from jointwave.cases.material.closure import stress_in_reach
 from jointwave.cases.scene_type import AnyScene
 from jointwave.joints.closure import closure_stiffness
 from jointwave.joints.dilation import lift, riding_stiffness
+from jointwave.joints.energy import elastic_energy, fracture_energy_spent, friction_work, lift_work
 from jointwave.joints.formula import formula
-from jointwave.joints.normal import normal_traction
+from jointwave.joints.normal import normal_traction, spring_traction
 from jointwave.joints.shear import UNLIMITED, cohesion_left, shear_return, shear_strength
 from jointwave.joints.slide import after_slide
 
@@ -76,6 +77,7 @@ class LawFlags(NamedTuple):
 
     path : the history has the accumulated slip, or the state of the faces.
     varied : joints differ, and the table has a column for each; else one for all.
+    planar : they slip in one direction, x.
     limited : the shear traction is limited: by Coulomb's law, or zero where a joint is open.
     """
 
@@ -92,6 +94,31 @@ class LawFlags(NamedTuple):
     dilation: bool
     rate_state: bool
     path: bool
+    planar: bool = False
+
+
+#: The parameters that each part of a law needs, beside the normal stiffness.
+OF_PART = {
+    "dashpots": ("normal_viscosity", "shear_viscosity"),
+    "no_tension": ("carries_tension",),
+    "shear": ("shear_stiffness",),
+    "slip": ("cohesion", "friction"),
+    "residual": ("residual_cohesion",),
+    "softening": ("tensile_strength", "critical_opening"),
+    "closure": ("maximum_closure", "rock_compliance"),
+    "weakening": ("dynamic_friction", "weakening_distance"),
+    "dilation": ("dilation", "dilation_distance"),
+    "rate_state": (
+        "direct_effect", "evolution_effect", "critical_slip_distance", "reference_rate",
+        "initial_state",
+    ),
+}  # fmt: skip
+
+
+def rows_of(parts: LawFlags) -> tuple[int, ...]:
+    """Return the rows of the table that a law with these parts reads."""
+    names = [name for part, own in OF_PART.items() if getattr(parts, part) for name in own]
+    return tuple(sorted(map(Law._fields.index, ["normal_stiffness", *names])))
 
 
 def sticking(table: np.ndarray) -> np.ndarray:
@@ -106,16 +133,36 @@ def sticking(table: np.ndarray) -> np.ndarray:
 class History(NamedTuple):
     """The history of one point of a joint; 0 for what its law does not use.
 
-    opening : the largest so far, m. ex, ez : elastic part of the slip, m. cohesion : of this
-    point, Pa, where slip changes it. path : accumulated slip, m, where the law needs it; with
-    rate-and-state friction ln(theta / theta_0).
+    opening : the largest so far, m. slide_x, slide_z : what has slid, the slip less its elastic
+    part, m. cohesion : of this point, Pa, where slip changes it. path : accumulated slip, m, where
+    the law needs it; with rate-and-state friction ln(theta / theta_0).
     """
 
     opening: float = 0.0
-    ex: float = 0.0
-    ez: float = 0.0
+    slide_x: float = 0.0
+    slide_z: float = 0.0
     cohesion: float = 0.0
     path: float = 0.0
+
+
+class Traction(NamedTuple):
+    """What one point of a joint carries at the end of a step, and its balance of energy.
+
+    n, x, z : traction, Pa. drag_n, drag_x, drag_z : the dashpots' share of it, Pa. history : after
+    the step. stored : energy in the springs, J/m2. spent : what opening has spent so far, J/m2.
+    slid : what sliding takes in this step, J/m2.
+    """
+
+    n: float
+    x: float
+    z: float
+    drag_n: float
+    drag_x: float
+    drag_z: float
+    history: History
+    stored: float
+    spent: float
+    slid: float
 
 
 def parts_of(law: Law) -> LawFlags:
@@ -230,27 +277,45 @@ def law_at(table, j, n):
 
 
 @formula
-def traction(law, parts, gap, gap_rate, slip, slip_rate, dt, history):
-    """Return (t_n, t_x, t_z, history) of one point after a step: the whole law.
+def traction(law, parts, jump, step, rate, dt, history):
+    """Return the `Traction` of one point: the whole law.
 
-    gap, gap_rate : m and m/s at the end of the step; slip : its increments (dx, dz) over the
-    step, m; slip_rate : (x, z), m/s; dt : s; history : before the step.
+    jump : gap and slip (n, x, z) at the end of the step, m. step : their increments over the step,
+    m. rate : what dashpots see of their rates, m/s. dt : s. history : before the step.
     """
+    gap, opening, path = jump[0], history.opening, history.path
     if parts.dilation:
-        gap = gap - lift(law, history.path)
-    opening = gap if gap > history.opening else history.opening
-    t_n = normal_traction(law, parts, gap, gap_rate, opening)
-    if not parts.shear:
-        h = history
-        return t_n, 0.0, 0.0, History(opening, h.ex, h.ez, h.cohesion, h.path)
-    ex, ez, path = history.ex + slip[0], history.ez + slip[1], history.path
-    tau = shear_strength(law, parts, t_n, gap, opening, history.cohesion, path)
-    t_n, tau, path = after_slide(
-        law, parts, t_n, tau, gap, gap_rate, opening, history.cohesion, path,
-        ex, ez, slip_rate[0], slip_rate[1], dt,
-    )  # fmt: skip
-    t_x, t_z, ex, ez, slipped = shear_return(
-        law, parts, ex, ez, history.ex, history.ez, slip_rate[0], slip_rate[1], tau, dt
+        gap = gap - lift(law, path)
+    if parts.softening:
+        opening = gap if gap > opening else opening
+    t_n = normal_traction(law, parts, gap, rate[0], opening)
+    t_x, t_z, drag_x, drag_z, x, z, slid, slipped = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False
+    if parts.shear:
+        x, z = jump[1] - history.slide_x, jump[2] - history.slide_z
+        old_x, old_z = x - step[1], z - step[2]
+        tau = shear_strength(law, parts, t_n, gap, opening, history.cohesion, path)
+        t_n, tau, path = after_slide(
+            law, parts, t_n, tau, gap, rate[0], opening, history.cohesion, path,
+            x, z, rate[1], rate[2], dt,
+        )  # fmt: skip
+        if parts.dilation:
+            up = lift(law, path) - lift(law, history.path)
+            slid = -lift_work(law, parts, gap - step[0], gap - up, opening, up)
+            gap = gap - up
+        t_x, t_z, x, z, slipped = shear_return(
+            law, parts, x, z, old_x, old_z, rate[1], rate[2], tau, dt
+        )
+        drag_x, drag_z = t_x + law.shear_stiffness * x, t_z + law.shear_stiffness * z
+        if parts.limited:
+            slid = slid + friction_work(law, old_x, old_z, x, z, step[1], step[2])
+    spring = spring_traction(law, parts, gap, opening)
+    stored = elastic_energy(law, parts, gap, opening, x, z)
+    spent = fracture_energy_spent(law, opening) if parts.softening else 0.0
+    after = History(
+        opening,
+        jump[1] - x if slipped else history.slide_x,
+        jump[2] - z if slipped else history.slide_z,
+        cohesion_left(law, parts, history.cohesion, slipped),
+        path,
     )
-    cohesion = cohesion_left(law, parts, history.cohesion, slipped)
-    return t_n, t_x, t_z, History(opening, ex, ez, cohesion, path)
+    return Traction(t_n, t_x, t_z, t_n - spring, drag_x, drag_z, after, stored, spent, slid)

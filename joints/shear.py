@@ -19,10 +19,20 @@ UNLIMITED = 1e100
 @formula
 def shear_traction(law, parts, slip_x, slip_z, rate_x, rate_z):
     """Return (t_x, t_z) (Pa) without sliding, from the total slip (m) and its rate."""
-    t_x, t_z = -law.shear_stiffness * slip_x, -law.shear_stiffness * slip_z
+    t_x, t_z = -law.shear_stiffness * slip_x, 0.0
+    if not parts.planar:
+        t_z = -law.shear_stiffness * slip_z
     if parts.dashpots:
-        t_x, t_z = t_x - law.shear_viscosity * rate_x, t_z - law.shear_viscosity * rate_z
+        t_x = t_x - law.shear_viscosity * rate_x
+        if not parts.planar:
+            t_z = t_z - law.shear_viscosity * rate_z
     return t_x, t_z
+
+
+@formula
+def size_of(parts, t_x, t_z):
+    """Return |T| (Pa)."""
+    return abs(t_x) if parts.planar else sqrt(t_x * t_x + t_z * t_z)
 
 
 @formula
@@ -78,24 +88,18 @@ def shear_return(law, parts, ex, ez, ex_old, ez_old, rate_x, rate_z, tau, dt):
     t_x, t_z = shear_traction(law, parts, ex, ez, rate_x, rate_z)
     if not parts.limited:
         return t_x, t_z, ex, ez, False
-    square = t_x * t_x + t_z * t_z
-    slipped = square > tau * tau
-    scale = tau / sqrt(square) if slipped else 1.0
-    t_x, t_z = scale * t_x, scale * t_z
-    x = _elastic_slip(law, parts, scale * ex, t_x, ex_old, dt)
-    z = _elastic_slip(law, parts, scale * ez, t_z, ez_old, dt)
+    if parts.planar:
+        slipped = abs(t_x) > tau
+        t_x = copysign(tau, t_x) if slipped else t_x
+        scaled_x, scaled_z = -t_x / law.shear_stiffness, 0.0
+    else:
+        square = t_x * t_x + t_z * t_z
+        slipped = square > tau * tau
+        scale = tau / sqrt(square) if slipped else 1.0
+        t_x, t_z, scaled_x, scaled_z = scale * t_x, scale * t_z, scale * ex, scale * ez
+    x = _elastic_slip(law, parts, scaled_x, t_x, ex_old, dt)
+    z = 0.0 if parts.planar else _elastic_slip(law, parts, scaled_z, t_z, ez_old, dt)
     return t_x, t_z, x if slipped else ex, z if slipped else ez, slipped
-
-
-@formula
-def planar_return(law, parts, ex, ex_old, rate, tau, dt):
-    """Return (t_x, ex, slipped) of a slip in one direction: `shear_return` without its root."""
-    t, _ = shear_traction(law, parts, ex, 0.0, rate, 0.0)
-    slipped = parts.limited and abs(t) > tau
-    if parts.limited:
-        t = copysign(tau, t) if slipped else t
-        ex = _elastic_slip(law, parts, -t / law.shear_stiffness, t, ex_old, dt) if slipped else ex
-    return t, ex, slipped
 
 
 @formula

@@ -10,13 +10,11 @@ compression neither wear nor age: their slip does not count in the path S. `join
 the slip under rate-dependent friction.
 """
 
-from math import sqrt
-
 from jointwave.joints.dilation import lift, lift_rate
 from jointwave.joints.formula import formula
 from jointwave.joints.normal import normal_tangent, normal_traction
 from jointwave.joints.rate_state import slide_at_rate
-from jointwave.joints.shear import resistance, shear_strength, shear_traction
+from jointwave.joints.shear import resistance, shear_strength, shear_traction, size_of
 from jointwave.joints.weakening import friction_left, strength_fall, weakened
 
 MOST = 60  # Newton steps, safeguarded by bisection of a bracket
@@ -35,7 +33,7 @@ def after_slide(
     if not parts.path:
         return t_n, tau, path
     t_x, t_z = shear_traction(law, parts, ex, ez, rate_x, rate_z)
-    size, a = sqrt(t_x * t_x + t_z * t_z), resistance(law, parts, dt)
+    size, a = size_of(parts, t_x, t_z), resistance(law, parts, dt)
     pressed = t_n > 0.0 and gap <= 0.0
     if parts.rate_state and law.direct_effect > 0.0:
         after, state = tau, path

@@ -1,0 +1,104 @@
+"""Contacts in chunks of 64, and tiles of chunks and blocks that one pass takes through many steps.
+
+Contacts are ordered by the lower of their blocks. A tile's contacts join its own blocks to one
+another and to those of the next tile: before it moves all its blocks have their forces, and what
+lies two tiles on is not asked for. The better blocks are ordered, the narrower tiles are.
+"""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from jointwave.numerics.cache_lines import zeros
+
+LANES = 64  # contacts in a chunk
+DEEPEST, CACHE = 16, 3 << 19  # steps, and bytes of a core's own cache, that a pass takes
+OF_FREEDOM = 32  # bytes: its motion, inertia and force
+
+
+class Contacts(NamedTuple):
+    """The joints between blocks.
+
+    pair : int32 array [chunks, 2 LANES], i and j times the freedoms of a block, where their motion
+    begins, with a third row where joints differ, the column of the law's table. table : float array
+    [chunks, rows LANES], rows as in `model.TableRows`. place : int array [c], where each contact
+    is, chunk times LANES plus lane. first_chunk, first_block : int arrays [tiles + 1].
+    """
+
+    pair: np.ndarray
+    table: np.ndarray
+    place: np.ndarray
+    first_chunk: np.ndarray
+    first_block: np.ndarray
+
+
+def contacts_of(
+    blocks: np.ndarray,
+    rows: Sequence[np.ndarray],
+    count: int,
+    freedoms: int,
+    law: np.ndarray | None = None,
+) -> Contacts:
+    """Return contacts between blocks i, j [c, 2] with the rows of their table, each [c].
+
+    count : of blocks; a j from there on is a wall. freedoms : of a block. law : int array [c],
+    column of each; None where all joints are alike.
+    """
+    low, high = blocks.min(axis=1), np.where(blocks < count, blocks, 0).max(axis=1)
+    order = np.argsort(low, kind="stable")
+    place = np.empty(len(order), dtype=np.int64)
+    place[order] = np.arange(len(order))
+    pair = np.stack([*(freedoms * blocks.T), *(() if law is None else [law])])[:, order]
+    chunks = _tiles(low[order], high[order])
+    first = np.append(low[order[LANES * np.array(chunks[1:-1], dtype=int)]], count)
+    table = _chunks(np.array(rows)[:, order], "constant")
+    aligned = zeros(table.shape)
+    aligned[:] = table
+    return Contacts(
+        _chunks(pair.astype(np.int32), "edge"),
+        aligned,
+        place,
+        np.array(chunks),
+        np.append(0, first),
+    )
+
+
+def _chunks(values: np.ndarray, mode: Any) -> np.ndarray:
+    """Return values [rows, c] as [chunks, rows LANES], the last chunk filled up."""
+    rows, number = len(values), -(-values.shape[1] // LANES)
+    filled = np.pad(values, ((0, 0), (0, number * LANES - values.shape[1])), mode=mode)
+    return filled.reshape(rows, number, LANES).swapaxes(0, 1).reshape(number, rows * LANES)
+
+
+def _tiles(low: np.ndarray, high: np.ndarray) -> list[int]:
+    """Return the first chunk of each tile, and where the last one ends, of contacts by their lower
+    and higher blocks [c]: a tile begins beyond all blocks that the one before the last touches."""
+    begins, reach = low[::LANES], np.maximum.accumulate(high)
+    found = [0]
+    while found[-1] < len(begins) or len(found) == 1:
+        g = found[-1]
+        beyond = int(np.searchsorted(begins, reach[LANES * g - 1], side="right")) if g else 0
+        found.append(min(max(beyond, g + 1), len(begins)))
+    return found
+
+
+def marks(at: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return recorded blocks or contacts at places [n] by the tile that they are in, of tiles that
+    begin at `first` [tiles + 1]: the first of each [tiles + 1], and where each is, ascending, with
+    its row in the samples [2, n]."""
+    row = np.argsort(at, kind="stable")
+    return np.searchsorted(at[row], first), np.stack([at[row], row])
+
+
+def depth_of(contacts: Contacts, history: np.ndarray | None, freedoms: int, threads: int) -> int:
+    """Return how many steps are taken in one pass over the tiles: as many as a core's own cache
+    holds tiles, and as leave all threads something to do."""
+    chunks = max(1, len(contacts.pair))
+    whole = sum(x.nbytes for x in (contacts.pair, contacts.table, history) if x is not None)
+    sizes = whole / chunks * np.diff(contacts.first_chunk)
+    sizes += OF_FREEDOM * freedoms * np.diff(contacts.first_block)
+    depth = min(DEEPEST, int(CACHE / sizes.max()))
+    if threads > 1:
+        depth = min(depth, (len(sizes) - threads - 1) // (threads - 1))
+    return max(1, depth)

@@ -1,0 +1,269 @@
+"""The constants and the state of rigid blocks in one, two or three dimensions.
+
+A block has `dim` displacements and, if it turns, one rotation in the plane and three in space: its
+freedoms. Masses and forces are per metre of thickness in the plane.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from jointwave.dem.contacts import LANES, Contacts
+from jointwave.joints.law import Law, LawFlags
+from jointwave.numerics.cache_lines import zeros
+from jointwave.results.plane import TERMS
+
+
+class TableRows(NamedTuple):
+    """Where the rows of the table of contacts begin, in numbers.
+
+    frame : axes n and tangents, the tangent left out in the plane. arm_i, arm_j : from centroids to
+    the centre of the face, m. area : m2. start : gap and slip that stand for what a contact carries
+    at first, m. second : second moments about the face's axes, m4. point : place in the face, m,
+    and area of each point. count : of rows.
+    """
+
+    frame: int
+    arm_i: int
+    arm_j: int
+    area: int
+    start: int
+    second: int
+    point: int
+    count: int
+
+
+class BufferRows(NamedTuple):
+    """Where the rows of a chunk's buffer begin, in numbers.
+
+    law : parameters of the law, where joints differ. gathered : of the motion of blocks. jump, rate,
+    now : relative motion at the step, its rates half a step before and now. force,
+    spread : in the frame, and first moments about the face's centre. drag : the dashpots' force and
+    moment. on_j, on_i : force on block j and moments. spare : of one block. before : velocities of
+    the tile before the step. zeroed : numbers from `force` on that points add to.
+    """
+
+    law: int
+    gathered: int
+    jump: int
+    rate: int
+    now: int
+    force: int
+    spread: int
+    drag: int
+    on_j: int
+    on_i: int
+    spare: int
+    before: int
+    zeroed: int
+
+
+class HistoryRows(NamedTuple):
+    """Where the rows of what contacts remember begin, in numbers.
+
+    rate : of relative motion one and a half steps before. drag : the dashpots' force and moment at
+    the last step. point : of each point what has slid, m, and from there its largest opening, m,
+    cohesion, Pa, and path, m. count, point_rows : numbers of a contact and of a point.
+    """
+
+    rate: int
+    drag: int
+    point: int
+    opening: int
+    cohesion: int
+    path: int
+    point_rows: int
+    count: int
+
+
+class KernelFlags(NamedTuple):
+    """The effects of a system of blocks: compile-time constants of its kernel.
+
+    dim : 1, 2 or 3. turns : whether blocks rotate. parts : of the joint law. points : points of a
+    contact; 0 where joints always hold, which need none. mass_damping, local_damping, gravity : of
+    the blocks. held : whether some blocks have dashpots of their own, or forces. ledger : whether
+    energies are kept. stressed : whether contacts start under a traction. shaken : whether walls
+    move. relaxed : whether the same kernel brings the blocks to rest first, for which it can damp
+    their motion, without a place in the ledger.
+    """
+
+    dim: int
+    turns: bool
+    parts: LawFlags
+    points: int
+    mass_damping: bool
+    local_damping: bool
+    gravity: bool
+    held: bool
+    ledger: bool
+    stressed: bool = False
+    shaken: bool = False
+    relaxed: bool = False
+
+    @property
+    def rotations(self) -> int:
+        """Rotations of a block."""
+        return self.turns * self.dim * (self.dim - 1) // 2
+
+    @property
+    def freedoms(self) -> int:
+        """Displacements and rotations of a block, and of one against another."""
+        return self.dim + self.rotations
+
+    @property
+    def spread_rows(self) -> int:
+        """First moments of the traction over a face."""
+        return self.turns * self.dim * (self.dim - 1)
+
+    @property
+    def recorded(self) -> int:
+        """Rows of a contact's samples: its force on block j in its frame, first moments of it about
+        the face's centre, gap and slip."""
+        return 2 * self.dim + self.spread_rows
+
+    @property
+    def table(self) -> TableRows:
+        """Rows of the table of contacts."""
+        dim, arms = self.dim, self.dim * self.turns
+        sizes = (
+            (0, 2, 9)[dim - 1], arms, arms, 1, dim * self.stressed,
+            (dim - 1) * (self.turns and not self.points), dim * self.points,
+        )  # fmt: skip
+        begins = np.append(0, np.cumsum(sizes))
+        return TableRows(*(LANES * begins[:-1]).tolist(), count=int(begins[-1]))
+
+    @property
+    def buffer(self) -> BufferRows:
+        """Rows of a chunk's buffer."""
+        f, drags = self.freedoms, self.parts.dashpots and self.ledger
+        laws = len(Law._fields) * self.parts.varied
+        gathered = self.dim + 2 * self.rotations
+        sizes = (
+            laws, gathered, f, f, f, self.dim, self.spread_rows, f * drags, f, self.rotations, 1,
+        )  # fmt: skip
+        begins = (LANES * np.append(0, np.cumsum(sizes))).tolist()
+        rows = self.dim + self.spread_rows + f * drags
+        return BufferRows(*begins, zeroed=LANES * rows)
+
+    @property
+    def history(self) -> HistoryRows:
+        """Rows of what contacts remember."""
+        p, rates = self.parts, self.freedoms * self.parts.dashpots
+        own = self.dim - 1, p.softening, p.residual, p.path
+        begins, point_rows = LANES * np.cumsum((0, *own)), sum(own)
+        first = rates * (1 + self.ledger)
+        return HistoryRows(
+            rate=0,
+            drag=LANES * rates,
+            point=LANES * first,
+            opening=int(begins[1]),
+            cohesion=int(begins[2]),
+            path=int(begins[3]),
+            point_rows=LANES * point_rows,
+            count=LANES * (first + self.points * point_rows),
+        )
+
+
+class Held(NamedTuple):
+    """Blocks with boundary dashpots or external forces.
+
+    block : int array [h], ascending. matrices : float array [h, 3, freedoms, freedoms]: what is
+    left of its velocity in a step, the share of the velocity without its dashpots, and all its
+    dashpots, N s/m.
+    """
+
+    block: np.ndarray
+    matrices: np.ndarray
+
+
+class Model(NamedTuple):
+    """The constants of a run.
+
+    laws : the parameters of the joint law [field, column], one column where all joints are alike.
+    inertia : float array [N, freedoms], mass (kg) and moments of inertia (kg m2). dt : s. keep :
+    what mass-proportional damping leaves of a velocity in a step. local : Cundall's damping.
+    gravity : float array [dim], m/s2. held : None where nothing acts on blocks from outside.
+    places, watched : int arrays [r] and [w], recorded blocks and contacts.
+
+    Contacts may name blocks beyond the last that has an inertia: walls, which stand still or are
+    shaken.
+    """
+
+    form: KernelFlags
+    contacts: Contacts
+    laws: np.ndarray
+    inertia: np.ndarray
+    dt: float
+    keep: float
+    local: float
+    gravity: np.ndarray
+    held: Held | None
+    places: np.ndarray
+    watched: np.ndarray
+    walls: int = 0
+
+
+class State(NamedTuple):
+    """The state: displacement u [N, freedoms] at a whole step, velocity v [N, freedoms] half a step
+    before it, of the blocks and then the walls.
+
+    history : float array [chunks, rows LANES], what contacts remember; None where that is nothing.
+    sums : float array [terms], J, what has been dissipated or put in; None without a ledger.
+    """
+
+    u: np.ndarray
+    v: np.ndarray
+    history: Any
+    sums: Any
+
+
+class Samples(NamedTuple):
+    """What is recorded: displacement and velocity of blocks [place, freedoms, sample], contacts
+    [watched, `KernelFlags.recorded`, sample], and the ledger [term, sample], J; None without."""
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+    contact: np.ndarray
+    energy: Any
+
+
+def held_by(dashpot: np.ndarray, block: np.ndarray, inertia: np.ndarray, dt: float) -> Held:
+    """Return held blocks from their dashpots [h, freedoms, freedoms], N s/m, and their numbers [h],
+    ascending.
+
+    inertia : of all blocks [N, freedoms]. Their dashpots see the mean velocity of both half steps:
+    (1 + dt C / 2 M) v[n+1/2] = v - (dt C / 2 M) v[n-1/2], v the velocity without them.
+    """
+    lost = 0.5 * dt * dashpot / inertia[block][:, :, None]
+    moves = np.linalg.inv(np.eye(inertia.shape[1]) + lost)
+    return Held(block, np.stack([-moves @ lost, moves, dashpot], axis=1))
+
+
+def state_at_rest(model: Model) -> State:
+    """Return the state at rest, without arrays for absent effects."""
+    form, pair = model.form, model.contacts.pair
+    count, rows, history = len(model.inertia) + model.walls, form.history, None
+    if rows.count:
+        history = zeros((len(pair), rows.count))
+        if form.parts.residual:
+            cohesion = model.laws[Law._fields.index("cohesion")]
+            own = cohesion[pair[:, 2 * LANES :] if form.parts.varied else 0]
+            for p in range(form.points):
+                first = rows.point + p * rows.point_rows + rows.cohesion
+                history[:, first : first + LANES] = own
+    return State(
+        u=zeros((count, form.freedoms)),
+        v=zeros((count, form.freedoms)),
+        history=history,
+        sums=np.zeros(len(TERMS)) if form.ledger else None,
+    )
+
+
+def samples_for(model: Model, count: int) -> Samples:
+    """Return empty samples of this number."""
+    form = model.form
+    displacement, velocity = np.zeros((2, len(model.places), form.freedoms, count))
+    contact = np.zeros((len(model.watched), form.recorded, count))
+    return Samples(
+        displacement, velocity, contact, np.zeros((len(TERMS), count)) if form.ledger else None
+    )

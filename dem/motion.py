@@ -1,0 +1,119 @@
+"""Motion of the blocks of one tile in one leapfrog step, by the forces on them."""
+
+from collections.abc import Callable
+from math import copysign
+
+from jointwave.dem.contacts import LANES as L
+from jointwave.dem.model import KernelFlags
+from jointwave.joints.formula import formula
+
+#: Rows of the ledger of one step, J in lanes, in the order of `results.plane.TERMS`, and AFTER
+#: further on what is added behind the step.
+KINETIC, ELASTIC, VISCOUS, FRICTION, FRACTURE, BOUNDARY, GRAVITY, WORK = range(0, 8 * L, L)
+AFTER = 8 * L
+SUMMED = VISCOUS, FRICTION, BOUNDARY, WORK  # the others are states
+
+
+def motion_for(form: KernelFlags) -> Callable:
+    """Return the formula of a tile's motion: what its form lacks is not compiled."""
+    dim, freedoms, has_ledger, held, gravity = (
+        form.dim, form.freedoms, form.ledger, form.held, form.gravity
+    )  # fmt: skip
+    mass_damping, local_damping = form.mass_damping or form.relaxed, form.local_damping
+    damped = form.mass_damping or local_damping
+    SPARE, BEFORE = form.buffer.spare, form.buffer.before
+
+    @formula
+    def add_forces(blocks, first, last, begin, u, v, force, inertia, before, drive, n):
+        """Add weight and external forces; return the potential energy of the weight, J."""
+        potential = 0.0
+        if gravity:
+            for a in range(dim):
+                g = blocks.gravity[a]
+                for i in range(a, force.size, freedoms):
+                    weight = g * inertia[i]
+                    force[i] += weight
+                    potential -= weight * u[i]
+        if held:
+            for r in range(first, last):
+                i = freedoms * blocks.held[r] - begin
+                for a in range(freedoms):
+                    before[i + a] = v[i + a]
+                    force[i + a] += drive[n, r, a]
+        return potential
+
+    @formula
+    def drag_held(blocks, first, last, begin, u, v, before, spare):
+        """Take from held blocks what their dashpots take of the velocity without them."""
+        for r in range(first, last):
+            i, matrices = freedoms * blocks.held[r] - begin, blocks.matrices[r]
+            for a in range(freedoms):
+                new = 0.0
+                for m in range(freedoms):
+                    new += matrices[0, a, m] * before[i + m] + matrices[1, a, m] * v[i + m]
+                spare[a] = new
+            for a in range(freedoms):
+                u[i + a] += blocks.dt * (spare[a] - v[i + a])
+                v[i + a] = spare[a]
+
+    @formula
+    def account_held(blocks, first, last, begin, v, force, before, drive, n, ledger):
+        """Enter the work of external forces, and of dashpots, which it adds to the forces."""
+        half = 0.5 * blocks.dt
+        for r in range(first, last):
+            i, matrices = freedoms * blocks.held[r] - begin, blocks.matrices[r]
+            for a in range(freedoms):
+                taken, old, new = 0.0, before[i + a], v[i + a]
+                for m in range(freedoms):
+                    taken += half * matrices[2, a, m] * (0.5 * (before[i + m] + v[i + m]))
+                given = half * drive[n, r, a]
+                ledger[BOUNDARY] += taken * old
+                ledger[BOUNDARY + AFTER] += taken * new
+                ledger[WORK] += given * old
+                ledger[WORK + AFTER] += given * new
+                force[i + a] -= 2.0 * taken / blocks.dt
+
+    @formula
+    def move(blocks, tiles, state, all_forces, drive, q, ledger, t, n, sampled):
+        """Move the blocks of tile t in step n of `drive`, and set their forces to zero."""
+        begin, end = freedoms * tiles[1, t], freedoms * tiles[1, t + 1]
+        first, last, dt = tiles[2, t], tiles[2, t + 1], blocks.dt
+        # Slices begin at 0: else indices are taken to wrap around, and loops are not vectorised.
+        u, v, force = state.u[begin:end], state.v[begin:end], all_forces[begin:end]
+        inertia, inverse = blocks.inertia[begin:end], blocks.inverse[begin:end]
+        before, pushed = q[BEFORE:], 0.5 * dt * (1.0 + blocks.keep)
+        potential = add_forces(
+            blocks, first, last, begin, u, v, force, inertia, before, drive, n
+        )
+        for i in range(end - begin):
+            old, gain = v[i], pushed * force[i]
+            if local_damping:  # less by local |gain| along v
+                gain = gain - blocks.local * copysign(abs(gain), old) if old != 0.0 else gain
+            new = (blocks.keep * old if mass_damping else old) + gain * inverse[i]
+            if has_ledger:
+                before[i] = old
+            else:
+                force[i] = 0.0
+            v[i] = new
+            u[i] += dt * new
+        if held:
+            drag_held(blocks, first, last, begin, u, v, before, q[SPARE:])
+        if has_ledger:
+            if held:
+                account_held(blocks, first, last, begin, v, force, before, drive, n, ledger)
+            if damped or sampled:
+                kinetic, lost, lost_after = 0.0, 0.0, 0.0
+                for i in range(end - begin):
+                    old, new = before[i], v[i]
+                    if damped:  # what is missing in the block's momentum
+                        missing = inertia[i] * (new - old) - dt * force[i]
+                        lost, lost_after = lost + missing * old, lost_after + missing * new
+                    kinetic += inertia[i] * (old * new)
+                ledger[VISCOUS] -= 0.5 * lost
+                ledger[VISCOUS + AFTER] -= 0.5 * lost_after
+                if sampled:
+                    ledger[KINETIC] += 0.5 * kinetic
+                    ledger[GRAVITY] += potential
+            force[:] = 0.0
+
+    return move
