@@ -13,6 +13,7 @@ import numpy as np
 from jointwave.numerics.cache_lines import zeros
 
 LANES = 64  # contacts in a chunk
+LEAST = 16  # chunks of a tile: a step of one costs some 0.2 us beside its work
 DEEPEST, CACHE = 16, 3 << 19  # steps, and bytes of a core's own cache, that a pass takes
 OF_FREEDOM = 32  # bytes: its motion, inertia and force
 
@@ -23,12 +24,15 @@ class Contacts(NamedTuple):
     pair : int32 array [chunks, 2 LANES], i and j times the freedoms of a block, where their motion
     begins, with a third row where joints differ, the column of the law's table. table : float array
     [chunks, rows LANES], rows as in `model.TableRows`. place : int array [c], where each contact
-    is, chunk times LANES plus lane. first_chunk, first_block : int arrays [tiles + 1].
+    is, chunk times LANES plus lane. row_from : int array [chunks], where the motion of the first
+    block of a chunk begins whose contacts join one block after the other; -1 of other chunks.
+    first_chunk, first_block : int arrays [tiles + 1].
     """
 
     pair: np.ndarray
     table: np.ndarray
     place: np.ndarray
+    row_from: np.ndarray
     first_chunk: np.ndarray
     first_block: np.ndarray
 
@@ -55,10 +59,14 @@ def contacts_of(
     table = _chunks(np.array(rows)[:, order], "constant")
     aligned = zeros(table.shape)
     aligned[:] = table
+    pair = _chunks(pair.astype(np.int32), "edge")
+    i, j = pair[:, :LANES], pair[:, LANES : 2 * LANES]
+    follow = (np.diff(i, axis=1) == freedoms).all(axis=1) & (j - i == freedoms).all(axis=1)
     return Contacts(
-        _chunks(pair.astype(np.int32), "edge"),
+        pair,
         aligned,
         place,
+        np.where(follow & (j[:, -1] < freedoms * count), i[:, 0], -1),
         np.array(chunks),
         np.append(0, first),
     )
@@ -79,7 +87,7 @@ def _tiles(low: np.ndarray, high: np.ndarray) -> list[int]:
     while found[-1] < len(begins) or len(found) == 1:
         g = found[-1]
         beyond = int(np.searchsorted(begins, reach[LANES * g - 1], side="right")) if g else 0
-        found.append(min(max(beyond, g + 1), len(begins)))
+        found.append(min(max(beyond, g + LEAST), len(begins)))
     return found
 
 

@@ -47,9 +47,10 @@ def step_for(form: KernelFlags) -> Callable:
     parts, points, by_points, dim, turns = form.parts, form.points, form.points > 0, form.dim, form.turns
     freedoms, at_row, in_q, past = form.freedoms, form.table, form.buffer, form.history
     dashpots, varied, has_ledger = parts.dashpots, parts.varied, form.ledger
-    stressed, shaken = form.stressed, form.shaken
+    stressed, shaken, in_row = form.stressed, form.shaken, form.in_row
+    softening, residual, path_dependent = parts.softening, parts.residual, parts.path
     drags, move = dashpots and has_ledger, motion_for(form)
-    rated = dashpots or (by_points and (has_ledger or parts.path))
+    rated = dashpots or (by_points and (has_ledger or path_dependent))
     remembers, rotations, used = past.count > 0, form.rotations, rows_of(parts)
     FRAME, ARM_I, ARM_J, AREA = at_row.frame, at_row.arm_i, at_row.arm_j, at_row.area
     START, SECOND, POINT = at_row.start, at_row.second, at_row.point
@@ -61,22 +62,54 @@ def step_for(form: KernelFlags) -> Callable:
     OPENING, COHESION, PATH, past_rows = past.opening, past.cohesion, past.path, past.point_rows
 
     @formula
-    def gather(m, walls, n, kind, still, at, q, row):
+    def gather(m, walls, n, kind, still, at, row_from, q, to):
         """Put what the relative motion of the contacts needs of motion m into rows: displacements
-        of j less those of i, and the rotations of both. Loops that gather are not vectorised."""
+        of j less those of i, and the rotations of both. Loops that gather are not vectorised, those
+        along a row of blocks from `row_from` on are."""
+        if in_row and row_from >= 0:
+            i = m[row_from :]
+            for b in range(dim):
+                for c in range(L):
+                    q[to + b * L + c] = i[freedoms * (c + 1) + b] - i[freedoms * c + b]
+            for b in range(rotations):
+                for c in range(L):
+                    q[to + (dim + b) * L + c] = i[freedoms * c + dim + b]
+                    q[to + (freedoms + b) * L + c] = i[freedoms * (c + 1) + dim + b]
+            return
         for c in range(L):
-            i, j = np.uint64(at[c]), np.uint64(at[L + c])
+            i, j = np.uint64(at[c]), np.uint64(at[L + c])  # unsigned: they do not wrap around
             for b in range(dim):
                 a = np.uint64(b)
                 moved = m[j + a]
                 if shaken:
-                    w = np.int64(j) - still
+                    w = at[L + c] - still
                     moved = walls[n, kind, w + b] if w > 0 else moved
-                q[row + b * L + c] = moved - m[i + a]
+                q[to + b * L + c] = moved - m[i + a]
             for b in range(rotations):
                 a = np.uint64(dim + b)
-                q[row + (dim + b) * L + c] = m[i + a]
-                q[row + (freedoms + b) * L + c] = m[j + a]
+                q[to + (dim + b) * L + c] = m[i + a]
+                q[to + (freedoms + b) * L + c] = m[j + a]
+
+    @formula
+    def scatter(q, at, row_from, lanes, last, force):
+        """Add the forces of contacts to their blocks, in their order."""
+        if in_row and row_from >= 0:
+            own = force[row_from :]
+            for b in range(freedoms):
+                on_i = (ON_J if b < dim else ON_I - dim * L) + b * L
+                for c in range(L):
+                    own[freedoms * c + b] -= q[on_i + c]
+                for c in range(L):
+                    own[freedoms * (c + 1) + b] += q[ON_J + b * L + c]
+            return
+        for c in range(lanes):
+            i, j = np.uint64(at[c]), np.uint64(at[L + c])
+            for b in range(freedoms):
+                on_i = (ON_J if b < dim else ON_I - dim * L) + b * L
+                force[i + np.uint64(b)] -= q[on_i + c]
+            if at[L + c] < last:
+                for b in range(freedoms):
+                    force[j + np.uint64(b)] += q[ON_J + b * L + c]
 
     @formula
     def relative(k, q, row, to):
@@ -144,16 +177,16 @@ def step_for(form: KernelFlags) -> Callable:
         sampled, history = s >= 0, state.history
         weighed = 1.0 if sampled else 0.0  # states are summed at samples alone
         for g in range(tiles[0, t], tiles[0, t + 1]):
-            k, at = contacts.table[g], contacts.pair[g]
+            k, at, row_from = contacts.table[g], contacts.pair[g], contacts.row_from[g]
             h: Any = None
             if remembers:
                 h = history[g]
 
             # Relative motion of the contacts.
-            gather(u, walls, n, 0, still, at, q, GATHERED)
+            gather(u, walls, n, 0, still, at, row_from, q, GATHERED)
             relative(k, q, GATHERED, JUMP)
             if rated:
-                gather(v, walls, n, 1, still, at, q, GATHERED)
+                gather(v, walls, n, 1, still, at, row_from, q, GATHERED)
                 relative(k, q, GATHERED, RATE)
             if varied:
                 for f in used:
@@ -201,11 +234,11 @@ def step_for(form: KernelFlags) -> Callable:
                             slide_x = h[before + c]
                         if dim > 2:
                             slide_z = h[before + L + c]
-                        if parts.softening:
+                        if softening:
                             opening = h[before + OPENING + c]
-                        if parts.residual:
+                        if residual:
                             cohesion = h[before + COHESION + c]
-                        if parts.path:
+                        if path_dependent:
                             path = h[before + PATH + c]
                         found = traction(
                             law, parts, (gap, x, z), (d_n, d_x, d_z), (rate_n, rate_x, rate_z), dt,
@@ -215,11 +248,11 @@ def step_for(form: KernelFlags) -> Callable:
                             h[before + c] = found.history.slide_x
                         if dim > 2:
                             h[before + L + c] = found.history.slide_z
-                        if parts.softening:
+                        if softening:
                             h[before + OPENING + c] = found.history.opening
-                        if parts.residual:
+                        if residual:
                             h[before + COHESION + c] = found.history.cohesion
-                        if parts.path:
+                        if path_dependent:
                             h[before + PATH + c] = found.history.path
                         f_n, f_x, f_z = area * found.n, area * found.x, area * found.z
                         add(q, FORCE + c, f_n)
@@ -253,7 +286,7 @@ def step_for(form: KernelFlags) -> Callable:
                         if has_ledger:
                             ledger[FRICTION + c] += area * found.slid
                             ledger[ELASTIC + c] += weighed * area * found.stored
-                            if parts.softening:
+                            if softening:
                                 ledger[FRACTURE + c] += weighed * area * found.spent
 
             # Joints that always hold: springs, and dashpots, of the face as a whole.
@@ -349,19 +382,16 @@ def step_for(form: KernelFlags) -> Callable:
                         ledger[VISCOUS + c] -= 0.5 * dt * (q[DRAG + a] * q[RATE + a])
                         h[DRAGGED + a] = q[DRAG + a]
             lanes = contacts.count - g * L
-            for c in range(lanes if lanes < L else L):
-                i, j = np.uint64(at[c]), np.uint64(at[L + c])
-                for b in range(freedoms):
-                    a = np.uint64(b)
-                    force[i + a] -= q[(ON_J if b < dim else ON_I - dim * L) + b * L + c]
-                if at[L + c] < last:
-                    for b in range(freedoms):
-                        force[j + np.uint64(b)] += q[ON_J + b * L + c]
-                elif shaken and has_ledger:  # what moves a wall works against the joints
-                    for a in range(dim):
-                        f, w = 0.5 * dt * q[ON_J + a * L + c], at[L + c] - still + a
-                        ledger[WORK + c] -= f * walls[n, 1, w]
-                        ledger[WORK + AFTER + c] -= f * walls[n + 1, 1, w]
+            lanes = lanes if lanes < L else L
+            scatter(q, at, row_from, lanes, last, force)
+            if shaken and has_ledger:  # what moves a wall works against the joints
+                for c in range(lanes):
+                    w = at[L + c] - still
+                    if w > 0:
+                        for a in range(dim):
+                            f = 0.5 * dt * q[ON_J + a * L + c]
+                            ledger[WORK + c] -= f * walls[n, 1, w + a]
+                            ledger[WORK + AFTER + c] -= f * walls[n + 1, 1, w + a]
             if sampled:
                 for r in range(tiles[4, t], tiles[4, t + 1]):
                     c, row = contacts.seen[0, r] - g * L, contacts.seen[1, r]

@@ -25,12 +25,13 @@ from jointwave.numerics.jit import jitted
 
 
 class ContactTable(NamedTuple):
-    """Contacts as the kernel takes them: `contacts.Contacts`, the laws, the tiles' first chunk,
+    """Contacts as the kernel takes them: as in `contacts.Contacts`, the laws, the tiles' first chunk,
     block, held block, recorded block and watched contact [5, tiles + 1], places and rows of watched
     contacts [2, w], and the number of contacts."""
 
     pair: np.ndarray
     table: np.ndarray
+    row_from: np.ndarray
     laws: np.ndarray
     tiles: np.ndarray
     seen: np.ndarray
@@ -38,8 +39,8 @@ class ContactTable(NamedTuple):
 
 
 class BlockTable(NamedTuple):
-    """Blocks as the kernel takes them: inertia and one over it of each freedom, numbers and
-    matrices of held blocks, places and rows of recorded ones [2, r], and `model.Model`."""
+    """Blocks as the kernel takes them: `model.Blocks`, with one over the inertia of each freedom,
+    numbers and matrices of held blocks, places and rows of recorded ones [2, r]."""
 
     inertia: np.ndarray
     inverse: np.ndarray
@@ -87,12 +88,13 @@ def make_stepper(
     mass-proportional damping leaves of a velocity in a step, `keep`, in place of the model's.
     """
     form, contacts, f = model.form, model.contacts, model.form.freedoms
+    own, dt = model.blocks, model.blocks.dt
     held, matrices = model.held or (None, None)
     if held is None:
         drive = None  # one kernel, whoever asks
     elif drive is None:
         drive = np.zeros((most, len(held), f))
-    walls = None if shake is None else motion_of_walls(state, shake, model.dt)
+    walls = None if shake is None else motion_of_walls(state, shake, dt)
     bands = -(-most // depth_of(contacts, state.history, f, threads))
     bands = max(1, bands + -bands % threads)  # as many for each thread
     depth = max(1, -(-most // bands))
@@ -100,7 +102,7 @@ def make_stepper(
     buffers = zeros((threads, form.buffer.before + widest))
     ledgers = zeros((threads * depth, 2 * AFTER)) if form.ledger else None
     progress = np.zeros(threads + 1, dtype=np.int64)
-    loop, inertia = loop_for(form), model.inertia.ravel()
+    loop, inertia = loop_for(form), own.inertia.ravel()
     force = np.zeros(inertia.size)
     first_place, places = marks(model.places, contacts.first_block)
     first_seen, seen = marks(contacts.place[model.watched], LANES * contacts.first_chunk)
@@ -109,27 +111,27 @@ def make_stepper(
         [contacts.first_chunk, contacts.first_block, first_held, first_place, first_seen]
     )
     between = ContactTable(
-        contacts.pair, contacts.table, model.laws, tiles, seen, len(contacts.place)
-    )
+        contacts.pair, contacts.table, contacts.row_from, model.laws, tiles, seen,
+        len(contacts.place),
+    )  # fmt: skip
     blocks = BlockTable(
-        inertia, 1.0 / inertia, held, matrices, places, model.gravity, model.dt, model.keep,
-        model.local,
+        inertia, 1.0 / inertia, held, matrices, places, own.gravity, dt, own.keep, own.local
     )  # fmt: skip
     flat = state._replace(u=state.u.reshape(-1), v=state.v.reshape(-1))
 
-    def take(stride: int, first: int, last: int, keep: float = model.keep) -> None:
+    def take(stride: int, first: int, last: int, keep: float = own.keep) -> None:
         count = last - first
         if count > most:
             raise ValueError(f"{count} steps at a time, at most {most}")
         progress[:] = 0
         if walls is not None and shake is not None:
-            walls[: count + 1] = motion_of_walls(state, shake[:count], model.dt)
-        own = blocks._replace(keep=keep)
+            walls[: count + 1] = motion_of_walls(state, shake[:count], dt)
+        damped = blocks._replace(keep=keep)
 
         def share(thread: int) -> None:
             span = (thread, first, last, stride, depth)
             work = (force, buffers[thread], ledgers, progress)
-            loop(between, own, flat, samples, drive, walls, work, span)
+            loop(between, damped, flat, samples, drive, walls, work, span)
 
         if threads == 1 or first == last:  # nothing to take: compiles
             share(0)

@@ -84,7 +84,8 @@ class KernelFlags(NamedTuple):
     the blocks. held : whether some blocks have dashpots of their own, or forces. ledger : whether
     energies are kept. stressed : whether contacts start under a traction. shaken : whether walls
     move. relaxed : whether the same kernel brings the blocks to rest first, for which it can damp
-    their motion, without a place in the ledger.
+    their motion, without a place in the ledger. in_row : whether contacts mostly join block after
+    block.
     """
 
     dim: int
@@ -99,6 +100,7 @@ class KernelFlags(NamedTuple):
     stressed: bool = False
     shaken: bool = False
     relaxed: bool = False
+    in_row: bool = False
 
     @property
     def rotations(self) -> int:
@@ -176,27 +178,36 @@ class Held(NamedTuple):
     matrices: np.ndarray
 
 
+class Blocks(NamedTuple):
+    """Constants of the blocks.
+
+    inertia : float array [N, freedoms], mass (kg) and moments of inertia (kg m2). dt : s. keep :
+    what mass-proportional damping leaves of a velocity in a step. local : Cundall's damping.
+    gravity : float array [dim], m/s2.
+    """
+
+    inertia: np.ndarray
+    dt: float
+    keep: float
+    local: float
+    gravity: np.ndarray
+
+
 class Model(NamedTuple):
     """The constants of a run.
 
     laws : the parameters of the joint law [field, column], one column where all joints are alike.
-    inertia : float array [N, freedoms], mass (kg) and moments of inertia (kg m2). dt : s. keep :
-    what mass-proportional damping leaves of a velocity in a step. local : Cundall's damping.
-    gravity : float array [dim], m/s2. held : None where nothing acts on blocks from outside.
-    places, watched : int arrays [r] and [w], recorded blocks and contacts.
+    held : None where nothing acts on blocks from outside. places, watched : int arrays [r] and [w],
+    recorded blocks and contacts.
 
     Contacts may name blocks beyond the last that has an inertia: walls, which stand still or are
     shaken.
     """
 
     form: KernelFlags
+    blocks: Blocks
     contacts: Contacts
     laws: np.ndarray
-    inertia: np.ndarray
-    dt: float
-    keep: float
-    local: float
-    gravity: np.ndarray
     held: Held | None
     places: np.ndarray
     watched: np.ndarray
@@ -242,7 +253,7 @@ def held_by(dashpot: np.ndarray, block: np.ndarray, inertia: np.ndarray, dt: flo
 def state_at_rest(model: Model) -> State:
     """Return the state at rest, without arrays for absent effects."""
     form, pair = model.form, model.contacts.pair
-    count, rows, history = len(model.inertia) + model.walls, form.history, None
+    count, rows, history = len(model.blocks.inertia) + model.walls, form.history, None
     if rows.count:
         history = zeros((len(pair), rows.count))
         if form.parts.residual:

@@ -43,6 +43,21 @@ def motion_for(form: KernelFlags) -> Callable:
         return potential
 
     @formula
+    def advance(u, v, force, inverse, before, pushed, dt, keep, local):
+        """Advance velocities by their forces, and displacements by these."""
+        for i in range(u.size):
+            old, gain = v[i], pushed * force[i]
+            if local_damping:  # less by local |gain| along v
+                gain = gain - local * copysign(abs(gain), old) if old != 0.0 else gain
+            new = (keep * old if mass_damping else old) + gain * inverse[i]
+            if has_ledger:
+                before[i] = old
+            else:
+                force[i] = 0.0
+            v[i] = new
+            u[i] += dt * new
+
+    @formula
     def drag_held(blocks, first, last, begin, u, v, before, spare):
         """Take from held blocks what their dashpots take of the velocity without them."""
         for r in range(first, last):
@@ -85,17 +100,7 @@ def motion_for(form: KernelFlags) -> Callable:
         potential = add_forces(
             blocks, first, last, begin, u, v, force, inertia, before, drive, n
         )
-        for i in range(end - begin):
-            old, gain = v[i], pushed * force[i]
-            if local_damping:  # less by local |gain| along v
-                gain = gain - blocks.local * copysign(abs(gain), old) if old != 0.0 else gain
-            new = (blocks.keep * old if mass_damping else old) + gain * inverse[i]
-            if has_ledger:
-                before[i] = old
-            else:
-                force[i] = 0.0
-            v[i] = new
-            u[i] += dt * new
+        advance(u, v, force, inverse, before, pushed, dt, blocks.keep, blocks.local)
         if held:
             drag_held(blocks, first, last, begin, u, v, before, q[SPARE:])
         if has_ledger:
