@@ -5,11 +5,11 @@ another and to those of the next tile: before it moves all its blocks have their
 lies two tiles on is not asked for. The better blocks are ordered, the narrower tiles are.
 """
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from jointwave.dem.receivers import Faces
 from jointwave.numerics.cache_lines import zeros
 
 LANES = 64  # contacts in a chunk
@@ -38,17 +38,30 @@ class Contacts(NamedTuple):
 
 
 def contacts_of(
-    blocks: np.ndarray,
-    rows: Sequence[np.ndarray],
+    faces: Faces,
     count: int,
     freedoms: int,
+    *,
     law: np.ndarray | None = None,
+    start: np.ndarray | None = None,
+    points: np.ndarray | None = None,
+    second: np.ndarray | None = None,
 ) -> Contacts:
-    """Return contacts between blocks i, j [c, 2] with the rows of their table, each [c].
+    """Return the contacts of some faces.
 
     count : of blocks; a j from there on is a wall. freedoms : of a block. law : int array [c],
-    column of each; None where all joints are alike.
+    column of each; None where all joints are alike. start : gap and slips that stand for what each
+    carries at first [c, d], m. points : places in the face, m, from its centre, and area of each
+    point [c, points, d]. second : second moments about the axes of faces without points [c, d - 1].
     """
+    blocks, dim = faces.blocks, faces.frame.shape[1]
+    axes = faces.frame[:, : (0, 1, 3)[dim - 1]]  # the tangent of the plane follows from n
+    rows = [*axes.reshape(len(blocks), -1).T]
+    if freedoms > dim:
+        rows += [*faces.arm.reshape(len(blocks), -1).T]
+    rows.append(faces.area)
+    for one in (start, second, points):
+        rows += [] if one is None else [*one.reshape(len(blocks), -1).T]
     low, high = blocks.min(axis=1), np.where(blocks < count, blocks, 0).max(axis=1)
     order = np.argsort(low, kind="stable")
     place = np.empty(len(order), dtype=np.int64)

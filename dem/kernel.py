@@ -30,6 +30,7 @@ from jointwave.dem.motion import AFTER, ELASTIC, FRACTURE, FRICTION, VISCOUS, WO
 from jointwave.joints.formula import formula
 from jointwave.joints.law import History, law_at, law_of, rows_of, traction
 
+
 @formula
 def cross(ax, ay, az, bx, by, bz):
     """Return a x b."""
@@ -44,7 +45,13 @@ def add(q, row, value):
 
 def step_for(form: KernelFlags) -> Callable:
     """Return the formula of one step of one tile: what its form lacks is not compiled."""
-    parts, points, by_points, dim, turns = form.parts, form.points, form.points > 0, form.dim, form.turns
+    parts, points, by_points, dim, turns = (
+        form.parts,
+        form.points,
+        form.points > 0,
+        form.dim,
+        form.turns,
+    )
     freedoms, at_row, in_q, past = form.freedoms, form.table, form.buffer, form.history
     dashpots, varied, has_ledger = parts.dashpots, parts.varied, form.ledger
     stressed, shaken, in_row = form.stressed, form.shaken, form.in_row
@@ -67,7 +74,7 @@ def step_for(form: KernelFlags) -> Callable:
         of j less those of i, and the rotations of both. Loops that gather are not vectorised, those
         along a row of blocks from `row_from` on are."""
         if in_row and row_from >= 0:
-            i = m[row_from :]
+            i = m[row_from:]
             for b in range(dim):
                 for c in range(L):
                     q[to + b * L + c] = i[freedoms * (c + 1) + b] - i[freedoms * c + b]
@@ -94,7 +101,7 @@ def step_for(form: KernelFlags) -> Callable:
     def scatter(q, at, row_from, lanes, last, force):
         """Add the forces of contacts to their blocks, in their order."""
         if in_row and row_from >= 0:
-            own = force[row_from :]
+            own = force[row_from:]
             for b in range(freedoms):
                 on_i = (ON_J if b < dim else ON_I - dim * L) + b * L
                 for c in range(L):
@@ -130,7 +137,14 @@ def step_for(form: KernelFlags) -> Callable:
                 x, y, z, tx, ty, tz = q[r], q[r + L], q[r + 2 * L], 0.0, 0.0, 0.0
                 if turns:
                     a, b, i, j = ARM_I + c, ARM_J + c, r + 3 * L, r + 6 * L
-                    ix, iy, iz, jx, jy, jz = q[i], q[i + L], q[i + 2 * L], q[j], q[j + L], q[j + 2 * L]
+                    ix, iy, iz, jx, jy, jz = (
+                        q[i],
+                        q[i + L],
+                        q[i + 2 * L],
+                        q[j],
+                        q[j + L],
+                        q[j + 2 * L],
+                    )
                     sx, sy, sz = cross(jx, jy, jz, k[b], k[b + L], k[b + 2 * L])
                     tx, ty, tz = cross(ix, iy, iz, k[a], k[a + L], k[a + 2 * L])
                     x, y, z = x + (sx - tx), y + (sy - ty), z + (sz - tz)
@@ -173,7 +187,11 @@ def step_for(form: KernelFlags) -> Callable:
         where none is taken.
         """
         u, v, dt, tiles = state.u, state.v, blocks.dt, contacts.tiles
-        common, last, still = law_of(contacts.laws, 0), blocks.inertia.size, blocks.inertia.size - freedoms
+        common, last, still = (
+            law_of(contacts.laws, 0),
+            blocks.inertia.size,
+            blocks.inertia.size - freedoms,
+        )
         sampled, history = s >= 0, state.history
         weighed = 1.0 if sampled else 0.0  # states are summed at samples alone
         for g in range(tiles[0, t], tiles[0, t + 1]):
@@ -271,7 +289,11 @@ def step_for(form: KernelFlags) -> Callable:
                                 add(q, SPREAD + 4 * L + c, e_2 * f_x)
                                 add(q, SPREAD + 5 * L + c, e_2 * f_z)
                         if drags:
-                            f_n, f_x, f_z = area * found.drag_n, area * found.drag_x, area * found.drag_z
+                            f_n, f_x, f_z = (
+                                area * found.drag_n,
+                                area * found.drag_x,
+                                area * found.drag_z,
+                            )
                             add(q, DRAG + c, f_n)
                             if dim == 2:
                                 add(q, DRAG + L + c, f_x)

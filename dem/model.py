@@ -11,7 +11,7 @@ import numpy as np
 from jointwave.dem.contacts import LANES, Contacts
 from jointwave.joints.law import Law, LawFlags
 from jointwave.numerics.cache_lines import zeros
-from jointwave.results.plane import TERMS
+from jointwave.results.rock_mass import TERMS
 
 
 class TableRows(NamedTuple):

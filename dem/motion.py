@@ -7,7 +7,7 @@ from jointwave.dem.contacts import LANES as L
 from jointwave.dem.model import KernelFlags
 from jointwave.joints.formula import formula
 
-#: Rows of the ledger of one step, J in lanes, in the order of `results.plane.TERMS`, and AFTER
+#: Rows of the ledger of one step, J in lanes, in the order of `results.rock_mass.TERMS`, and AFTER
 #: further on what is added behind the step.
 KINETIC, ELASTIC, VISCOUS, FRICTION, FRACTURE, BOUNDARY, GRAVITY, WORK = range(0, 8 * L, L)
 AFTER = 8 * L
@@ -97,9 +97,7 @@ def motion_for(form: KernelFlags) -> Callable:
         u, v, force = state.u[begin:end], state.v[begin:end], all_forces[begin:end]
         inertia, inverse = blocks.inertia[begin:end], blocks.inverse[begin:end]
         before, pushed = q[BEFORE:], 0.5 * dt * (1.0 + blocks.keep)
-        potential = add_forces(
-            blocks, first, last, begin, u, v, force, inertia, before, drive, n
-        )
+        potential = add_forces(blocks, first, last, begin, u, v, force, inertia, before, drive, n)
         advance(u, v, force, inverse, before, pushed, dt, blocks.keep, blocks.local)
         if held:
             drag_held(blocks, first, last, begin, u, v, before, q[SPARE:])

@@ -15,9 +15,9 @@ from jointwave.cases.partition.scene import partition_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.dem.blocks.joints import Columns, columns
 from jointwave.dem.blocks.links import Links, links_of
-from jointwave.dem.blocks.model import Blocks, KernelFlags
 from jointwave.dem.blocks.stability import critical_plane_step
-from jointwave.dem.blocks.tiles import Contacts, contacts_of
+from jointwave.dem.contacts import Contacts, contacts_of
+from jointwave.dem.model import Blocks, KernelFlags
 from jointwave.dem.receivers import Faces, frames_of
 from jointwave.joints.law import Law, parts_of
 from jointwave.joints.normal import gap_under
@@ -64,14 +64,15 @@ def form_of(blocks: RigidBlocks, held: bool, shaken: bool) -> KernelFlags:
     """Return the effects of a rock mass."""
     scene, own = blocks.scene, blocks.columns
     return KernelFlags(
-        parts=parts_of(own.law),
+        dim=2,
+        turns=True,
+        parts=parts_of(own.law)._replace(planar=True),
         points=own.points,
         mass_damping=scene.damping.alpha is not None,
         local_damping=bool(scene.damping.local),
         gravity=scene.gravity is not None,
         held=held,
         ledger=scene.record.energy,
-        ruled=len(own.rules) > 1,
         stressed=scene.prestress is not None,
         shaken=shaken,
         relaxed=relaxed(scene),
@@ -95,28 +96,26 @@ def constants(scene: RockMass, blocks: RigidBlocks, dt: float) -> Blocks:
         dt=dt,
         keep=(1 - drag) / (1 + drag),
         local=scene.damping.local or 0.0,
-        gravity_x=float(g[0]),
-        gravity_y=float(g[1]),
+        gravity=g,
     )
 
 
 def contacts(blocks: RigidBlocks) -> Contacts:
     """Return the table of contacts, with their tractions under a prestress."""
-    links, own = blocks.links, blocks.columns
-    varied = parts_of(own.law).varied or len(own.rules) > 1
-    second = None
-    if not own.points:
-        second = (own.rules[:, 1] * own.rules[:, 0] ** 2).sum(axis=1)
-        second = second[links.column if len(second) > 1 else 0]
+    links, own, faces = blocks.links, blocks.columns, faces_of(blocks)
+    rules = own.rules[links.column if len(own.rules) > 1 else np.zeros(len(faces.area), dtype=int)]
+    points, second = None, None
+    if own.points:
+        points = faces.area[:, None, None] * rules.swapaxes(1, 2)
+    else:
+        second = faces.area**3 * (rules[:, 1] * rules[:, 0] ** 2).sum(axis=1)
     return contacts_of(
-        links.blocks,
-        links.start,
-        links.end,
-        links.normal,
-        (links.beside_i, links.beside_j),
+        faces,
         blocks.partition.count,
-        law=links.column if varied else None,
-        carried=None if blocks.scene.prestress is None else carried(blocks),
+        blocks.masses.shape[1],
+        law=links.column if parts_of(own.law).varied else None,
+        start=None if blocks.scene.prestress is None else carried(blocks),
+        points=points,
         second=second,
     )
 

@@ -6,26 +6,24 @@ import numpy as np
 
 from jointwave.cases.geometry.measure import Outlines
 from jointwave.dem.blocks.build import faces_of
-from jointwave.dem.blocks.leapfrog import PlaneSamples, march, samples_for
-from jointwave.dem.blocks.model import PlaneState
 from jointwave.dem.blocks.system import PlaneSystem
-from jointwave.dem.blocks.tile import ALONG, BEND, FORCE_X, FORCE_Y, GAP, SLIP
-from jointwave.dem.receivers import Faces, Receivers, everywhere
+from jointwave.dem.leapfrog import march
+from jointwave.dem.model import Samples, State, samples_for
+from jointwave.dem.receivers import Receivers, everywhere
 from jointwave.dem.record import jumps, mean_stress, quantities
 from jointwave.dem.snapshots import BlockFrame, BlockRecorder
 from jointwave.results.arrays import copied
 
 
-def waveforms(system: PlaneSystem, samples: PlaneSamples, count: int) -> dict[str, np.ndarray]:
+def waveforms(system: PlaneSystem, samples: Samples, count: int) -> dict[str, np.ndarray]:
     """Return the first `count` samples of a run by name."""
     displacement, velocity, contact = (x[..., :count] for x in samples[:3])
     receivers = system.receivers
     outside = acting(system, receivers, velocity)
-    contact = in_frames(receivers.faces, contact)
     return quantities(receivers, displacement, velocity, contact, outside)
 
 
-def recorder(system: PlaneSystem, state: PlaneState) -> BlockRecorder | None:
+def recorder(system: PlaneSystem, state: State) -> BlockRecorder | None:
     """Return the recorder of snapshots; None without."""
     scene, partition = system.blocks.scene, system.blocks.partition
     if scene.record.fields is None:
@@ -41,20 +39,13 @@ def recorder(system: PlaneSystem, state: PlaneState) -> BlockRecorder | None:
         found = samples_for(model, 1)
         march(model, copied(state), found, 1, (0, 1), drive, shake)
         outside = acting(system, receivers, found.velocity, sample)
-        contact = in_frames(receivers.faces, found.contact)
-        stress, slip = mean_stress(receivers, contact, outside), jumps(receivers, contact)
+        stress = mean_stress(receivers, found.contact, outside)
+        slip = jumps(receivers, found.contact)
         moved, moving = found.displacement[..., 0], found.velocity[..., 0]
         return BlockFrame(moved, moving, stress[:, 0], slip[:, 0, 1])
 
     pieces = Outlines(partition.corners, partition.first)
     return BlockRecorder(scene, partition.blocks, pieces, receivers.places, capture)
-
-
-def in_frames(faces: Faces, samples: np.ndarray) -> np.ndarray:
-    """Return samples of the watched contacts [w, rows, n] in the contacts' frames."""
-    force = np.einsum("cak,ckn->can", faces.frame, samples[:, [FORCE_X, FORCE_Y]])
-    spread = np.stack([-samples[:, BEND], samples[:, ALONG]], axis=1)
-    return np.concatenate([force, spread, samples[:, [GAP, SLIP]]], axis=1)
 
 
 def acting(

@@ -11,11 +11,11 @@ import xarray as xr
 from jointwave.cases.incident import IncidentField
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.dem.blocks.bounds import highest_energy, motion_of_contacts
-from jointwave.dem.blocks.leapfrog import PlaneSamples, march, samples_for
-from jointwave.dem.blocks.model import PlaneState, state_at_rest
 from jointwave.dem.blocks.recording import recorder, waveforms
 from jointwave.dem.blocks.start import start
 from jointwave.dem.blocks.system import PlaneSystem, prepared
+from jointwave.dem.leapfrog import march
+from jointwave.dem.model import Samples, State, samples_for, state_at_rest
 from jointwave.dem.time_loop import Run, followed, refuse_beyond_bounds, versions
 from jointwave.numerics.divergence import SPEED, Guard, audit, guard
 from jointwave.numerics.small_motion import (
@@ -91,7 +91,7 @@ def simulate(
     return followed(run, result, progress, snapshots, keeper)
 
 
-def moved_apart(system: PlaneSystem, state: PlaneState) -> Moved | None:
+def moved_apart(system: PlaneSystem, state: State) -> Moved | None:
     """Return the contact that has moved furthest over the size of its smaller block, or blocks that
     overlap without one; None in a single block."""
     links, partition = system.blocks.links, system.blocks.partition
@@ -110,9 +110,7 @@ def moved_apart(system: PlaneSystem, state: PlaneState) -> Moved | None:
     return Moved(i, j if j < count else -1, float(by[k]), float(size[k]), place)
 
 
-def step(
-    system: PlaneSystem, state: PlaneState, samples: PlaneSamples, first: int, last: int
-) -> None:
+def step(system: PlaneSystem, state: State, samples: Samples, first: int, last: int) -> None:
     """Take the steps first .. last - 1, in batches whose forces fit in memory."""
     model, loads = system.model, system.loads
     size = max(1, MOST_OF_DRIVE // max(1, loads.onto.shape[1] * len(loads.rows)))
@@ -126,8 +124,8 @@ def step(
 
 def look(
     system: PlaneSystem,
-    state: PlaneState,
-    samples: PlaneSamples,
+    state: State,
+    samples: Samples,
     monitor: Guard,
     first: int,
     last: int,
@@ -140,7 +138,7 @@ def look(
         monitor.found[:] = last * stride, SPEED, first * stride - 1
 
 
-def _energies(system: PlaneSystem, state: PlaneState) -> np.ndarray:
+def _energies(system: PlaneSystem, state: State) -> np.ndarray:
     """Return sqrt(m) v of the fastest freedom of each block [N], sqrt(J)."""
     masses = system.blocks.masses
     return (np.sqrt(masses) * np.abs(state.v[: len(masses)])).max(axis=1)

@@ -8,13 +8,13 @@ from math import ceil
 import numpy as np
 
 from jointwave.cases.material.prestress import refuse_beyond_strength
-from jointwave.dem.blocks.leapfrog import make_stepper, samples_for
-from jointwave.dem.blocks.model import PlaneState, held_by, state_at_rest
 from jointwave.dem.blocks.stability import critical_plane_step
 from jointwave.dem.blocks.system import PlaneSystem
-from jointwave.dem.blocks.tiles import LANES, START, Contacts
 from jointwave.dem.boundaries import facets_on
+from jointwave.dem.contacts import Contacts
+from jointwave.dem.leapfrog import make_stepper
 from jointwave.dem.loads import Loads, reactions
+from jointwave.dem.model import Model, State, held_by, samples_for, state_at_rest
 from jointwave.dem.static import (
     NEVER,
     STEP_FRACTION,
@@ -32,7 +32,7 @@ RESISTED = 1e-9  # of the largest resistance: below it there is none
 LOOKS = 0.3  # stretches of ten steps after each part, over the root of the number of blocks
 
 
-def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
+def start(system: PlaneSystem, state: State) -> Rest | None:
     """Set the initial state of the scene, and what quiet sides bear of the weight; return how a
     static state was reached, if it is one.
 
@@ -50,14 +50,14 @@ def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
         rest = rest._replace(steps=before + rest.steps)
         state.u[:] = relaxation.state.u
         if state.history is not None:
-            points = LANES * system.model.form.rate_rows
+            points = system.model.form.history.point
             state.history[:, points:] = relaxation.state.history[:, points:]
         if static and bears:
             system.loads.add_steady(relaxation.borne())
     if scene.gravity is not None and not static:
         # Gravity from t = 0 on: the velocity at t = 0 is the mean of those half a step around it.
         count = len(blocks.inertia)
-        state.v[:count, :2] = -0.5 * blocks.dt * np.array([blocks.gravity_x, blocks.gravity_y])
+        state.v[:count, : len(blocks.gravity)] = -0.5 * blocks.dt * blocks.gravity
         if bears:
             relaxation = PlaneRelaxation(system, True, sticks=True)
             settle(scene, relaxation, UNBORNE)
@@ -68,13 +68,11 @@ def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
     return rest
 
 
-def unstressed(contacts: Contacts, stressed: bool) -> Contacts:
-    """Return contacts without the tractions of a prestress, if they have them."""
-    if not stressed:
-        return contacts
-    table = contacts.table.copy()
-    table[:, START * LANES : (START + 2) * LANES] = 0.0
-    return contacts._replace(table=table)
+def unstressed(model: Model) -> Contacts:
+    """Return the contacts of a model without the tractions of a prestress."""
+    table, rows = model.contacts.table.copy(), model.form.table
+    table[:, rows.start : rows.second] = 0.0
+    return model.contacts._replace(table=table)
 
 
 def still(resistance: np.ndarray, inertia: np.ndarray) -> np.ndarray:
@@ -105,13 +103,13 @@ class PlaneRelaxation:
         dt = STEP_FRACTION * critical_plane_step(blocks.links, columns, blocks.inertia, 0.0)
         own, laws = model.blocks._replace(dt=dt, local=0.0), model.laws.copy()
         if not weighed:
-            own = own._replace(gravity_x=0.0, gravity_y=0.0)
+            own = own._replace(gravity=np.zeros_like(own.gravity))
         laws[IN_MOTION] = 0.0
         rows, self.steady, self.walls = loads.rows, loads.steady, None
         stress, partition = blocks.scene.prestress, blocks.partition
         if sticks:
             laws, self.steady, stress = sticking(laws), np.zeros_like(self.steady), None
-            model = model._replace(contacts=unstressed(model.contacts, model.form.stressed))
+            model = model._replace(contacts=unstressed(model))
         if stress is not None and blocks.scene.excavated and model.form.points:
             openings = [name for name in partition.sides if name.startswith("opening")]
             facets = facets_on(partition.blocks, partition.sides, openings)
@@ -127,7 +125,7 @@ class PlaneRelaxation:
         if weighed and held is not None:
             resistance = nothing.copy()
             resistance[np.searchsorted(rows, loads.rows)] = self.onto @ self.bearing
-            held.moves[:] = still(resistance, own.inertia[rows])
+            held.matrices[:, 1] = still(resistance, own.inertia[rows])
         self.model = model._replace(blocks=own, laws=laws, held=held)
         self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 0)
         self.count, most = len(own.inertia), STEPS_BETWEEN_LOOKS
@@ -137,7 +135,7 @@ class PlaneRelaxation:
             self.model, self.state, self.samples, most, self._drive, shake, system.threads
         )
         self.mass = blocks.masses.ravel()
-        g = np.hypot(own.gravity_x, own.gravity_y)
+        g = np.linalg.norm(own.gravity)
         pressed = 0.0 if stress is None else max(map(abs, (stress.xx, stress.yy, stress.xy)))
         self.scale = float(g * blocks.inertia.mass.sum() + pressed * partition.boundary.area.sum())
         self.most_steps = 40_000 + 40_000 * int(np.sqrt(self.count))
@@ -177,7 +175,7 @@ class PlaneRelaxation:
     def borne(self) -> np.ndarray:
         """Return the resultants of the forces that sides which bear the weight are held by [h, 6]:
         of tractions linear along each block's edges."""
-        moves = self.model.held.moves
+        moves = self.model.held.matrices[:, 1]
         held = moves.copy()
         moves[:] = np.eye(3)
         missing = -self.unbalanced().reshape(-1, 3)[self.rows]

@@ -20,9 +20,9 @@ from jointwave.dem.blocks.build import (
     form_of,
     rigid_blocks,
 )
-from jointwave.dem.blocks.model import PlaneModel, held_by
 from jointwave.dem.boundaries import dashpots, facets_on, freedoms, points_on
 from jointwave.dem.loads import Loads, load_pattern, reactions
+from jointwave.dem.model import Model, held_by
 from jointwave.dem.receivers import Receivers, receivers_of
 from jointwave.dem.shaking import Shaking, shaking
 from jointwave.dem.time_loop import thread_count
@@ -46,7 +46,7 @@ class PlaneSystem(NamedTuple):
     blocks: RigidBlocks
     time: Clock
     critical: float
-    model: PlaneModel
+    model: Model
     receivers: Receivers
     loads: Loads
     resistance: np.ndarray
@@ -69,12 +69,11 @@ def prepared(scene: RockMass, incident: IncidentField | None = None) -> PlaneSys
     moving = shaking(scene.bases, blocks.links.walls, 2, time.dt)
     form = form_of(blocks, len(loads.rows) > 0 or scene.excavated, moving is not None)
     held = held_by(loads.onto @ resistance @ loads.onto.T, loads.rows, blocks.masses, time.dt)
-    model = PlaneModel(
+    model = Model(
         form=form,
         blocks=constants(scene, blocks, time.dt),
         contacts=contacts(blocks),
         laws=table_of(blocks.columns.law),
-        rules=blocks.columns.rules,
         held=held if form.held else None,
         places=receivers.places,
         watched=receivers.watched,

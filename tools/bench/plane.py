@@ -10,9 +10,9 @@ from kernels import SLIDES
 from rows import ELASTIC, changed, lattice, stretch
 from timing import Timed, in_turns, side_by_side
 
-from jointwave.dem.blocks.leapfrog import march, samples_for
-from jointwave.dem.blocks.model import PlaneModel, state_at_rest
 from jointwave.dem.blocks.system import prepared
+from jointwave.dem.leapfrog import march
+from jointwave.dem.model import Model, samples_for, state_at_rest
 
 COULOMB = ELASTIC | {"friction_angle": 30.0, "cohesion": 1e5}
 PRESSURE = {"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1e5}
@@ -21,12 +21,12 @@ BLOCK_STEPS, LEAST = 5_000_000, 48  # block-steps and steps of one call
 POINTS = 4  # of a block: two contacts of two points; in the row one contact of 2 x 2
 
 
-def model_of(blocks: int, law: dict) -> PlaneModel:
+def model_of(blocks: int, law: dict) -> Model:
     """Return the constants of such a lattice, without the load."""
     return prepared(lattice(blocks, law, {"loads": [PRESSURE]})).model
 
 
-def moving(model: PlaneModel, threads: int = 1) -> Timed:
+def moving(model: Model, threads: int = 1) -> Timed:
     """Return a function that takes steps of a lattice in motion, and its number of block-steps."""
     state, samples = state_at_rest(model), samples_for(model, 0)
     state.v[:] = 1e-3 * np.random.default_rng(1).uniform(-1.0, 1.0, state.v.shape)

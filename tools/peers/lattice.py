@@ -17,9 +17,9 @@ from job import ONE_THREAD
 from lammps_bonds import BODIES, SPHERES, bodies, bpm_bonds, stepping
 
 from jointwave import cases
-from jointwave.dem.blocks.leapfrog import march, samples_for
-from jointwave.dem.blocks.model import PlaneModel, state_at_rest
 from jointwave.dem.blocks.system import prepared
+from jointwave.dem.leapfrog import march
+from jointwave.dem.model import Model, samples_for, state_at_rest
 from jointwave.joints.law import law_of
 
 SIDES = (32, 100, 316)  # bodies along each side
@@ -39,7 +39,7 @@ class Lattice(NamedTuple):
     m/s and rad/s; steps."""
 
     side: int
-    model: PlaneModel
+    model: Model
     pairs: np.ndarray
     centres: np.ndarray
     velocity: np.ndarray
@@ -72,9 +72,10 @@ def ours(own: Lattice) -> tuple[np.ndarray, float]:
 
 def theirs(own: Lattice, place: Place, folder: Path) -> tuple[np.ndarray, float]:
     """Return the same from LAMMPS, whose own loop time is taken."""
-    law, (places, weights) = law_of(own.model.laws, 0), own.model.rules[0]
+    law, table = law_of(own.model.laws, 0), own.model.contacts.table[0]
+    second = float(table[own.model.form.table.second])
     normal, shear = float(law.normal_stiffness), float(law.shear_stiffness)
-    bonds = bpm_bonds(normal, shear, shear / 6, normal * float(weights @ places**2))
+    bonds = bpm_bonds(normal, shear, shear / 6, normal * second)
     numbers = {"dt": float(own.model.blocks.dt), "steps": own.steps, "cutoff": 2.0}
     text = (BODIES + INPUT).format(**SPHERES._asdict(), **numbers, bonds=bonds)
     speeds = enumerate(own.velocity.tolist(), 1)

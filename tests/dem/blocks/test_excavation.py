@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 from jointwave.dem import simulate
-from jointwave.dem.blocks.model import state_at_rest
+from jointwave.dem.blocks.build import faces_of
 from jointwave.dem.blocks.start import start
 from jointwave.dem.blocks.system import prepared
-from jointwave.dem.blocks.tile import relative
-from jointwave.dem.blocks.tiles import LENGTH
+from jointwave.dem.model import state_at_rest
 
 STRESS = {"xx": 4e6, "yy": 5e6, "xy": 5e5}
 TENSOR = np.array([[4e6, 5e5], [5e5, 5e6]])
@@ -53,11 +52,15 @@ def stiffness(system):
     move by (u, v, phi) opens by g, slips by s and turns by t, springs evenly along it."""
     count, links = system.blocks.partition.count, system.blocks.links
     K, own = np.zeros((3 * count, 3 * count)), system.blocks.columns
-    (x_i, y_i, turn_i), (x_j, y_j, turn_j) = np.eye(6).reshape(2, 3, 6)
-    table = system.model.contacts.rows().T
-    for (i, j), k, c in zip(links.blocks, table, links.column, strict=True):
-        g, s, t = relative(x_j - x_i, y_j - y_i, turn_i, turn_j, *k[:LENGTH])
-        L, k_n, k_s = k[LENGTH], own.normal[c], own.shear[c]
+    faces = faces_of(system.blocks)
+    for (i, j), frame, arm, L, c in zip(
+        faces.blocks, faces.frame, faces.arm, faces.area, links.column, strict=True
+    ):
+        across = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+        of_i, of_j = (np.column_stack([np.eye(2), one]) for one in across)
+        g, s = frame @ np.hstack([-of_i, of_j])
+        t = np.array([0, 0, -1, 0, 0, 1])
+        k_n, k_s = own.normal[c], own.shear[c]
         freedoms = np.concatenate([3 * i + np.arange(3), 3 * j + np.arange(3)])
         of_face = L * (k_n * (np.outer(g, g) + L**2 / 12 * np.outer(t, t)) + k_s * np.outer(s, s))
         K[np.ix_(freedoms, freedoms)] += of_face
