@@ -113,6 +113,17 @@ class KernelFlags(NamedTuple):
         return self.dim + self.rotations
 
     @property
+    def rated(self) -> bool:
+        """Whether forces or the ledger need rates of relative motion."""
+        p = self.parts
+        return p.dashpots or (self.points > 0 and (self.ledger or p.path))
+
+    @property
+    def drags(self) -> bool:
+        """Whether the dashpots' share of forces is kept apart."""
+        return self.parts.dashpots and self.ledger
+
+    @property
     def spread_rows(self) -> int:
         """First moments of the traction over a face."""
         return self.turns * self.dim * (self.dim - 1)
@@ -137,7 +148,7 @@ class KernelFlags(NamedTuple):
     @property
     def buffer(self) -> BufferRows:
         """Rows of a chunk's buffer."""
-        f, drags = self.freedoms, self.parts.dashpots and self.ledger
+        f, drags = self.freedoms, self.drags
         laws = len(Law._fields) * self.parts.varied
         gathered = self.dim + 2 * self.rotations
         sizes = (
