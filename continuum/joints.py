@@ -101,7 +101,7 @@ def interfaces(
         area=jumps.weight,
         law=law,
         table=table_of(law),
-        parts=parts_of(law),
+        parts=parts_of(law)._replace(planar=len(jumps.matrices) == 2),
         prestress=prestress,
         stiffest=stiffest(law, scene),
     )

@@ -18,9 +18,9 @@ from jointwave.joints.closure import closure_stiffness
 from jointwave.joints.dilation import lift, riding_stiffness
 from jointwave.joints.energy import elastic_energy, fracture_energy_spent, friction_work, lift_work
 from jointwave.joints.formula import formula
-from jointwave.joints.normal import normal_traction, spring_traction
-from jointwave.joints.shear import UNLIMITED, cohesion_left, shear_return, shear_strength
-from jointwave.joints.slide import after_slide
+from jointwave.joints.normal import spring_traction
+from jointwave.joints.shear import UNLIMITED, cohesion_left, shear_return
+from jointwave.joints.slide import trial
 
 
 class Law(NamedTuple):
@@ -283,38 +283,28 @@ def traction(law, parts, jump, step, rate, dt, history):
     jump : gap and slip (n, x, z) at the end of the step, m. step : their increments over the step,
     m. rate : what dashpots see of their rates, m/s. dt : s. history : before the step.
     """
-    gap, opening, path = jump[0], history.opening, history.path
+    gap, opening, whole_x, whole_z, _, t_n, tau, path = trial(law, parts, jump, rate, dt, history)
+    t_x, t_z, drag_x, drag_z, slid, slipped = 0.0, 0.0, 0.0, 0.0, 0.0, False
+    x, z = whole_x, whole_z
     if parts.dilation:
-        gap = gap - lift(law, path)
-    if parts.softening:
-        opening = gap if gap > opening else opening
-    t_n = normal_traction(law, parts, gap, rate[0], opening)
-    t_x, t_z, drag_x, drag_z, x, z, slid, slipped = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False
+        up = lift(law, path) - lift(law, history.path)
+        slid = -lift_work(law, parts, gap - step[0], gap - up, opening, up)
+        gap = gap - up
     if parts.shear:
-        x, z = jump[1] - history.slide_x, jump[2] - history.slide_z
         old_x, old_z = x - step[1], z - step[2]
-        tau = shear_strength(law, parts, t_n, gap, opening, history.cohesion, path)
-        t_n, tau, path = after_slide(
-            law, parts, t_n, tau, gap, rate[0], opening, history.cohesion, path,
-            x, z, rate[1], rate[2], dt,
-        )  # fmt: skip
-        if parts.dilation:
-            up = lift(law, path) - lift(law, history.path)
-            slid = -lift_work(law, parts, gap - step[0], gap - up, opening, up)
-            gap = gap - up
         t_x, t_z, x, z, slipped = shear_return(
             law, parts, x, z, old_x, old_z, rate[1], rate[2], tau, dt
         )
         drag_x, drag_z = t_x + law.shear_stiffness * x, t_z + law.shear_stiffness * z
-        if parts.limited:
-            slid = slid + friction_work(law, old_x, old_z, x, z, step[1], step[2])
+        rubbed = friction_work(law, old_x, old_z, x, z, step[1], step[2])
+        slid = slid + (rubbed if slipped else 0.0)
     spring = spring_traction(law, parts, gap, opening)
     stored = elastic_energy(law, parts, gap, opening, x, z)
     spent = fracture_energy_spent(law, opening) if parts.softening else 0.0
     after = History(
         opening,
-        jump[1] - x if slipped else history.slide_x,
-        jump[2] - z if slipped else history.slide_z,
+        history.slide_x + (whole_x - x),
+        history.slide_z + (whole_z - z),
         cohesion_left(law, parts, history.cohesion, slipped),
         path,
     )

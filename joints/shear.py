@@ -108,7 +108,7 @@ def _elastic_slip(law, parts, scaled, t, old, dt):
         return scaled
     # t = -K_s e - C_s (e - old) / dt, solved for e.
     drag = law.shear_viscosity / dt
-    return (drag * old - t) / (law.shear_stiffness + drag)
+    return (drag * old - t) * (1.0 / (law.shear_stiffness + drag))
 
 
 @formula

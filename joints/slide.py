@@ -10,6 +10,8 @@ compression neither wear nor age: their slip does not count in the path S. `join
 the slip under rate-dependent friction.
 """
 
+from typing import NamedTuple
+
 from jointwave.joints.dilation import lift, lift_rate
 from jointwave.joints.formula import formula
 from jointwave.joints.normal import normal_tangent, normal_traction
@@ -19,6 +21,46 @@ from jointwave.joints.weakening import friction_left, strength_fall, weakened
 
 MOST = 60  # Newton steps, safeguarded by bisection of a bracket
 SETTLED = 1e-14  # convergence, over the longest possible slip
+
+
+class Trial(NamedTuple):
+    """A step up to its shear traction.
+
+    gap : less the lift before the step, m. opening : the largest so far, m. x, z : elastic slip as
+    if nothing slid in the step, m. still : strength before the step's slide, Pa. t_n, tau, path :
+    normal traction and strength, Pa, and the path, m, after it.
+    """
+
+    gap: float
+    opening: float
+    x: float
+    z: float
+    still: float
+    t_n: float
+    tau: float
+    path: float
+
+
+@formula
+def trial(law, parts, jump, rate, dt, history):
+    """Return the `Trial` of a step, for the arguments of `joints.law.traction`."""
+    gap, opening, path = jump[0], history.opening, history.path
+    if parts.dilation:
+        gap = gap - lift(law, path)
+    if parts.softening:
+        opening = gap if gap > opening else opening
+    t_n = normal_traction(law, parts, gap, rate[0], opening)
+    x, z, still, tau = 0.0, 0.0, 0.0, 0.0
+    if parts.shear:
+        x = jump[1] - history.slide_x
+        if not parts.planar:
+            z = jump[2] - history.slide_z
+        still = shear_strength(law, parts, t_n, gap, opening, history.cohesion, path)
+        t_n, tau, path = after_slide(
+            law, parts, t_n, still, gap, rate[0], opening, history.cohesion, path,
+            x, z, rate[1], rate[2], dt,
+        )  # fmt: skip
+    return Trial(gap, opening, x, z, still, t_n, tau, path)
 
 
 @formula

@@ -10,15 +10,15 @@ At a kink the tangent is that of the side whose branch the traction takes: a joi
 closed, one at its largest opening unloads, shear on the strength has not slipped yet.
 """
 
-from math import inf, sqrt
+from math import inf
 from typing import NamedTuple
 
 from jointwave.joints.dilation import lift, lift_rate
 from jointwave.joints.formula import formula
-from jointwave.joints.normal import normal_tangent, normal_traction
+from jointwave.joints.normal import normal_tangent
 from jointwave.joints.rate_state import resistance_to_sliding
-from jointwave.joints.shear import UNLIMITED, resistance, shear_strength, shear_traction
-from jointwave.joints.slide import after_slide, pressing, resistance_to_slide
+from jointwave.joints.shear import UNLIMITED, resistance, shear_traction, size_of
+from jointwave.joints.slide import pressing, resistance_to_slide, trial
 from jointwave.joints.softening import strength_loss
 from jointwave.joints.weakening import friction_left
 
@@ -39,15 +39,11 @@ class Tangent(NamedTuple):
 
 
 @formula
-def tangent(law, parts, gap, gap_rate, slip, slip_rate, dt, history, r):
-    """Return the `Tangent` of one point, for the arguments of `joints.law.traction`.
-
-    gap, gap_rate : m and m/s at the end of the step; slip : its increments (dx, dz) over the
-    step, m; slip_rate : (x, z), m/s; dt : s; history : before the step; r : rate factor, 1/s.
-    """
-    before, path = history.opening, history.path
-    if parts.dilation:
-        gap = gap - lift(law, path)
+def tangent(law, parts, jump, rate, dt, history, r):
+    """Return the `Tangent` of one point, for the arguments of `joints.law.traction`; r : rate
+    factor, 1/s."""
+    gap, opening, x, z, still, t_n, tau, path = trial(law, parts, jump, rate, dt, history)
+    before, gap_rate = history.opening, rate[0]
     nn = normal_tangent(law, parts, gap, gap_rate, before, r)
     if not parts.shear:
         return Tangent(nn, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -56,16 +52,9 @@ def tangent(law, parts, gap, gap_rate, slip, slip_rate, dt, history, r):
         slope = slope - law.shear_viscosity * r
     if not parts.limited:
         return Tangent(nn, 0.0, 0.0, slope, 0.0, slope, 0.0, 0.0)
-    opening = gap if gap > before else before
-    t_n = normal_traction(law, parts, gap, gap_rate, opening)
-    ex, ez = history.ex + slip[0], history.ez + slip[1]
-    tau = still = shear_strength(law, parts, t_n, gap, opening, history.cohesion, path)
-    t_n, tau, path = after_slide(
-        law, parts, t_n, tau, gap, gap_rate, opening, history.cohesion, path,
-        ex, ez, slip_rate[0], slip_rate[1], dt,
-    )  # fmt: skip
-    t_x, t_z = shear_traction(law, parts, ex, ez, slip_rate[0], slip_rate[1])
-    share, up, pressed = 1.0, 0.0, 0.0
+    t_x, t_z = shear_traction(law, parts, x, z, rate[1], rate[2])
+    size, a = size_of(parts, t_x, t_z), resistance(law, parts, dt)
+    share, pressed = 1.0, 0.0
     if parts.dilation:
         up = lift(law, path) - lift(law, history.path)
         gap, gap_rate = gap - up, gap_rate - up / dt
@@ -76,7 +65,6 @@ def tangent(law, parts, gap, gap_rate, slip, slip_rate, dt, history, r):
         friction = (tau - still) / t_n if t_n > 0.0 else 0.0
     rise = _strength_rise(law, parts, friction * nn, tau, gap, before, history.cohesion)
     if rated:
-        a, size = resistance(law, parts, dt), sqrt(t_x * t_x + t_z * t_z)
         if friction > 0.0:
             way = (size - tau) / a
             b = a + resistance_to_sliding(law, t_n, history.path, way, dt) if way > 0.0 else inf
@@ -85,14 +73,32 @@ def tangent(law, parts, gap, gap_rate, slip, slip_rate, dt, history, r):
     elif parts.path and path > history.path:
         # dl = (d|T*| - rise d gap) / b; d tau = d|T*| - a dl, d t_n = nn d gap + p w' dl.
         b = resistance_to_slide(law, parts, t_n, gap, gap_rate, opening, path, dt)
-        share = resistance(law, parts, dt) / b if b > 0.0 else 1.0
+        share = a / b if b > 0.0 else 1.0
         if parts.dilation and b > 0.0:
             press = pressing(law, parts, gap, gap_rate, opening, dt)
             pressed = press * lift_rate(law, path) / b
             nn = nn - pressed * rise
         rise = share * rise
-    xn, zn, xx, xz, zz, nx, nz = _returned(parts, tau, rise, t_x, t_z, slope, share, pressed)
-    return Tangent(nn, xn, zn, xx, xz, zz, nx, nz)
+    slips = size > tau
+    n_x, n_z = t_x / size if slips else 0.0, 0.0
+    if not parts.planar:
+        n_z = t_z / size if slips else 0.0
+    # On the strength T = tau n, n = T* / |T*|: dT = n dtau + tau / |T*| (1 - n n^T) dT*. Where slip
+    # changes the joint d tau is rise d gap + (1 - share) d|T*|, and d t_n has pressed d|T*|.
+    # Without strength the traction is zero, whatever the trial traction.
+    left = 0.0 if tau <= 0.0 else slope
+    turn = left * tau / size if slips else left
+    along = (1.0 - share) * left - turn
+    return Tangent(
+        nn,
+        n_x * rise,
+        n_z * rise,
+        turn + along * n_x * n_x,
+        along * n_x * n_z,
+        turn + along * n_z * n_z,
+        pressed * slope * n_x,
+        pressed * slope * n_z,
+    )
 
 
 @formula
@@ -107,38 +113,3 @@ def _strength_rise(law, parts, rise, tau, gap, before, cohesion):
             0.0 if c >= UNLIMITED else c / law.tensile_strength * strength_loss(law, gap, before)
         )
     return rise if 0.0 < tau < UNLIMITED else 0.0
-
-
-@formula
-def _returned(parts, tau, rise, t_x, t_z, slope, share, pressed):
-    """Return (xn, zn, xx, xz, zz, nx, nz) of a trial traction of this slope with slip.
-
-    On the strength T = tau n, n = T* / |T*|: dT = n dtau + tau / |T*| (1 - n n^T) dT*. Where slip
-    changes the joint d tau is rise d gap + (1 - share) d|T*|, and d t_n has pressed d|T*|.
-    """
-    size = sqrt(t_x * t_x + t_z * t_z)
-    slips = size > tau
-    n_x, n_z = t_x / size if slips else 0.0, t_z / size if slips else 0.0
-    # Without strength the traction is zero, whatever the trial traction.
-    left = 0.0 if tau <= 0.0 else slope
-    turn = left * tau / size if slips else left
-    if parts.path:
-        along = (1.0 - share) * left
-        return (
-            n_x * rise,
-            n_z * rise,
-            turn + (along - turn) * n_x * n_x,
-            (along - turn) * n_x * n_z,
-            turn + (along - turn) * n_z * n_z,
-            pressed * slope * n_x,
-            pressed * slope * n_z,
-        )
-    return (
-        n_x * rise,
-        n_z * rise,
-        turn * (1.0 - n_x * n_x),
-        -turn * n_x * n_z,
-        turn * (1.0 - n_z * n_z),
-        0.0,
-        0.0,
-    )

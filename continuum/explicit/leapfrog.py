@@ -12,7 +12,7 @@ from typing import Any
 
 from jointwave.continuum.space.operator import multiply
 from jointwave.continuum.space.stencils import add_transposed, multiply_stencils
-from jointwave.continuum.space.tractions import joint_energy, joint_loads
+from jointwave.continuum.space.tractions import joint_energy, loads_for
 from jointwave.joints.formula import formula
 from jointwave.numerics.arguments import unpacked
 from jointwave.numerics.denormals import flush_denormals, restore_denormals
@@ -28,7 +28,7 @@ def leapfrog_for(parts, directions, shared=False):
     It is given what `continuum.explicit.march.arguments` packs: None for what a model lacks.
     """
 
-    shears = True if directions != 1 else None
+    joint_loads: Any = None if parts is None else loads_for(parts, directions)
     send: Any = None
     receive: Any = None
     if shared:
@@ -93,7 +93,7 @@ def leapfrog_for(parts, directions, shared=False):
                 if slip_rate is not None:
                     multiply_stencils(b_first, b_start, b_column, b_value, v, slip_rates, along)
                 sliding = joint_loads(
-                    parts, directions, shears, table, area, prestress,
+                    table, area, prestress,
                     jump, jump_rate, slip_rate, opening, slide, cohesion, path, loads, drags, dt,
                 )  # fmt: skip
                 if ledger is not None:
@@ -179,9 +179,8 @@ def leapfrog_for(parts, directions, shared=False):
                     stored, spent = 0.0, 0.0
                     if area is not None:
                         stored, spent = joint_energy(
-                            parts, directions, table, area, prestress,
-                            jump, opening, slide, path, loads,
-                        )  # fmt: skip
+                            parts, directions, table, area, prestress, jump, opening, slide, path
+                        )
                     s = n // stride
                     energy[1, s], energy[2, s] = elastic + stored, spent
                     add_energy(energy, s, mass, u, v_before, v, weight, ledger)

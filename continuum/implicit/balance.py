@@ -15,7 +15,7 @@ from jointwave.continuum.implicit.vectors import add_transposed, larger, row_tim
 from jointwave.continuum.model import Model
 from jointwave.continuum.parallel.serial import SERIAL, Serial
 from jointwave.continuum.space.body import Body, rock_matrices
-from jointwave.continuum.space.tractions import joint_loads, joint_tangents
+from jointwave.continuum.space.tractions import joint_tangents, loads_for
 from jointwave.continuum.state import State
 from jointwave.joints.formula import formula
 from jointwave.numerics.arguments import Packed, unpacked
@@ -119,7 +119,7 @@ def _flat(points: np.ndarray | None) -> np.ndarray | None:
 def forces_for(parts, directions):
     """Return the kernel of `trial_forces` for joints of a law with these parts and jumps in so
     many directions, both None without joints."""
-    shears = True if directions != 1 else None
+    joint_loads: Any = None if parts is None else loads_for(parts, directions)
 
     @formula
     def trial(
@@ -184,11 +184,11 @@ def forces_for(parts, directions):
                     for d in range(slide.shape[0]):
                         slide[d, q] = old_slide[d, q]
             joint_tangents(
-                parts, directions, shears, table, area, prestress, jump, jump_rate,
+                parts, directions, table, area, prestress, jump, jump_rate,
                 old_opening, old_slide, old_cohesion, old_path, dt, r, tangents,
             )  # fmt: skip
             sliding = joint_loads(
-                parts, directions, shears, table, area, prestress,
+                table, area, prestress,
                 jump, jump_rate, slip_rate, opening, slide, cohesion, path, loads, drags, dt,
             )  # fmt: skip
             if ledger is not None:

@@ -38,7 +38,7 @@ def recorder(
         *(state.fields, seen, seen[state.at.v], seen[state.at.v_before], acceleration, model.dt),
         *(csr(matrix), added, samples.waves, samples.energy, state.u, state.v),
         *(csr(rock.mass), csr(rock.stiffness), model.weight, springs, state.elongation),
-        *(points, state.jump, state.opening, state.slide, state.path, state.loads, state.ledger),
+        *(points, state.jump, state.opening, state.slide, state.path, state.ledger),
     )
     kernel = sample_for(*(2 * (None,) if joints is None else (joints.parts, joints.directions)))
     return lambda s: kernel(given, s)
@@ -54,7 +54,7 @@ def sample_for(parts, directions):
         s,
         fields, seen, seen_v, seen_v_before, acceleration, dt, readings, added, waves, energy,
         u, v, mass, stiffness, weight, springs, elongation,
-        points, jump, opening, slide, path, loads, ledger,
+        points, jump, opening, slide, path, ledger,
     ):  # fmt: skip
         """Take sample s."""
         for i in range(fields.size):
@@ -68,9 +68,8 @@ def sample_for(parts, directions):
             if points is not None:
                 table, area, prestress = points
                 stored, spent = joint_energy(
-                    parts, directions, table, area, prestress,
-                    jump, opening, slide, path, loads,
-                )  # fmt: skip
+                    parts, directions, table, area, prestress, jump, opening, slide, path
+                )
             relaxed = 1.0 if springs is None else springs[0]
             for i in range(u.size):
                 kinetic += 0.5 * v[i] * row_times(*mass, v, i)
