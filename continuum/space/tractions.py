@@ -71,7 +71,8 @@ def loads_for(parts, directions):
         sliding in this step, J.
 
         table, area, prestress : as in `Interfaces`.
-        jump, m; rate : of the jump, m/s; slip_rate : of the slip over the step, m/s.
+        jump, m; rate : of the jump, m/s; slip_rate : of the jump over the step, m/s, whose first
+        row is replaced by the work of sliding at every point, J.
         opening, slide, cohesion, path : history, replaced; a prestress along the joint is in
         `slide` from the start, and without any `slide` it changes nothing. loads : of the springs,
         prestress left out; drags : of the dashpots, None without.
@@ -92,7 +93,7 @@ def loads_for(parts, directions):
                 slide[0, q] = found.history.slide_x
                 if directions > 2:
                     slide[1, q] = found.history.slide_z
-                sliding += area[q] * found.slid
+                slip_rate[0, q] = area[q] * found.slid
             if cohesion is not None:
                 cohesion[q] = found.history.cohesion
             if path is not None:
@@ -115,6 +116,10 @@ def loads_for(parts, directions):
                 loads[1, q] = area[q] * x
             if directions > 2:
                 loads[2, q] = area[q] * z
+        # Apart, as LLVM does not vectorise a loop with a sum.
+        if slide is not None:
+            for q in range(area.size):
+                sliding += slip_rate[0, q]
         return sliding
 
     return joint_loads

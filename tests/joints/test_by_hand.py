@@ -11,15 +11,15 @@ import pytest
 
 from jointwave.joints.ends import half_spring
 from jointwave.joints.energy import elastic_energy, fracture_energy_spent, friction_work
-from jointwave.joints.law import History, Law, law, law_of, parts_of, table_of, traction, uniform
+from jointwave.joints.law import Law, law, uniform
 from jointwave.joints.normal import normal_traction, spring_traction
 from jointwave.joints.shear import UNLIMITED, shear_return
 from jointwave.joints.softening import is_broken, strength_left
-from jointwave.joints.tangent import tangent
 from jointwave.numerics.critical_step import critical_step, critical_step_of_modes
+from tests.joints.points import Point, advance, at_point, tangent
 
 K, K_S, DT = 1e9, 2e9, 1e-5
-VIRGIN = History()
+VIRGIN = Point()
 SOFTENING = Law(K, 1e4, tensile_strength=1e5, critical_opening=3e-4)
 COULOMB = Law(K, None, False, K_S, None, 3e4, 0.5, 1e4)
 
@@ -29,14 +29,9 @@ def near(value):
     return pytest.approx(value, rel=1e-12, abs=1e-9)
 
 
-def at_point(one):
-    """Return the law of one joint as kernels have it, every parameter a number, and its parts."""
-    return law_of(table_of(one), 0), parts_of(one)
-
-
 def step(one, gap, slip=(0.0, 0.0), gap_rate=0.0, slip_rate=(0.0, 0.0), h=VIRGIN):
     """Return what the law says of one step from a history."""
-    return traction(*at_point(one), gap, gap_rate, slip, slip_rate, DT, h)
+    return advance(*at_point(one), gap, gap_rate, slip, slip_rate, DT, h)
 
 
 @pytest.mark.parametrize(
@@ -85,7 +80,7 @@ def test_softening(gap, opening, spring, whole):
 
 
 def test_a_joint_remembers_its_largest_opening():
-    h = History(1e-4)
+    h = Point(1e-4)
     for gap, expected in ((2e-4, 2e-4), (-1e-4, 2e-4), (1.5e-4, 2e-4), (2.5e-4, 2.5e-4)):
         _, t_x, t_z, h = step(SOFTENING, gap, h=h)
         assert h == (expected, 0.0, 0.0, 0.0, 0.0) and t_x == t_z == 0
@@ -93,14 +88,14 @@ def test_a_joint_remembers_its_largest_opening():
 
 def test_shear_below_the_strength_is_elastic():
     """|T| = 2e9 * 5 um = 1e4 Pa < 3e4 + 0.5 * 1e5; cohesion stays what it is."""
-    t_n, t_x, t_z, h = step(COULOMB, -1e-4, (3e-6, 4e-6), h=History(0.0, 0.0, 0.0, 3e4))
+    t_n, t_x, t_z, h = step(COULOMB, -1e-4, (3e-6, 4e-6), h=Point(0.0, 0.0, 0.0, 3e4))
     assert (t_n, t_x, t_z) == near((1e5, -6e3, -8e3))
     assert (h.ex, h.ez, h.cohesion) == near((3e-6, 4e-6, 3e4))
 
 
 def test_slip_returns_along_its_own_direction_and_takes_the_cohesion():
     """0.1 mm along (3, 4) / 5 would need 2e5 Pa; 3e4 + 0.5 * 1e5 = 8e4 Pa holds, then 1e4."""
-    t_n, t_x, t_z, h = step(COULOMB, -1e-4, (6e-5, 8e-5), h=History(0.0, 0.0, 0.0, 3e4))
+    t_n, t_x, t_z, h = step(COULOMB, -1e-4, (6e-5, 8e-5), h=Point(0.0, 0.0, 0.0, 3e4))
     assert (t_n, t_x, t_z) == near((1e5, -4.8e4, -6.4e4))
     assert (h.ex, h.ez, h.cohesion) == near((2.4e-5, 3.2e-5, 1e4))
     _, t_x, t_z, h = step(COULOMB, -1e-4, (0.0, 0.0), h=h)
@@ -109,7 +104,7 @@ def test_slip_returns_along_its_own_direction_and_takes_the_cohesion():
 
 
 def test_shear_of_an_open_joint_is_nothing():
-    _, t_x, t_z, h = step(COULOMB, 1e-7, (3e-6, 0.0), h=History(0.0, 1e-6, 0.0, 3e4))
+    _, t_x, t_z, h = step(COULOMB, 1e-7, (3e-6, 0.0), h=Point(0.0, 1e-6, 0.0, 3e4))
     assert (t_x, t_z, h.ex, h.ez) == (0, 0, 0, 0)
 
 
@@ -118,12 +113,12 @@ def test_dashpot_in_shear():
     over the step carry it: (2e4 / 1e-5 * e + T) / (2e9 + 2e4 / 1e-5), that is (e + T / 2e9)
     / 2 with e before the step."""
     one = Law(K, 1e4, False, K_S, 2e4, 1e4)
-    h = History(0.0, 0.0, 0.0)
+    h = Point(0.0, 0.0, 0.0)
     _, t_x, _, after = step(one, -1e-4, (1e-6, 0.0), slip_rate=(0.2, 0.0), h=h)
     assert (t_x, after.ex) == near((-6e3, 1e-6))
     _, t_x, _, after = step(one, -1e-4, (1e-5, 0.0), slip_rate=(1.0, 0.0), h=h)
     assert (t_x, after.ex) == near((-1e4, 2.5e-6))
-    h = History(0.0, 1e-6, 2e-6)  # with the slip 10 and 40 / 3 um
+    h = Point(0.0, 1e-6, 2e-6)  # with the slip 10 and 40 / 3 um
     rate = (0.9, 34 / 30)  # of the slip in 10 us; T* = 2e9 * (10, 40 / 3) um + 2e4 * rate
     _, t_x, t_z, after = step(one, -1e-4, (9e-6, 34e-6 / 3), slip_rate=rate, h=h)
     trial = 2e4 + 1.8e4, 8e4 / 3 + 6.8e4 / 3
@@ -135,8 +130,8 @@ def test_dashpot_in_shear():
 def test_friction_alone():
     """0.5 of 1e5 Pa; pulled, nothing."""
     one = Law(K, None, None, K_S, None, None, 0.5)
-    assert step(one, -1e-4, (1e-3, 0.0), h=History(0.0, 0.0, 0.0))[1] == near(-5e4)
-    assert step(one, 1e-4, (1e-3, 0.0), h=History(0.0, 0.0, 0.0))[1] == 0
+    assert step(one, -1e-4, (1e-3, 0.0), h=Point(0.0, 0.0, 0.0))[1] == near(-5e4)
+    assert step(one, 1e-4, (1e-3, 0.0), h=Point(0.0, 0.0, 0.0))[1] == 0
 
 
 def test_shear_that_nothing_limits():
@@ -150,7 +145,7 @@ def test_softened_cohesion():
     """Half the tensile strength left is half the cohesion: 1.5e4 Pa, with friction of -5e4 Pa
     nothing."""
     one = Law(K, None, None, K_S, None, 3e4, None, None, 1e5, 3e-4)
-    h = History(2e-4, 0.0, 0.0)
+    h = Point(2e-4, 0.0, 0.0)
     assert step(one, 2e-4, (1e-3, 0.0), h=h)[1] == near(-1.5e4)
     assert step(one._replace(friction=0.5), 2e-4, (1e-3, 0.0), h=h)[1] == 0
     assert step(one._replace(friction=0.1), 2e-4, (1e-3, 0.0), h=h)[1] == near(-1e4)
@@ -192,7 +187,7 @@ def test_tangent_of_a_joint_that_slips():
     it; tau follows the normal traction by 0.5 * -1e9."""
     one = COULOMB._replace(residual_cohesion=None)
     found = tangent(
-        *at_point(one), -1e-4, 0.0, (6e-5, 8e-5), (0.0, 0.0), DT, History(0.0, 0.0, 0.0), 0.0
+        *at_point(one), -1e-4, 0.0, (6e-5, 8e-5), (0.0, 0.0), DT, Point(0.0, 0.0, 0.0), 0.0
     )
     assert found.nn == near(-1e9)
     # The traction is against the slip: T = -tau n, so its growth with tau is, too.
@@ -204,7 +199,7 @@ def test_tangent_counts_a_dashpot_as_a_spring():
     """r = 1e4 / s: K + 1e4 * 1e4 Pa s/m, K_s + 1e4 * 2e4."""
     one = Law(K, 1e4, None, K_S, 2e4)
     found = tangent(
-        *at_point(one), -1e-4, 0.0, (0.0, 0.0), (0.0, 0.0), DT, History(0.0, 0.0, 0.0), 1e4
+        *at_point(one), -1e-4, 0.0, (0.0, 0.0), (0.0, 0.0), DT, Point(0.0, 0.0, 0.0), 1e4
     )
     assert (found.nn, found.xx, found.xz, found.zz) == near((-1.1e9, -2.2e9, 0, -2.2e9))
 
@@ -213,7 +208,7 @@ def test_tangent_of_a_softening_joint():
     """Opening further falls by 1e5 / 0.2 mm; unloading goes by the secant, 5e4 / 0.2 mm."""
     one = SOFTENING._replace(normal_viscosity=None)
     for before, slope in ((1.5e-4, 5e8), (2e-4, -2.5e8), (4e-4, 0.0)):
-        found = tangent(*at_point(one), 2e-4, 0.0, (0.0, 0.0), (0.0, 0.0), DT, History(before), 0.0)
+        found = tangent(*at_point(one), 2e-4, 0.0, (0.0, 0.0), (0.0, 0.0), DT, Point(before), 0.0)
         assert found.nn == near(slope)
 
 
@@ -221,7 +216,7 @@ def test_tangent_of_a_cohesion_that_softens():
     """It falls by 3e4 / 1e5 of the strength's 5e8 Pa/m, and the traction too."""
     one = Law(K, None, None, K_S, None, 3e4, None, None, 1e5, 3e-4)
     for before, rise in ((1.5e-4, 1.5e8), (2.5e-4, 0.0)):
-        h = History(before, 0.0, 0.0)
+        h = Point(before, 0.0, 0.0)
         assert tangent(*at_point(one), 2e-4, 0.0, (1e-3, 0.0), (0.0, 0.0), DT, h, 0.0).xn == near(
             rise
         )

@@ -13,17 +13,13 @@ from hypothesis import strategies as st
 
 from jointwave.joints.closure import closure_stiffness, closure_traction, closure_under
 from jointwave.joints.energy import elastic_energy
-from jointwave.joints.law import Law, law_of, parts_of, table_of
+from jointwave.joints.law import Law
 from jointwave.joints.normal import gap_under, normal_traction, spring_traction
+from tests.joints.points import at_point
 
 ALONE = Law(1e9, maximum_closure=1e-4)
 #: 0.3 of the joint's own compliance is the rock's.
 IN_ROCK = Law(1e9, 1e4, maximum_closure=1e-4, rock_compliance=0.3e-9)
-
-
-def at_point(one):
-    """Return the law of one joint as kernels have it, every parameter a number, and its parts."""
-    return law_of(table_of(one), 0), parts_of(one)
 
 
 def near(value):

@@ -11,22 +11,17 @@ from scipy.linalg import eigh
 
 from jointwave.joints.dilation import lift, lift_rate, riding_stiffness
 from jointwave.joints.energy import elastic_energy, friction_work, lift_work
-from jointwave.joints.law import History, Law, law_of, parts_of, table_of, traction
-from jointwave.joints.tangent import tangent
+from jointwave.joints.law import Law
+from tests.joints.points import Point, advance, at_point, tangent
 
 JOINT = Law(1e9, shear_stiffness=2e9, friction=0.5, dilation=0.2, dilation_distance=1e-3)
 DT = 1e-5
 EPS = np.finfo(float).eps
 
 
-def at_point(one):
-    """Return the law of one joint as kernels have it, every parameter a number, and its parts."""
-    return law_of(table_of(one), 0), parts_of(one)
-
-
 def step(one, gap, x, history, rate=0.0):
     """Return normal and shear traction (Pa) and the history after a slip by x, m."""
-    t_n, t_x, _, after = traction(*at_point(one), gap, rate, (x, 0.0), (x / DT, 0.0), DT, history)
+    t_n, t_x, _, after = advance(*at_point(one), gap, rate, (x, 0.0), (x / DT, 0.0), DT, history)
     return t_n, t_x, after
 
 
@@ -43,7 +38,7 @@ def test_a_confined_joint_is_pressed_by_its_slip():
     which is 0.26875 mm of the spring's slip. In one step, or in ten to the same place."""
     x = 5e-4 + 5.375e5 / 2e9
     for count in (1, 10):
-        h = History()
+        h = Point()
         for _ in range(count):
             t_n, t_x, h = step(JOINT, -1e-3, x / count, h)
         assert (t_n, t_x, h.path) == pytest.approx((1.075e6, -5.375e5, 5e-4), rel=1e-12)
@@ -54,7 +49,7 @@ def test_a_confined_joint_is_pressed_by_its_slip():
 
 def test_a_joint_under_constant_stress_opens():
     """1 MPa kept by opening it as it is lifted: no more shear than 0.5 MPa, and the way is w."""
-    h, up = History(), 0.0
+    h, up = Point(), 0.0
     for _ in range(100):
         t_n, _, after = step(JOINT, -1e-3 + up, 2e-5, h)
         up = lift(at_point(JOINT)[0], after.path)
@@ -65,8 +60,8 @@ def test_a_joint_under_constant_stress_opens():
 def test_an_open_joint_is_not_lifted():
     """Faces that do not touch ride up nothing; lifted ones touch before the gap is closed."""
     one = JOINT._replace(carries_tension=False)
-    assert step(one, 1e-6, 1e-2, History())[2].path == 0.0
-    worn = History(path=1e-3)
+    assert step(one, 1e-6, 1e-2, Point())[2].path == 0.0
+    worn = Point(path=1e-3)
     assert step(one, 1.01e-4, 0.0, worn)[0] == 0.0
     assert step(one, 0.9e-4, 0.0, worn)[0] == pytest.approx(1e4)
 
@@ -74,7 +69,7 @@ def test_an_open_joint_is_not_lifted():
 def test_slip_acts_on_the_normal_traction_within_a_step():
     """At S = 0.5 mm: w' = 0.1; b = 2e9 + 0.5 1e9 0.1. dl = K_s dx / b, d t_n = 1e9 0.1 dl."""
     x = 5e-4 + 5.375e5 / 2e9
-    found = tangent(*at_point(JOINT), -1e-3, 0.0, (x, 0.0), (0.0, 0.0), DT, History(), 0.0)
+    found = tangent(*at_point(JOINT), -1e-3, 0.0, (x, 0.0), (0.0, 0.0), DT, Point(), 0.0)
     b = 2.05e9
     assert found.nx == pytest.approx(1e8 * 2e9 / b, rel=1e-9)
     assert found.xx == pytest.approx(-2e9 * (1 - 2e9 / b), rel=1e-9)
@@ -115,11 +110,11 @@ paths = st.lists(st.tuples(some(-1, 0.3), some(-1, 1), some(-1, 1)), min_size=1,
 
 def march(one, path):
     """Yield (gap before, gap, slip, tractions, history before, after) of each step."""
-    point, h, last = at_point(one), History(0.0, 0.0, 0.0, one.cohesion), 0.0
+    point, h, last = at_point(one), Point(0.0, 0.0, 0.0, one.cohesion), 0.0
     for gap, x, z in path:
         gap, slip = gap * 1e-4, np.array([x, z]) * 1e-4
         before = h
-        *t, h = traction(*point, gap, (gap - last) / DT, tuple(slip), tuple(slip / DT), DT, before)
+        *t, h = advance(*point, gap, (gap - last) / DT, tuple(slip), tuple(slip / DT), DT, before)
         yield last, gap, slip, np.array(t), before, h
         last = gap
 

@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from jointwave.joints.energy import elastic_energy, fracture_energy_spent
-from jointwave.joints.law import Law, law_of, parts_of, table_of
+from jointwave.joints.law import Law
 from jointwave.joints.normal import normal_traction, spring_traction
 from jointwave.joints.softening import is_broken, strength_left
+from tests.joints.points import at_point
 
 gaps = st.floats(-1e-3, 1e-3)
 rates = st.floats(-10, 10)
@@ -20,11 +21,6 @@ openings = st.lists(st.floats(-1, 1.5), min_size=2, max_size=30)  # in units of 
 
 tied = st.tuples(stiffnesses, viscosities).map(lambda parts: Law(*parts))
 no_tension = tied.map(lambda one: one._replace(carries_tension=False))
-
-
-def at_point(one):
-    """Return the law of one joint as kernels have it, every parameter a number, and its parts."""
-    return law_of(table_of(one), 0), parts_of(one)
 
 
 @st.composite

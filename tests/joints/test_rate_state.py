@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from jointwave.joints.energy import elastic_energy, friction_work
-from jointwave.joints.law import History, Law, law_of, parts_of, table_of, traction
+from jointwave.joints.law import Law
 from jointwave.joints.rate_state import exponent, friction_at, rate_under
-from jointwave.joints.tangent import tangent
+from tests.joints.points import Point, advance, at_point, tangent
 
 PRESSURE, LENGTH, RATE = 1e6, 1e-4, 1e-6
 JOINT = Law(
@@ -29,11 +29,6 @@ JOINT = Law(
 PRESSED = -1e-3  # m: 1 MPa
 
 
-def at_point(one):
-    """Return the law of one joint as kernels have it, every parameter a number, and its parts."""
-    return law_of(table_of(one), 0), parts_of(one)
-
-
 def friction_under(law, rate, state):
     """Return mu of ln V (V in m/s) and s."""
     return friction_at(law, rate + exponent(law, state))
@@ -43,7 +38,7 @@ def driven(one, rate, dt, steps, h):
     """Yield the shear traction (Pa) and history of a joint whose faces are moved at a rate, m/s."""
     point, slip = at_point(one), (rate * dt, 0.0)
     for _ in range(steps):
-        _, t, _, h = traction(*point, PRESSED, 0.0, slip, (rate, 0.0), dt, h)
+        _, t, _, h = advance(*point, PRESSED, 0.0, slip, (rate, 0.0), dt, h)
         yield -t, h
 
 
@@ -52,7 +47,7 @@ def steady(one, rate):
     law, _ = at_point(one)
     state = log(LENGTH / rate / law.initial_state)
     elastic = PRESSURE * friction_under(law, log(rate), state) / law.shear_stiffness
-    return History(0.0, elastic, 0.0, 0.0, state)
+    return Point(0.0, elastic, 0.0, 0.0, state)
 
 
 def test_a_step_of_the_rate_has_its_direct_and_its_evolution_effect():
@@ -85,11 +80,11 @@ def test_steady_friction(rate):
 def test_contacts_that_rest_grow_older():
     """theta = theta_0 + t exactly, in steps of any length; faces apart, or pulled, do not age."""
     for steps in (1, 1000):
-        *_, (_, h) = driven(JOINT, 0.0, 5e3 / steps, steps, History())
+        *_, (_, h) = driven(JOINT, 0.0, 5e3 / steps, steps, Point())
         assert h.path == pytest.approx(log1p(50.0), rel=1e-12)
     for gap in (0.0, 1e-5):
         one = at_point(JOINT)
-        assert traction(*one, gap, 0.0, (1e-6, 0.0), (0.0, 0.0), 1.0, History())[3].path == 0.0
+        assert advance(*one, gap, 0.0, (1e-6, 0.0), (0.0, 0.0), 1.0, Point())[3].path == 0.0
 
 
 def test_friction_and_rate_are_each_other_s_inverse():
@@ -162,12 +157,12 @@ DT = 1e-5
 
 def march(one, moves, turn=0.0):
     """Yield the tractions, slip, and histories around each step, of slips turned by an angle."""
-    point, h, last = at_point(one), History(0.0, 0.0, 0.0, one.cohesion or 0.0), 0.0
+    point, h, last = at_point(one), Point(0.0, 0.0, 0.0, one.cohesion or 0.0), 0.0
     turned = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     for gap, x, z in moves:
         gap, slip, before = 1e-4 * gap, turned @ (1e-4 * np.array([x, z])), h
         step = gap, (gap - last) / DT, tuple(slip), tuple(slip / DT)
-        *t, h = traction(*point, *step, DT, before)
+        *t, h = advance(*point, *step, DT, before)
         yield step, np.array(t), before, h
         last = gap
 
@@ -215,7 +210,7 @@ def test_no_direction_along_the_joint_is_special(one, moves, angle):
 def test_a_slide_takes_stiffness_away(one, moves):
     """What a step resists to slip is never more than spring and dashpot do without it: the critical
     step of leapfrog is that of the joint at rest."""
-    point, before = at_point(one), History(0.0, 0.0, 0.0, one.cohesion)
+    point, before = at_point(one), Point(0.0, 0.0, 0.0, one.cohesion)
     for (*step, slip, rate), _, before, _ in march(one, moves):
         found = tangent(*point, *step, slip, rate, DT, before, 0.0)
         stiffness = np.linalg.eigvalsh([[-found.xx, -found.xz], [-found.xz, -found.zz]])
@@ -229,7 +224,7 @@ def test_a_slide_takes_stiffness_away(one, moves):
 def test_any_size_has_a_finite_answer(effect, size, state, dt):
     """Between nothing and the trial traction, as friction under it and the state are defined."""
     one = JOINT._replace(direct_effect=effect, evolution_effect=2 * effect)
-    h = History(ex=size / 1e12, path=state)
-    _, t, _, after = traction(*at_point(one), PRESSED, 0.0, (0.0, 0.0), (0.0, 0.0), dt, h)
+    h = Point(ex=size / 1e12, path=state)
+    _, t, _, after = advance(*at_point(one), PRESSED, 0.0, (0.0, 0.0), (0.0, 0.0), dt, h)
     assert 0 <= -t <= size * (1 + 1e-12)
     assert np.isfinite(after.path)

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from jointwave.joints.closure import closing, closure_stiffness
 from jointwave.joints.dilation import lift
-from jointwave.joints.law import History, Law, law_of, parts_of, table_of, traction
-from jointwave.joints.normal import normal_traction, spring_alone
+from jointwave.joints.law import Law
+from jointwave.joints.normal import normal_tangent, normal_traction, spring_alone
 from jointwave.joints.shear import shear_strength, shear_traction
 from jointwave.joints.softening import stiffness_left, strength_left
-from jointwave.joints.tangent import normal_tangent, tangent
+from tests.joints.points import Point, advance, at_point, tangent
 
 DT = 1e-5
 EPS = np.finfo(float).eps
@@ -38,11 +38,6 @@ FIELDS = {"iangle": "dilation", "Idistance": "dilation_distance"}
 def some(low, high):
     """Return floats in a range; rounded, as differences of much smaller ones mean nothing."""
     return st.floats(low, high).map(lambda x: round(x, 6))
-
-
-def at_point(one):
-    """Return the law of one joint as kernels have it, every parameter a number, and its parts."""
-    return law_of(table_of(one), 0), parts_of(one)
 
 
 @st.composite
@@ -72,7 +67,7 @@ def one_law(draw, dashpots, opens, shears):
         )
     law = Law(k, k * eta if dashpots else None, False if "no tension" in opens else None, **parts)
     slips = (0.0, 0.0) if shears is None else (1e-4 * draw(some(-1, 1)), 1e-4 * draw(some(-1, 1)))
-    history = History(before, *slips, cohesion, 1e-4 * draw(some(0, 1)))
+    history = Point(before, *slips, cohesion, 1e-4 * draw(some(0, 1)))
     return law, history, draw(st.sampled_from([0.0, 1e2, 2e5]))
 
 
@@ -104,11 +99,11 @@ class Step:
         gap_rate, *slip_rate = self.rate + self.r * (at - self.at)
         return *self.point, at[0], gap_rate, tuple(at[1:]), tuple(slip_rate)
 
-    def traction(self, at):
+    def advance(self, at):
         return np.array(self.after(at)[:3])
 
     def after(self, at):
-        return traction(*self.arguments(at), DT, self.history)
+        return advance(*self.arguments(at), DT, self.history)
 
     def tangent(self):
         """Return the tangent as a matrix [traction, displacement]."""
@@ -267,7 +262,7 @@ def test_shear_turns_and_grows_with_the_pressure_once_it_slips():
     friction carries the normal stiffness over."""
     at = (1.2 * LIMIT, -1.6 * LIMIT)  # twice the limit, towards (0.6, -0.8)
     nn, xn, zn, *shear, _, _ = tangent(
-        *at_point(COULOMB), CLOSED, 0.0, at, (0.0, 0.0), DT, History(), 0.0
+        *at_point(COULOMB), CLOSED, 0.0, at, (0.0, 0.0), DT, Point(), 0.0
     )
     n = np.array([-0.6, 0.8])
     assert nn == -9e9
@@ -286,7 +281,7 @@ def test_shear_turns_and_grows_with_the_pressure_once_it_slips():
 )
 def test_shear_kink_has_the_slope_of_either_side(slip, expected):
     """Inside elastic; outside all that is left is to turn, at first with the whole stiffness."""
-    found = tangent(*at_point(COULOMB), CLOSED, 0.0, (slip, 0.0), (0.0, 0.0), DT, History(), 0.0)
+    found = tangent(*at_point(COULOMB), CLOSED, 0.0, (slip, 0.0), (0.0, 0.0), DT, Point(), 0.0)
     assert (found.xn, found.xx, found.zz) == pytest.approx(expected, rel=1e-8)
     assert (found.zn, found.xz) == (0.0, 0.0)
 
@@ -296,5 +291,5 @@ def test_joint_without_strength_left_resists_nothing():
     bars = COULOMB._replace(carries_tension=False)
     for law, gap in ((bars, 1e-6), (COULOMB, 1e-4)):
         for slip in (0.0, 1e-4):
-            found = tangent(*at_point(law), gap, 0.0, (slip, slip), (0.0, 0.0), DT, History(), 0.0)
+            found = tangent(*at_point(law), gap, 0.0, (slip, slip), (0.0, 0.0), DT, Point(), 0.0)
             assert not any(found[1:])

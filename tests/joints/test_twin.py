@@ -16,9 +16,10 @@ from scipy.optimize import brentq
 
 from jointwave.joints import energy, softening
 from jointwave.joints.closure import closure_stiffness, closure_traction
-from jointwave.joints.law import History, Law, law, law_of, parts_of, table_of, traction, uniform
+from jointwave.joints.law import Law, law, law_of, parts_of, table_of, uniform
 from jointwave.joints.normal import spring_traction
 from jointwave.joints.shear import UNLIMITED
+from tests.joints.points import Point, advance, at_point
 
 DT = 1e-5
 
@@ -268,7 +269,7 @@ def twin_traction(
     )
     if slipped and law.residual_cohesion is not None:
         cohesion = min(cohesion, law.residual_cohesion)
-    return t_n, t_x, t_z, History(opening, ex, ez, cohesion, path)
+    return t_n, t_x, t_z, Point(opening, ex, ez, cohesion, path)
 
 
 def twin_elastic_energy(
@@ -381,12 +382,7 @@ def paths(draw, one):
 
 def virgin(one):
     """Return the history of a point that nothing has happened to."""
-    return History(0.0, 0.0, 0.0, one.cohesion or 0.0)
-
-
-def at_point(one, j=0):
-    """Return the law of one joint as kernels have it, every parameter a number, and its parts."""
-    return law_of(table_of(one), j), parts_of(one)
+    return Point(0.0, 0.0, 0.0, one.cohesion or 0.0)
 
 
 def scales(one, gap, rate, slip, slip_rate, h):
@@ -455,7 +451,7 @@ def test_law_equals_its_twin(dashpots, opens, shears, data):
     point, h = at_point(one), virgin(one)
     for step in data.draw(paths(one)):
         n, s = scales(one, *step, h)
-        t_n, t_x, t_z, after = traction(*point, *step, DT, h)
+        t_n, t_x, t_z, after = advance(*point, *step, DT, h)
         r_n, r_x, r_z, expected = twin_traction(one, *step, DT, h)
         if at_point(one)[1].path:
             assume(not on_the_edge(one, r_n, step, h, expected.opening, s))
@@ -464,7 +460,8 @@ def test_law_equals_its_twin(dashpots, opens, shears, data):
         near(t_n, r_n, n)
         near(t_x, r_x, s)
         near(t_z, r_z, s)
-        near(after.opening, expected.opening, abs(step[0]) + (one.dilation_distance or 0.0))
+        if one.tensile_strength is not None:
+            near(after.opening, expected.opening, abs(step[0]) + (one.dilation_distance or 0.0))
         if one.shear_stiffness is not None:
             near(after.ex, expected.ex, s / one.shear_stiffness)
             near(after.ez, expected.ez, s / one.shear_stiffness)
@@ -500,7 +497,7 @@ def test_rate_and_state_equal_their_twin(dashpots, opens, shears, data):
     point, h = at_point(one), virgin(one)
     for step in data.draw(paths(one)):
         n, s = scales(one, *step, h)
-        t_n, t_x, t_z, after = traction(*point, *step, DT, h)
+        t_n, t_x, t_z, after = advance(*point, *step, DT, h)
         a = one.shear_stiffness + (one.shear_viscosity or 0.0) / DT
         assume(a * one.critical_slip_distance >= 1.1 * one.evolution_effect * max(t_n, 0.0))
         r_n, r_x, r_z, expected = twin_traction(one, *step, DT, h)
@@ -520,7 +517,7 @@ def test_energies_equal_their_twins(opens, data):
     point, h = at_point(one), virgin(one)
     for gap, rate, slip, slip_rate in data.draw(paths(one)):
         n, s = scales(one, gap, rate, slip, slip_rate, h)
-        after = traction(*point, gap, rate, slip, slip_rate, DT, h)[-1]
+        after = advance(*point, gap, rate, slip, slip_rate, DT, h)[-1]
         motion = (gap, after.opening, after.ex, after.ez)
         stored = n * abs(gap) + s**2 / one.shear_stiffness
         near(energy.elastic_energy(*point, *motion), twin_elastic_energy(one, *motion), stored)
@@ -568,8 +565,8 @@ def test_unlike_joints_behave_as_if_alone(data):
         single, among = at_point(one), at_point(mixed, j)
         a, b = virgin(one), virgin(among[0])
         for step in path:
-            *t_alone, a = traction(*single, *step, DT, a)
-            *t_mixed, b = traction(*among, *step, DT, b)
+            *t_alone, a = advance(*single, *step, DT, a)
+            *t_mixed, b = advance(*among, *step, DT, b)
             if single[1].dilation:  # by Newton's method: to its last step
                 assert (*t_mixed, *b) == pytest.approx((*t_alone, *a), rel=1e-9, abs=1e-9)
                 continue
