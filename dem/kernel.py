@@ -38,7 +38,7 @@ def step_for(form: KernelFlags) -> Callable:
     """Return the formula of one step of one tile: what its form lacks is not compiled."""
     dim, freedoms, has_ledger, shaken = form.dim, form.freedoms, form.ledger, form.shaken
     dashpots, varied, rated, drags = form.parts.dashpots, form.parts.varied, form.rated, form.drags
-    remembers, recorded, used = form.history.count > 0, form.recorded, rows_of(form.parts)
+    remembers, recorded, used = form.history.size > 0, form.recorded, rows_of(form.parts)
     relative, onto_blocks, move = relative_for(form), onto_blocks_for(form), motion_for(form)
     forces = point_forces_for(form) if form.points else face_forces_for(form)
     rows, LAST_RATE, LAST_DRAG = form.buffer, form.history.rate, form.history.drag
@@ -111,7 +111,7 @@ def step_for(form: KernelFlags) -> Callable:
         still, weighed = last - freedoms, 1.0 if sampled else 0.0
         for g in range(tiles[CHUNK, t], tiles[CHUNK, t + 1]):
             k, at, row_from = contacts.table[g], contacts.pair[g], contacts.row_from[g]
-            lanes = contacts.count - g * L
+            lanes = contacts.contacts - g * L
             lanes = lanes if lanes < L else L
             h: Any = None
             if remembers:

@@ -25,9 +25,9 @@ from jointwave.numerics.jit import jitted
 
 
 class ContactTable(NamedTuple):
-    """Contacts as the kernel takes them: as in `contacts.Contacts`, the laws, the tiles' first chunk,
-    block, held block, recorded block and watched contact [5, tiles + 1], places and rows of watched
-    contacts [2, w], and the number of contacts."""
+    """Contacts as the kernel takes them: as in `contacts.Contacts`, the table of the laws, the
+    first chunk, block, held block, recorded block and watched contact of each tile [5, tiles + 1],
+    places and rows of watched contacts [2, w], and how many contacts there are."""
 
     pair: np.ndarray
     table: np.ndarray
@@ -35,7 +35,7 @@ class ContactTable(NamedTuple):
     laws: np.ndarray
     tiles: np.ndarray
     seen: np.ndarray
-    count: int
+    contacts: int
 
 
 class BlockTable(NamedTuple):

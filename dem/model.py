@@ -30,15 +30,15 @@ class TableRows(NamedTuple):
     start: int
     second: int
     point: int
-    count: int
+    size: int
 
 
 class BufferRows(NamedTuple):
     """Where the rows of a chunk's buffer begin, in numbers.
 
-    law : parameters of the law, where joints differ. gathered : of the motion of blocks. jump, rate,
-    now : relative motion at the step, its rates half a step before and now. force,
-    spread : in the frame, and first moments about the face's centre. drag : the dashpots' force and
+    law : parameters of the law, where joints differ. gathered : of the motion of blocks. jump,
+    rate, now : relative motion at the step, its rates half a step before and now. force, spread :
+    in the frame, and first moments about the face's centre. drag : the dashpots' force and
     moment. on_j, on_i : force on block j and moments. spare : of one block. before : velocities of
     the tile before the step. zeroed : numbers from `force` on that points add to.
     """
@@ -63,7 +63,7 @@ class HistoryRows(NamedTuple):
 
     rate : of relative motion one and a half steps before. drag : the dashpots' force and moment at
     the last step. point : of each point what has slid, m, and from there its largest opening, m,
-    cohesion, Pa, and path, m. count, point_rows : numbers of a contact and of a point.
+    cohesion, Pa, and path, m. point_rows, size : numbers of a point and of a contact.
     """
 
     rate: int
@@ -73,7 +73,7 @@ class HistoryRows(NamedTuple):
     cohesion: int
     path: int
     point_rows: int
-    count: int
+    size: int
 
 
 class KernelFlags(NamedTuple):
@@ -143,7 +143,7 @@ class KernelFlags(NamedTuple):
             (dim - 1) * (self.turns and not self.points), dim * self.points,
         )  # fmt: skip
         begins = np.append(0, np.cumsum(sizes))
-        return TableRows(*(LANES * begins[:-1]).tolist(), count=int(begins[-1]))
+        return TableRows(*(LANES * begins[:-1]).tolist(), int(begins[-1]))
 
     @property
     def buffer(self) -> BufferRows:
@@ -156,7 +156,7 @@ class KernelFlags(NamedTuple):
         )  # fmt: skip
         begins = (LANES * np.append(0, np.cumsum(sizes))).tolist()
         rows = self.dim + self.spread_rows + f * drags
-        return BufferRows(*begins, zeroed=LANES * rows)
+        return BufferRows(*begins, LANES * rows)
 
     @property
     def history(self) -> HistoryRows:
@@ -173,7 +173,7 @@ class KernelFlags(NamedTuple):
             cohesion=int(begins[2]),
             path=int(begins[3]),
             point_rows=LANES * point_rows,
-            count=LANES * (first + self.points * point_rows),
+            size=LANES * (first + self.points * point_rows),
         )
 
 
@@ -219,7 +219,7 @@ class Model(NamedTuple):
     blocks: Blocks
     contacts: Contacts
     laws: np.ndarray
-    held: Held | None
+    held: Any
     places: np.ndarray
     watched: np.ndarray
     walls: int = 0
@@ -265,8 +265,8 @@ def state_at_rest(model: Model) -> State:
     """Return the state at rest, without arrays for absent effects."""
     form, pair = model.form, model.contacts.pair
     count, rows, history = len(model.blocks.inertia) + model.walls, form.history, None
-    if rows.count:
-        history = zeros((len(pair), rows.count))
+    if rows.size:
+        history = zeros((len(pair), rows.size))
         if form.parts.residual:
             cohesion = model.laws[Law._fields.index("cohesion")]
             own = cohesion[pair[:, 2 * LANES :] if form.parts.varied else 0]

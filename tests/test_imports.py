@@ -36,7 +36,6 @@ LONG_KERNELS = {
     ("dem/spatial/march.py", "diagonals"),
     ("dem/axial/leapfrog.py", "steps"),
     ("dem/axial/fourth_order.py", "steps"),
-    ("dem/blocks/tile.py", "step"),
     ("continuum/explicit/leapfrog.py", "add_work"),
     ("continuum/explicit/leapfrog.py", "steps"),
     ("continuum/implicit/record.py", "take"),
