@@ -143,7 +143,7 @@ class KernelFlags(NamedTuple):
             (dim - 1) * (self.turns and not self.points), dim * self.points,
         )  # fmt: skip
         begins = np.append(0, np.cumsum(sizes))
-        return TableRows(*(LANES * begins[:-1]).tolist(), int(begins[-1]))
+        return TableRows._make([*(LANES * begins[:-1]).tolist(), int(begins[-1])])
 
     @property
     def buffer(self) -> BufferRows:
@@ -156,7 +156,7 @@ class KernelFlags(NamedTuple):
         )  # fmt: skip
         begins = (LANES * np.append(0, np.cumsum(sizes))).tolist()
         rows = self.dim + self.spread_rows + f * drags
-        return BufferRows(*begins, LANES * rows)
+        return BufferRows._make([*begins, LANES * rows])
 
     @property
     def history(self) -> HistoryRows:
