@@ -51,34 +51,32 @@ def kernel_of(parts):
             if parts.varied:
                 law = law_of(table, i)
             before = History(memory[0, i], memory[1, i], memory[2, i], memory[3, i], memory[4, i])
-            step = motion[0, i], motion[1, i], (motion[2, i], motion[3, i])
-            rate = (motion[4, i], motion[5, i])
-            force[0, i], force[1, i], force[2, i], after = traction(
-                law, parts, *step, rate, DT, before
-            )
+            jump, step = (motion[0, i], motion[1, i], motion[2, i]), (0.0, 0.0, 0.0)
+            rate = (motion[3, i], motion[4, i], motion[5, i])
+            found = traction(law, parts, jump, step, rate, DT, before)
+            force[0, i], force[1, i], force[2, i] = found.n, found.x, found.z
             for k in range(5):
-                memory[k, i] = after[k]
-            found = tangent(law, parts, *step, rate, DT, before, r)
+                memory[k, i] = found.history[k]
+            slopes = tangent(law, parts, jump, rate, DT, before, r)
             for k in range(8):
-                slope[k, i] = found[k]
+                slope[k, i] = slopes[k]
 
     return load
 
 
 def points(seed=1):
-    """Return motions [6, n] that reach every branch, and memories [5, n] before them."""
+    """Return motions [6, n], jump and rate, that reach every branch, and memories [5, n] before."""
     r = np.random.default_rng(seed)
-    motion = r.uniform(-1, 1, (6, N)) * np.array([[1e-3], [1.0], [1e-3], [1e-3], [1.0], [1.0]])
+    motion = r.uniform(-1, 1, (6, N)) * np.array([[1e-3], [1e-3], [1e-3], [1.0], [1.0], [1.0]])
     memory = np.abs(r.uniform(-1, 1, (5, N)))
     memory *= np.array([[1.2e-3], [1e-4], [1e-4], [1e6], [1e-3]])
     return motion, memory
 
 
 @pytest.mark.parametrize("name, varied", [*product(LAWS, [True]), ("all of softening", False)])
-def test_kernel_is_python_and_is_vectorised(name, varied):
-    """Bit for bit but for the last digit of a product and a sum in one instruction; and several
-    points at once, of whatever width the machine has. Each point has a law of its own, or all have
-    one."""
+def test_kernel_is_python(name, varied):
+    """Bit for bit but for the last digit of a product and a sum in one instruction. Each point has
+    a law of its own, or all have one."""
     one = LAWS[name]
     if varied:
         one = Law(*(None if part is None else np.full(N, part) for part in one))
@@ -88,13 +86,12 @@ def test_kernel_is_python_and_is_vectorised(name, varied):
     kernel(table, motion, after, force, slope, 1e3)
     for i in range(N):
         law = law_of(table, i if varied else 0)
-        gap, rate, dx, dz, vx, vz = motion[:, i]
-        step, before = (gap, rate, (dx, dz), (vx, vz)), History(*memory[:, i])
-        *expected, history = traction(law, parts, *step, DT, before)
-        assert force[:, i] == pytest.approx(expected, rel=1e-12, abs=1e-6)
-        assert after[:, i] == pytest.approx(history, rel=1e-12, abs=1e-18)
+        jump, rate, before = tuple(motion[:3, i]), tuple(motion[3:, i]), History(*memory[:, i])
+        found = traction(law, parts, jump, (0.0, 0.0, 0.0), rate, DT, before)
+        assert force[:, i] == pytest.approx(found[:3], rel=1e-12, abs=1e-6)
+        assert after[:, i] == pytest.approx(found.history, rel=1e-12, abs=1e-18)
         assert slope[:, i] == pytest.approx(
-            tangent(law, parts, *step, DT, before, 1e3), rel=1e-9, abs=1e-3
+            tangent(law, parts, jump, rate, DT, before, 1e3), rel=1e-9, abs=1e-3
         )
 
 
@@ -104,15 +101,16 @@ def counts(one, kinds, formula="traction"):
     if formula == "traction":
 
         @compiled
-        def point(table, gap, rate, dx, vx, opening, ex, cohesion):
-            law, h = law_of(table, 0), History(opening, ex, ex, cohesion, 0.0)
-            return traction(law, parts, gap, rate, (dx, dx), (vx, vx), DT, h)[:3]
+        def point(table, gap, x, n, vx, opening, slide, cohesion):
+            law, h = law_of(table, 0), History(opening, slide, slide, cohesion, 0.0)
+            step, rate = (0.0, 0.0, 0.0), (n, vx, vx)
+            return traction(law, parts, (gap, x, x), step, rate, DT, h)[:3]
     else:
 
         @compiled
-        def point(table, gap, rate, dx, vx, opening, ex, cohesion):
-            law, h = law_of(table, 0), History(opening, ex, ex, cohesion, 0.0)
-            return tangent(law, parts, gap, rate, (dx, dx), (vx, vx), DT, h, 1e3)
+        def point(table, gap, x, n, vx, opening, slide, cohesion):
+            law, h = law_of(table, 0), History(opening, slide, slide, cohesion, 0.0)
+            return tangent(law, parts, (gap, x, x), (n, vx, vx), DT, h, 1e3)
 
     point(table, 1e-6, 0.1, 1e-6, 0.1, 0.0, 0.0, 0.0)
     text = "\n".join(point.inspect_llvm().values())
@@ -138,5 +136,5 @@ def test_absent_parts_leave_no_instruction_in_the_tangent():
     assert counts(Law(9e9, None, False), kinds, "tangent")[0] > 0
     assert counts(ELASTIC._replace(friction=0.5), kinds, "tangent")[1] > 0
     bare = law_of(table_of(Law(9e9)), 0), parts_of(Law(9e9))
-    found = tangent(*bare, 1e-6, 0.1, (0.0, 0.0), (0.0, 0.0), DT, History(), 1e5)
+    found = tangent(*bare, (1e-6, 0.0, 0.0), (0.1, 0.0, 0.0), DT, History(), 1e5)
     assert found == Tangent(-9e9)

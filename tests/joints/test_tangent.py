@@ -99,7 +99,7 @@ class Step:
         gap_rate, *slip_rate = self.rate + self.r * (at - self.at)
         return *self.point, at[0], gap_rate, tuple(at[1:]), tuple(slip_rate)
 
-    def advance(self, at):
+    def traction(self, at):
         return np.array(self.after(at)[:3])
 
     def after(self, at):
