@@ -40,7 +40,8 @@ class ContactTable(NamedTuple):
 
 class BlockTable(NamedTuple):
     """Blocks as the kernel takes them: `model.Blocks`, with one over the inertia of each freedom,
-    numbers and matrices of held blocks, places and rows of recorded ones [2, r]."""
+    numbers and matrices of held blocks, places and rows of recorded ones [2, r], and `back`, the
+    inverse of the tensor."""
 
     inertia: np.ndarray
     inverse: np.ndarray
@@ -48,6 +49,8 @@ class BlockTable(NamedTuple):
     matrices: Any
     places: np.ndarray
     gravity: np.ndarray
+    tensor: Any
+    back: Any
     dt: float
     keep: float
     local: float
@@ -115,7 +118,8 @@ def make_stepper(
         len(contacts.place),
     )  # fmt: skip
     blocks = BlockTable(
-        inertia, 1.0 / inertia, held, matrices, places, own.gravity, dt, own.keep, own.local
+        inertia, 1.0 / inertia, held, matrices, places, own.gravity, own.tensor,
+        None if own.tensor is None else np.linalg.inv(own.tensor), dt, own.keep, own.local,
     )  # fmt: skip
     flat = state._replace(u=state.u.reshape(-1), v=state.v.reshape(-1))
 

@@ -19,8 +19,8 @@ class TableRows(NamedTuple):
 
     frame : axes n and tangents, the tangent left out in the plane. arm_i, arm_j : from centroids to
     the centre of the face, m. area : m2. start : gap and slip that stand for what a contact carries
-    at first, m. second : second moments about the face's axes, m4. point : place in the face, m,
-    and area of each point. count : of rows.
+    at first, m. second : second moments along the first tangent, along the second, and mixed, m4.
+    point : place in the face, m, and area of each point. size : number of rows.
     """
 
     frame: int
@@ -85,7 +85,7 @@ class KernelFlags(NamedTuple):
     energies are kept. stressed : whether contacts start under a traction. shaken : whether walls
     move. relaxed : whether the same kernel brings the blocks to rest first, for which it can damp
     their motion, without a place in the ledger. in_row : whether contacts mostly join block after
-    block.
+    block. oblique : whether rotations of a block have inertia in common.
     """
 
     dim: int
@@ -101,6 +101,7 @@ class KernelFlags(NamedTuple):
     shaken: bool = False
     relaxed: bool = False
     in_row: bool = False
+    oblique: bool = False
 
     @property
     def rotations(self) -> int:
@@ -140,7 +141,7 @@ class KernelFlags(NamedTuple):
         dim, arms = self.dim, self.dim * self.turns
         sizes = (
             (0, 2, 9)[dim - 1], arms, arms, 1, dim * self.stressed,
-            (dim - 1) * (self.turns and not self.points), dim * self.points,
+            dim * (dim - 1) // 2 * (self.turns and not self.points), dim * self.points,
         )  # fmt: skip
         begins = np.append(0, np.cumsum(sizes))
         return TableRows._make([*(LANES * begins[:-1]).tolist(), int(begins[-1])])
@@ -194,7 +195,8 @@ class Blocks(NamedTuple):
 
     inertia : float array [N, freedoms], mass (kg) and moments of inertia (kg m2). dt : s. keep :
     what mass-proportional damping leaves of a velocity in a step. local : Cundall's damping.
-    gravity : float array [dim], m/s2.
+    gravity : float array [dim], m/s2. tensor : float array [N, 3, 3], kg m2, of inertia; None where
+    no rotations of a block have inertia in common.
     """
 
     inertia: np.ndarray
@@ -202,6 +204,7 @@ class Blocks(NamedTuple):
     keep: float
     local: float
     gravity: np.ndarray
+    tensor: Any = None
 
 
 class Model(NamedTuple):
@@ -249,16 +252,24 @@ class Samples(NamedTuple):
     energy: Any
 
 
-def held_by(dashpot: np.ndarray, block: np.ndarray, inertia: np.ndarray, dt: float) -> Held:
+def held_by(dashpot: np.ndarray, block: np.ndarray, blocks: Blocks) -> Held:
     """Return held blocks from their dashpots [h, freedoms, freedoms], N s/m, and their numbers [h],
     ascending.
 
-    inertia : of all blocks [N, freedoms]. Their dashpots see the mean velocity of both half steps:
-    (1 + dt C / 2 M) v[n+1/2] = v - (dt C / 2 M) v[n-1/2], v the velocity without them.
+    Their dashpots see the mean velocity of both half steps:
+    (1 + dt M^-1 C / 2) v[n+1/2] = v - (dt M^-1 C / 2) v[n-1/2], v the velocity without them.
     """
-    lost = 0.5 * dt * dashpot / inertia[block][:, :, None]
-    moves = np.linalg.inv(np.eye(inertia.shape[1]) + lost)
+    lost = 0.5 * blocks.dt * np.linalg.solve(masses_of(blocks)[block], dashpot)
+    moves = np.linalg.inv(np.eye(dashpot.shape[1]) + lost)
     return Held(block, np.stack([-moves @ lost, moves, dashpot], axis=1))
+
+
+def masses_of(blocks: Blocks) -> np.ndarray:
+    """Return the matrices of mass and inertia [N, freedoms, freedoms]."""
+    found = blocks.inertia[:, :, None] * np.eye(blocks.inertia.shape[1])
+    if blocks.tensor is not None:
+        found[:, 3:, 3:] = blocks.tensor
+    return found
 
 
 def state_at_rest(model: Model) -> State:

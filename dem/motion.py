@@ -20,7 +20,7 @@ def motion_for(form: KernelFlags) -> Callable:
         form.dim, form.freedoms, form.ledger, form.held, form.gravity
     )  # fmt: skip
     mass_damping, local_damping = form.mass_damping or form.relaxed, form.local_damping
-    damped = form.mass_damping or local_damping
+    damped, oblique = form.mass_damping or local_damping, form.oblique
     SPARE, BEFORE = form.buffer.spare, form.buffer.before
 
     @formula
@@ -56,6 +56,40 @@ def motion_for(form: KernelFlags) -> Callable:
                 force[i] = 0.0
             v[i] = new
             u[i] += dt * new
+
+    @formula
+    def advance_oblique(blocks, first, u, v, force, before, pushed):
+        """The same of blocks from `first` on whose rotations have inertia in common."""
+        dt, keep = blocks.dt, blocks.keep
+        for block in range(u.size // freedoms):
+            back = blocks.back[first + block]
+            for b in range(freedoms):
+                i = freedoms * block + b
+                old, gain = v[i], 0.0
+                if b < dim:
+                    gain = pushed * force[i] * blocks.inverse[freedoms * first + i]
+                else:
+                    for m in range(3):
+                        gain += pushed * back[b - 3, m] * force[freedoms * block + 3 + m]
+                if local_damping:
+                    gain = gain - blocks.local * copysign(abs(gain), old) if old != 0.0 else gain
+                new = (keep * old if mass_damping else old) + gain
+                if has_ledger:
+                    before[i] = old
+                v[i] = new
+                u[i] += dt * new
+        if not has_ledger:
+            force[:] = 0.0
+
+    @formula
+    def momentum(blocks, inertia, first, i, v):
+        """Return freedom i of the momentum of blocks from `first` on at velocities v."""
+        if not oblique or i % 6 < 3:
+            return inertia[i] * v[i]
+        found, begin = 0.0, i - i % 6 + 3
+        for m in range(3):
+            found += blocks.tensor[first + i // 6, i % 6 - 3, m] * v[begin + m]
+        return found
 
     @formula
     def drag_held(blocks, first, last, begin, u, v, before, spare):
@@ -98,7 +132,10 @@ def motion_for(form: KernelFlags) -> Callable:
         inertia, inverse = blocks.inertia[begin:end], blocks.inverse[begin:end]
         before, pushed = q[BEFORE:], 0.5 * dt * (1.0 + blocks.keep)
         potential = add_forces(blocks, first, last, begin, u, v, force, inertia, before, drive, n)
-        advance(u, v, force, inverse, before, pushed, dt, blocks.keep, blocks.local)
+        if oblique:
+            advance_oblique(blocks, tiles[1, t], u, v, force, before, pushed)
+        else:
+            advance(u, v, force, inverse, before, pushed, dt, blocks.keep, blocks.local)
         if held:
             drag_held(blocks, first, last, begin, u, v, before, q[SPARE:])
         if has_ledger:
@@ -107,11 +144,12 @@ def motion_for(form: KernelFlags) -> Callable:
             if damped or sampled:
                 kinetic, lost, lost_after = 0.0, 0.0, 0.0
                 for i in range(end - begin):
-                    old, new = before[i], v[i]
+                    after = momentum(blocks, inertia, tiles[1, t], i, v)
                     if damped:  # what is missing in the block's momentum
-                        missing = inertia[i] * (new - old) - dt * force[i]
-                        lost, lost_after = lost + missing * old, lost_after + missing * new
-                    kinetic += inertia[i] * (old * new)
+                        missing = after - momentum(blocks, inertia, tiles[1, t], i, before)
+                        missing -= dt * force[i]
+                        lost, lost_after = lost + missing * before[i], lost_after + missing * v[i]
+                    kinetic += before[i] * after
                 ledger[VISCOUS] -= 0.5 * lost
                 ledger[VISCOUS + AFTER] -= 0.5 * lost_after
                 if sampled:

@@ -38,11 +38,11 @@ def simulate(
     if (quality := scene.rock.quality_factor) is not None and (reason := beyond_blocks(scene)):
         raise SceneError(scene.where, "rock.quality_factor", quality, reason)
     if not isinstance(scene, Scene):
-        from jointwave.dem.blocks.simulate import (
-            simulate as in_plane,  # with shapely, which no pillar needs
+        from jointwave.dem.run import (
+            simulate as rock_mass,  # with shapely, which no pillar needs
         )
 
-        return in_plane(scene, progress, keeper, incident)
+        return rock_mass(scene, progress, keeper, incident)
     if is_spatial(scene):
         return in_space(scene, progress, keeper)
     return along_axis(scene, progress, keeper)

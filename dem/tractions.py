@@ -192,16 +192,18 @@ def face_forces_for(form: KernelFlags) -> Callable:
         common = law_of(laws, 0)
         for c in range(L):
             law = law_at(q, LAW + c, L) if varied else common
-            s_1, s_2, p_n, p_1, p_2, r = k[SECOND + c], 0.0, 0.0, 0.0, 0.0, JUMP + dim * L + c
-            d_n, d_1, d_2 = 0.0, 0.0, 0.0
+            s_1, s_2, s_12, r = k[SECOND + c], 0.0, 0.0, JUMP + dim * L + c
+            p_n, p_1, p_2, d_n, d_1, d_2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
             if dim == 2:
                 p_2 = q[r]
             else:
-                s_2, p_n, p_1, p_2 = k[SECOND + L + c], q[r], q[r + L], q[r + 2 * L]
+                s_2, s_12 = k[SECOND + L + c], k[SECOND + 2 * L + c]
+                p_n, p_1, p_2 = q[r], q[r + L], q[r + 2 * L]
             k_n, k_s = law.normal_stiffness, law.shear_stiffness
             if has_ledger:
-                bent = k_n * (s_1 * p_2 * p_2 + s_2 * p_1 * p_1)
-                ledger[ELASTIC + c] += weighed * (0.5 * (bent + k_s * (s_1 + s_2) * p_n * p_n))
+                bent = s_1 * p_2 * p_2 + s_2 * p_1 * p_1 - 2.0 * s_12 * p_1 * p_2
+                turned = k_s * (s_1 + s_2) * p_n * p_n
+                ledger[ELASTIC + c] += weighed * (0.5 * (k_n * bent + turned))
             p_n, p_1, p_2 = k_s * p_n, k_n * p_1, k_n * p_2
             if dashpots:
                 k_n, k_s, r = law.normal_viscosity, law.shear_viscosity, NOW + dim * L + c
@@ -211,16 +213,17 @@ def face_forces_for(form: KernelFlags) -> Callable:
                     d_n, d_1, d_2 = k_s * q[r], k_n * q[r + L], k_n * q[r + 2 * L]
                 p_n, p_1, p_2 = p_n + d_n, p_1 + d_1, p_2 + d_2
             r = SPREAD + c
-            q[r], q[r + L] = s_1 * p_2, 0.0
+            q[r], q[r + L] = s_1 * p_2 - s_12 * p_1, s_12 * p_n
             if dim == 3:
-                q[r + 2 * L], q[r + 3 * L] = -s_1 * p_n, -s_2 * p_1
-                q[r + 4 * L], q[r + 5 * L] = s_2 * p_n, 0.0
+                q[r + 2 * L], q[r + 3 * L] = -s_1 * p_n, s_12 * p_2 - s_2 * p_1
+                q[r + 4 * L], q[r + 5 * L] = s_2 * p_n, -s_12 * p_n
             if drags:
                 r = DRAG + dim * L + c
                 if dim == 2:
                     q[r] = -s_1 * d_2
                 else:
-                    q[r], q[r + L], q[r + 2 * L] = -(s_1 + s_2) * d_n, -s_2 * d_1, -s_1 * d_2
+                    q[r], q[r + L] = -(s_1 + s_2) * d_n, s_12 * d_2 - s_2 * d_1
+                    q[r + 2 * L] = s_12 * d_1 - s_1 * d_2
 
     @formula
     def face_forces(laws, k, h, q, ledger, dt, weighed):

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.errors import SceneError
+from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.material import effective_medium
 from jointwave.cases.material.effective_medium import compliant, intact, joints_alone
@@ -23,7 +24,6 @@ from jointwave.cases.material.elastic import shear_modulus
 from jointwave.cases.material.rigid_fit import nearest_stiffness
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus
-from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.joints import attitude
 from jointwave.cases.partition.lattice import by_direction
 from jointwave.cases.partition.regions import rocks_of, within
@@ -137,33 +137,36 @@ def _share(scene: RockMass, sets: list[JointSet], real: int) -> RockShare:
 
 def welds(
     scene: RockMass,
-    partition: Partition,
+    cut: Blocks,
     further: list[JointSet],
-    blocks: np.ndarray,
+    pairs: np.ndarray,
     start: np.ndarray,
     normal: np.ndarray,
     shift: np.ndarray,
 ) -> Stiffness:
-    """Return the stiffness of contacts [c] between blocks [c, 2] that no joint set and no set of
-    cuts made: the rock on both sides in series.
+    """Return the stiffness of contacts [c] between pairs of blocks [c, 2] that no joint set and no
+    set of cuts made: the rock on both sides in series.
 
-    start : a place on each contact [c, 2], m. normal : [c, 2]. shift : by which blocks j stand
-    elsewhere, across periodic sides [c, 2], m. Beside another region's rock, half a block has the
+    start : a place on each contact [c, d], m. normal : [c, d]. shift : by which blocks j stand
+    elsewhere, across periodic sides [c, d], m. Beside another region's rock, half a block has the
     compliance of its joints along the contact, if there are some.
     """
-    if not len(blocks):
+    if not len(pairs):
         return Stiffness(np.zeros(0), np.zeros(0))
-    shares, rocks, found = rock_shares(scene, further), rocks_of(scene), np.zeros((len(blocks), 2))
-    for c, (pair, n) in enumerate(zip(blocks, normal, strict=True)):
-        regions = partition.region[pair]
+    shares, rocks, found = rock_shares(scene, further), rocks_of(scene), np.zeros((len(pairs), 2))
+    corners = cut.body.corners(cut.body.halves())
+    first = np.searchsorted(corners[:, 0], np.arange(cut.count + 1))
+    for c, (pair, n) in enumerate(zip(pairs, normal, strict=True)):
+        regions = cut.body.region[pair]
         for side, (block, region) in enumerate(zip(pair, regions, strict=True)):
             share, rock = shares[region], rocks[region]
             at = share.parallel_to(n) if regions[0] != regions[1] else -1
             if at >= 0:
-                thickness = np.ptp(partition.corners_of(block) @ n)
+                own = corners[first[block] : first[block + 1], 1]
+                thickness = np.ptp(cut.body.vertices[own] @ n)
                 found[c] += share.compliance[at] * thickness / 2
             else:
-                reach = abs((start[c] - side * shift[c] - partition.centroid[block]) @ n)
+                reach = abs((start[c] - side * shift[c] - cut.centroid[block]) @ n)
                 shear = shear_modulus(rock.intact_modulus, rock.intact_poisson)
                 found[c] += reach / np.array([constrained_modulus(rock), shear])
     return Stiffness(*(1 / found).T)

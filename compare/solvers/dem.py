@@ -58,14 +58,14 @@ def applies(scene: Scene | RockMass) -> Answer:
 
 
 def _in_plane(scene: RockMass):
-    from jointwave.dem.blocks.build import rigid_blocks
-    from jointwave.dem.blocks.system import clock_of
+    from jointwave.dem.build import rigid_blocks
+    from jointwave.dem.system import clock_of
     from jointwave.dem.time_loop import thread_count
 
     blocks = rigid_blocks(scene)
     incident(scene)  # which is not known of all waves in layers
-    count = blocks.partition.count
-    return *clock_of(blocks), 3 * count, thread_count(scene.numerics.dem.threads, count)
+    threads = thread_count(scene.numerics.dem.threads, blocks.cut.count)
+    return *clock_of(blocks), blocks.inertia.size, threads
 
 
 def _axial(scene: Scene):

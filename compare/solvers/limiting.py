@@ -46,13 +46,13 @@ def _blocks(scene: AnyScene, model: Any) -> tuple:
         mass = np.full(p.block_count, p.block_mass) if p.masses is None else p.masses
         length = np.diff(p.contact_y)
         return 2 * (k[1:] + k[:-1]) / mass, mass, p.centre_y[:, None], lambda i: length[i]
-    from jointwave.dem.blocks.build import rigid_blocks
-    from jointwave.dem.blocks.stability import squared_frequencies
+    from jointwave.dem.build import rigid_blocks
+    from jointwave.dem.stability import squared_frequencies
 
     blocks = rigid_blocks(scene)
-    square = squared_frequencies(blocks.links, blocks.columns, blocks.inertia)
-    area = blocks.partition.area
-    return square, blocks.inertia.mass, blocks.partition.centroid, lambda i: area[i] ** 0.5
+    square = squared_frequencies(blocks.touching, blocks.columns, blocks.masses)
+    volume, dim = blocks.cut.volume, blocks.dim
+    return square, blocks.inertia[:, 0], blocks.cut.centroid, lambda i: volume[i] ** (1 / dim)
 
 
 def _elements(scene: AnyScene, model: Any) -> tuple:

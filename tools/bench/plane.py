@@ -10,9 +10,9 @@ from kernels import SLIDES
 from rows import ELASTIC, changed, lattice, stretch
 from timing import Timed, in_turns, side_by_side
 
-from jointwave.dem.blocks.system import prepared
 from jointwave.dem.leapfrog import march
 from jointwave.dem.model import Model, samples_for, state_at_rest
+from jointwave.dem.system import prepared
 
 COULOMB = ELASTIC | {"friction_angle": 30.0, "cohesion": 1e5}
 PRESSURE = {"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1e5}

@@ -110,7 +110,7 @@ def _between_blocks(scene: RockMass, partition: Partition) -> list[Contacts]:
         rock = facets.joint_set == NO_SET
         weld = facets.blocks[rock], facets.centroid[rock], facets.normal[rock]
         shifts = np.tile(shift, (len(weld[0]), 1))
-        k[rock] = np.stack(welds(scene, partition, further, *weld, shifts), axis=1)
+        k[rock] = np.stack(welds(scene, partition.blocks, further, *weld, shifts), axis=1)
         bending[rock] = 1.0
         parts.append(contacts_of(blocks, facets, k, 0 * k, bending, shift))
     return parts

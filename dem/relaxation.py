@@ -8,13 +8,12 @@ from math import ceil
 import numpy as np
 
 from jointwave.cases.material.prestress import refuse_beyond_strength
-from jointwave.dem.blocks.stability import critical_plane_step
-from jointwave.dem.blocks.system import PlaneSystem
 from jointwave.dem.boundaries import facets_on
 from jointwave.dem.contacts import Contacts
 from jointwave.dem.leapfrog import make_stepper
 from jointwave.dem.loads import Loads, reactions
 from jointwave.dem.model import Model, State, held_by, samples_for, state_at_rest
+from jointwave.dem.stability import critical_time_step
 from jointwave.dem.static import (
     NEVER,
     STEP_FRACTION,
@@ -24,6 +23,7 @@ from jointwave.dem.static import (
     Rest,
     settle,
 )
+from jointwave.dem.system import BlockSystem
 from jointwave.joints.law import IN_MOTION, sticking
 from jointwave.results.arrays import copied, fill
 
@@ -32,7 +32,7 @@ RESISTED = 1e-9  # of the largest resistance: below it there is none
 LOOKS = 0.3  # stretches of ten steps after each part, over the root of the number of blocks
 
 
-def start(system: PlaneSystem, state: State) -> Rest | None:
+def start(system: BlockSystem, state: State) -> Rest | None:
     """Set the initial state of the scene, and what quiet sides bear of the weight; return how a
     static state was reached, if it is one.
 
@@ -44,7 +44,7 @@ def start(system: PlaneSystem, state: State) -> Rest | None:
     if not static:
         refuse_beyond_strength(scene)
     if static or scene.prestress is not None:
-        relaxation = PlaneRelaxation(system, static)
+        relaxation = BlockRelaxation(system, static)
         before = relaxation.excavate()
         rest = settle(scene, relaxation)
         rest = rest._replace(steps=before + rest.steps)
@@ -59,7 +59,7 @@ def start(system: PlaneSystem, state: State) -> Rest | None:
         count = len(blocks.inertia)
         state.v[:count, : len(blocks.gravity)] = -0.5 * blocks.dt * blocks.gravity
         if bears:
-            relaxation = PlaneRelaxation(system, True, sticks=True)
+            relaxation = BlockRelaxation(system, True, sticks=True)
             settle(scene, relaxation, UNBORNE)
             found, loads = relaxation.borne(), system.loads
             loads.add_steady(found)
@@ -75,19 +75,19 @@ def unstressed(model: Model) -> Contacts:
     return model.contacts._replace(table=table)
 
 
-def still(resistance: np.ndarray, inertia: np.ndarray) -> np.ndarray:
-    """Return what turns velocities of blocks into those [h, 3, 3] that meet no resistance.
+def still(resistance: np.ndarray, masses: np.ndarray) -> np.ndarray:
+    """Return what turns velocities of blocks into those [h, F, F] that meet no resistance.
 
-    resistance : force and moment per velocity [h, 3, 3], of any size. inertia : [h, 3].
+    resistance : force and moment per velocity [h, F, F], of any size. masses : [h, F, F].
     """
-    roots = np.sqrt(inertia)
-    scaled = resistance / roots[:, :, None] / roots[:, None, :]
-    size, axes = np.linalg.eigh(scaled)
+    root = np.linalg.cholesky(masses)
+    back = np.linalg.inv(root)
+    size, axes = np.linalg.eigh(back @ resistance @ back.swapaxes(1, 2))
     axes *= (size <= RESISTED * size.max(initial=0.0))[:, None, :]
-    return axes @ axes.swapaxes(1, 2) / roots[:, :, None] * roots[:, None, :]
+    return back.swapaxes(1, 2) @ axes @ axes.swapaxes(1, 2) @ root.swapaxes(1, 2)
 
 
-class PlaneRelaxation:
+class BlockRelaxation:
     """The blocks under their static forces: `dem.static.System`.
 
     Damping and rates do not affect a static state: dashpots, also of quiet sides, and local
@@ -97,49 +97,49 @@ class PlaneRelaxation:
     or breaks.
     """
 
-    def __init__(self, system: PlaneSystem, weighed: bool, sticks: bool = False) -> None:
+    def __init__(self, system: BlockSystem, weighed: bool, sticks: bool = False) -> None:
         blocks, model, loads = system.blocks, system.model, system.loads
         columns = blocks.columns._replace(time_constants=None)
-        dt = STEP_FRACTION * critical_plane_step(blocks.links, columns, blocks.inertia, 0.0)
+        dt = STEP_FRACTION * critical_time_step(blocks.touching, columns, blocks.masses, 0.0)
         own, laws = model.blocks._replace(dt=dt, local=0.0), model.laws.copy()
         if not weighed:
             own = own._replace(gravity=np.zeros_like(own.gravity))
         laws[IN_MOTION] = 0.0
         rows, self.steady, self.walls = loads.rows, loads.steady, None
-        stress, partition = blocks.scene.prestress, blocks.partition
+        stress, cut = blocks.scene.prestress, blocks.cut
         if sticks:
             laws, self.steady, stress = sticking(laws), np.zeros_like(self.steady), None
             model = model._replace(contacts=unstressed(model))
         if stress is not None and blocks.scene.excavated and model.form.points:
-            openings = [name for name in partition.sides if name.startswith("opening")]
-            facets = facets_on(partition.blocks, partition.sides, openings)
-            walls = reactions(partition.blocks, facets, stress.tensor)
+            openings = [name for name in blocks.sides if name.startswith("opening")]
+            facets = facets_on(cut, blocks.sides, openings)
+            walls = reactions(cut, facets, stress.tensor)
             rows = np.union1d(rows, walls.block)
             self.walls = Loads(rows, [walls], [], system.time, loads.onto).steady
             self.steady = np.zeros_like(self.walls)
             self.steady[np.searchsorted(rows, loads.rows)] = loads.steady
         # Of the velocities of blocks: what quiet sides that bear the weight resist them by.
         self.bearing, self.onto, self.rows = system.bearing @ loads.onto.T, loads.onto, loads.rows
-        nothing = np.zeros((len(rows), 3, 3))
-        held = held_by(nothing, rows, own.inertia, dt) if model.form.held else None
+        nothing = np.zeros((len(rows), *blocks.masses.shape[1:]))
+        held = held_by(nothing, rows, own) if model.form.held else None
         if weighed and held is not None:
             resistance = nothing.copy()
             resistance[np.searchsorted(rows, loads.rows)] = self.onto @ self.bearing
-            held.matrices[:, 1] = still(resistance, own.inertia[rows])
+            held.matrices[:, 1] = still(resistance, blocks.masses[rows])
         self.model = model._replace(blocks=own, laws=laws, held=held)
         self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 0)
         self.count, most = len(own.inertia), STEPS_BETWEEN_LOOKS
         self._drive = np.zeros((most, *self.steady.shape))
-        shake = np.zeros((most, model.walls, 2)) if model.form.shaken else None
+        shake = np.zeros((most, model.walls, blocks.dim)) if model.form.shaken else None
         self._take = make_stepper(
             self.model, self.state, self.samples, most, self._drive, shake, system.threads
         )
-        self.mass = blocks.masses.ravel()
+        self.mass = blocks.inertia.ravel()
         g = np.linalg.norm(own.gravity)
-        pressed = 0.0 if stress is None else max(map(abs, (stress.xx, stress.yy, stress.xy)))
-        self.scale = float(g * blocks.inertia.mass.sum() + pressed * partition.boundary.area.sum())
+        pressed = 0.0 if stress is None else np.abs(stress.tensor).max()
+        self.scale = float(g * blocks.inertia[:, 0].sum() + pressed * cut.boundary.area.sum())
         self.most_steps = 40_000 + 40_000 * int(np.sqrt(self.count))
-        self.centroid = partition.centroid
+        self.masses, self.centroid = blocks.masses, cut.centroid
 
     def excavate(self) -> int:
         """Release the walls of openings but for the last part, and return the steps taken: all at
@@ -168,17 +168,17 @@ class PlaneRelaxation:
         kept = copied(self.state)
         self.stop()
         self.advance(1, 0.0)
-        gain = self.state.v[: self.count].ravel().copy()
+        gain = self.masses @ self.state.v[: self.count, :, None]
         fill(self.state, kept)
-        return self.mass * gain / self.model.blocks.dt
+        return gain.ravel() / self.model.blocks.dt
 
     def borne(self) -> np.ndarray:
-        """Return the resultants of the forces that sides which bear the weight are held by [h, 6]:
-        of tractions linear along each block's edges."""
+        """Return the resultants of the forces that sides which bear the weight are held by
+        [h, d + d^2]: of tractions linear along each block's sides."""
         moves = self.model.held.matrices[:, 1]
         held = moves.copy()
-        moves[:] = np.eye(3)
-        missing = -self.unbalanced().reshape(-1, 3)[self.rows]
+        moves[:] = np.eye(moves.shape[1])
+        missing = -self.unbalanced().reshape(self.count, -1)[self.rows]
         moves[:] = held
         own = self.onto @ self.bearing
         stretched = np.linalg.pinv(own, rcond=1e-9, hermitian=True) @ missing[:, :, None]
@@ -194,7 +194,8 @@ class PlaneRelaxation:
 
     def fastest(self, change: np.ndarray) -> tuple[str, float]:
         """Return the block that moves farthest in a step, and how fast, m/s."""
-        moved = np.hypot(*change.reshape(-1, 3)[:, :2].T)
+        dim = self.centroid.shape[1]
+        moved = np.linalg.norm(change.reshape(self.count, -1)[:, :dim], axis=1)
         k = int(moved.argmax())
-        x, y = self.centroid[k].round(6) + 0.0
-        return f"the block at [{x:.4g}, {y:.4g}]", float(moved[k]) / self.model.blocks.dt
+        place = ", ".join(f"{x:.4g}" for x in self.centroid[k].round(6) + 0.0)
+        return f"the block at [{place}]", float(moved[k]) / self.model.blocks.dt

@@ -3,6 +3,7 @@ set, each set of cuts, and every other contact."""
 
 from __future__ import annotations
 
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from jointwave.cases.material.rock_mass import Stiffness, set_time_constants
 from jointwave.cases.material.strength import strength_of
 from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.dem.touching import Touching
 from jointwave.joints.law import Law, law, stiffest, uniform
 
 
@@ -22,9 +24,8 @@ class Columns(NamedTuple):
     stiffest : K_n and K_s of joints that have closed as far as is in reach, and slide where that
     lifts them [2, columns], Pa/m.
     time_constants : viscosity over stiffness, normal and in shear [2, columns], s; None without
-    dashpots. rules : places over length from the centre and weights of points [1, 2, points] or
-    [columns, 2, points].
-    points : number with a history of their own; 0 for linear joints.
+    dashpots. rules : rule of points and their number along each tangent, one for all or one a
+    column. fails : whether points have a history of their own.
     """
 
     law: Law
@@ -32,8 +33,8 @@ class Columns(NamedTuple):
     shear: np.ndarray
     stiffest: np.ndarray
     time_constants: np.ndarray | None
-    rules: np.ndarray
-    points: int
+    rules: list[tuple[str, int]]
+    fails: bool
 
 
 def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
@@ -58,9 +59,8 @@ def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
         viscosities = uniform(eta[0] * normal), uniform(eta[1] * shear)
         found = found._replace(normal_viscosity=viscosities[0], shear_viscosity=viscosities[1])
     fails = not tension.all() or bool(strengths)
-    rules = _rules(scene, which)
     most = np.array([np.resize(one, len(normal)) for one in stiffest(found, scene)])
-    return Columns(found, normal, shear, most, eta, rules, rules.shape[2] if fails else 0)
+    return Columns(found, normal, shear, most, eta, _rules(scene, which), fails)
 
 
 def _time_constants(
@@ -86,15 +86,32 @@ def _time_constants(
     return eta
 
 
-def _rules(scene: RockMass, which: np.ndarray) -> np.ndarray:
-    """Return the rules of all columns, one where they are the same; shorter ones are filled up by
-    points of no weight."""
+def points_on(touching: Touching, rules: list[tuple[str, int]]) -> np.ndarray:
+    """Return places, m, from the centre and along the tangents, and the area of each point of all
+    contacts [c, points, d].
+
+    rules : rule and number of points along each tangent, one for all or one a column. A rule is
+    that of a rectangle with the face's second moments, whose edges it has in the plane, and of
+    rectangles; shorter ones are filled up by points of no area.
+    """
+    dim = touching.frame.shape[1]
+    variance, axes = np.linalg.eigh(touching.spread)
+    half = (axes * np.sqrt(3 * np.maximum(variance, 0.0))[:, None]) @ axes.swapaxes(1, 2)
+    most = max(number for _, number in rules) ** (dim - 1)
+    found = np.zeros((len(touching.area), most, dim))
+    which = np.minimum(touching.column, len(rules) - 1)
+    for k, (rule, number) in enumerate(rules):
+        x, w = points_of(rule, number)
+        places = np.array(list(product(2 * x - 1, repeat=dim - 1))).reshape(-1, dim - 1)
+        weight = np.array([np.prod(one) for one in product(w, repeat=dim - 1)])
+        own = which == k
+        found[own, : len(weight), :-1] = places @ half[own]
+        found[own, : len(weight), -1] = touching.area[own, None] * weight
+    return found
+
+
+def _rules(scene: RockMass, which: np.ndarray) -> list[tuple[str, int]]:
+    """Return the rules of all columns, one where they are the same."""
     of_sets = [*((one.point_rule, one.contact_points) for one in scene.joint_sets), CUT]
     named: list[tuple[str, int]] = [of_sets[k] for k in which]
-    if len(set(named)) == 1:
-        del named[1:]
-    found = np.zeros((len(named), 2, max(number for _, number in named)))
-    for table, (rule, number) in zip(found, named, strict=True):
-        places, weights = points_of(rule, number)
-        table[0, :number], table[1, :number] = places - 0.5, weights
-    return found
+    return named[:1] if len(set(named)) == 1 else named

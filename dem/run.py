@@ -10,12 +10,12 @@ import xarray as xr
 
 from jointwave.cases.incident import IncidentField
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.dem.blocks.bounds import highest_energy, motion_of_contacts
-from jointwave.dem.blocks.recording import recorder, waveforms
-from jointwave.dem.blocks.start import start
-from jointwave.dem.blocks.system import PlaneSystem, prepared
+from jointwave.dem.bounds import highest_energy, motion_of_contacts
 from jointwave.dem.leapfrog import march
 from jointwave.dem.model import Samples, State, samples_for, state_at_rest
+from jointwave.dem.recording import recorder, waveforms
+from jointwave.dem.relaxation import start
+from jointwave.dem.system import BlockSystem, prepared
 from jointwave.dem.time_loop import Run, followed, refuse_beyond_bounds, versions
 from jointwave.numerics.divergence import SPEED, Guard, audit, guard
 from jointwave.numerics.small_motion import (
@@ -38,7 +38,7 @@ def simulate(
     keeper: Checkpointer | None = None,
     incident: IncidentField | None = None,
 ) -> xr.Dataset:
-    """Simulate a rock mass in the plane, three degrees of freedom per block."""
+    """Simulate a rock mass, in the plane or in space."""
     began = perf_counter()
     system = prepared(scene, incident)
     model, time = system.model, system.time
@@ -62,8 +62,8 @@ def simulate(
             dt=time.dt,
             critical_dt=system.critical,
             steps=time.steps,
-            blocks=system.blocks.partition.count,
-            degrees_of_freedom=3 * system.blocks.partition.count,
+            blocks=system.blocks.cut.count,
+            degrees_of_freedom=model.blocks.inertia.size,
             left_over=system.blocks.joints.left_over,
             threads=system.threads,
             bytes=size_of(model, state),
@@ -80,37 +80,39 @@ def simulate(
         look(system, state, samples, monitor, first, last)
 
     def check(first: int, last: int) -> None:
-        speeds, places = _energies(system, state), system.blocks.partition.centroid
+        speeds, places = _energies(system, state), system.blocks.cut.centroid
         refuse_beyond_bounds(scene, time, system.critical, monitor, speeds, places)
         if matters(scene):
             t = last * time.stride * time.dt
             refuse_large_motion(scene, "the rigid blocks", moved_apart(system, state), t, first)
 
     parts = (state, samples, monitor)
-    run = Run(time, system.blocks.partition.count, march_samples, check, parts)
+    run = Run(time, system.blocks.cut.count, march_samples, check, parts)
     return followed(run, result, progress, snapshots, keeper)
 
 
-def moved_apart(system: PlaneSystem, state: State) -> Moved | None:
-    """Return the contact that has moved furthest over the size of its smaller block, or blocks that
-    overlap without one; None in a single block."""
-    links, partition = system.blocks.links, system.blocks.partition
-    count = partition.count
-    overlap = overlapping(partition, state.u[:count])
-    if overlap is not None or not len(links.blocks):
+def moved_apart(system: BlockSystem, state: State) -> Moved | None:
+    """Return the contact that has moved furthest over the size of its smaller block, or in the
+    plane blocks that overlap without one; None in a single block."""
+    blocks, met, dim = system.blocks, system.blocks.touching, system.blocks.dim
+    count = blocks.cut.count
+    if dim == 2 and (overlap := overlapping(blocks.partition, state.u[:count])) is not None:
         return overlap
-    gap, slip, turn = motion_of_contacts(system, state)
-    ends = np.hypot(*(links.end - links.start).T) / 2 * np.abs(turn)
-    by = np.hypot(np.abs(gap) + ends, slip)
-    area = np.append(partition.area, np.full(len(links.walls), np.inf))
-    size = np.sqrt(area[links.blocks].min(axis=1))
+    if not len(met.blocks):
+        return None
+    moved = motion_of_contacts(system, state)
+    reach = np.sqrt(3 * np.trace(met.spread, axis1=1, axis2=2))  # of a rectangle's corners
+    ends = reach * np.linalg.norm(moved[:, dim:], axis=1)
+    by = np.hypot(np.abs(moved[:, 0]) + ends, np.linalg.norm(moved[:, 1:dim], axis=1))
+    volume = np.append(blocks.cut.volume, np.full(len(met.walls), np.inf))
+    size = volume[met.blocks].min(axis=1) ** (1 / dim)
     k = farthest(by, size)
-    i, j = links.blocks[k].tolist()
-    place = tuple(((links.start[k] + links.end[k]) / 2).tolist())
+    i, j = met.blocks[k].tolist()
+    place = tuple(met.centre[k].tolist())
     return Moved(i, j if j < count else -1, float(by[k]), float(size[k]), place)
 
 
-def step(system: PlaneSystem, state: State, samples: Samples, first: int, last: int) -> None:
+def step(system: BlockSystem, state: State, samples: Samples, first: int, last: int) -> None:
     """Take the steps first .. last - 1, in batches whose forces fit in memory."""
     model, loads = system.model, system.loads
     size = max(1, MOST_OF_DRIVE // max(1, loads.onto.shape[1] * len(loads.rows)))
@@ -123,7 +125,7 @@ def step(system: PlaneSystem, state: State, samples: Samples, first: int, last: 
 
 
 def look(
-    system: PlaneSystem,
+    system: BlockSystem,
     state: State,
     samples: Samples,
     monitor: Guard,
@@ -138,7 +140,7 @@ def look(
         monitor.found[:] = last * stride, SPEED, first * stride - 1
 
 
-def _energies(system: PlaneSystem, state: State) -> np.ndarray:
+def _energies(system: BlockSystem, state: State) -> np.ndarray:
     """Return sqrt(m) v of the fastest freedom of each block [N], sqrt(J)."""
-    masses = system.blocks.masses
+    masses = system.blocks.inertia
     return (np.sqrt(masses) * np.abs(state.v[: len(masses)])).max(axis=1)

@@ -1,0 +1,57 @@
+"""Bounds of the motion of rigid blocks in a rock mass: highest energy, motion of contacts."""
+
+import numpy as np
+
+from jointwave.cases.spectrum import highest_frequency
+from jointwave.dem.build import carried
+from jointwave.dem.model import State
+from jointwave.dem.shaking import variation
+from jointwave.dem.system import BlockSystem
+from jointwave.dem.touching import jumps_of, springs_of
+from jointwave.numerics.divergence import speed_that
+
+
+def highest_energy(system: BlockSystem, state: State) -> float:
+    """Return a bound on sqrt(m) v of any degree of freedom, sqrt(J).
+
+    From sources, gravity and moving walls, and the energy stored at the start.
+    """
+    blocks, time, mass = system.blocks, system.time, system.blocks.inertia[:, 0]
+    own = system.model.blocks
+    duration = time.dt * (time.steps + time.stride)
+    shaken = 0.0
+    if system.shaking is not None:
+        shaken = variation(system.shaking(np.arange(time.steps + time.stride)))
+    with np.errstate(over="ignore"):
+        return speed_that(
+            system.loads.impulse(
+                blocks.inertia[system.loads.rows], highest_frequency(blocks.scene)
+            ),
+            duration * np.linalg.norm(own.gravity) * np.sqrt(mass.sum()),
+            np.sqrt(mass.sum()) * shaken,
+            stored(system, state),
+        )
+
+
+def motion_of_contacts(system: BlockSystem, state: State) -> np.ndarray:
+    """Return gap and slips (m) at the centres of all contacts, and their rotation, in their frames
+    [c, F]."""
+    met, u = system.blocks.touching, state.u[system.blocks.touching.blocks]
+    rotations = u.shape[2] - system.blocks.dim
+    of_i, of_j = (jumps_of(met.frame, arm, rotations) for arm in met.arm.swapaxes(0, 1))
+    return (of_j @ u[:, 1, :, None] - of_i @ u[:, 0, :, None])[..., 0]
+
+
+def stored(system: BlockSystem, state: State) -> float:
+    """Return the root of twice the energy in all contacts, sqrt(J)."""
+    met, own, moved = (
+        system.blocks.touching,
+        system.blocks.columns,
+        motion_of_contacts(system, state),
+    )
+    dim, freedoms = system.blocks.dim, state.u.shape[1]
+    if system.model.form.stressed:
+        moved[:, :dim] += carried(system.blocks)
+    normal, shear = own.normal[met.column], own.shear[met.column]
+    springs = springs_of(normal, shear, met.area, met.spread, freedoms - dim)
+    return float(np.sqrt(np.einsum("ca,cab,cb->", moved, springs, moved)))
