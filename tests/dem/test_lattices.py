@@ -49,13 +49,14 @@ def lattice(dim, points, turns=True):
     )  # fmt: skip
     mass = DENSITY * SIDE**dim
     inertia = np.tile([mass] * dim + [mass * SIDE**2 / 6] * form.rotations, (count**dim, 1))
+    moments = {1: [], 2: [second], 3: [second, second, 0.0]}[dim]
     dt = 0.3 / np.sqrt(16 * NORMAL * area / mass)
     contacts = contacts_of(
         faces,
         count**dim,
         form.freedoms,
         points=np.tile(rule, (len(normals), 1, 1)) if points else None,
-        second=None if points or not form.turns else np.full((len(normals), dim - 1), second),
+        second=None if points or not form.turns else np.tile(moments, (len(normals), 1)),
     )
     none = np.zeros(0, dtype=int)
     blocks = Blocks(inertia, dt, 1.0, 0.0, np.zeros(dim))
