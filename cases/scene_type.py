@@ -11,14 +11,14 @@ if TYPE_CHECKING:
     from jointwave.cases.schema.scene import Scene
 
 AnyScene: TypeAlias = "Scene | RockMass"  # a text: to import it costs nothing
-NOT_SOLVED = "no engine solves these yet"  #: of scenes in space
+NOT_SOLVED = "rigid blocks alone solve these yet"  #: of scenes in space
 Either = TypeVar("Either", bound="AnyScene")
 
 
 def refuse_space(scene: AnyScene) -> None:
-    """Raise SceneError for a scene in space, which no engine solves yet."""
+    """Raise SceneError for a scene in space, which rigid blocks alone solve yet."""
     if scene.in_space:
-        allowed = f"is of a scene in space: {NOT_SOLVED}; jointwave explain and picture show it"
+        allowed = f"is of a scene in space: {NOT_SOLVED}, by jointwave run --engine dem"
         domain = scene.domain  # type: ignore[union-attr]
         key = domain.file_key or "domain.size"
         raise SceneError(scene.where, key, domain.size or domain.blocks, allowed)

@@ -103,10 +103,11 @@ def selection() -> dict[str, dict[str | None, str]]:
 def applies(name: str, scene: AnyScene) -> Answer:
     """Return whether this engine or solution applies to the scene, or the reason why not.
 
-    Raises SceneError for a scene in space.
+    Raises SceneError for a scene in space that it does not solve.
     """
-    refuse_space(scene)
     one = solver(name)
+    if not one.in_space:
+        refuse_space(scene)
     if scene.kind not in one.kinds:
         return Answer(f"is for a {one.kinds[0]}, not for a {scene.kind}")
     return one.applies(scene)

@@ -52,8 +52,8 @@ def contacts_of(
     count : of blocks; a j from there on is a wall. freedoms : of a block. law : int array [c],
     column of each; None where all joints are alike. start : gap and slips that stand for what each
     carries at first [c, d], m. points : places in the face, m, from its centre, and area of each
-    point [c, points, d]. second : second moments of faces without points, as `model.TableRows` has them
-    [c, d (d - 1) / 2].
+    point [c, points, d]. second : second moments of faces without points, as `model.TableRows`
+    has them [c, d (d - 1) / 2].
     """
     blocks, dim = faces.blocks, faces.frame.shape[1]
     axes = faces.frame[:, : (0, 1, 3)[dim - 1]]  # the tangent of the plane follows from n

@@ -152,7 +152,7 @@ def load(
 ) -> list[AnyScene]:
     """Return a file's variants, or the one that is named, with `--set` applied, warned of.
 
-    in_space : whether scenes in space are taken, which no engine solves yet; else they are refused.
+    in_space : whether scenes in space are taken; else they are refused.
     """
     from jointwave.cases.read import parse_override
 

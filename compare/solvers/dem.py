@@ -92,6 +92,7 @@ DEM = Solver(
     form=Form.RUN,
     kinds=("pillar", "rock mass"),
     dimension=3,
+    in_space=True,
     label="rigid blocks",
     sentence="Rigid blocks are",
     line=Line("#56b4e9", 2.2, 2),

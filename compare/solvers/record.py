@@ -114,6 +114,7 @@ class Solver:
         the lead of the report begins.
     kinds : of scenes that it can solve: "pillar", "rock mass".
     dimension : 1 where it has no motion across the axis beside a plane wave.
+    in_space : whether it solves rock masses in space.
     discretised : whether an engine discretises this very model; a solution of one mechanism alone
         leaves out what else the engines have.
     applies : of (scene), one of its kinds, to whether it holds for it.
@@ -138,6 +139,7 @@ class Solver:
     form: Form = Form.COMPUTED
     kinds: tuple[str, ...] = ("pillar",)
     dimension: int = 1
+    in_space: bool = False
     discretised: bool = True
     prepare: Callable[[Any], Prepared] = without_steps
     distances: Mapping[Kind, Mapping[str, str]] | None = None

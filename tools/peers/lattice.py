@@ -56,8 +56,8 @@ def lattice(side: int) -> Lattice:
     model = system.model._replace(blocks=blocks, held=None)
     model = model._replace(form=model.form._replace(held=False))
     velocity = SPEED * np.random.default_rng(1).uniform(-1, 1, (len(inertia), 3))
-    centres = system.blocks.partition.centroid
-    pairs = system.blocks.links.blocks
+    centres = system.blocks.cut.centroid
+    pairs = system.blocks.touching.blocks
     return Lattice(side, model, pairs, centres, velocity, BODY_STEPS // side**2)
 
 

@@ -130,7 +130,7 @@ def run(
 
         sweep(cases_of, work, solvers, workers, dry, as_json, strict)
         return
-    scenes = load(scene, changes, variant, strict)
+    scenes = load(scene, changes, variant, strict, in_space=True)
     asked = jobs.plan(scenes, wanted, out)
     if dry:
         from jointwave.compare.cli.forecast_view import show_forecasts

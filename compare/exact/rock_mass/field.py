@@ -66,8 +66,14 @@ class StackField:
 
 
 def field_of(scene: RockMass) -> IncidentField:
-    """Return the field of the waves of a scene that acts on all its quiet sides."""
-    if not scene.waves:
+    """Return the field of the waves of a scene that acts on all its quiet sides.
+
+    Raises SceneError where it is not known: in space where there are joints or regions.
+    """
+    if scene.in_space and scene.waves and (scene.joint_sets or scene.regions):
+        allowed = "enter rock with joints or regions: their field is not known in space yet"
+        raise SceneError(scene.where, "waves", len(scene.waves), allowed)
+    if not scene.waves or scene.in_space:
         return free_field(scene)
     if normal_incidence.applies(scene):
         return normal_incidence.ClosingField(scene)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from jointwave.dem import simulate
-from jointwave.dem.build import faces_of
 from jointwave.dem.model import state_at_rest
 from jointwave.dem.relaxation import start
 from jointwave.dem.system import prepared
@@ -50,11 +49,10 @@ def at_rest(scene):
 def stiffness(system):
     """Return the matrix of all contacts [3 N, 3 N], from their work: a face between blocks that
     move by (u, v, phi) opens by g, slips by s and turns by t, springs evenly along it."""
-    count, links = system.blocks.partition.count, system.blocks.links
+    count, met = system.blocks.cut.count, system.blocks.touching
     K, own = np.zeros((3 * count, 3 * count)), system.blocks.columns
-    faces = faces_of(system.blocks)
     for (i, j), frame, arm, L, c in zip(
-        faces.blocks, faces.frame, faces.arm, faces.area, links.column, strict=True
+        met.blocks, met.frame, met.arm, met.area, met.column, strict=True
     ):
         across = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
         of_i, of_j = (np.column_stack([np.eye(2), one]) for one in across)
@@ -83,8 +81,8 @@ def test_the_state_after_excavation_is_that_of_the_assembled_equations(excavated
     out rigid motion; to the relaxation's tolerance, 1e-13 of 5 MPa on 54 m, over the stiffness of
     the slowest mode, 3e-3 of the largest."""
     system, state = at_rest(excavated({"point_rule": "gauss"}))
-    K, f, count = stiffness(system), released(system), system.blocks.partition.count
-    mass = np.sqrt(system.blocks.masses.ravel())
+    K, f, count = stiffness(system), released(system), system.blocks.cut.count
+    mass = np.sqrt(system.blocks.inertia.ravel())
     scaled, held = np.linalg.eigh(K / np.outer(mass, mass))
     assert (scaled[:3] < 1e-9 * scaled[-1]).all() and scaled[3] > 1e-4 * scaled[-1]
     q = held[:, 3:] @ ((held[:, 3:].T @ (f / mass)) / scaled[3:]) / mass

@@ -4,7 +4,7 @@ import pytest
 
 from jointwave.dem import simulate
 
-SLIDES = {"friction_angle": 30.0, "cohesion": 2e5, "residual_cohesion": 0.0, "damping_ratio": 0.05}
+SLIDES = {"friction_angle": 10.0, "cohesion": 2e5, "residual_cohesion": 0.0, "damping_ratio": 0.05}
 UNDER_STRESS = {"xx": 2e6, "yy": 3e6}
 
 
