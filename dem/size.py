@@ -9,11 +9,17 @@ from jointwave.cases.run_memory import (
 from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.scene import Scene
 
-#: Bytes per block, with the model and the history of its joint.
-AXIAL, SPATIAL = 80, 200
+#: Bytes per block, while pillars are cut into them; with the model and the history of its joint.
+CUT = 400
+AXIAL, SPATIAL = CUT, CUT + 120
 #: Bytes per block for each contact point of joints that open or slide.
 POINT = 60
 CORNERS = 8  # of a block, in snapshots
+
+
+def refuse_too_many(scene: Scene) -> None:
+    """Raise SceneError for more blocks than can be cut in memory."""
+    refuse_beyond_memory(scene, {"pillar.block": CUT * scene.block_count})
 
 
 def refuse_large(scene: Scene, time: Clock, points: int | None = None, stages: int = 1) -> None:

@@ -11,13 +11,14 @@ from jointwave.dem.axial.model import Chain, Effects, Model, Receivers
 from jointwave.dem.axial.relaxation import relaxation, unrelaxed
 from jointwave.dem.axial.stability import critical_chain_step
 from jointwave.dem.axial.state import State, state_at_rest
-from jointwave.dem.size import refuse_large
+from jointwave.dem.size import refuse_large, refuse_too_many
 from jointwave.dem.static import stiffest
 from jointwave.joints.law import Law, law, parts_of, table_of
 
 
 def build(scene: Scene) -> tuple[Model, State, Clock, float]:
     """Return the model, the unloaded state at rest, the clock and the critical step (s)."""
+    refuse_too_many(scene)
     p = calibrate(scene)
     stiff = unrelaxed(scene, stiffest(scene, p))
     critical = critical_chain_step(stiff, scene.ends.start, scene.ends.end)

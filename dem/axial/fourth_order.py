@@ -36,7 +36,7 @@ from jointwave.dem.axial.samples import Samples
 from jointwave.dem.axial.springs import spring_forces
 from jointwave.dem.axial.stability import critical_chain_step
 from jointwave.dem.axial.state import State, state_at_rest
-from jointwave.dem.size import refuse_large
+from jointwave.dem.size import refuse_large, refuse_too_many
 from jointwave.dem.static import stiffest
 from jointwave.joints.energy import elastic_energy
 from jointwave.joints.formula import formula
@@ -99,6 +99,7 @@ def build(scene: Scene) -> tuple[Model, State, Clock, float]:
 
     The model at an instant has a step of no length, and the load at whole steps.
     """
+    refuse_too_many(scene)
     p, numerics, ends = calibrate(scene), scene.numerics.dem, (scene.ends.start, scene.ends.end)
     critical = stability_limit() / 2 * critical_chain_step(stiffest(scene, p), *ends)
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")

@@ -14,7 +14,7 @@ from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.sampling import Clock, clock
 from jointwave.cases.schema.scene import Scene
 from jointwave.dem.pillar_snapshots import BlockRecorder
-from jointwave.dem.size import refuse_large
+from jointwave.dem.size import refuse_large, refuse_too_many
 from jointwave.dem.spatial.build import (
     buffers_for,
     build_model,
@@ -51,6 +51,7 @@ class Prepared(NamedTuple):
 
 def prepare(scene: Scene) -> Prepared:
     """Return the model and the clock of a scene; raises SceneError for an unstable step."""
+    refuse_too_many(scene)
     p, numerics = calibrate(scene), scene.numerics.dem
     critical = critical_step_of(scene, p)
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
