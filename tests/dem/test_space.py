@@ -1,0 +1,170 @@
+"""Rigid blocks of rock masses in space: momenta, energies, and scenes that are turned or that
+repeat the plane."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jointwave.cases.validate import validated
+from jointwave.dem import simulate
+from jointwave.dem.bounds import motion_of_contacts
+from jointwave.dem.leapfrog import march
+from jointwave.dem.model import masses_of, samples_for, state_at_rest
+from jointwave.dem.system import prepared
+
+LAW = {"normal_stiffness": 2e10, "shear_stiffness": 8e9}
+SLIPS = {"friction_angle": 20.0, "tension": False}
+#: Dip, dip direction and a place of joints, none of which are parallel.
+ATTITUDES = [(0.0, 0.0), (70.0, 80.0), (80.0, 350.0)]
+
+
+def scene_of(tables):
+    """Return a scene of some tables."""
+    return validated(tables, Path("scene.toml"), frozenset())
+
+
+def oblique(law=(), **changes):
+    """Return 4 m x 3 m x 2 m in blocks between four sets, loaded on its left; tables changed."""
+    tables = {
+        "title": "oblique blocks",
+        "domain": {"size": [4.0, 3.0, 2.0], "slivers": "merge", "least_width": 0.03},
+        "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
+        "joint_sets": [
+            {"name": f"set {k}", "dip": dip, "dip_direction": way, "spacing": 0.9}
+            | {"through": [2.03, 1.51, 0.97]}
+            | LAW
+            | dict(law)
+            for k, (dip, way) in enumerate(ATTITUDES)
+        ],
+        "loads": [
+            {"kind": "pressure", "side": "left", "shape": "ricker", "amplitude": 4e4}
+            | {"period": 2e-3}
+        ],
+        "time": {"duration": 4e-3},
+        "record": {"points": [[2.2, 1.4, 0.8]], "interval": 5e-5, "energy": True},
+    }
+    return scene_of(tables | changes)
+
+
+def moving(scene):
+    """Return a system and a state with random velocities."""
+    system = prepared(scene)
+    state = state_at_rest(system.model)
+    state.v[:] = np.random.default_rng(3).uniform(-0.1, 0.1, state.v.shape)
+    return system, state
+
+
+def momenta(system, state):
+    """Return linear momentum [3] and angular momentum about the origin [3], and their sizes."""
+    masses, v = masses_of(system.model.blocks), state.v[: system.blocks.cut.count]
+    own = (masses @ v[:, :, None])[..., 0]
+    turning = np.cross(system.blocks.cut.centroid, own[:, :3]) + own[:, 3:]
+    sizes = [np.abs(one).sum() for one in (own[:, :3], turning)]
+    return own[:, :3].sum(axis=0), turning.sum(axis=0), *sizes
+
+
+@pytest.mark.parametrize("law", [{}, SLIPS], ids=["elastic", "slip"])
+def test_momenta_are_conserved(law):
+    """Of free blocks with products of inertia, whatever their joints do."""
+    system, state = moving(oblique(law, loads=[]))
+    assert system.model.form.oblique and bool(system.model.form.points) == bool(law)
+    linear, angular, size, turned = momenta(system, state)
+    march(system.model, state, samples_for(system.model, 0), 1000, (1, 401))
+    after, spun, *_ = momenta(system, state)
+    np.testing.assert_allclose(after, linear, rtol=0, atol=1e-12 * size)
+    np.testing.assert_allclose(spun, angular, rtol=0, atol=1e-12 * turned)
+
+
+def test_rigid_motion_makes_no_force():
+    """A small translation and rotation of all blocks together moves no face against another."""
+    system = prepared(oblique(loads=[]))
+    state = state_at_rest(system.model)
+    turn, shift = np.array([2e-4, -1e-4, 3e-4]), np.array([1e-3, 2e-3, -1e-3])
+    state.u[:, :3] = shift + np.cross(turn, system.blocks.cut.centroid)
+    state.u[:, 3:] = turn
+    assert np.abs(motion_of_contacts(system, state)).max() < 1e-17
+    march(system.model, state, samples_for(system.model, 0), 1000, (1, 2))
+    force = masses_of(system.model.blocks) @ state.v[:, :, None] / system.time.dt
+    assert np.abs(force).max() < 1e-13 * LAW["normal_stiffness"] * np.abs(shift).max()
+
+
+@pytest.mark.parametrize("law", [{}, {"damping_ratio": 0.1}], ids=["springs", "dashpots"])
+def test_the_ledger_closes_where_joints_are_linear(law):
+    """At any length of step, with quiet sides."""
+    found = simulate(oblique(law, boundaries={"right": "quiet", "bottom": "roller"})).energy
+    left = found.sum("term") - 2 * found.sel(term="work")
+    assert found.sel(term="boundary")[-1] > 0 and np.abs(left).max() < 1e-10 * found.max()
+
+
+def test_slip_takes_energy():
+    """Joints in friction that open close the ledger to the square of the step."""
+    found = simulate(oblique(SLIPS)).energy
+    left = found.sum("term") - 2 * found.sel(term="work")
+    assert found.sel(term="friction")[-1] > 0 and np.abs(left).max() < 2e-3 * found.max()
+
+
+def test_a_scene_that_is_turned_about_z_moves_as_the_other():
+    """By a right angle: x to y, and y to -x."""
+    own, turned = oblique(SLIPS), oblique(SLIPS).model_dump(exclude_none=True, exclude_unset=True)
+    for one in turned["joint_sets"]:
+        x, y, z = one["through"]
+        one["dip_direction"] = (one["dip_direction"] - 90.0) % 360.0
+        one["through"] = [3.0 - y, x, z]
+    turned["domain"]["size"] = [3.0, 4.0, 2.0]
+    turned["loads"][0]["side"] = "front"
+    turned["record"]["points"] = [[3.0 - 1.4, 2.2, 0.8]]
+    one, other = simulate(own).velocity.values, simulate(scene_of(turned)).velocity.values
+    expected = np.stack([-one[..., 1], one[..., 0], one[..., 2]], axis=-1)
+    assert np.abs(one).min(axis=(0, 1)).max() < np.abs(one).max()
+    np.testing.assert_allclose(other, expected, rtol=0, atol=1e-9 * np.abs(one).max())
+
+
+def in_plane(space):
+    """Return a scene of joints that are alone, in the plane, or in space 1 m deep between rollers:
+    x is x, and y is z."""
+    places = [(30.0, 3.1, 4.2), (30.0, 7.7, 5.1), (-55.0, 4.3, 6.2), (-55.0, 8.6, 3.9)]
+    sets = []
+    for k, (dip, x, y) in enumerate(places):
+        attitude = {"dip": dip, "through": [x, y]}
+        if space:
+            way = 270.0 if dip > 0 else 90.0
+            attitude = {"dip": abs(dip), "dip_direction": way, "through": [x, 0.5, y]}
+        sets.append({"name": f"joint {k}"} | attitude | LAW | SLIPS)
+    depth = [1.0] if space else []
+    sides = {"left": "quiet", "bottom": "roller"} | (
+        {"front": "roller", "back": "roller"} if space else {}
+    )
+    return scene_of(
+        {
+            "title": "a section",
+            "domain": {"size": [12.0, *depth, 10.0]},
+            "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
+            "joint_sets": sets,
+            "boundaries": sides,
+            "loads": [
+                {"kind": "pressure", "side": "right", "shape": "ricker", "amplitude": 2e5}
+                | {"period": 0.1}
+            ],
+            "time": {"duration": 0.1},
+            "record": {
+                "points": [[2.0, *([0.5] * space), 2.0], [10.0, *([0.5] * space), 8.0]],
+                "joints": [[7.7, *([0.5] * space), 5.1]],
+                "interval": 2e-5,  # the step of both
+                "energy": True,
+            },
+        }
+    )
+
+
+def test_a_plane_scene_between_rollers_equals_the_plane():
+    """Slip, opening and the ledger included: no block turns out of the plane."""
+    flat, deep = simulate(in_plane(False)), simulate(in_plane(True))
+    scale = np.abs(flat.velocity).max().item()
+    assert deep.attrs["blocks"] == flat.attrs["blocks"] > 6
+    assert flat.energy.sel(term="friction")[-1] > 0
+    assert deep.attrs["dt"] == flat.attrs["dt"]
+    np.testing.assert_allclose(
+        deep.velocity.sel(axis=["x", "z"]), flat.velocity, rtol=0, atol=1e-9 * scale
+    )
+    assert np.abs(deep.velocity.sel(axis="y")).max() < 1e-12 * scale
