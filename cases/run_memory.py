@@ -11,7 +11,6 @@ from typing import Any
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.cases.size import LARGEST_VARIABLE, LIMIT, memory, spoken
 
 #: Bytes a step for the load's mean over it, and what that is made of; its history is table.
@@ -76,7 +75,7 @@ def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
     """
     record: Any = scene.record
     axes = 3 if spatial else 1
-    if isinstance(scene, Scene):
+    if scene.kind == "pillar":
         across, of_point = max(axes - 1, 1), axes * (3 if spatial else 2)
         rows = {
             "record.velocity": (len(record.velocity), axes, of_point),

@@ -9,8 +9,15 @@ CUT = ("gauss", 2)
 def points_of(rule: str, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return places and weights [count] of a rule on an edge from 0 to 1; weights add up to 1.
 
-    midpoint: the centres of equal parts; gauss: the Gauss-Legendre points.
+    midpoint: the centres of equal parts; gauss: the Gauss-Legendre points; lobatto: the
+    Gauss-Lobatto points, two of them the ends (Davis & Rabinowitz, Methods of numerical
+    integration, 1984, 2.7).
     """
+    if rule == "lobatto":
+        last = np.polynomial.legendre.Legendre.basis(count - 1)
+        x = np.concatenate([[-1.0], np.sort(last.deriv().roots().real), [1.0]])
+        x = (x - x[::-1]) / 2  # symmetric to the last bit
+        return (1 + x) / 2, 1 / (count * (count - 1) * last(x) ** 2)
     if rule == "gauss":
         x, w = np.polynomial.legendre.leggauss(count)
         return (1 + x) / 2, w / 2
@@ -19,7 +26,8 @@ def points_of(rule: str, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 def lever(rule: str, count: int) -> float:
     """Return how far the outermost points are from the centre of an edge, over half its length:
-    1 - 1/n of n midpoints, which bear all that a face bears when it opens as far as it can."""
+    1 - 1/n of n midpoints, 1 of Lobatto's points. They bear all that a face bears when it opens as
+    far as it can."""
     return float(2 * points_of(rule, count)[0].max() - 1)
 
 

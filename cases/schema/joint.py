@@ -44,8 +44,15 @@ class Joints(JointLaw):
     contact_points: Annotated[int, Field(ge=1, le=8)] = 2
     #: midpoint: cell centres, 1 - 1/n^2 of the face's bending stiffness, and where it opens a lever
     #: of 1 - 1/n of its half width; gauss: all of the stiffness, and 0.58, 0.77, 0.86, ... 0.96
-    #: of the half width for n = 2, 3, 4, ... 8
-    point_rule: Literal["midpoint", "gauss"] = "midpoint"
+    #: of the half width for n = 2, 3, 4, ... 8; lobatto: all of both, for n of 3 or more
+    point_rule: Literal["midpoint", "gauss", "lobatto"] = "midpoint"
+
+    @model_validator(mode="after")
+    def _lobatto_bends(self) -> "Joints":
+        if self.point_rule == "lobatto" and self.contact_points < 3:
+            allowed = "must be at least 3 with point_rule = 'lobatto'"
+            raise contradiction(".contact_points", self.contact_points, allowed)
+        return self
 
 
 class SoftLayer(JointLaw):

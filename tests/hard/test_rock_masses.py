@@ -9,13 +9,13 @@ from closed_forms.modes import modes, of_modes
 from hard_runs import CUBES, EPS, ERROR, FIFTHS, REFEREE, ROUND_OFF, HardRun
 from jointwave.cases.geometry.locate import blocks_at
 from jointwave.cases.loads import history_of, step_means
-from jointwave.cases.material.block_stiffness import jump
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.scene import partition_of
 from jointwave.compare.engines import solve
 from jointwave.compare.exact.rock_mass.block_lattice import masses, reads
 from jointwave.compare.misfit.metrics import relative_l2
+from tests.cases.material.block_stiffness import jump
 from tests.cases.partition.polygons import points_between
 
 BRICKS, GRAZING, SLIDING = "hard/struck-bricks", "hard/grazing-wave", "hard/sliding-bricks"

@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from scipy.linalg import eigh
 
 from jointwave.cases.geometry.cell_complex import GeometryError
-from jointwave.cases.material.block_stiffness import block_stiffness, jump
 from jointwave.cases.material.contact_points import points_of
 from jointwave.cases.material.rock_mass import constrained_modulus, inertia
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.plane import IntactRock
+from tests.cases.material.block_stiffness import block_stiffness, jump
 from tests.cases.partition.polygons import cut, periodic_contacts, points_between
 
 DENSITY, NORMAL, SHEAR = 2500.0, 1.1e10, 4e9
@@ -66,6 +66,11 @@ def test_rules_integrate_what_they_should(count):
     x, w = points_of("gauss", count)
     for degree in range(2 * count):
         assert w @ x**degree == pytest.approx(1 / (degree + 1), rel=1e-13)
+    if count > 2:  # Lobatto's up to degree 2 n - 3, at both ends of the edge
+        x, w = points_of("lobatto", count)
+        assert x[0] == 0 and x[-1] == 1 and (w > 0).all()
+        for degree in range(2 * count - 2):
+            assert w @ x**degree == pytest.approx(1 / (degree + 1), rel=1e-13)
     x, w = points_of("midpoint", count)
     assert w @ (x - 0.5) ** 2 == pytest.approx((1 - 1 / count**2) / 12, abs=1e-15)
 
