@@ -74,6 +74,7 @@ def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
     Raises SceneError where one of them would not fit a file.
     """
     record: Any = scene.record
+    given: Any = scene
     axes = 3 if spatial else 1
     if scene.kind == "pillar":
         across, of_point = max(axes - 1, 1), axes * (3 if spatial else 2)
@@ -82,7 +83,7 @@ def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
             "record.stress": (len(record.stress), across, axes),
         }
     else:
-        dim = scene.domain.dimension
+        dim = given.domain.dimension
         stresses = dim * (dim + 1) // 2
         rows = {
             "record.points": (len(record.points), stresses, 2 * dim + stresses),

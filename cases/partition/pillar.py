@@ -44,11 +44,11 @@ def block_ends(scene: Scene) -> np.ndarray:
     """Return where the blocks begin and the last one ends, m [N + 1]."""
     spacing, found = scene.scatter.spacing if scene.scatter else 0.0, []
     for i, one in enumerate(scene.parts):
-        share = np.arange(one.blocks) / one.blocks
+        thickness = np.ones(one.blocks)
         if spacing and not _is_intact(scene, one):
-            thickness = 1 + spacing * drawn(scene, i, 0, one.blocks)
-            share = np.append(0.0, np.cumsum(thickness))[:-1] / thickness.sum()
-        found.append(one.start + (one.stop - one.start) * share)
+            thickness += spacing * drawn(scene, i, 0, one.blocks)
+        before = np.append(0.0, np.cumsum(thickness)[:-1])
+        found.append(one.start + (one.stop - one.start) * before / thickness.sum())
     return np.append(np.concatenate(found), scene.pillar.length)
 
 

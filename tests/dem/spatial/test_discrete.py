@@ -53,7 +53,8 @@ def closed_form(scene, dt, steps):
 
 @pytest.mark.parametrize("changes", BLOWS.values(), ids=BLOWS)
 def test_closed_form_of_leapfrog_after_five_thousand_steps(row, changes):
-    """Round-off grows with the steps, not with the error: below 1e-10 of the largest."""
+    """Round-off grows with the steps, not with the error: below 1e-10 of the largest, and where
+    nothing moves, up to round-off of the modes, of what turns at the face's edge."""
     probe = calibrate(row(**changes))
     y = (probe.spacing * (np.arange(probe.block_count) + 0.5)).tolist()
     record = {"velocity": y, "interval": 0.02 / 5}
@@ -65,5 +66,7 @@ def test_closed_form_of_leapfrog_after_five_thousand_steps(row, changes):
     if "rotation" in result:
         moved[3:] = result.rotation.values[:, -1].T
     expected = closed_form(scene, result.attrs["dt"], result.attrs["steps"])
-    for kind in (slice(0, 3), slice(3, 6)):
-        assert np.abs(moved - expected)[kind].max() <= 1e-10 * np.abs(expected)[kind].max()
+    arm = scene.pillar.side / 2
+    size = np.abs(expected[:3]).max() + arm * np.abs(expected[3:]).max()
+    for kind, of in ((slice(0, 3), size), (slice(3, 6), size / arm)):
+        assert np.abs(moved - expected)[kind].max() <= 1e-10 * of
