@@ -4,10 +4,10 @@ import numpy as np
 
 from jointwave.cases.spectrum import highest_frequency
 from jointwave.dem.build import carried
+from jointwave.dem.contacts import jumps_of, springs_of
 from jointwave.dem.model import State
 from jointwave.dem.shaking import variation
 from jointwave.dem.system import BlockSystem
-from jointwave.dem.touching import jumps_of, springs_of
 from jointwave.numerics.divergence import speed_that
 
 
@@ -36,7 +36,7 @@ def highest_energy(system: BlockSystem, state: State) -> float:
 def motion_of_contacts(system: BlockSystem, state: State) -> np.ndarray:
     """Return gap and slips (m) at the centres of all contacts, and their rotation, in their frames
     [c, F]."""
-    met, u = system.blocks.touching, state.u[system.blocks.touching.blocks]
+    met, u = system.blocks.contacts, state.u[system.blocks.contacts.blocks]
     rotations = u.shape[2] - system.blocks.dim
     of_i, of_j = (jumps_of(met.frame, arm, rotations) for arm in met.arm.swapaxes(0, 1))
     return (of_j @ u[:, 1, :, None] - of_i @ u[:, 0, :, None])[..., 0]
@@ -45,7 +45,7 @@ def motion_of_contacts(system: BlockSystem, state: State) -> np.ndarray:
 def stored(system: BlockSystem, state: State) -> float:
     """Return the root of twice the energy in all contacts, sqrt(J)."""
     met, own, moved = (
-        system.blocks.touching,
+        system.blocks.contacts,
         system.blocks.columns,
         motion_of_contacts(system, state),
     )

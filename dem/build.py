@@ -17,12 +17,12 @@ from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.dem.boundaries import freedoms
+from jointwave.dem.chunks import Chunks, chunks_of
 from jointwave.dem.columns import Columns, columns, points_on
 from jointwave.dem.contacts import Contacts, contacts_of
 from jointwave.dem.model import Blocks, KernelFlags
 from jointwave.dem.receivers import Faces
 from jointwave.dem.stability import critical_time_step
-from jointwave.dem.touching import Touching, touching
 from jointwave.joints.law import Law, parts_of
 from jointwave.joints.normal import gap_under
 
@@ -41,7 +41,7 @@ class RigidBlocks(NamedTuple):
     scene: RockMass
     cut: Cut
     sides: tuple[str, ...]
-    touching: Touching
+    contacts: Contacts
     columns: Columns
     masses: np.ndarray
     joints: RigidJoints
@@ -71,7 +71,7 @@ class RigidBlocks(NamedTuple):
     def critical(self) -> float:
         """A lower bound of the critical step, s."""
         local = self.scene.damping.local or 0.0
-        return critical_time_step(self.touching, self.columns, self.masses, local)
+        return critical_time_step(self.contacts, self.columns, self.masses, local)
 
 
 def rigid_blocks(scene: RockMass) -> RigidBlocks:
@@ -79,7 +79,7 @@ def rigid_blocks(scene: RockMass) -> RigidBlocks:
     further, sides = further_sets(scene), shape_of(scene.domain).sides
     cut = blocks_of_scene(scene, further)
     try:
-        found = touching(scene, cut, sides, further)
+        found = contacts_of(scene, cut, sides, further)
     except GeometryError as error:  # periodic sides that do not fit each other
         raise SceneError(scene.where, error.key, None, str(error)) from None
     joints = rigid_joints(scene, further, found.kinds)
@@ -154,16 +154,16 @@ def constants(blocks: RigidBlocks, dt: float) -> Blocks:
     )
 
 
-def contacts(blocks: RigidBlocks) -> Contacts:
+def chunks(blocks: RigidBlocks) -> Chunks:
     """Return the table of contacts, with their tractions under a prestress."""
-    own, met = blocks.columns, blocks.touching
+    own, met = blocks.columns, blocks.contacts
     points, second = points_on(met, own.rules), None
     if not own.fails:
         places, area = points[..., :-1], points[..., -1:]
         moments = places.swapaxes(1, 2) @ (area * places)
         upper = ((), ((0, 0),), ((0, 0), (1, 1), (0, 1)))[blocks.dim - 1]
         second = np.array([moments[:, i, j] for i, j in upper]).T
-    return contacts_of(
+    return chunks_of(
         faces_of(blocks),
         blocks.cut.count,
         blocks.masses.shape[1],
@@ -176,14 +176,14 @@ def contacts(blocks: RigidBlocks) -> Contacts:
 
 def faces_of(blocks: RigidBlocks) -> Faces:
     """Return the contacts as they are read."""
-    met, excess = blocks.touching, np.append(blocks.joints.excess, np.zeros((2, 1)), axis=1)
+    met, excess = blocks.contacts, np.append(blocks.joints.excess, np.zeros((2, 1)), axis=1)
     own = excess[:, np.minimum(met.column, excess.shape[1] - 1)].T
     return Faces(met.blocks, met.area, met.frame, met.arm, own)
 
 
 def carried(blocks: RigidBlocks) -> np.ndarray:
     """Return the gap and the slips that stand for the prestress in each contact [c, d], m."""
-    met, own, stress = blocks.touching, blocks.columns, blocks.scene.prestress
+    met, own, stress = blocks.contacts, blocks.columns, blocks.scene.prestress
     assert stress is not None
     traction = np.einsum("cak,kl,cl->ca", met.frame, stress.tensor, met.frame[:, 0])
     law = Law(*(x[met.column] if np.ndim(x) else x for x in own.law))

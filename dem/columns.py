@@ -14,7 +14,7 @@ from jointwave.cases.material.rock_mass import Stiffness, set_time_constants
 from jointwave.cases.material.strength import strength_of
 from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.dem.touching import Touching
+from jointwave.dem.contacts import Contacts
 from jointwave.joints.law import Law, law, stiffest, uniform
 
 
@@ -86,7 +86,7 @@ def _time_constants(
     return eta
 
 
-def points_on(touching: Touching, rules: list[tuple[str, int]]) -> np.ndarray:
+def points_on(contacts: Contacts, rules: list[tuple[str, int]]) -> np.ndarray:
     """Return places, m, from the centre and along the tangents, and the area of each point of all
     contacts [c, points, d].
 
@@ -94,19 +94,19 @@ def points_on(touching: Touching, rules: list[tuple[str, int]]) -> np.ndarray:
     that of a rectangle with the face's second moments, whose edges it has in the plane, and of
     rectangles; shorter ones are filled up by points of no area.
     """
-    dim = touching.frame.shape[1]
-    variance, axes = np.linalg.eigh(touching.spread)
+    dim = contacts.frame.shape[1]
+    variance, axes = np.linalg.eigh(contacts.spread)
     half = (axes * np.sqrt(3 * np.maximum(variance, 0.0))[:, None]) @ axes.swapaxes(1, 2)
     most = max(number for _, number in rules) ** (dim - 1)
-    found = np.zeros((len(touching.area), most, dim))
-    which = np.minimum(touching.column, len(rules) - 1)
+    found = np.zeros((len(contacts.area), most, dim))
+    which = np.minimum(contacts.column, len(rules) - 1)
     for k, (rule, number) in enumerate(rules):
         x, w = points_of(rule, number)
         places = np.array(list(product(2 * x - 1, repeat=dim - 1))).reshape(-1, dim - 1)
         weight = np.array([np.prod(one) for one in product(w, repeat=dim - 1)])
         own = which == k
         found[own, : len(weight), :-1] = places @ half[own]
-        found[own, : len(weight), -1] = touching.area[own, None] * weight
+        found[own, : len(weight), -1] = contacts.area[own, None] * weight
     return found
 
 

@@ -1,126 +1,165 @@
-"""Contacts in chunks of 64, and tiles of chunks and blocks that one pass takes through many steps.
+"""All contacts of a rock mass: of blocks, across periodic sides, and with walls."""
 
-Contacts are ordered by the lower of their blocks. A tile's contacts join its own blocks to one
-another and to those of the next tile: before it moves all its blocks have their forces, and what
-lies two tiles on is not asked for. The better blocks are ordered, the narrower tiles are.
-"""
+from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.dem.receivers import Faces
-from jointwave.numerics.cache_lines import zeros
-
-LANES = 64  # contacts in a chunk
-LEAST = 16  # chunks of a tile: a step of one costs some 0.2 us beside its work
-DEEPEST, CACHE = 16, 3 << 19  # steps, and bytes of a core's own cache, that a pass takes
-OF_FREEDOM = 32  # bytes: its motion, inertia and force
+from jointwave.cases.geometry.blocks import Blocks
+from jointwave.cases.geometry.cell_complex import NO_SET
+from jointwave.cases.material.elastic import shear_modulus
+from jointwave.cases.material.rigid_blocks import welds
+from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus
+from jointwave.cases.partition.periodic import across_periodic, of_all
+from jointwave.cases.partition.regions import ROCK, rocks_of
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.dem.boundaries import freedoms, levers
+from jointwave.dem.receivers import frames_of
 
 
 class Contacts(NamedTuple):
-    """The joints between blocks.
+    """Contacts [c], those of the blocks first and in their order.
 
-    pair : int32 array [chunks, 2 LANES], i and j times the freedoms of a block, where their motion
-    begins, with a third row where joints differ, the column of the law's table. table : float array
-    [chunks, rows LANES], rows as in `model.TableRows`. place : int array [c], where each contact
-    is, chunk times LANES plus lane. row_from : int array [chunks], where the motion of the first
-    block of a chunk begins whose contacts join one block after the other; -1 of other chunks.
-    first_chunk, first_block : int arrays [tiles + 1].
+    blocks : i and j [c, 2]; a wall is a j beyond the last block. area : m^(d-1). centre : [c, d],
+    m, that of block i's face. frame : [c, d, d], the normal from i to j, then the tangents. arm :
+    [c, 2, d], from the centroids of i and j, where they touch, to the centre. spread : second
+    moments over the area, in the frame's tangents [c, d - 1, d - 1], m2. column : of the law [c].
+    kinds : of the columns of sets, `RigidJoints` [columns, 3]. others : stiffness of the contacts
+    that no set has, by column after those. walls : names of the fixed and the
+    roller sides.
     """
 
-    pair: np.ndarray
-    table: np.ndarray
-    place: np.ndarray
-    row_from: np.ndarray
-    first_chunk: np.ndarray
-    first_block: np.ndarray
+    blocks: np.ndarray
+    area: np.ndarray
+    centre: np.ndarray
+    frame: np.ndarray
+    arm: np.ndarray
+    spread: np.ndarray
+    column: np.ndarray
+    kinds: np.ndarray
+    others: Stiffness
+    walls: tuple[str, ...]
 
 
 def contacts_of(
-    faces: Faces,
-    count: int,
-    freedoms: int,
-    *,
-    law: np.ndarray | None = None,
-    start: np.ndarray | None = None,
-    points: np.ndarray | None = None,
-    second: np.ndarray | None = None,
+    scene: RockMass, blocks: Blocks, sides: tuple[str, ...], further: list[JointSet]
 ) -> Contacts:
-    """Return the contacts of some faces.
+    """Return all contacts of a scene, some by further sets of cuts; sides : names of the boundary's
+    sides, in order.
 
-    count : of blocks; a j from there on is a wall. freedoms : of a block. law : int array [c],
-    column of each; None where all joints are alike. start : gap and slips that stand for what each
-    carries at first [c, d], m. points : places in the face, m, from its centre, and area of each
-    point [c, points, d]. second : second moments of faces without points, as `model.TableRows`
-    has them [c, d (d - 1) / 2].
+    A fixed side is a wall behind the rock from each block's centroid to the side, as stiff as that
+    rock is: half a block. So is intact rock between blocks where no set made the cut. A roller side
+    is such a wall without stiffness in shear.
     """
-    blocks, dim = faces.blocks, faces.frame.shape[1]
-    axes = faces.frame[:, : (0, 1, 3)[dim - 1]]  # the tangent of the plane follows from n
-    rows = [*axes.reshape(len(blocks), -1).T]
-    if freedoms > dim:
-        rows += [*faces.arm.reshape(len(blocks), -1).T]
-    rows.append(faces.area)
-    for one in (start, second, points):
-        rows += [] if one is None else [*one.reshape(len(blocks), -1).T]
-    low, high = blocks.min(axis=1), np.where(blocks < count, blocks, 0).max(axis=1)
-    order = np.argsort(low, kind="stable")
-    place = np.empty(len(order), dtype=np.int64)
-    place[order] = np.arange(len(order))
-    pair = np.stack([*(freedoms * blocks.T), *(() if law is None else [law])])[:, order]
-    chunks = _tiles(low[order], high[order])
-    first = np.append(low[order[LANES * np.array(chunks[1:-1], dtype=int)]], count)
-    table = _chunks(np.array(rows)[:, order], "constant")
-    aligned = zeros(table.shape)
-    aligned[:] = table
-    pair = _chunks(pair.astype(np.int32), "edge")
-    i, j = pair[:, :LANES], pair[:, LANES : 2 * LANES]
-    follow = (np.diff(i, axis=1) == freedoms).all(axis=1) & (j - i == freedoms).all(axis=1)
+    across = across_periodic(scene, blocks)
+    pairs, area, centre, normal, second, joint_set = (
+        of_all(blocks, across, key)
+        for key in ("blocks", "area", "centroid", "normal", "second_moment", "joint_set")
+    )
+    beside = [np.zeros(blocks.body.dim), *(one.shift for one in across)]
+    number = [len(blocks.contacts), *(len(one.contacts) for one in across)]
+    shift = np.repeat(beside, number, axis=0)
+    edges, present = blocks.boundary, {sides[k] for k in np.unique(blocks.boundary.side)}
+    walls = tuple(one for one in scene.boundaries.sides("fixed", "roller") if one in present)
+    sticks = np.array([getattr(scene.boundaries, one) == "fixed" for one in walls], dtype=float)
+    names = np.array([walls.index(name) if name in walls else -1 for name in sides])
+    held = np.flatnonzero(names[edges.side] >= 0)
+    block, wall = edges.blocks[held, 0], blocks.count + names[edges.side[held]]
+    reach = ((edges.centroid[held] - blocks.centroid[block]) * edges.normal[held]).sum(axis=1)
+    kinds, column = _columns(scene, blocks, joint_set, pairs, len(further))
+    cuts = np.flatnonzero(joint_set == NO_SET)
+    column = np.concatenate([column, np.full(len(block), NO_SET)])
+    column[column == NO_SET] = len(kinds) + np.arange(len(cuts) + len(block))
+    welded = pairs[cuts], centre[cuts], normal[cuts], shift[cuts]
+    rock = _of_walls(scene, blocks, block, reach)
+    rock = rock._replace(shear=rock.shear * sticks[wall - blocks.count])
+    others = [welds(scene, blocks, further, *welded), rock]
+    area = np.concatenate([area, edges.area[held]])
+    frame = frames_of(np.concatenate([normal, edges.normal[held]]))
+    second = np.concatenate([second, edges.second_moment[held]]) / area[:, None, None]
+    tangents = frame[:, 1:]
+    arm_i = centre - blocks.centroid[pairs[:, 0]]
+    arm_j = centre - shift - blocks.centroid[pairs[:, 1]]
+    of_walls = edges.centroid[held] - blocks.centroid[block]
     return Contacts(
-        pair,
-        aligned,
-        place,
-        np.where(follow & (j[:, -1] < freedoms * count), i[:, 0], -1),
-        np.array(chunks),
-        np.append(0, first),
+        blocks=np.concatenate([pairs, np.stack([block, wall], axis=1)]),
+        area=area,
+        centre=np.concatenate([centre, edges.centroid[held]]),
+        frame=frame,
+        arm=np.stack(
+            [
+                np.concatenate([arm_i, of_walls]),
+                np.concatenate([arm_j, np.zeros_like(of_walls)]),
+            ],
+            axis=1,
+        ),
+        spread=tangents @ second @ tangents.swapaxes(1, 2),
+        column=column,
+        kinds=kinds,
+        others=Stiffness(*map(np.concatenate, zip(*others, strict=True))),
+        walls=walls,
     )
 
 
-def _chunks(values: np.ndarray, mode: Any) -> np.ndarray:
-    """Return values [rows, c] as [chunks, rows LANES], the last chunk filled up."""
-    rows, number = len(values), -(-values.shape[1] // LANES)
-    filled = np.pad(values, ((0, 0), (0, number * LANES - values.shape[1])), mode=mode)
-    return filled.reshape(rows, number, LANES).swapaxes(0, 1).reshape(number, rows * LANES)
+def _columns(
+    scene: RockMass, blocks: Blocks, joint_set: np.ndarray, pairs: np.ndarray, further: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the kinds of joints, and the kind of each contact [c], NO_SET for none."""
+    if not scene.regions:
+        sets = len(scene.joint_sets) + further
+        return np.stack([np.arange(sets), *np.full((2, sets), ROCK)], axis=1), joint_set
+    rows = np.column_stack([joint_set, np.sort(blocks.body.region[pairs], axis=1)])
+    found = joint_set != NO_SET
+    column = np.full(len(rows), NO_SET)
+    kinds, own = np.unique(rows[found], axis=0, return_inverse=True)
+    column[found] = own.reshape(-1)  # numpy 2.0 gave it another shape
+    return kinds, column
 
 
-def _tiles(low: np.ndarray, high: np.ndarray) -> list[int]:
-    """Return the first chunk of each tile, and where the last one ends, of contacts by their lower
-    and higher blocks [c]: a tile begins beyond all blocks that the one before the last touches."""
-    begins, reach = low[::LANES], np.maximum.accumulate(high)
-    found = [0]
-    while found[-1] < len(begins) or len(found) == 1:
-        g = found[-1]
-        beyond = int(np.searchsorted(begins, reach[LANES * g - 1], side="right")) if g else 0
-        found.append(min(max(beyond, g + LEAST), len(begins)))
+def _of_walls(
+    scene: RockMass, blocks: Blocks, block: np.ndarray, thickness: np.ndarray
+) -> Stiffness:
+    """Return the stiffness of the rock of some blocks, so thick [n], m."""
+    moduli = [
+        (constrained_modulus(one), shear_modulus(one.intact_modulus, one.intact_poisson))
+        for one in rocks_of(scene)
+    ]
+    return Stiffness(*(np.array(moduli)[blocks.body.region[block]].T / thickness))
+
+
+def jumps_of(frame: np.ndarray, arm: np.ndarray, rotations: int) -> np.ndarray:
+    """Return the matrices [c, F, F] that make the motion of blocks their part of the jump at the
+    centres of faces with these frames [c, d, d], and of the rotation; arm : [c, d], m."""
+    count, dim = arm.shape
+    found = np.zeros((count, dim + rotations, dim + rotations))
+    found[:, :dim] = frame @ levers(arm).swapaxes(1, 2) @ freedoms(dim, rotations).T
+    if rotations:
+        found[:, dim:, dim:] = 1.0 if dim == 2 else frame
     return found
 
 
-def marks(at: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return recorded blocks or contacts at places [n] by the tile that they are in, of tiles that
-    begin at `first` [tiles + 1]: the first of each [tiles + 1], and where each is, ascending, with
-    its row in the samples [2, n]."""
-    row = np.argsort(at, kind="stable")
-    return np.searchsorted(at[row], first), np.stack([at[row], row])
+def springs_of(
+    normal: np.ndarray, shear: np.ndarray, area: np.ndarray, spread: np.ndarray, rotations: int
+) -> np.ndarray:
+    """Return the stiffness of faces against their jumps and rotations [c, F, F], N/m and N m.
 
-
-def depth_of(contacts: Contacts, history: np.ndarray | None, freedoms: int, threads: int) -> int:
-    """Return how many steps are taken in one pass over the tiles: as many as a core's own cache
-    holds tiles, and as leave all threads something to do."""
-    chunks = max(1, len(contacts.pair))
-    whole = sum(x.nbytes for x in (contacts.pair, contacts.table, history) if x is not None)
-    sizes = whole / chunks * np.diff(contacts.first_chunk)
-    sizes += OF_FREEDOM * freedoms * np.diff(contacts.first_block)
-    depth = min(DEEPEST, int(CACHE / sizes.max()))
-    if threads > 1:
-        depth = min(depth, (len(sizes) - threads - 1) // (threads - 1))
-    return max(1, depth)
+    normal, shear : Pa/m [c]. area : [c]. spread : as in `Contacts`.
+    """
+    dim = spread.shape[1] + 1
+    found = np.zeros((len(area), dim + rotations, dim + rotations))
+    found[:, 0, 0] = normal * area
+    for a in range(1, dim):
+        found[:, a, a] = shear * area
+    if rotations:
+        bent = (normal * area)[:, None, None] * spread
+        found[:, -1, -1] = bent[:, 0, 0]
+    if rotations == 3:
+        found[:, 3, 3] = shear * area * np.trace(spread, axis1=1, axis2=2)
+        found[:, 4, 4], found[:, 4, 5], found[:, 5, 4] = (
+            bent[:, 1, 1],
+            -bent[:, 0, 1],
+            -bent[:, 0, 1],
+        )
+    return found

@@ -22,16 +22,13 @@ other, always in the same order.
 from collections.abc import Callable
 from typing import Any
 
-from jointwave.dem.contacts import LANES as L
+from jointwave.dem.chunks import LANES as L
 from jointwave.dem.kinematics import onto_blocks_for, relative_for
 from jointwave.dem.model import KernelFlags
-from jointwave.dem.motion import AFTER, VISCOUS, WORK, motion_for
+from jointwave.dem.motion import AFTER, CHUNK, PLACE, SEEN, VISCOUS, WORK, motion_for
 from jointwave.dem.tractions import face_forces_for, point_forces_for
 from jointwave.joints.formula import formula
 from jointwave.joints.law import rows_of
-
-#: Rows of the tiles' table: their first chunk, block, held block, recorded block, watched contact.
-CHUNK, BLOCK, HELD, PLACE, SEEN = range(5)
 
 
 def step_for(form: KernelFlags) -> Callable:
@@ -76,10 +73,10 @@ def step_for(form: KernelFlags) -> Callable:
                     ledger[WORK + AFTER + c] -= f * walls[n + 1, 1, w + a]
 
     @formula
-    def record_contacts(contacts, samples, q, g, t, s):
+    def record_contacts(chunks, samples, q, g, t, s):
         """Sample the watched contacts of chunk g."""
-        for r in range(contacts.tiles[SEEN, t], contacts.tiles[SEEN, t + 1]):
-            c, row = contacts.seen[0, r] - g * L, contacts.seen[1, r]
+        for r in range(chunks.tiles[SEEN, t], chunks.tiles[SEEN, t + 1]):
+            c, row = chunks.seen[0, r] - g * L, chunks.seen[1, r]
             if c >= 0 and c < L:
                 for a in range(recorded - dim):
                     samples.contact[row, a, s] = q[FORCE + a * L + c]
@@ -87,10 +84,10 @@ def step_for(form: KernelFlags) -> Callable:
                     samples.contact[row, recorded - dim + a, s] = q[JUMP + a * L + c]
 
     @formula
-    def record_blocks(contacts, blocks, state, samples, t, s, share):
+    def record_blocks(chunks, blocks, state, samples, t, s, share):
         """Add a share of the velocities of recorded blocks to their samples, and displacements at
         the first."""
-        for r in range(contacts.tiles[PLACE, t], contacts.tiles[PLACE, t + 1]):
+        for r in range(chunks.tiles[PLACE, t], chunks.tiles[PLACE, t + 1]):
             i, row = freedoms * blocks.places[0, r], blocks.places[1, r]
             for a in range(freedoms):
                 if share == 0:
@@ -99,19 +96,19 @@ def step_for(form: KernelFlags) -> Callable:
                 samples.velocity[row, a, s] += 0.5 * state.v[i + a]
 
     @formula
-    def step(contacts, blocks, state, force, drive, walls, samples, q, ledger, t, n, s):
+    def step(chunks, blocks, state, force, drive, walls, samples, q, ledger, t, n, s):
         """Advance tile t by a step.
 
-        contacts, blocks, state, samples : `ContactTable`, `BlockTable`, `State`, `Samples`. force :
+        chunks, blocks, state, samples : `ChunkTable`, `BlockTable`, `State`, `Samples`. force :
         of all blocks, zero. drive, walls : forces on held blocks and motion of walls. q : a buffer.
         ledger : of this step. n : of the step in `drive` and `walls`. s : of the sample; negative
         where none is taken.
         """
-        tiles, dt, last, sampled = contacts.tiles, blocks.dt, blocks.inertia.size, s >= 0
+        tiles, dt, last, sampled = chunks.tiles, blocks.dt, blocks.inertia.size, s >= 0
         still, weighed = last - freedoms, 1.0 if sampled else 0.0
         for g in range(tiles[CHUNK, t], tiles[CHUNK, t + 1]):
-            k, at, row_from = contacts.table[g], contacts.pair[g], contacts.row_from[g]
-            lanes = contacts.contacts - g * L
+            k, at, row_from = chunks.table[g], chunks.pair[g], chunks.row_from[g]
+            lanes = chunks.contacts - g * L
             lanes = lanes if lanes < L else L
             h: Any = None
             if remembers:
@@ -124,19 +121,19 @@ def step_for(form: KernelFlags) -> Callable:
             if varied:
                 for f in used:
                     for c in range(L):
-                        q[LAW + f * L + c] = contacts.laws[f, at[2 * L + c]]
-            forces(contacts.laws, k, h, q, ledger, dt, weighed)
+                        q[LAW + f * L + c] = chunks.laws[f, at[2 * L + c]]
+            forces(chunks.laws, k, h, q, ledger, dt, weighed)
             onto_blocks(k, q, at, row_from, lanes, last, force)
             if drags:
                 account_drags(h, q, ledger, dt)
             if shaken and has_ledger:
                 account_walls(q, at, lanes, still, walls, n, ledger, dt)
             if sampled:
-                record_contacts(contacts, samples, q, g, t, s)
+                record_contacts(chunks, samples, q, g, t, s)
         if sampled:
-            record_blocks(contacts, blocks, state, samples, t, s, 0)
+            record_blocks(chunks, blocks, state, samples, t, s, 0)
         move(blocks, tiles, state, force, drive, q, ledger, t, n, sampled)
         if sampled:
-            record_blocks(contacts, blocks, state, samples, t, s, 1)
+            record_blocks(chunks, blocks, state, samples, t, s, 1)
 
     return step

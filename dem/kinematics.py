@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from jointwave.dem.contacts import LANES as L
+from jointwave.dem.chunks import LANES as L
 from jointwave.dem.model import KernelFlags
 from jointwave.joints.formula import formula
 

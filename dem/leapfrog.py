@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from jointwave.dem.contacts import LANES, depth_of, marks
+from jointwave.dem.chunks import LANES, depth_of, marks
 from jointwave.dem.kernel import step_for
 from jointwave.dem.model import KernelFlags, Model, Samples, State
 from jointwave.dem.motion import AFTER, SUMMED
@@ -24,8 +24,8 @@ from jointwave.numerics.denormals import flush_denormals, restore_denormals
 from jointwave.numerics.jit import jitted
 
 
-class ContactTable(NamedTuple):
-    """Contacts as the kernel takes them: as in `contacts.Contacts`, the table of the laws, the
+class ChunkTable(NamedTuple):
+    """Contacts as the kernel takes them: as in `chunks.Chunks`, the table of the laws, the
     first chunk, block, held block, recorded block and watched contact of each tile [5, tiles + 1],
     places and rows of watched contacts [2, w], and how many contacts there are."""
 
@@ -90,7 +90,7 @@ def make_stepper(
     drive, shake : of the first of the steps on, as they are then. The function may be given what
     mass-proportional damping leaves of a velocity in a step, `keep`, in place of the model's.
     """
-    form, contacts, f = model.form, model.contacts, model.form.freedoms
+    form, chunks, f = model.form, model.chunks, model.form.freedoms
     own, dt = model.blocks, model.blocks.dt
     held, matrices = model.held or (None, None)
     if held is None:
@@ -98,24 +98,22 @@ def make_stepper(
     elif drive is None:
         drive = np.zeros((most, len(held), f))
     walls = None if shake is None else motion_of_walls(state, shake, dt)
-    bands = -(-most // depth_of(contacts, state.history, f, threads))
+    bands = -(-most // depth_of(chunks, state.history, f, threads))
     bands = max(1, bands + -bands % threads)  # as many for each thread
     depth = max(1, -(-most // bands))
-    widest = f * int(np.diff(contacts.first_block).max())
+    widest = f * int(np.diff(chunks.first_block).max())
     buffers = zeros((threads, form.buffer.before + widest))
     ledgers = zeros((threads * depth, 2 * AFTER)) if form.ledger else None
     progress = np.zeros(threads + 1, dtype=np.int64)
     loop, inertia = loop_for(form), own.inertia.ravel()
     force = np.zeros(inertia.size)
-    first_place, places = marks(model.places, contacts.first_block)
-    first_seen, seen = marks(contacts.place[model.watched], LANES * contacts.first_chunk)
-    first_held = np.searchsorted(np.zeros(0) if held is None else held, contacts.first_block)
-    tiles = np.stack(
-        [contacts.first_chunk, contacts.first_block, first_held, first_place, first_seen]
-    )
-    between = ContactTable(
-        contacts.pair, contacts.table, contacts.row_from, model.laws, tiles, seen,
-        len(contacts.place),
+    first_place, places = marks(model.places, chunks.first_block)
+    first_seen, seen = marks(chunks.place[model.watched], LANES * chunks.first_chunk)
+    first_held = np.searchsorted(np.zeros(0) if held is None else held, chunks.first_block)
+    tiles = np.stack([chunks.first_chunk, chunks.first_block, first_held, first_place, first_seen])
+    between = ChunkTable(
+        chunks.pair, chunks.table, chunks.row_from, model.laws, tiles, seen,
+        len(chunks.place),
     )  # fmt: skip
     blocks = BlockTable(
         inertia, 1.0 / inertia, held, matrices, places, own.gravity, own.tensor,
@@ -167,7 +165,7 @@ def loop_for(form: KernelFlags) -> Callable:
     step, has_ledger = step_for(form), form.ledger
 
     @jitted
-    def loop(contacts, blocks, state, samples, drive, walls, work, span):
+    def loop(chunks, blocks, state, samples, drive, walls, work, span):
         """Take this thread's share of the steps first .. last - 1, in turn with the others.
 
         Band B of `depth` steps belongs to thread B modulo their number; its diagonal k has tile
@@ -181,7 +179,7 @@ def loop_for(form: KernelFlags) -> Callable:
         setting = flush_denormals()
         force, buffer, ledgers, progress = work
         thread, first, last, stride, depth = span
-        tiles, threads, ledger = contacts.tiles.shape[1] - 1, progress.size - 1, None
+        tiles, threads, ledger = chunks.tiles.shape[1] - 1, progress.size - 1, None
         diagonals = tiles + depth - 1
         for band in range(thread, (last - first + depth - 1) // depth, threads):
             n = first + band * depth
@@ -197,7 +195,7 @@ def loop_for(form: KernelFlags) -> Callable:
                         ledger = ledgers[thread * depth + j]
                     s = (n + j) // stride if (n + j) % stride == 0 else -1
                     step(
-                        contacts, blocks, state, force, drive, walls, samples, buffer, ledger,
+                        chunks, blocks, state, force, drive, walls, samples, buffer, ledger,
                         k - j, n + j - first, s,
                     )  # fmt: skip
                 post(progress, thread, band * diagonals + k + 1)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from jointwave.dem.contacts import LANES, Contacts
+from jointwave.dem.chunks import LANES, Chunks
 from jointwave.joints.law import Law, LawFlags
 from jointwave.numerics.cache_lines import zeros
 from jointwave.results.rock_mass import TERMS
@@ -220,7 +220,7 @@ class Model(NamedTuple):
 
     form: KernelFlags
     blocks: Blocks
-    contacts: Contacts
+    chunks: Chunks
     laws: np.ndarray
     held: Any
     places: np.ndarray
@@ -274,7 +274,7 @@ def masses_of(blocks: Blocks) -> np.ndarray:
 
 def state_at_rest(model: Model) -> State:
     """Return the state at rest, without arrays for absent effects."""
-    form, pair = model.form, model.contacts.pair
+    form, pair = model.form, model.chunks.pair
     count, rows, history = len(model.blocks.inertia) + model.walls, form.history, None
     if rows.size:
         history = zeros((len(pair), rows.size))

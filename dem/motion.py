@@ -3,10 +3,12 @@
 from collections.abc import Callable
 from math import copysign
 
-from jointwave.dem.contacts import LANES as L
+from jointwave.dem.chunks import LANES as L
 from jointwave.dem.model import KernelFlags
 from jointwave.joints.formula import formula
 
+#: Rows of the tiles' table: their first chunk, block, held block, recorded block, watched contact.
+CHUNK, BLOCK, HELD, PLACE, SEEN = range(5)
 #: Rows of the ledger of one step, J in lanes, in the order of `results.rock_mass.TERMS`, and AFTER
 #: further on what is added behind the step.
 KINETIC, ELASTIC, VISCOUS, FRICTION, FRACTURE, BOUNDARY, GRAVITY, WORK = range(0, 8 * L, L)
@@ -125,15 +127,15 @@ def motion_for(form: KernelFlags) -> Callable:
     @formula
     def move(blocks, tiles, state, all_forces, drive, q, ledger, t, n, sampled):
         """Move the blocks of tile t in step n of `drive`, and set their forces to zero."""
-        begin, end = freedoms * tiles[1, t], freedoms * tiles[1, t + 1]
-        first, last, dt = tiles[2, t], tiles[2, t + 1], blocks.dt
+        begin, end = freedoms * tiles[BLOCK, t], freedoms * tiles[BLOCK, t + 1]
+        first, last, dt = tiles[HELD, t], tiles[HELD, t + 1], blocks.dt
         # Slices begin at 0: else indices are taken to wrap around, and loops are not vectorised.
         u, v, force = state.u[begin:end], state.v[begin:end], all_forces[begin:end]
         inertia, inverse = blocks.inertia[begin:end], blocks.inverse[begin:end]
         before, pushed = q[BEFORE:], 0.5 * dt * (1.0 + blocks.keep)
         potential = add_forces(blocks, first, last, begin, u, v, force, inertia, before, drive, n)
         if oblique:
-            advance_oblique(blocks, tiles[1, t], u, v, force, before, pushed)
+            advance_oblique(blocks, tiles[BLOCK, t], u, v, force, before, pushed)
         else:
             advance(u, v, force, inverse, before, pushed, dt, blocks.keep, blocks.local)
         if held:
@@ -144,9 +146,9 @@ def motion_for(form: KernelFlags) -> Callable:
             if damped or sampled:
                 kinetic, lost, lost_after = 0.0, 0.0, 0.0
                 for i in range(end - begin):
-                    after = momentum(blocks, inertia, tiles[1, t], i, v)
+                    after = momentum(blocks, inertia, tiles[BLOCK, t], i, v)
                     if damped:  # what is missing in the block's momentum
-                        missing = after - momentum(blocks, inertia, tiles[1, t], i, before)
+                        missing = after - momentum(blocks, inertia, tiles[BLOCK, t], i, before)
                         missing -= dt * force[i]
                         lost, lost_after = lost + missing * before[i], lost_after + missing * v[i]
                     kinetic += before[i] * after

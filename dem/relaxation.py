@@ -9,7 +9,7 @@ import numpy as np
 
 from jointwave.cases.material.prestress import refuse_beyond_strength
 from jointwave.dem.boundaries import facets_on
-from jointwave.dem.contacts import Contacts
+from jointwave.dem.chunks import Chunks
 from jointwave.dem.leapfrog import make_stepper
 from jointwave.dem.loads import Loads, reactions
 from jointwave.dem.model import Model, State, held_by, samples_for, state_at_rest
@@ -68,11 +68,11 @@ def start(system: BlockSystem, state: State) -> Rest | None:
     return rest
 
 
-def unstressed(model: Model) -> Contacts:
+def unstressed(model: Model) -> Chunks:
     """Return the contacts of a model without the tractions of a prestress."""
-    table, rows = model.contacts.table.copy(), model.form.table
+    table, rows = model.chunks.table.copy(), model.form.table
     table[:, rows.start : rows.second] = 0.0
-    return model.contacts._replace(table=table)
+    return model.chunks._replace(table=table)
 
 
 def still(resistance: np.ndarray, masses: np.ndarray) -> np.ndarray:
@@ -100,7 +100,7 @@ class BlockRelaxation:
     def __init__(self, system: BlockSystem, weighed: bool, sticks: bool = False) -> None:
         blocks, model, loads = system.blocks, system.model, system.loads
         columns = blocks.columns._replace(time_constants=None)
-        dt = STEP_FRACTION * critical_time_step(blocks.touching, columns, blocks.masses, 0.0)
+        dt = STEP_FRACTION * critical_time_step(blocks.contacts, columns, blocks.masses, 0.0)
         own, laws = model.blocks._replace(dt=dt, local=0.0), model.laws.copy()
         if not weighed:
             own = own._replace(gravity=np.zeros_like(own.gravity))
@@ -109,7 +109,7 @@ class BlockRelaxation:
         stress, cut = blocks.scene.prestress, blocks.cut
         if sticks:
             laws, self.steady, stress = sticking(laws), np.zeros_like(self.steady), None
-            model = model._replace(contacts=unstressed(model))
+            model = model._replace(chunks=unstressed(model))
         if stress is not None and blocks.scene.excavated and model.form.points:
             openings = [name for name in blocks.sides if name.startswith("opening")]
             facets = facets_on(cut, blocks.sides, openings)

@@ -13,10 +13,10 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.dem.bounds import highest_energy, motion_of_contacts
 from jointwave.dem.leapfrog import march
 from jointwave.dem.model import Samples, State, samples_for, state_at_rest
-from jointwave.dem.recording import recorder, waveforms
 from jointwave.dem.relaxation import start
 from jointwave.dem.system import BlockSystem, prepared
 from jointwave.dem.time_loop import Run, followed, refuse_beyond_bounds, versions
+from jointwave.dem.waveforms import recorder, waveforms
 from jointwave.numerics.divergence import SPEED, Guard, audit, guard
 from jointwave.numerics.small_motion import (
     Moved,
@@ -94,7 +94,7 @@ def simulate(
 def moved_apart(system: BlockSystem, state: State) -> Moved | None:
     """Return the contact that has moved furthest over the size of its smaller block, or in the
     plane blocks that overlap without one; None in a single block."""
-    blocks, met, dim = system.blocks, system.blocks.touching, system.blocks.dim
+    blocks, met, dim = system.blocks, system.blocks.contacts, system.blocks.dim
     count = blocks.cut.count
     if dim == 2 and (overlap := overlapping(blocks.partition, state.u[:count])) is not None:
         return overlap

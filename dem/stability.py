@@ -24,20 +24,20 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointwave.dem.columns import Columns, points_on
-from jointwave.dem.touching import Touching, jumps_of, springs_of
+from jointwave.dem.contacts import Contacts, jumps_of, springs_of
 from jointwave.numerics.critical_step import critical_step
 
 
 def critical_time_step(
-    touching: Touching, columns: Columns, masses: np.ndarray, local: float
+    contacts: Contacts, columns: Columns, masses: np.ndarray, local: float
 ) -> float:
     """Return a lower bound of the critical step, s; masses : matrices of the blocks [N, F, F].
     local : Cundall's damping."""
     eta = columns.time_constants
-    own, damping = _stiffness(touching, columns, tuple(columns.stiffest), masses), None
+    own, damping = _stiffness(contacts, columns, tuple(columns.stiffest), masses), None
     if eta is not None:
         viscosity = eta[0] * columns.normal, eta[1] * columns.shear
-        damping = _stiffness(touching, columns, viscosity, masses)
+        damping = _stiffness(contacts, columns, viscosity, masses)
 
     def largest(a: float, b: float) -> float:
         both = a * own if damping is None else a * own + b * damping
@@ -46,9 +46,9 @@ def critical_time_step(
     return critical_step(largest, damping is not None)
 
 
-def squared_frequencies(touching: Touching, columns: Columns, masses: np.ndarray) -> np.ndarray:
+def squared_frequencies(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
     """Return the bound of each block on the square of the largest frequency [N], 1/s2."""
-    return _highest(_stiffness(touching, columns, tuple(columns.stiffest), masses), masses)
+    return _highest(_stiffness(contacts, columns, tuple(columns.stiffest), masses), masses)
 
 
 def _highest(matrices: np.ndarray, masses: np.ndarray) -> np.ndarray:
@@ -58,21 +58,21 @@ def _highest(matrices: np.ndarray, masses: np.ndarray) -> np.ndarray:
 
 
 def _stiffness(
-    touching: Touching, columns: Columns, values: Sequence[np.ndarray], masses: np.ndarray
+    contacts: Contacts, columns: Columns, values: Sequence[np.ndarray], masses: np.ndarray
 ) -> np.ndarray:
     """Return the matrix of each block against what it touches [N, F, F], of stiffness or viscosity
     per area in each column, normal and in shear, with the second moments of its points."""
     count, freedoms, _ = masses.shape
-    dim = touching.frame.shape[1]
-    points = points_on(touching, columns.rules)
+    dim = contacts.frame.shape[1]
+    points = points_on(contacts, columns.rules)
     places, area = points[..., :-1], points[..., -1:]
-    spread = places.swapaxes(1, 2) @ (area * places) / touching.area[:, None, None]
-    normal, shear = (x[touching.column] for x in values)
-    springs = springs_of(normal, shear, touching.area, spread, freedoms - dim)
+    spread = places.swapaxes(1, 2) @ (area * places) / contacts.area[:, None, None]
+    normal, shear = (x[contacts.column] for x in values)
+    springs = springs_of(normal, shear, contacts.area, spread, freedoms - dim)
     found = np.zeros((count, freedoms, freedoms))
     for side in (0, 1):
-        own = touching.blocks[:, side]
+        own = contacts.blocks[:, side]
         real = own < count
-        jump = jumps_of(touching.frame[real], touching.arm[real, side], freedoms - dim)
+        jump = jumps_of(contacts.frame[real], contacts.arm[real, side], freedoms - dim)
         np.add.at(found, own[real], jump.swapaxes(1, 2) @ springs[real] @ jump)
     return found

@@ -15,8 +15,8 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.dem.boundaries import dashpots, facets_on, points_on
 from jointwave.dem.build import (
     RigidBlocks,
+    chunks,
     constants,
-    contacts,
     faces_of,
     form_of,
     rigid_blocks,
@@ -66,19 +66,19 @@ def prepared(scene: RockMass, incident: IncidentField | None = None) -> BlockSys
     field: IncidentField = free_field(scene) if incident is None else incident
     loads, resistance, bearing = held_blocks(blocks, time, field)
     receivers = receivers_of(scene, blocks.cut, faces_of(blocks), loads.onto)
-    moving = shaking(scene.bases, blocks.touching.walls, blocks.dim, time.dt)
+    moving = shaking(scene.bases, blocks.contacts.walls, blocks.dim, time.dt)
     form = form_of(blocks, len(loads.rows) > 0 or scene.excavated, moving is not None)
     own = constants(blocks, time.dt)
     held = held_by(loads.onto @ resistance @ loads.onto.T, loads.rows, own)
     model = Model(
         form=form,
         blocks=own,
-        contacts=contacts(blocks),
+        chunks=chunks(blocks),
         laws=table_of(blocks.columns.law),
         held=held if form.held else None,
         places=receivers.places,
         watched=receivers.watched,
-        walls=len(blocks.touching.walls),
+        walls=len(blocks.contacts.walls),
     )
     threads = thread_count(scene.numerics.dem.threads, blocks.cut.count)
     quiet = resistance, bearing

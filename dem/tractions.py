@@ -3,7 +3,7 @@ as a whole where they always hold."""
 
 from collections.abc import Callable
 
-from jointwave.dem.contacts import LANES as L
+from jointwave.dem.chunks import LANES as L
 from jointwave.dem.model import KernelFlags
 from jointwave.dem.motion import ELASTIC, FRACTURE, FRICTION
 from jointwave.joints.formula import formula

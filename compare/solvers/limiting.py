@@ -50,7 +50,7 @@ def _blocks(scene: AnyScene, model: Any) -> tuple:
     from jointwave.dem.stability import squared_frequencies
 
     blocks = rigid_blocks(scene)
-    square = squared_frequencies(blocks.touching, blocks.columns, blocks.masses)
+    square = squared_frequencies(blocks.contacts, blocks.columns, blocks.masses)
     volume, dim = blocks.cut.volume, blocks.dim
     return square, blocks.inertia[:, 0], blocks.cut.centroid, lambda i: volume[i] ** (1 / dim)
 

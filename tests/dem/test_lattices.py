@@ -10,7 +10,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from jointwave.dem.contacts import contacts_of
+from jointwave.dem.chunks import chunks_of
 from jointwave.dem.leapfrog import march
 from jointwave.dem.model import Blocks, KernelFlags, Model, samples_for, state_at_rest
 from jointwave.dem.receivers import Faces, frames_of
@@ -51,7 +51,7 @@ def lattice(dim, points, turns=True):
     inertia = np.tile([mass] * dim + [mass * SIDE**2 / 6] * form.rotations, (count**dim, 1))
     moments = {1: [], 2: [second], 3: [second, second, 0.0]}[dim]
     dt = 0.3 / np.sqrt(16 * NORMAL * area / mass)
-    contacts = contacts_of(
+    chunks = chunks_of(
         faces,
         count**dim,
         form.freedoms,
@@ -60,7 +60,7 @@ def lattice(dim, points, turns=True):
     )
     none = np.zeros(0, dtype=int)
     blocks = Blocks(inertia, dt, 1.0, 0.0, np.zeros(dim))
-    return Model(form, blocks, contacts, table_of(own), None, none, none), faces
+    return Model(form, blocks, chunks, table_of(own), None, none, none), faces
 
 
 def jump_of(form, frame, arm):

@@ -57,7 +57,7 @@ def lattice(side: int) -> Lattice:
     model = model._replace(form=model.form._replace(held=False))
     velocity = SPEED * np.random.default_rng(1).uniform(-1, 1, (len(inertia), 3))
     centres = system.blocks.cut.centroid
-    pairs = system.blocks.touching.blocks
+    pairs = system.blocks.contacts.blocks
     return Lattice(side, model, pairs, centres, velocity, BODY_STEPS // side**2)
 
 
@@ -72,7 +72,7 @@ def ours(own: Lattice) -> tuple[np.ndarray, float]:
 
 def theirs(own: Lattice, place: Place, folder: Path) -> tuple[np.ndarray, float]:
     """Return the same from LAMMPS, whose own loop time is taken."""
-    law, table = law_of(own.model.laws, 0), own.model.contacts.table[0]
+    law, table = law_of(own.model.laws, 0), own.model.chunks.table[0]
     second = float(table[own.model.form.table.second])
     normal, shear = float(law.normal_stiffness), float(law.shear_stiffness)
     bonds = bpm_bonds(normal, shear, shear / 6, normal * second)

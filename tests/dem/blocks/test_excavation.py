@@ -49,7 +49,7 @@ def at_rest(scene):
 def stiffness(system):
     """Return the matrix of all contacts [3 N, 3 N], from their work: a face between blocks that
     move by (u, v, phi) opens by g, slips by s and turns by t, springs evenly along it."""
-    count, met = system.blocks.cut.count, system.blocks.touching
+    count, met = system.blocks.cut.count, system.blocks.contacts
     K, own = np.zeros((3 * count, 3 * count)), system.blocks.columns
     for (i, j), frame, arm, L, c in zip(
         met.blocks, met.frame, met.arm, met.area, met.column, strict=True
