@@ -48,6 +48,12 @@ class IncidentField(Protocol):
         """Return the motion at points [m, d] (m) and equally spaced times [n] (s)."""
 
 
+def in_components(tensor: np.ndarray) -> np.ndarray:
+    """Return the components of a symmetric tensor [d, d], in the order of a `WaveMotion`."""
+    _, first = np.unique(COMPONENT[len(tensor)], return_index=True)
+    return tensor.ravel()[first]
+
+
 @dataclass(frozen=True)
 class PlaneWave:
     """One plane wave in rock without joints.
@@ -75,8 +81,7 @@ class PlaneWave:
         tensor = rock.lame * (n @ g) * np.eye(len(n)) + rock.shear_modulus * (
             np.outer(n, g) + np.outer(g, n)
         )
-        _, first = np.unique(COMPONENT[len(n)], return_index=True)
-        stress = -tensor.ravel()[first] / self.speed
+        stress = -in_components(tensor) / self.speed
         return WaveMotion(f[:, None] * g[:, None], f[:, None] * stress[:, None])
 
 
@@ -119,13 +124,13 @@ def plane_wave(scene: RockMass, wave: Wave) -> PlaneWave:
     rock = elastic_rock(rocks_of(scene)[region_at(scene.regions, inside[None])[0]])
     is_p = wave.kind == "P"
     speed = float(rock.p_speed if is_p else rock.s_speed)
-    polarisation = n if is_p else _across(n, wave)
+    polarisation = n if is_p else across(n, wave)
     through = first if wave.through is None else np.array(wave.through)
     over = float(rock.density) * speed if wave.quantity == "stress" else 1.0
     return PlaneWave(rock, n, polarisation, speed, through, history_of(wave, wave.amplitude / over))
 
 
-def _across(n: np.ndarray, wave: Wave) -> np.ndarray:
+def across(n: np.ndarray, wave: Wave) -> np.ndarray:
     """Return the unit vector along which the particles of an S wave move that travels along n."""
     if wave.polarisation is None:
         return np.array([-n[1], n[0]])

@@ -20,7 +20,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.histories import LoadHistory
-from jointwave.cases.incident import WaveMotion
+from jointwave.cases.incident import WaveMotion, across, in_components
 from jointwave.cases.loads import history_of
 from jointwave.cases.material.effective_medium import compliant, speeds, stiffness, tensor
 from jointwave.cases.material.rock import elastic_rock
@@ -42,8 +42,8 @@ from jointwave.results.rock_mass import rock_mass_dataset
 @dataclass(frozen=True)
 class MediumWave:
     """A plane wave of a medium: unit direction; polarisation, a unit vector times a share; speed,
-    m/s; `through`, a point of its front at t = 0, m; stress at 1 m/s (xx, yy, xy), Pa, tension
-    positive; its pulse."""
+    m/s; `through`, a point of its front at t = 0, m; stress at 1 m/s, as of a `WaveMotion`, Pa,
+    tension positive; its pulse."""
 
     direction: np.ndarray
     polarisation: np.ndarray
@@ -53,7 +53,7 @@ class MediumWave:
     pulse: LoadHistory
 
     def lateness(self, points: np.ndarray) -> np.ndarray:
-        """Return the time at which the pulse begins at points [m, 2], s."""
+        """Return the time at which the pulse begins at points [m, d], s."""
         return (np.asarray(points) - self.through) @ self.direction / self.speed
 
 
@@ -64,7 +64,8 @@ class MediumField:
     waves: tuple[MediumWave, ...]
 
     def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
-        total = [np.zeros((len(points), count, len(times))) for count in (2, 3)]
+        sizes = self.waves[0].polarisation.size, self.waves[0].stress.size
+        total = [np.zeros((len(points), count, len(times))) for count in sizes]
         for wave in self.waves:
             f = wave.pulse.value(np.asarray(times) - wave.lateness(points)[:, None])
             for sum_, shape in zip(total, (wave.polarisation, wave.stress), strict=True):
@@ -75,30 +76,33 @@ class MediumField:
 def medium_field(scene: RockMass) -> MediumField:
     """Return the waves of a scene in its effective medium, and those that its free face sends back;
     all its sets must have a spacing."""
-    C, face = medium_stiffness(scene), free_face(scene)
+    C, face = medium_stiffness(scene), None if scene.in_space else free_face(scene)
     waves = [medium_wave(scene, one, C) for one in scene.waves]
     back = [] if face is None else [x for one in waves for x in _sent_back(one, C, scene, face)]
     return MediumField((*waves, *back))
 
 
 def medium_stiffness(scene: RockMass) -> np.ndarray:
-    """Return the stiffness of the medium in Voigt's form [3, 3], Pa."""
-    return stiffness(elastic_rock(scene.rock), compliant(scene.joint_sets))
+    """Return the stiffness of the medium in Voigt's form, Pa."""
+    dim = scene.domain.dimension
+    return stiffness(elastic_rock(scene.rock), compliant(scene.joint_sets, dim), dim)
 
 
 def medium_wave(scene: RockMass, wave: Wave, C: np.ndarray) -> MediumWave:
     """Return a wave of a scene in a medium of stiffness C (Pa, Voigt's form)."""
     n, density = np.array(wave.direction), scene.rock.density
     found, shapes = speeds(C, density, n)
-    branch = 1 if wave.kind == "P" else 0
+    along = n if wave.kind == "P" else across(n, wave)
+    slow = np.abs(along @ shapes[:, :-1]).argmax()
+    branch = len(found) - 1 if wave.kind == "P" else int(slow)
     c, g = float(found[branch]), shapes[:, branch]
-    g = g * np.sign(g @ (n if wave.kind == "P" else [-n[1], n[0]]))
+    g = g * np.sign(g @ along)
     full = np.einsum("ijkl,k,l->ij", tensor(C), g, n) / c
     corners = np.array(scene.domain.corners)
     through = corners[np.argmin(corners @ n)] if wave.through is None else np.array(wave.through)
     over = density * c if wave.quantity == "stress" else 1.0
     pulse = history_of(wave, wave.amplitude / over)
-    return MediumWave(n, g, c, through, -full[[0, 1, 0], [0, 1, 1]], pulse)
+    return MediumWave(n, g, c, through, -in_components(full), pulse)
 
 
 def _sent_back(wave: MediumWave, C: np.ndarray, scene: RockMass, face: Face) -> list[MediumWave]:

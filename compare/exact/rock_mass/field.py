@@ -26,6 +26,7 @@ from jointwave.cases.incident import (
 )
 from jointwave.cases.partition.joints import direction_of
 from jointwave.cases.partition.regions import strata
+from jointwave.cases.partition.shape import SIDES
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.plane import Boundaries
@@ -68,13 +69,12 @@ class StackField:
 def field_of(scene: RockMass) -> IncidentField:
     """Return the field of the waves of a scene that acts on all its quiet sides.
 
-    Raises SceneError where it is not known: in space where there are joints or regions.
+    Raises SceneError where it is not known.
     """
-    if scene.in_space and scene.waves and (scene.joint_sets or scene.regions):
-        allowed = "enter rock with joints or regions: their field is not known in space yet"
-        raise SceneError(scene.where, "waves", len(scene.waves), allowed)
-    if not scene.waves or scene.in_space:
+    if not scene.waves:
         return free_field(scene)
+    if scene.in_space:
+        return _field_in_space(scene)
     if normal_incidence.applies(scene):
         return normal_incidence.ClosingField(scene)
     planes = planes_of(scene)
@@ -86,6 +86,24 @@ def field_of(scene: RockMass) -> IncidentField:
     if free_face(planes) is not None:
         return StackField(stack_of(planes), waves)
     return FreeField(waves)
+
+
+def _field_in_space(scene: RockMass) -> IncidentField:
+    """Return the waves of a scene in space, of its intact rock or of the effective medium of its
+    joints; raises SceneError where joints are alone, or rock or sides send waves back."""
+    axis, of = SIDES[3][: 6 + (scene.domain.given is not None)], scene.boundaries
+    back = [one for one in axis if getattr(of, one) in ("free", "fixed")]
+    quiet, why = [one for one in axis if getattr(of, one) == "quiet"], None
+    if scene.regions:
+        why = "regions"
+    elif not all(one.spacing for one in scene.joint_sets):
+        why = "joints that are alone"
+    elif any(axis.index(one) // 2 != axis.index(other) // 2 for one in back for other in quiet):
+        why = f"a side that sends them back, {back[0]}, beside quiet ones"
+    if why:
+        allowed = f"meet {why}: their field is not known in space yet"
+        raise SceneError(scene.where, "waves", len(scene.waves), allowed)
+    return medium_field(scene) if scene.joint_sets else free_field(scene)
 
 
 def planes_of(scene: RockMass) -> RockMass:

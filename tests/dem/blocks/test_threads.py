@@ -34,7 +34,7 @@ def shaken(rock_mass, joint, wave, **numerics):
 
 @pytest.mark.parametrize("scene", [everything, shaken])
 def test_threads_change_no_bit(scene, rock_mass, joint, wave):
-    """Five threads share the three chunks of blocks and six of contacts: two have no block."""
+    """Five threads share a few tiles of blocks: some have none."""
     expected = simulate(scene(rock_mass, joint, wave, threads=1))
     assert expected.velocity.any() and expected.attrs["blocks"] > 700
     for threads in (2, 3, 5):
