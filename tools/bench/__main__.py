@@ -1,21 +1,21 @@
 """All benchmarks, as ratios and costs of one run on this machine.
 
-usage: python tools/bench [PART ...], of cutting, startup, kernels, plane and continuum
+usage: python tools/bench [PART ...], of cutting, startup, kernels, blocks and continuum
 """
 
 import sys
 
+import blocks
 import cutting
 import deformable
 import kernels
-import plane
 import startup
 
 PARTS = {
     "cutting": cutting.main,
     "startup": startup.main,
     "kernels": kernels.main,
-    "plane": plane.main,
+    "blocks": blocks.main,
     "continuum": deformable.main,
 }
 

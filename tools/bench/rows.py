@@ -1,6 +1,5 @@
 """Rows and lattices of rigid blocks of any size, and functions that take their steps alone."""
 
-from math import isqrt
 from pathlib import Path
 from typing import Any
 
@@ -31,17 +30,20 @@ def changed(changes: dict, blocks: int = 1000) -> Scene:
     return pillar_of(cases.load_variant(pillar, "", {"pillar.length": 0.5 * blocks, **changes}))
 
 
-def lattice(blocks: int, law: dict, tables: dict[str, Any]) -> RockMass:
-    """Return a square lattice of about this number of 1 m blocks; tables : more of the scene."""
-    side = max(2, isqrt(blocks))
-    joints = {"spacing": 1.0, "through": [0.0, 0.0]} | law
+def lattice(blocks: int, law: dict, tables: dict[str, Any], dim: int = 2) -> RockMass:
+    """Return a square or cubic lattice of about this number of 1 m blocks; tables : more of it."""
+    side = max(2, round(blocks ** (1 / dim)))
+    joints = {"spacing": 1.0, "through": [0.0] * dim} | law
+    attitudes = [{"dip": 90.0}, {"dip": 0.0}]
+    if dim == 3:
+        attitudes = [{"dip": 0.0}, *({"dip": 90.0, "dip_direction": way} for way in (0.0, 90.0))]
     ours = {
-        "title": "a square lattice",
-        "domain": {"size": [float(side), float(side)]},
+        "title": "a lattice",
+        "domain": {"size": [float(side)] * dim},
         "rock": {"density": 2600.0, "intact_modulus": 5e10},
-        "joint_sets": [{"name": "x", "dip": 90.0} | joints, {"name": "y", "dip": 0.0} | joints],
+        "joint_sets": [{"name": f"set {k}"} | one | joints for k, one in enumerate(attitudes)],
         "time": {"duration": 0.01},
-        "record": {"points": [[0.5, 0.5]], "energy": False},
+        "record": {"points": [[0.5] * dim], "energy": False},
     }
     return validated(ours | tables, Path("lattice.toml"), frozenset())
 

@@ -1,6 +1,6 @@
-"""Rigid blocks in the plane: against the row of blocks in space, by size, and by threads.
+"""Rigid blocks in the plane and in space: against the row of blocks in space, by size, by threads.
 
-A square lattice of blocks of 1 m, two joint sets at right angles, all of it in motion.
+Square and cubic lattices of blocks of 1 m, joint sets at right angles, all of it in motion.
 """
 
 from statistics import median
@@ -16,14 +16,14 @@ from jointwave.dem.system import prepared
 
 COULOMB = ELASTIC | {"friction_angle": 30.0, "cohesion": 1e5}
 PRESSURE = {"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1e5}
-SIZES = (1024, 10_000, 102_400, 1_000_000)
+SIZES = {2: (1024, 10_000, 102_400, 1_000_000), 3: (1000, 10_648, 103_823)}
 BLOCK_STEPS, LEAST = 5_000_000, 48  # block-steps and steps of one call
-POINTS = 4  # of a block: two contacts of two points; in the row one contact of 2 x 2
+POINTS = 4  # of a block: in the plane two contacts of two points, in the row one of 2 x 2
 
 
-def model_of(blocks: int, law: dict) -> Model:
+def model_of(blocks: int, law: dict, dim: int = 2) -> Model:
     """Return the constants of such a lattice, without the load."""
-    return prepared(lattice(blocks, law, {"loads": [PRESSURE]})).model
+    return prepared(lattice(blocks, law, {"loads": [PRESSURE]}, dim)).model
 
 
 def moving(model: Model, threads: int = 1) -> Timed:
@@ -31,7 +31,7 @@ def moving(model: Model, threads: int = 1) -> Timed:
     state, samples = state_at_rest(model), samples_for(model, 0)
     state.v[:] = 1e-3 * np.random.default_rng(1).uniform(-1.0, 1.0, state.v.shape)
     count = len(model.blocks.inertia)
-    steps = max(LEAST, BLOCK_STEPS // count)
+    steps = max(LEAST, BLOCK_STEPS // (count * model.form.dim))
 
     def take() -> None:
         march(model, state, samples, 2 * steps, (1, 1 + steps), threads=threads)
@@ -40,8 +40,8 @@ def moving(model: Model, threads: int = 1) -> Timed:
 
 
 def main() -> None:
-    """Print rates per contact point over those of the row in space, what a block-step costs from a
-    thousand blocks to a million, and what two threads gain."""
+    """Print rates per contact point over those of the row in space, what a block-step costs by the
+    number of blocks, and what two threads gain."""
     print("blocks in the plane, 2 points a contact, Coulomb slip, over the row in space,")
     print("2 x 2 points, both per contact point: point-steps/s")
     for blocks in (1024, 102_400):
@@ -49,12 +49,14 @@ def main() -> None:
         row, of_row = stretch(changed(SLIDES, blocks))
         one, other = (plane, POINTS * block_steps), (row, POINTS * of_row)
         side_by_side(f"{blocks:,} blocks, one thread", one, other)
-    for name, law in {"elastic joints": ELASTIC, "Coulomb slip": COULOMB}.items():
-        print(f"blocks in the plane, {name}, ns a block-step, by size", flush=True)
-        models = [model_of(blocks, law) for blocks in SIZES]
-        rates = zip(*in_turns(*map(moving, models)), strict=True)
-        for blocks, found in zip(SIZES, rates, strict=True):
-            print(f"  {blocks:>9,} blocks: {1e9 / median(found):6.1f}", flush=True)
-    print("blocks in the plane, Coulomb slip, two threads over one, block-steps/s", flush=True)
-    for blocks, model in zip(SIZES, models, strict=True):
-        side_by_side(f"{blocks:,} blocks", moving(model, 2), moving(model))
+    for dim, sizes in SIZES.items():
+        where = {2: "in the plane", 3: "in space"}[dim]
+        for name, law in {"elastic joints": ELASTIC, "Coulomb slip": COULOMB}.items():
+            print(f"blocks {where}, {name}, ns a block-step, by size", flush=True)
+            models = [model_of(blocks, law, dim) for blocks in sizes]
+            rates = zip(*in_turns(*map(moving, models)), strict=True)
+            for blocks, found in zip(sizes, rates, strict=True):
+                print(f"  {blocks:>9,} blocks: {1e9 / median(found):6.1f}", flush=True)
+        print(f"blocks {where}, Coulomb slip, two threads over one, block-steps/s", flush=True)
+        for blocks, model in zip(sizes, models, strict=True):
+            side_by_side(f"{blocks:,} blocks", moving(model, 2), moving(model))
