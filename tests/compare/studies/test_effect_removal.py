@@ -74,6 +74,7 @@ IN_PLANE = {part.name: law_in_plane(part) for part in PARTS} | {
     "slip": {"joint_sets": [ROWS | {"friction_angle": 30.0, "cohesion": 1e4}, COLUMNS]},
     "quiet sides": {"boundaries": {"bottom": "quiet"}},
     "fixed sides": {"boundaries": {"bottom": "fixed"}},
+    "roller sides": {"boundaries": {"bottom": "roller"}},
     "periodic sides": {"boundaries": {"left": "periodic", "right": "periodic"}},
     "energy ledger": {"record": {"points": [[6.0, 3.0]]}},
     "field output": {"record": {"points": [[6.0, 3.0]], "energy": False, "fields": 1e-3}},
