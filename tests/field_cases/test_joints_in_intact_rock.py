@@ -116,7 +116,7 @@ MASS = {"length": 30.0, "side": 0.5, "block": 1.0}
         (
             {"pillar": MASS, "joints": {"normal_stiffness": 1e9}, "soft_layers": [LAYER | LAYER]}
             | {"soft_layers": [LAYER | {"normal_stiffness": 1e9}]},
-            "soft_layers.spacing_stiffness = 1000000000.0: give this or normal_stiffness",
+            "soft_layers[0].spacing_stiffness = 1000000000.0: give this or normal_stiffness",
         ),
         ({"pillar": MASS, "joints": None}, "rock: give exactly one pair"),
         ({"rock": ROCK | {"p_speed": 5e3}}, "rock.p_speed = 5000.0: leave it out"),

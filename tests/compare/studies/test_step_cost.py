@@ -51,8 +51,8 @@ def test_every_effect_is_measured_in_as_many_blocks(blocks, measured):
 
 
 def test_every_effect_that_can_be_beside_others_is_there():
-    """In a rock mass but periodic sides and, since blocks are rigid, a quality factor; in a pillar
-    also but those that exclude others of it."""
+    """In a rock mass but periodic and roller sides and, since blocks are rigid, a quality factor; in
+    a pillar also but those that exclude others of it."""
     pillar = with_every_effect(cases.load_variant(PILLAR))
     off = {one.name for one in effects(pillar) if not one.active}
     excluded = {"no tension", "rate and state", "fixed ends", "prestress", "shaken base"}
@@ -61,6 +61,6 @@ def test_every_effect_that_can_be_beside_others_is_there():
     mass = cases.load_variant(find("rock-mass/brickwork"))
     lattice = with_every_effect(mass)
     off = {one.name for one in effects(lattice) if not one.active}
-    assert off == {"periodic sides", "field output", "constant Q"}
+    assert off == {"periodic sides", "roller sides", "field output", "constant Q"}
     blocks = step_cost.solver("dem").prepare(mass).freedoms // OF_BLOCK_IN_PLANE
     assert 0.5 * blocks < lattice.domain.size[0] ** 2 <= blocks or blocks > step_cost.BLOCKS
