@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -30,7 +31,8 @@ from jointwave.joints.normal import gap_under
 ROTATIONS = {1: 0, 2: 1, 3: 3}
 
 
-class RigidBlocks(NamedTuple):
+@dataclass(frozen=True)
+class RigidBlocks:
     """A rock mass as rigid blocks, before time discretisation.
 
     cut : the blocks. sides : names of the boundary's sides, in order. masses : matrices of mass,
@@ -51,18 +53,18 @@ class RigidBlocks(NamedTuple):
         """Number of dimensions."""
         return self.cut.body.dim
 
-    @property
+    @cached_property
     def partition(self) -> Partition:
         """The blocks in the plane, with the corners of each."""
         names = tuple(one.name for one in self.scene.joint_sets)
         return plane_partition(self.cut, self.sides, names)
 
-    @property
+    @cached_property
     def onto(self) -> np.ndarray:
         """`boundaries.freedoms`."""
         return freedoms(self.dim, ROTATIONS[self.dim])
 
-    @property
+    @cached_property
     def inertia(self) -> np.ndarray:
         """Mass and moments of inertia of each block [N, F]."""
         return np.ascontiguousarray(np.diagonal(self.masses, axis1=1, axis2=2))
