@@ -51,8 +51,8 @@ def test_every_effect_is_measured_in_as_many_blocks(blocks, measured):
 
 
 def test_every_effect_that_can_be_beside_others_is_there():
-    """In a rock mass but periodic and roller sides and, since blocks are rigid, a quality factor; in
-    a pillar also but those that exclude others of it."""
+    """In a rock mass all but periodic and roller sides and, since blocks are rigid, a quality
+    factor; in a pillar also but those that exclude others of it."""
     pillar = with_every_effect(cases.load_variant(PILLAR))
     off = {one.name for one in effects(pillar) if not one.active}
     excluded = {"no tension", "rate and state", "fixed ends", "prestress", "shaken base"}
