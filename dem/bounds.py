@@ -44,14 +44,10 @@ def motion_of_contacts(system: BlockSystem, state: State) -> np.ndarray:
 
 def stored(system: BlockSystem, state: State) -> float:
     """Return the root of twice the energy in all contacts, sqrt(J)."""
-    met, own, moved = (
-        system.blocks.contacts,
-        system.blocks.columns,
-        motion_of_contacts(system, state),
-    )
-    dim, freedoms = system.blocks.dim, state.u.shape[1]
+    met, own, dim = system.blocks.contacts, system.blocks.columns, system.blocks.dim
+    moved, rotations = motion_of_contacts(system, state), state.u.shape[1] - dim
     if system.model.form.stressed:
         moved[:, :dim] += carried(system.blocks)
     normal, shear = own.normal[met.column], own.shear[met.column]
-    springs = springs_of(normal, shear, met.area, met.spread, freedoms - dim)
+    springs = springs_of(normal, shear, met.area, met.spread, rotations)
     return float(np.sqrt(np.einsum("ca,cab,cb->", moved, springs, moved)))

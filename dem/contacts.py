@@ -27,8 +27,7 @@ class Contacts(NamedTuple):
     [c, 2, d], from the centroids of i and j, where they touch, to the centre. spread : second
     moments over the area, in the frame's tangents [c, d - 1, d - 1], m2. column : of the law [c].
     kinds : of the columns of sets, `RigidJoints` [columns, 3]. others : stiffness of the contacts
-    that no set has, by column after those. walls : names of the fixed and the
-    roller sides.
+    that no set has, by column after those. walls : names of the fixed and the roller sides.
     """
 
     blocks: np.ndarray
@@ -53,54 +52,57 @@ def contacts_of(
     rock is: half a block. So is intact rock between blocks where no set made the cut. A roller side
     is such a wall without stiffness in shear.
     """
-    across = across_periodic(scene, blocks)
-    pairs, area, centre, normal, second, joint_set = (
-        of_all(blocks, across, key)
-        for key in ("blocks", "area", "centroid", "normal", "second_moment", "joint_set")
-    )
-    beside = [np.zeros(blocks.body.dim), *(one.shift for one in across)]
-    number = [len(blocks.contacts), *(len(one.contacts) for one in across)]
-    shift = np.repeat(beside, number, axis=0)
-    edges, present = blocks.boundary, {sides[k] for k in np.unique(blocks.boundary.side)}
-    walls = tuple(one for one in scene.boundaries.sides("fixed", "roller") if one in present)
-    sticks = np.array([getattr(scene.boundaries, one) == "fixed" for one in walls], dtype=float)
-    names = np.array([walls.index(name) if name in walls else -1 for name in sides])
-    held = np.flatnonzero(names[edges.side] >= 0)
-    block, wall = edges.blocks[held, 0], blocks.count + names[edges.side[held]]
-    reach = ((edges.centroid[held] - blocks.centroid[block]) * edges.normal[held]).sum(axis=1)
+    pairs, area, centre, normal, second, joint_set, shift = _between(scene, blocks)
+    walls, held, wall = _at_walls(scene, blocks, sides)
+    edges, block = blocks.boundary, blocks.boundary.blocks[held, 0]
     kinds, column = _columns(scene, blocks, joint_set, pairs, len(further))
     cuts = np.flatnonzero(joint_set == NO_SET)
     column = np.concatenate([column, np.full(len(block), NO_SET)])
     column[column == NO_SET] = len(kinds) + np.arange(len(cuts) + len(block))
     welded = pairs[cuts], centre[cuts], normal[cuts], shift[cuts]
-    rock = _of_walls(scene, blocks, block, reach)
-    rock = rock._replace(shear=rock.shear * sticks[wall - blocks.count])
-    others = [welds(scene, blocks, further, *welded), rock]
+    others = welds(scene, blocks, further, *welded), _of_walls(scene, blocks, held, walls, wall)
     area = np.concatenate([area, edges.area[held]])
     frame = frames_of(np.concatenate([normal, edges.normal[held]]))
     second = np.concatenate([second, edges.second_moment[held]]) / area[:, None, None]
-    tangents = frame[:, 1:]
-    arm_i = centre - blocks.centroid[pairs[:, 0]]
-    arm_j = centre - shift - blocks.centroid[pairs[:, 1]]
-    of_walls = edges.centroid[held] - blocks.centroid[block]
+    i, j = (centre - blocks.centroid[one] for one in pairs.T)
+    reach = edges.centroid[held] - blocks.centroid[block]
+    arms = np.stack([i, j - shift], axis=1), np.stack([reach, np.zeros_like(reach)], axis=1)
     return Contacts(
-        blocks=np.concatenate([pairs, np.stack([block, wall], axis=1)]),
+        blocks=np.concatenate([pairs, np.stack([block, blocks.count + wall], axis=1)]),
         area=area,
         centre=np.concatenate([centre, edges.centroid[held]]),
         frame=frame,
-        arm=np.stack(
-            [
-                np.concatenate([arm_i, of_walls]),
-                np.concatenate([arm_j, np.zeros_like(of_walls)]),
-            ],
-            axis=1,
-        ),
-        spread=tangents @ second @ tangents.swapaxes(1, 2),
+        arm=np.concatenate(arms),
+        spread=frame[:, 1:] @ second @ frame[:, 1:].swapaxes(1, 2),
         column=column,
         kinds=kinds,
         others=Stiffness(*map(np.concatenate, zip(*others, strict=True))),
         walls=walls,
     )
+
+
+def _between(scene: RockMass, blocks: Blocks) -> tuple[np.ndarray, ...]:
+    """Return pairs, area, centroid, normal, second moments and joint set of the contacts of blocks,
+    and by which blocks j stand elsewhere, across periodic sides [c, d], m."""
+    across = across_periodic(scene, blocks)
+    beside = [np.zeros(blocks.body.dim), *(one.shift for one in across)]
+    number = [len(blocks.contacts), *(len(one.contacts) for one in across)]
+    keys = "blocks", "area", "centroid", "normal", "second_moment", "joint_set"
+    found = (of_all(blocks, across, key) for key in keys)
+    return *found, np.repeat(beside, number, axis=0)
+
+
+def _at_walls(
+    scene: RockMass, blocks: Blocks, sides: tuple[str, ...]
+) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
+    """Return the names of the fixed and the roller sides, the boundary facets on them, and the wall
+    of each."""
+    present = {sides[k] for k in np.unique(blocks.boundary.side)}
+    walls = tuple(one for one in scene.boundaries.sides("fixed", "roller") if one in present)
+    number = np.array([walls.index(name) if name in walls else -1 for name in sides])
+    wall = number[blocks.boundary.side]
+    held = np.flatnonzero(wall >= 0)
+    return walls, held, wall[held]
 
 
 def _columns(
@@ -119,14 +121,21 @@ def _columns(
 
 
 def _of_walls(
-    scene: RockMass, blocks: Blocks, block: np.ndarray, thickness: np.ndarray
+    scene: RockMass, blocks: Blocks, held: np.ndarray, walls: tuple[str, ...], wall: np.ndarray
 ) -> Stiffness:
-    """Return the stiffness of the rock of some blocks, so thick [n], m."""
-    moduli = [
-        (constrained_modulus(one), shear_modulus(one.intact_modulus, one.intact_poisson))
-        for one in rocks_of(scene)
-    ]
-    return Stiffness(*(np.array(moduli)[blocks.body.region[block]].T / thickness))
+    """Return the stiffness of the rock between the centroids of blocks and their boundary facets
+    `held`, on these walls: on rollers none in shear."""
+    edges, block = blocks.boundary, blocks.boundary.blocks[held, 0]
+    reach = ((edges.centroid[held] - blocks.centroid[block]) * edges.normal[held]).sum(axis=1)
+    moduli = np.array(
+        [
+            (constrained_modulus(one), shear_modulus(one.intact_modulus, one.intact_poisson))
+            for one in rocks_of(scene)
+        ]
+    )
+    sticks = np.array([getattr(scene.boundaries, one) == "fixed" for one in walls], dtype=float)
+    normal, shear = moduli[blocks.body.region[block]].T / reach
+    return Stiffness(normal, shear * sticks[wall])
 
 
 def jumps_of(frame: np.ndarray, arm: np.ndarray, rotations: int) -> np.ndarray:

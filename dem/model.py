@@ -252,24 +252,16 @@ class Samples(NamedTuple):
     energy: Any
 
 
-def held_by(dashpot: np.ndarray, block: np.ndarray, blocks: Blocks) -> Held:
+def held_by(dashpot: np.ndarray, block: np.ndarray, masses: np.ndarray, dt: float) -> Held:
     """Return held blocks from their dashpots [h, freedoms, freedoms], N s/m, and their numbers [h],
-    ascending.
+    ascending; masses : matrices of mass and inertia of all blocks [N, freedoms, freedoms].
 
     Their dashpots see the mean velocity of both half steps:
     (1 + dt M^-1 C / 2) v[n+1/2] = v - (dt M^-1 C / 2) v[n-1/2], v the velocity without them.
     """
-    lost = 0.5 * blocks.dt * np.linalg.solve(masses_of(blocks)[block], dashpot)
+    lost = 0.5 * dt * np.linalg.solve(masses[block], dashpot)
     moves = np.linalg.inv(np.eye(dashpot.shape[1]) + lost)
     return Held(block, np.stack([-moves @ lost, moves, dashpot], axis=1))
-
-
-def masses_of(blocks: Blocks) -> np.ndarray:
-    """Return the matrices of mass and inertia [N, freedoms, freedoms]."""
-    found = blocks.inertia[:, :, None] * np.eye(blocks.inertia.shape[1])
-    if blocks.tensor is not None:
-        found[:, 3:, 3:] = blocks.tensor
-    return found
 
 
 def state_at_rest(model: Model) -> State:

@@ -121,7 +121,7 @@ class BlockRelaxation:
         # Of the velocities of blocks: what quiet sides that bear the weight resist them by.
         self.bearing, self.onto, self.rows = system.bearing @ loads.onto.T, loads.onto, loads.rows
         nothing = np.zeros((len(rows), *blocks.masses.shape[1:]))
-        held = held_by(nothing, rows, own) if model.form.held else None
+        held = held_by(nothing, rows, blocks.masses, dt) if model.form.held else None
         if weighed and held is not None:
             resistance = nothing.copy()
             resistance[np.searchsorted(rows, loads.rows)] = self.onto @ self.bearing

@@ -45,7 +45,7 @@ def lattice(dim, points, turns=True):
     own = law(stiffness, None, np.ones(len(normals), dtype=bool), shear_stiffness=shear)
     form = KernelFlags(
         dim, turns and dim > 1, parts_of(own)._replace(planar=dim == 2), len(rule) * points,
-        False, False, False, False, False,
+        False, False, False, False, False, in_row=dim == 1,
     )  # fmt: skip
     mass = DENSITY * SIDE**dim
     inertia = np.tile([mass] * dim + [mass * SIDE**2 / 6] * form.rotations, (count**dim, 1))

@@ -10,7 +10,7 @@ from jointwave.cases.validate import validated
 from jointwave.dem import simulate
 from jointwave.dem.bounds import motion_of_contacts
 from jointwave.dem.leapfrog import march
-from jointwave.dem.model import masses_of, samples_for, state_at_rest
+from jointwave.dem.model import samples_for, state_at_rest
 from jointwave.dem.system import prepared
 
 LAW = {"normal_stiffness": 2e10, "shear_stiffness": 8e9}
@@ -57,7 +57,7 @@ def moving(scene):
 
 def momenta(system, state):
     """Return linear momentum [3] and angular momentum about the origin [3], and their sizes."""
-    masses, v = masses_of(system.model.blocks), state.v[: system.blocks.cut.count]
+    masses, v = system.blocks.masses, state.v[: system.blocks.cut.count]
     own = (masses @ v[:, :, None])[..., 0]
     turning = np.cross(system.blocks.cut.centroid, own[:, :3]) + own[:, 3:]
     sizes = [np.abs(one).sum() for one in (own[:, :3], turning)]
@@ -85,7 +85,7 @@ def test_rigid_motion_makes_no_force():
     state.u[:, 3:] = turn
     assert np.abs(motion_of_contacts(system, state)).max() < 1e-17
     march(system.model, state, samples_for(system.model, 0), 1000, (1, 2))
-    force = masses_of(system.model.blocks) @ state.v[:, :, None] / system.time.dt
+    force = system.blocks.masses @ state.v[:, :, None] / system.time.dt
     assert np.abs(force).max() < 1e-13 * LAW["normal_stiffness"] * np.abs(shift).max()
 
 
