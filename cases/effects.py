@@ -56,24 +56,6 @@ def off_axis(scene: Scene) -> str | None:
     return None
 
 
-def beyond_blocks(scene: AnyScene) -> str:
-    """Return why rigid blocks do not simulate a scene with a quality factor, "" if they do: rock
-    in series with a joint is one spring that relaxes where the joint is linear."""
-    if not isinstance(scene, Scene):
-        return "rigid blocks of a rock mass have no intact rock for a quality_factor"
-    if is_spatial(scene):
-        return "rigid blocks support a quality_factor in axial motion only"
-    p = calibrate(scene)
-    others = scene.gravity, scene.prestress, p.local_damping
-    bends = not p.tension.all() or bool(p.strengths(shears=False))
-    if bends or any(one is not None for one in others):
-        return (
-            "rigid blocks support a quality_factor with linear joints only, without gravity, "
-            "prestress or local damping"
-        )
-    return ""
-
-
 def bends(scene: Scene) -> bool:
     """Return whether a load or gravity bends a pillar whose blocks may rotate."""
     twists = scene.load.arm is not None and not scene.load.is_across and scene.gravity is None

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from jointwave.cases.effects import beyond_blocks, is_spatial
+from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.damping import NOT_OF_BLOCKS
 from jointwave.cases.schema.scene import Scene
 from jointwave.dem.axial.simulate import simulate as along_axis
 from jointwave.dem.spatial.simulate import simulate as in_space
@@ -32,11 +33,11 @@ def simulate(
     absent: that of its waves in rock without joints.
 
     Raises SceneError for an unstable step, a static state that does not exist, rotations too
-    large for their kinematics and an unsupported quality factor; StoppedError, an
+    large for their kinematics and a quality factor; StoppedError, an
     UnstableError with the result so far, when the motion leaves its bounds.
     """
-    if (quality := scene.rock.quality_factor) is not None and (reason := beyond_blocks(scene)):
-        raise SceneError(scene.where, "rock.quality_factor", quality, reason)
+    if (quality := scene.rock.quality_factor) is not None:
+        raise SceneError(scene.where, "rock.quality_factor", quality, NOT_OF_BLOCKS)
     if not isinstance(scene, Scene):
         from jointwave.dem.run import (
             simulate as rock_mass,  # with shapely, which no pillar needs

@@ -15,7 +15,6 @@ BEYOND = (
     "dashpots",
     "mass damping",
     "local damping",
-    "constant Q",
     "softening",
     "quiet ends",
     "matched ends",

@@ -17,6 +17,11 @@ from jointwave.cases.schema.values import (
 )
 
 WIDEST = 1e4  # of a band: its ends, one over the other
+#: Why rigid blocks do not solve a scene with a quality factor.
+NOT_OF_BLOCKS = (
+    "is not supported by rigid blocks, whose rock does not deform; the continuum and, of a pillar, "
+    "the exact bars support it"
+)
 
 
 class Attenuating(Table):

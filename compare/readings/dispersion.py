@@ -81,9 +81,9 @@ def dispersion_theory(scene: AnySource, frequency: Sequence[float] | np.ndarray)
     """Return phase_speed (m/s), attenuation (1/m) and quality [rock, frequency] along an endless
     pillar of a scene's ordinary joints.
 
-    rock : "rigid blocks", "bar" and, where the scene gives intact_modulus, "jointed rock".
-    frequency : Hz. Where waves do not pass, the attenuation says so. Raises SceneError of a pillar
-    with segments.
+    rock : "rigid blocks" of rock without a quality factor, "bar" and, where the scene gives
+    intact_modulus, "jointed rock". frequency : Hz. Where waves do not pass, the attenuation says
+    so. Raises SceneError of a pillar with segments.
     """
     pillar = pillar_of(load(scene), "dispersion_theory")
     if pillar.segments:
@@ -93,7 +93,9 @@ def dispersion_theory(scene: AnySource, frequency: Sequence[float] | np.ndarray)
     rock, mass = (mechanisms_of(pillar, model) for model in ("jointed", "equivalent"))
     of_rock, of_mass = (loss if one is None else one.modulus(1j * omega) for one in (rock, mass))
     slowness = omega / p.bar_speed / np.sqrt(of_mass)
-    k = {"rigid blocks": 2 / p.spacing * np.arcsin(slowness * p.spacing / 2 + 0j), "bar": slowness}
+    k = {"bar": slowness}
+    if rock is None:
+        k = {"rigid blocks": 2 / p.spacing * np.arcsin(slowness * p.spacing / 2 + 0j), **k}
     if p.intact_modulus is not None:
         k["jointed rock"] = _jointed(p, omega, of_rock, loss)
     found = np.array(list(k.values()))

@@ -1,5 +1,6 @@
 """Jobs of `jointwave run`, one per result, checked before any is run."""
 
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
@@ -45,20 +46,30 @@ def options_of(name: str) -> list[str]:
     return ["--engine", of.engine, *(["--model", model] if model else [])]
 
 
-def plan(scenes: list[AnyScene], runs: list[tuple[str, str | None]], out: Path) -> list[Job]:
-    """Return the jobs, all of which apply; raises SceneError before any run, also if a file that is
-    not a result is in the place of one."""
+def plan(
+    scenes: list[AnyScene], runs: list[tuple[str, str | None]], out: Path
+) -> tuple[list[Job], list[SceneError]]:
+    """Return the jobs, and why engines leave out a variant.
+
+    Raises SceneError before any run if there is no job, and if a file that is not a result is in
+    the place of one.
+    """
     from jointwave.compare.runs.output import refuse_foreign
 
-    jobs = [
-        Job(scene, name, result_path(out, scene, name))
-        for scene in scenes
-        for engine, model in runs
-        for name in names_of(engine, model, scene)
-    ]
+    jobs: list[Job] = []
+    left_out: list[SceneError] = []
+    for scene, run in product(scenes, runs):
+        try:
+            names = names_of(*run, scene)
+        except SceneError as error:
+            left_out.append(error)
+        else:
+            jobs += [Job(scene, name, result_path(out, scene, name)) for name in names]
+    if not jobs:
+        raise left_out[0]
     for job in jobs:
         refuse_foreign(job.path)
-    return jobs
+    return jobs, left_out
 
 
 def result_path(out: Path, scene: AnyScene, name: str, suffix: str = "") -> Path:
@@ -78,5 +89,5 @@ def names_of(engine: str, model: str | None, scene: AnyScene) -> list[str]:
     found = [name for name in every.values() if applies(name, scene)]
     if not found:
         reason = applies(next(iter(every.values())), scene).reason
-        raise SceneError(scene.title, "", None, f"no {engine}: {reason}")
+        raise SceneError(scene.name or scene.title, "", None, f"no {engine}: {reason}")
     return found

@@ -45,10 +45,9 @@ def applies(scene: Scene | RockMass) -> Answer:
     from jointwave.cases.schema.scene import Scene
 
     if scene.rock.quality_factor is not None:
-        from jointwave.cases.effects import beyond_blocks
+        from jointwave.cases.schema.damping import NOT_OF_BLOCKS
 
-        if beyond := beyond_blocks(scene):
-            return Answer(beyond)
+        return Answer(f"rock.quality_factor {NOT_OF_BLOCKS}")
     if isinstance(scene, Scene):
         return Answer()
     from jointwave.cases.material.rigid_blocks import against

@@ -191,7 +191,9 @@ def run_scene(
     peak there. runs : (engine, model) each, see `compare.runs.jobs`."""
     rows: Rows = []
     settings = CheckpointSettings(0.0, False, Signals(), fresh)
-    jobs = plan([scene], runs, folder or Path())
+    jobs, left_out = plan([scene], runs, folder or Path())
+    if left_out:
+        raise left_out[0]
     for done in execute(jobs, lambda fraction: None, settings=settings):
         result = load_netcdf(done.job.path)
         about = {

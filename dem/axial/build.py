@@ -8,7 +8,6 @@ from jointwave.cases.sampling import Clock, clock, interpolation
 from jointwave.cases.schema.scene import Scene
 from jointwave.dem.axial.ends import build_end
 from jointwave.dem.axial.model import Chain, Effects, Model, Receivers
-from jointwave.dem.axial.relaxation import relaxation, unrelaxed
 from jointwave.dem.axial.stability import critical_chain_step
 from jointwave.dem.axial.state import State, state_at_rest
 from jointwave.dem.size import refuse_large, refuse_too_many
@@ -20,8 +19,7 @@ def build(scene: Scene) -> tuple[Model, State, Clock, float]:
     """Return the model, the unloaded state at rest, the clock and the critical step (s)."""
     refuse_too_many(scene)
     p = calibrate(scene)
-    stiff = unrelaxed(scene, stiffest(scene, p))
-    critical = critical_chain_step(stiff, scene.ends.start, scene.ends.end)
+    critical = critical_chain_step(stiffest(scene, p), scene.ends.start, scene.ends.end)
     numerics = scene.numerics.dem
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
     refuse_large(scene, time)
@@ -48,8 +46,7 @@ def build_model(scene: Scene, p: Properties, time: Clock) -> Model:
 def unloaded(scene: Scene, p: Properties, dt: float, ends: tuple[str, str]) -> Model:
     """Return the constants for steps dt (s) of blocks of these properties without a load, under
     gravity and prestress, with ends of these kinds."""
-    alpha, gravity, joints = p.mass_damping, scene.gravity, law_of_joints(unrelaxed(scene, p))
-    relaxes = relaxation(scene, p, dt)
+    alpha, gravity, joints = p.mass_damping, scene.gravity, law_of_joints(p)
     force = scene.prestress.normal * p.area if scene.prestress else 0.0
     start, end = ends
     masses = p.masses
@@ -61,7 +58,6 @@ def unloaded(scene: Scene, p: Properties, dt: float, ends: tuple[str, str]) -> M
         end=end != "free",
         local_damping=p.local_damping is not None,
         gravity=gravity is not None,
-        relaxes=0 if relaxes is None else len(relaxes.share),
     )
     chain = Chain(
         dt=dt,
@@ -78,7 +74,7 @@ def unloaded(scene: Scene, p: Properties, dt: float, ends: tuple[str, str]) -> M
     none = np.zeros(0)
     blocks = None if masses is None else np.stack([masses, dt / masses], axis=1)
     places = receivers(scene, p)
-    model = Model(effects, chain, table_of(joints), none, none, places, blocks, relaxes)
+    model = Model(effects, chain, table_of(joints), none, none, places, blocks)
     return model if alpha is None else with_mass_damping(model, alpha)
 
 

@@ -66,7 +66,6 @@ def arguments(model: Model, state: State, samples: Samples, monitor: Guard | Non
     limit = limits.limit.view(np.float64)[0]
     return Packed(
         model.chain, model.laws, model.blocks, model.load, model.base,
-        *(6 * (None,) if model.relaxation is None else model.relaxation),
         *model.receivers.sections, *model.receivers.points, *state, *samples,
         limit, limits.peak, limits.found, every,
     )  # fmt: skip
@@ -82,7 +81,7 @@ def loop_for(effects):
     parts = effects.joints
     dashpots, softening, varied = parts.dashpots, parts.softening, parts.varied
     start_held, end_held, shaken = effects.start, effects.end, effects.base
-    masses, relaxes = effects.masses, effects.relaxes
+    masses = effects.masses
     mass_damping, local_damping = effects.mass_damping, effects.local_damping
     gravity, ledger, fracture_row = effects.gravity, effects.ledger, 3 + softening
     joint_ledger = ledger and dashpots
@@ -90,10 +89,10 @@ def loop_for(effects):
 
     @formula
     def steps(
-        c, laws, blocks, load, base, relaxed, shares, decays, gains, springs, losses,
+        c, laws, blocks, load, base,
         left, right, weight, before, after, share,
         u, v, force, gap_rate, opening, broke, start, end,
-        work, last_force, viscous, behind, dashpot_force, elongation,
+        work, last_force, viscous, behind, dashpot_force,
         stress, velocity, displacement, energy, v_before,
         limit, peak, found, every, first, last, s, stride,
     ):  # fmt: skip
@@ -107,16 +106,6 @@ def loop_for(effects):
                 rate_now, largest = rate, 0.0
                 if varied:
                     law = law_of(laws, j)
-                if relaxes:
-                    gap *= relaxed[j]
-                    for k in range(relaxes):
-                        e = decays[k, j] * elongation[k, j] + gains[k, j] * rate
-                        if ledger:
-                            both = e + elongation[k, j]
-                            lost = losses[k, j] * elastic_energy(law, parts, both, 0.0, 0.0, 0.0)
-                            viscous[j] += c.area * lost
-                        elongation[k, j] = e
-                        gap += shares[k, j] * e
                 if dashpots:
                     rate_now = 1.5 * rate - 0.5 * gap_rate[j]
                     gap_rate[j] = rate
@@ -190,11 +179,6 @@ def loop_for(effects):
                             largest = opening[j]
                         gap = u[j + 1] - u[j]
                         v_before[j] = elastic_energy(law, parts, gap, largest, 0.0, 0.0)
-                        if relaxes:
-                            v_before[j] *= relaxed[j]
-                            for k in range(relaxes):
-                                e = elastic_energy(law, parts, elongation[k, j], 0.0, 0.0, 0.0)
-                                v_before[j] += springs[k, j] * e
                     v_before[count - 1] = 0.0
                     energy[1, s] = c.area * total_of(v_before)
                     if softening:
@@ -246,7 +230,7 @@ def loop_for(effects):
                         if masses:
                             v_before[j] *= blocks[j, 0] / c.mass
                     energy[0, s] = 0.5 * c.mass * total_of(v_before)
-                    if joint_ledger or block_ledger or relaxes:
+                    if joint_ledger or block_ledger:
                         energy[2, s] = total_of(viscous)
                     energy[fracture_row, s], energy[energy.shape[0] - 1, s] = work[0], work[1]
                 s += 1

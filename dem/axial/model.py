@@ -6,7 +6,6 @@ import numpy as np
 
 from jointwave.cases.sampling import Interpolation
 from jointwave.dem.axial.ends import End
-from jointwave.dem.axial.relaxation import RelaxingJoints
 from jointwave.joints.law import LawFlags
 
 
@@ -21,8 +20,8 @@ class Effects(NamedTuple):
     """The effects of a chain: compile-time constants of its kernel.
 
     joints : parts of their law. masses : whether blocks differ in mass. start, end : whether these
-    have a spring or a dashpot. base : whether the start moves. relaxes : number of relaxation
-    mechanisms of each joint. ledger : whether energies are recorded.
+    have a spring or a dashpot. base : whether the start moves. ledger : whether energies are
+    recorded.
     """
 
     joints: LawFlags
@@ -33,7 +32,6 @@ class Effects(NamedTuple):
     mass_damping: bool = False
     local_damping: bool = False
     gravity: bool = False
-    relaxes: int = 0
     ledger: bool = False
 
 
@@ -78,4 +76,3 @@ class Model(NamedTuple):
     base: np.ndarray
     receivers: Receivers
     blocks: np.ndarray | None = None
-    relaxation: RelaxingJoints | None = None

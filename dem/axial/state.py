@@ -22,12 +22,9 @@ class State(NamedTuple):
     The ledger, None without: the work (J) of every nonconservative force, up to the last
     step.
     work : [of the ends, of the load]. last_force : of start, end and load at the last step, N.
-    viscous : against the damping of each block and of the joint behind it, and what that relaxes;
-        None without damping.
+    viscous : against the damping of each block and of the joint behind it; None without damping.
     behind : of the damping of each block at the last step over the half step behind it; None
         without damping of blocks.
-    elongation : of the springs of `dem.axial.relaxation` at the last step [l, N - 1], m; None
-        where no joint relaxes.
     dashpot_force : each joint's dashpot force at the last step, N; None without dashpots.
     """
 
@@ -44,14 +41,12 @@ class State(NamedTuple):
     viscous: Any
     behind: Any
     dashpot_force: Any
-    elongation: Any
 
 
 def state_at_rest(effects: Effects, block_count: int, ledger: bool) -> State:
     """Return the state at rest, without arrays for absent effects."""
     damped, softens = effects.joints.dashpots, effects.joints.softening
     damps_blocks = effects.mass_damping or effects.local_damping
-    loses = damped or damps_blocks or bool(effects.relaxes)
 
     def of_joints(present: bool) -> np.ndarray | None:
         return zeros(block_count - 1) if present else None
@@ -70,8 +65,7 @@ def state_at_rest(effects: Effects, block_count: int, ledger: bool) -> State:
         end=np.zeros(2),
         work=np.zeros(2) if ledger else None,
         last_force=np.zeros(3) if ledger else None,
-        viscous=of_blocks(ledger and loses),
+        viscous=of_blocks(ledger and (damped or damps_blocks)),
         behind=of_blocks(ledger and damps_blocks),
         dashpot_force=of_joints(ledger and damped),
-        elongation=zeros((effects.relaxes, block_count - 1)) if effects.relaxes else None,
     )

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from closed_forms.constant_q import ConstantQ
+from jointwave import dem
 from jointwave.cases.errors import SceneError
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
@@ -244,17 +245,8 @@ def test_four_mechanisms_stand_for_a_constant_quality_factor(pillar, quality, bo
 def test_what_has_no_quality_factor_says_so(pillar, one_joint):
     scene = pillar(**Q)
     holding = {name for name in names(scene.kind) if applies(name, scene)}
-    engines = {"dem", "continuum-jointed", "continuum-equivalent"}
+    engines = {"continuum-jointed", "continuum-equivalent"}
     assert holding == {"jointed-bar", "equivalent-bar", *engines}
-    for changes, reason in (
-        ({"joints__tension": False}, "linear joints only"),
-        ({"prestress": {"normal": 1e5}}, "without gravity, prestress"),
-        ({"load__at": [0.1, 0.0]}, "axial motion only"),
-    ):
-        beyond = pillar(**Q, **changes)
-        assert reason in applies("dem", beyond).reason
-        with pytest.raises(SceneError, match=reason):
-            solve("dem", beyond)
     layer = [{"y": 20.0, "spacing_stiffness": 4.375e8, "thickness": 0.05}]
     assert "thickness has no" in reason_against(pillar(**Q, soft_layers=layer), "jointed")
     parts = {"segments": [{"y": [4.0, 6.0], "density": 2600.0}]}
@@ -264,6 +256,10 @@ def test_what_has_no_quality_factor_says_so(pillar, one_joint):
     mass = RockMass(**one_joint(rock=rock))
     assert "[[waves]] do not support" in reason_against(mass, "jointed")
     assert not any(applies(name, mass) for name in names(mass.kind))
+    for one in (scene, mass):
+        with pytest.raises(SceneError, match=r"quality_factor = .* the exact bars support it"):
+            dem.simulate(one)
+        assert "rock.quality_factor is not supported by rigid blocks" in applies("dem", one).reason
     sets = [{"name": "a", "dip": 0.0, "spacing": 5.0, "normal_stiffness": 1e10}]
     sets[0]["shear_stiffness"] = 4e9
     mass = RockMass(

@@ -33,6 +33,7 @@ from jointwave.compare.cli.options import (
     app,
     load,
     results_of,
+    warn,
 )
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.runs.checkpoint.signals import watched
@@ -126,12 +127,13 @@ def run(
         work = partial(run_scene, runs=wanted)
 
         def solvers(one: AnyScene) -> list[str]:
-            return [job.name for job in jobs.plan([one], wanted, out)]
+            return [job.name for job in jobs.plan([one], wanted, out)[0]]
 
         sweep(cases_of, work, solvers, workers, dry, as_json, strict)
         return
     scenes = load(scene, changes, variant, strict, in_space=True)
-    asked = jobs.plan(scenes, wanted, out)
+    asked, left_out = jobs.plan(scenes, wanted, out)
+    warn(scenes[:1], strict, lambda _: map(str, left_out))
     if dry:
         from jointwave.compare.cli.forecast_view import show_forecasts
         from jointwave.compare.runs.reuse import ResultFolder

@@ -50,6 +50,21 @@ def test_run_reports_the_same_as_json(tmp_path):
     assert fact["engine"] == "dem" and fact["steps"] == 1200 and fact["energy_residual"] < 1e-10
 
 
+def test_run_leaves_out_variants_that_an_engine_cannot_solve(jointwave, tmp_path):
+    """Rigid blocks have no rock of a quality factor: a warning for each, an error for all."""
+    scene = "beyond/constant-q"
+    shown = jointwave("run", scene, "--set", "time.duration=1e-3", "--out", tmp_path)
+    (said,) = (line for line in shown.err.splitlines() if "constant Q:" in line)
+    assert said.startswith("jointwave: warning: constant Q: no dem: rock.quality_factor")
+    assert {path.parent.name for path in tmp_path.rglob("dem.nc")} == {
+        tmp_path.name,
+        "dashpots",
+        "dashpots, 1 kHz",
+    }
+    refused = jointwave("run", scene, "--variant", "constant Q", "--out", tmp_path, code=2)
+    assert "rock.quality_factor is not supported by rigid blocks" in refused.err
+
+
 def test_explain_says_what_is_left_out_and_why(jointwave):
     """Effects, critical steps and exact solutions, with the reason of each no."""
     facts = json.loads(jointwave("explain", SCENE, "--json").out)

@@ -111,6 +111,8 @@ def test_rock_of_a_quality_factor_attenuates_as_its_theory():
     theory = dispersion_theory(scene, found.frequency.values).sel(rock="bar")
     assert found.attenuation.values == pytest.approx(theory.attenuation.values, abs=1e-5)
     assert found.phase_speed.values == pytest.approx(theory.phase_speed.values, rel=1e-4)
+    rocks = dispersion_theory(scene, [100.0]).rock.values
+    assert rocks.tolist() == ["bar", "jointed rock"]
 
 
 def test_rigid_blocks_disperse_as_a_chain():

@@ -27,10 +27,6 @@ RUNS = {
         {"joints": SLIPS, "ends__end": "free", "load__direction": [0.6, 0.8, 0.0]},
     ),
     "explicit rock": ("continuum-jointed", {"numerics__continuum__scheme": "explicit"}),
-    "chain between rock of a quality factor": (
-        "dem",
-        {"joints": {"damping_ratio": 0.02}, "rock__quality_factor": 20.0},
-    ),
     "rock of a quality factor": (
         "continuum-jointed",
         {"rock__quality_factor": 20.0, "numerics__continuum__scheme": "explicit"},
