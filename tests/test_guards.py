@@ -5,15 +5,9 @@ import pytest
 
 from jointwave import continuum, dem
 from jointwave.cases.errors import StoppedError
-from jointwave.cases.material.calibrate import calibrate
+from jointwave.compare.engines import solver
 from jointwave.continuum.run import discrete_and_steps
-from jointwave.dem.axial.build import build
-from jointwave.dem.axial.leapfrog import make_stepper
-from jointwave.dem.axial.samples import buffers
-from jointwave.dem.axial.simulate import scheme_of
-from jointwave.dem.axial.stability import highest_speed
-from jointwave.dem.spatial.simulate import critical_step_of
-from jointwave.numerics.divergence import ENERGY, EVERY, RUNAWAY, SPEED, guard
+from jointwave.numerics.divergence import EVERY
 
 ABOVE = 1.001  # of the critical step: (x + sqrt(x^2 - 1))^2 = 1.09 times as large in every step
 ACROSS = {"load__direction": [0.6, 0.8, 0.0], "joints__friction_angle": 30.0}
@@ -50,9 +44,7 @@ def forced(request, pillar):
 def critical_of(scene, engine):
     if engine == "continuum":
         return discrete_and_steps(scene, "jointed")[2]
-    if scene.load.direction[0]:
-        return critical_step_of(scene, calibrate(scene))
-    return scheme_of(scene).build(scene)[3]
+    return solver("dem").prepare(scene).critical
 
 
 def test_what_is_sound_is_kept_and_nothing_else(forced):
@@ -67,44 +59,6 @@ def test_what_is_sound_is_kept_and_nothing_else(forced):
         assert kept[name].identical(whole[name]), name
     stopped = int(str(e.value).split("step ")[1].split()[0])
     assert stopped - EVERY - 1 <= samples - 1 < stopped
-
-
-def test_it_stops_within_so_many_steps_of_leaving_its_bounds(pillar):
-    """Found by a guard at a multiple of EVERY steps; the first speed beyond the limit is found here
-    by looking after every step."""
-    step = ABOVE * critical_of(pillar(**SMALL), "dem")
-    numerics = {"step_fraction": ABOVE, "allow_unstable": True}
-    scene = pillar(
-        **SMALL, numerics__dem=numerics, record__interval=step, time__duration=1000 * step
-    )
-    model, state, time, _ = build(scene)
-    speed = highest_speed(model, state, time)
-    samples, left = buffers(model, state, time.samples), None
-    take = make_stepper(model, state, samples, 1)
-    for n in range(time.steps):
-        take(n, n + 1)
-        if left is None and np.abs(state.v).max() > RUNAWAY * speed:
-            left = n + 1
-    model, state, time, _ = build(scene)
-    held = guard(speed)
-    make_stepper(model, state, buffers(model, state, time.samples), 1, held)(0, time.samples)
-    assert left is not None and left <= held.found[0] < left + EVERY
-    assert held.found[1] == SPEED
-
-
-def test_a_chain_that_gains_energy_is_stopped_by_its_ledger(pillar):
-    """Joints that become stiffer while they are compressed: their energy grows, and nothing has
-    done the work. The run ends at the next look."""
-    scene = pillar(**SMALL)
-    model, state, time, _ = build(scene)
-    samples, held = buffers(model, state, time.samples), guard(np.inf)
-    half = int(0.008 / scene.interval)  # the pulse is within the pillar
-    make_stepper(model, state, samples, time.stride, held)(0, half)
-    assert held.found[0] == -1
-    model.laws[0] *= 1.5
-    make_stepper(model, state, samples, time.stride, held)(half, time.samples)
-    assert half * time.stride <= held.found[0] < half * time.stride + EVERY
-    assert held.found[1] == ENERGY
 
 
 @pytest.mark.parametrize("kind", KINDS)

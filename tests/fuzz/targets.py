@@ -21,7 +21,7 @@ from unittest.mock import patch
 import numpy as np
 
 from jointwave import cases
-from jointwave.cases.effects import active_effects, is_spatial
+from jointwave.cases.effects import active_effects
 from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.loads import load_history, step_means
 from jointwave.cases.material.calibrate import calibrate
@@ -31,7 +31,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.warnings import warnings
 from jointwave.compare.cli import program
-from jointwave.compare.engines import applies, names
+from jointwave.compare.engines import applies, names, solver
 from jointwave.compare.misfit.external import read_curves
 from jointwave.compare.studies.study import load as load_study
 from jointwave.compare.studies.work_precision import key
@@ -116,13 +116,7 @@ def _examine_rock_mass(one: RockMass) -> None:
 
 def _steps(one: Scene) -> int:
     """Return how many steps the rigid blocks would take, after every check before the first."""
-    if is_spatial(one):
-        from jointwave.dem.spatial.simulate import prepare
-
-        return prepare(one).time.steps
-    from jointwave.dem.axial.simulate import scheme_of
-
-    return scheme_of(one).build(one)[2].steps
+    return solver("dem").prepare(one).steps
 
 
 def _refuse_large_rock(one: Scene, models: list[str]) -> None:

@@ -6,13 +6,12 @@ import xarray as xr
 
 from closed_forms import leapfrog
 from jointwave import dem
+from jointwave.cases.loads import load_history, step_means
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.sampling import Clock
 from jointwave.compare.engines import solve
 from jointwave.compare.figures import scene_figures
 from jointwave.compare.figures.charts.spacetime import diagrams_of, space_time
 from jointwave.compare.figures.scene_figures import along_pillar, recorded_along
-from jointwave.dem.axial.build import build_model
 
 
 def fields_of(scene, names):
@@ -45,9 +44,7 @@ def test_difference_from_what_the_engine_is_exactly_is_round_off(pillar):
     result, p = dem.simulate(scene), calibrate(scene)
     samples, dt = result.sizes["time"], result.attrs["dt"]
     stride = round(scene.interval / dt)
-    load = build_model(scene, p, Clock(dt, stride, samples)).load
-    force = np.zeros(stride * (samples - 1))
-    force[: len(load)] = load[: len(force)]
+    force = p.area * step_means(load_history(scene), dt, stride * (samples - 1))
     k = p.regular_stiffness * p.area
     steps = stride * np.arange(samples)
     u = leapfrog.displacements(force, steps, dt, k, p.block_mass, p.block_count)
