@@ -1,7 +1,9 @@
 """The constants of a jointed elastic body, in one, two or three dimensions.
 
-Freedoms are dolfinx's of a blocked space: component c of node n is d n + c. Mass, stiffness and
-forces are per metre of thickness in the plane, and per square metre of section in one dimension.
+Component c of node n is freedom d n + c, as in dolfinx's blocked spaces; d is the number of
+components, one or three in a mesh of one dimension, which then runs along the second of three.
+Mass, stiffness and forces are per metre of thickness in the plane, and per square metre of section
+in one dimension.
 """
 
 from typing import Any, NamedTuple
@@ -23,15 +25,17 @@ class Forms(NamedTuple):
 
 
 class JumpOperator(NamedTuple):
-    """The joints at their points: jump = matrix @ u, force = -matrix.T @ (weights * tractions).
+    """The joints at their points: the jump is matrix @ u, and forces are matrix.T @ (weights times
+    the tractions on block j), with block j on the side that the normal points to.
 
-    A jump is the displacement of the side that the normal points to less that of the other: it is
-    positive along the normal where the joint opens.
+    A jump is the displacement of block j less that of block i: positive along the normal where the
+    joint opens.
 
     matrix : [points * d, freedoms], B; d rows a point: along the normal, then along the joint.
-    weight : float array [points], m^(d-1). column : int array [points], of the law.
-    frame : float array [points, d, d], unit vectors in rows: the normal, then those along the
-    joint. place : float array [points, d], m.
+    weight : float array [points], m^(d-1). column : int array [points], of the law: the contact
+    between blocks, those across periodic sides last; of a pillar the joint. frame : float array
+    [points, d, d], unit vectors in rows: the normal, then those along the joint. place : float
+    array [points, dimensions], m, on block i.
     """
 
     matrix: csr_matrix
@@ -46,27 +50,32 @@ class Facets(NamedTuple):
 
     node : int array [n]. weight : float array [n], m^(d-1): integral of a facet's function that is
     1 at the node and 0 at others. normal : float array [n, d], unit vectors out of the rock.
-    place : float array [n, d], m.
+    place : float array [n, d], m. block : int array [n], that the facet belongs to.
     """
 
     node: np.ndarray
     weight: np.ndarray
     normal: np.ndarray
     place: np.ndarray
+    block: np.ndarray
 
 
 class Body(NamedTuple):
     """A jointed elastic body.
 
     mesh : dolfinx.mesh.Mesh, in which the two sides of a joint share no node. space : dolfinx.fem's
-    vector space of Lagrange elements. block : int array [cells], of the partition. mass : float
-    array [freedoms], the diagonal, kg; None where only the consistent one is used. consistent :
-    [freedoms, freedoms], kg; None where the mass is diagonal. stiffness : N/m, and damping, N s/m
-    (None without) : [freedoms, freedoms]. joints : None where none is resolved. sides : by name.
+    vector space of displacements. tied : int array [nodes of the space], the node of the body that
+    each is; None where these are the same, but for rock that is whole across periodic sides.
+    x : float array [nodes, d], m. block : int array [cells], of the partition. mass : float array
+    [freedoms], the diagonal, kg; None where there is the consistent one, [freedoms, freedoms], kg.
+    stiffness : N/m, and damping, N s/m (None without) : [freedoms, freedoms]. joints : None where
+    none is resolved. sides : by name.
     """
 
     mesh: Any
     space: Any
+    tied: np.ndarray | None
+    x: np.ndarray
     block: np.ndarray
     mass: np.ndarray | None
     consistent: csr_matrix | None
@@ -76,6 +85,6 @@ class Body(NamedTuple):
     sides: dict[str, Facets]
 
     @property
-    def dim(self) -> int:
-        """Number of dimensions."""
-        return int(self.mesh.geometry.dim)
+    def components(self) -> int:
+        """Components of displacements at a node."""
+        return self.stiffness.shape[0] // len(self.x)

@@ -1,0 +1,119 @@
+"""What differs between dolfinx 0.5 and 0.11, told apart by what they offer."""
+
+import inspect
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import basix
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from jointwave.continuum.parallel import petsc as _  # noqa: F401  before dolfinx starts it in its own way
+
+
+@contextmanager
+def quiet_logging() -> Iterator[None]:
+    """Restore the root logger changed by the form compiler, and hide its progress messages."""
+    root, disabled = logging.getLogger(), logging.root.manager.disable
+    handlers, level = list(root.handlers), root.level
+    logging.disable(max(disabled, logging.INFO))
+    try:
+        yield
+    finally:
+        root.handlers[:] = handlers
+        root.setLevel(level)
+        logging.disable(disabled)
+
+
+with quiet_logging():
+    import dolfinx.fem.petsc
+    import ufl
+    from dolfinx import fem, mesh
+    from mpi4py import MPI
+
+NEW = hasattr(basix, "ufl")  #: whether elements of basix are UFL's
+
+
+def make_mesh(kind: str, x: np.ndarray, cells: np.ndarray, comm: Any = None) -> Any:
+    """Return the dolfinx mesh of cells [n, corners] between vertices x [m, d], m.
+
+    Cells that share no vertex are not connected, wherever their vertices lie.
+    """
+    dim = x.shape[1]
+    if NEW:
+        element = basix.ufl.element("Lagrange", kind, 1, shape=(dim,))
+    else:  # of another variant ffcx rewrites the element, and compiles forms again in later runs
+        cell = ufl.Cell(kind, geometric_dimension=dim)
+        element = ufl.VectorElement("Lagrange", cell, 1, variant="equispaced")
+    name = "e" if "e" in inspect.signature(mesh.create_mesh).parameters else "domain"
+    with quiet_logging():
+        return mesh.create_mesh(
+            comm or MPI.COMM_SELF, cells=cells, x=x, **{name: ufl.Mesh(element)}
+        )
+
+
+def input_cells(domain: Any) -> np.ndarray:
+    """Return for each cell of a mesh its row in the array of cells that it was made from."""
+    return np.asarray(domain.topology.original_cell_index)
+
+
+def lagrange(domain: Any, order: int, components: int) -> Any:
+    """Return the space of vectors of Lagrange elements of this order.
+
+    On intervals, quadrilaterals and hexahedra its nodes are Gauss-Lobatto-Legendre points.
+    """
+    return _space(domain, "Lagrange", order, components)
+
+
+def cell_constants(domain: Any, values: np.ndarray) -> Any:
+    """Return the vector function that has values [cells, n] in the cells of a mesh."""
+    found = fem.Function(_space(domain, "DG", 0, values.shape[1]), dtype=np.float64)
+    found.x.array[:] = values.ravel()
+    return found
+
+
+def _space(domain: Any, family: str, order: int, size: int) -> Any:
+    with quiet_logging():
+        if hasattr(fem, "functionspace"):
+            return fem.functionspace(domain, (family, order, (size,)))
+        return fem.VectorFunctionSpace(domain, (family, order), dim=size)
+
+
+def cell_nodes(space: Any) -> np.ndarray:
+    """Return the nodes of each cell of the mesh, int array [cells, nodes per cell]."""
+    nodes = space.dofmap.list
+    table = np.asarray(getattr(nodes, "array", nodes))
+    return table.reshape(len(input_cells(space.mesh)), -1)
+
+
+def matrix(form: ufl.Form) -> csr_matrix:
+    """Assemble a bilinear form."""
+    found = dolfinx.fem.petsc.assemble_matrix(_compiled(form))
+    found.assemble()
+    start, column, value = (np.array(one) for one in found.getValuesCSR())
+    found.destroy()
+    size = len(start) - 1
+    return csr_matrix((np.real(value), column, start), shape=(size, size))
+
+
+def _compiled(form: ufl.Form) -> Any:
+    with quiet_logging():
+        return fem.form(form, dtype=np.float64)
+
+
+def quadrature(kind: str, degree: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return points [n, d] and weights [n] on the reference cell, exact to this degree."""
+    cell, types = getattr(basix.CellType, kind), basix.QuadratureType
+    rule = types.default if hasattr(types, "default") else types.Default
+    try:
+        return basix.make_quadrature(cell, degree, rule=rule)
+    except TypeError:  # older: the rule comes first, and nothing has a name
+        return basix.make_quadrature(rule, cell, degree)
+
+
+def reference(kind: str, order: int) -> Any:
+    """Return basix's Lagrange element of a cell; `points` are its nodes, one for each function."""
+    family, variant = basix.ElementFamily.P, basix.LagrangeVariant.gll_warped
+    return basix.create_element(family, getattr(basix.CellType, kind), order, variant)

@@ -1,0 +1,102 @@
+"""One conforming mesh of all blocks, and the same with its joints cut open by connectivity."""
+
+from typing import NamedTuple
+
+import basix
+import numpy as np
+
+from jointwave.cases.geometry.relations import joined
+
+#: Kinds of cells by dimension: intervals, quadrilaterals and hexahedra, and simplices.
+BOXES = {1: "interval", 2: "quadrilateral", 3: "hexahedron"}
+SIMPLICES = {1: "interval", 2: "triangle", 3: "tetrahedron"}
+
+
+class Conforming(NamedTuple):
+    """A mesh of a cell complex: neighbours share all vertices between them.
+
+    kind : of cells, by basix's name. x : float array [v, d], m. cells : int array [c, corners], in
+    basix's order. block : int array [c], cell of the complex. on : int array [c, facets of a cell],
+    the facet of the complex that holds each facet of cells, or -1 within a block.
+    """
+
+    kind: str
+    x: np.ndarray
+    cells: np.ndarray
+    block: np.ndarray
+    on: np.ndarray
+
+
+class Places(NamedTuple):
+    """Facets of cells [n], or pairs of them [n, 2]: int arrays of cells, and of their facets."""
+
+    cell: np.ndarray
+    facet: np.ndarray
+
+    def of(self, chosen: np.ndarray) -> "Places":
+        """Return those that are chosen, by a mask."""
+        return Places(self.cell[chosen], self.facet[chosen])
+
+    def side(self, k: int) -> "Places":
+        """Return the first (0) or the second (1) of each pair."""
+        return Places(self.cell[:, k], self.facet[:, k])
+
+
+def facets_of(kind: str) -> np.ndarray:
+    """Return the corners of each facet of a cell, int array [facets, corners of a facet]."""
+    return np.array(basix.topology(getattr(basix.CellType, kind))[-2])
+
+
+def facet_vertices(mesh: Conforming) -> np.ndarray:
+    """Return the vertices of the facets of cells in rising order, int array [c, facets, n]."""
+    return np.sort(mesh.cells[:, facets_of(mesh.kind)], axis=2)
+
+
+def on_facets(
+    kind: str, cells: np.ndarray, vertices: np.ndarray, facet: np.ndarray, count: int
+) -> np.ndarray:
+    """Return `Conforming.on` of cells by facets, int array [n, corners of a facet], that lie on
+    facets of the complex, int array [n]; count : of vertices."""
+    corners = np.sort(cells[:, facets_of(kind)], axis=2)
+    own, known = (_numbers(np.sort(one, axis=-1), count) for one in (corners, vertices))
+    order = np.argsort(known)
+    at = np.minimum(np.searchsorted(known[order], own), len(known) - 1)
+    return np.where(known[order][at] == own, facet[order][at], -1)
+
+
+def _numbers(rows: np.ndarray, count: int) -> np.ndarray:
+    """Return a number for each row [..., n] of vertices below `count`, the same for equal ones."""
+    flat = rows.reshape(-1, rows.shape[-1])
+    found = flat[:, 0].astype(np.int64)
+    for column in flat.T[1:3]:  # vertices of a facet in space differ by the first three
+        found = found * count + column
+    return found.reshape(rows.shape[:-1])
+
+
+def shared(mesh: Conforming) -> Places:
+    """Return the pairs of facets that two cells share."""
+    vertices = facet_vertices(mesh)
+    number = _numbers(vertices, len(mesh.x)).ravel()
+    order = np.argsort(number, kind="stable")
+    first = np.flatnonzero(np.diff(number[order]) == 0)
+    return Places(*np.divmod(np.stack([order[first], order[first + 1]], axis=1), vertices.shape[1]))
+
+
+def cut_open(mesh: Conforming, pairs: Places, cut: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return cells [c, corners] with vertices of their own on either side of cut facets, and the
+    vertex of the mesh that each of these is.
+
+    pairs : all that are shared; cut : which are cut, bool array [n]. Around a vertex at the tip of
+    a cut, facets that are not cut lead from one side to the other: it stays one.
+    """
+    corners = facets_of(mesh.kind)
+    at = mesh.cells.shape[1] * pairs.cell[..., None] + corners[pairs.facet]  # corners of all cells
+    order = np.argsort(mesh.cells.ravel()[at], axis=2)
+    at = np.take_along_axis(at, order, 2)
+    piece = joined(at[~cut].swapaxes(1, 2), mesh.cells.size)
+    split = np.zeros(len(mesh.x), bool)
+    split[mesh.cells.ravel()[at[cut]]] = True
+    vertex = mesh.cells.ravel()
+    key = np.where(split[vertex], len(mesh.x) + piece, vertex)
+    _, first, number = np.unique(key, return_index=True, return_inverse=True)
+    return number.reshape(mesh.cells.shape), vertex[first]

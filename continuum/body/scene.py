@@ -1,0 +1,151 @@
+"""The body of a scene: a rock mass in the plane or in space, or a pillar."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from jointwave.cases.effects import is_spatial
+from jointwave.cases.errors import SceneError
+from jointwave.cases.geometry.blocks import Blocks
+from jointwave.cases.geometry.cell_complex import Complex, GeometryError
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.partition.periodic import Across, across_periodic, of_all
+from jointwave.cases.partition.pillar import blocks_of_pillar
+from jointwave.cases.partition.scene import blocks_of_scene
+from jointwave.cases.partition.shape import shape_of
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.body import rock as materials
+from jointwave.continuum.body.boxes import along_edges, box_corners, box_mesh, extents
+from jointwave.continuum.body.build import build_body
+from jointwave.continuum.body.conforming import Conforming
+from jointwave.continuum.body.domain import marks_of
+from jointwave.continuum.body.model import Body
+from jointwave.continuum.body.periodic import facing, matching_facets, matching_vertices
+from jointwave.continuum.body.rock import Material, Rock, rock_of_cells
+from jointwave.continuum.body.simplices import are_simplices, own_cells, simplex_mesh
+from jointwave.continuum.body.size import element_size, elements_along, refuse_large_mesh
+from jointwave.continuum.joints import resolved_joints
+
+#: Sides of a pillar: its ends, and those along it.
+ENDS = ("start", "end", "along")
+
+
+class SceneBody(NamedTuple):
+    """A scene as a body: its resolved joint sets, blocks, contacts across periodic sides, the rock
+    of each region of `blocks.body`, and its body."""
+
+    scene: AnyScene
+    blocks: Blocks
+    across: list[Across]
+    materials: list[Material]
+    body: Body
+
+
+def body_of(
+    scene: AnyScene, model: str = "jointed", rock: Rock | None = None, implicit: bool = False
+) -> SceneBody:
+    """Return the body of a scene; model : "jointed", or "equivalent" where sets of joints that have
+    a spacing, and a pillar's, are an effective medium.
+
+    rock : of the scene, of a function of its own. implicit : whether steps need no diagonal mass.
+
+    Raises SceneError where the scene cannot be cut or meshed as it asks for.
+    """
+    if isinstance(scene, Scene):
+        return _pillar(scene, model, rock, implicit)
+    return _rock_mass(scene, model, rock, implicit)
+
+
+def _rock_mass(scene: RockMass, model: str, rock: Rock | None, implicit: bool) -> SceneBody:
+    smeared = [one for one in scene.joint_sets if model == "equivalent" and one.spacing is not None]
+    kept = [one for one in scene.joint_sets if one not in smeared]
+    resolved = scene.model_copy(update={"joint_sets": kept})
+    blocks, numerics = blocks_of_scene(resolved), scene.numerics.continuum
+    across, dim = across_periodic(scene, blocks), blocks.body.dim
+    joint = of_all(blocks, across, "joint_set") >= 0
+    marks = marks_of(blocks, joint, shape_of(scene.domain).sides)
+    try:
+        mesh = _mesh_of_rock_mass(scene, blocks, across)
+        first = np.cumsum([len(blocks.contacts), *(len(one.contacts) for one in across)])
+        faces = [facing(mesh, blocks.body, *one) for one in zip(across, first[:-1], strict=True)]
+    except GeometryError as error:
+        raise SceneError(scene.where, error.key, None, str(error)) from None
+    own = materials.rock_mass(scene, smeared, model)
+    chosen = _chosen(scene, rock, own, blocks.body)
+    body = build_body(mesh, marks, numerics.order, chosen, dim, False, faces)
+    return SceneBody(resolved, blocks, across, own, body)
+
+
+def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) -> Conforming:
+    body, numerics = blocks.body, scene.numerics.continuum
+    corners = None if numerics.cell == "triangle" else box_corners(body)
+    if numerics.cell == "quadrilateral" and corners is None:
+        allowed = "not every block has four edges with one neighbour each"
+        raise SceneError(scene.where, "numerics.continuum.cell", numerics.cell, allowed)
+    size = element_size(scene, corners is None)
+    if np.isfinite(size):
+        refuse_large_mesh(scene, blocks, size, body.dim)
+    if corners is not None:
+        wanted = np.maximum(1, np.ceil(extents(body, corners) / size * (1 - 1e-9))).astype(int)
+        like = matching_vertices(body, across)
+        return box_mesh(body, corners, along_edges(corners, wanted, like))
+    if numerics.order > 2:
+        key, allowed = "numerics.continuum.order", "must be at most 2 for triangles and tetrahedra"
+        raise SceneError(scene.where, key, numerics.order, allowed)
+    if not np.isfinite(size) and are_simplices(body):
+        return own_cells(body)
+    alike = [(matching_facets(body, one), one.shift) for one in across]
+    return _by_gmsh(scene, body, size, alike)
+
+
+def _by_gmsh(scene: AnyScene, body: Complex, size: float, alike: list) -> Conforming:
+    try:
+        return simplex_mesh(body, size, alike)
+    except ImportError as error:
+        key, allowed = "numerics.continuum.cell", f"needs gmsh for simplices ({error})"
+        raise SceneError(scene.where, key, scene.numerics.continuum.cell, allowed) from None
+
+
+def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> SceneBody:
+    """Return the body of a pillar: of one dimension if nothing bends or twists it."""
+    bends = is_spatial(scene) and scene.motion.rotation != "none"
+    dim, components = (3, 3) if bends else (1, 3 if is_spatial(scene) else 1)
+    blocks, numerics = blocks_of_pillar(scene, dim), scene.numerics.continuum
+    along, normal = dim // 2, blocks.boundary.normal
+    end = np.select([normal[:, along] < -0.5, normal[:, along] > 0.5], [0, 1], 2)
+    blocks = replace(blocks, boundary=replace(blocks.boundary, side=end))
+    resolved = resolved_joints(calibrate(scene), model, components > 1)
+    joint = np.isin(np.arange(len(blocks.contacts)), resolved.number)
+    many = elements_along(scene, model)[blocks.body.region]
+    size = float((blocks.volume ** (1 / dim) / many).min())
+    refuse_large_mesh(scene, blocks, size, components)
+    if numerics.cell == "simplex" and dim == 3:
+        mesh = _by_gmsh(scene, blocks.body, scene.pillar.side / numerics.elements_across, [])
+    else:
+        corners = box_corners(blocks.body)
+        assert corners is not None
+        mesh = box_mesh(blocks.body, corners, _along(blocks.body, corners, many, numerics))
+    own = materials.pillar(scene, model, components, dim)
+    chosen, consistent = _chosen(scene, rock, own, blocks.body), numerics.mass == "consistent"
+    marks = marks_of(blocks, joint, ENDS)
+    body = build_body(mesh, marks, numerics.order, chosen, components, consistent and implicit)
+    return SceneBody(scene, blocks, [], own, body)
+
+
+def _along(body: Complex, corners: np.ndarray, many: np.ndarray, numerics) -> np.ndarray:
+    """Return the numbers of cells along the axes of the blocks of a pillar, int array [n, d]."""
+    arms = body.vertices[corners[:, 1 << np.arange(body.dim)]] - body.vertices[corners[:, :1]]
+    lengthwise = np.abs(arms).argmax(axis=2) == body.dim // 2
+    return np.where(lengthwise, many[:, None], numerics.elements_across)
+
+
+def _chosen(scene: AnyScene, rock: Rock | None, own: list[Material], body: Complex):
+    """Return the rock of a script, or that of the scene, as a function of a space and blocks."""
+    if rock is not None:
+        return lambda space, block: rock(scene, space)
+    return lambda space, block: rock_of_cells(space, own, body.region[block])

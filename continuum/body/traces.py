@@ -1,0 +1,106 @@
+"""Nodes on facets of cells, in an order that the two sides of a joint share, and their weights."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from jointwave.continuum.body.compat import quadrature, reference
+from jointwave.continuum.body.conforming import Places, facets_of
+
+FACET = {"triangle": "interval", "quadrilateral": "interval"}
+FACET |= {"tetrahedron": "triangle", "hexahedron": "quadrilateral"}
+ON = 1e-9  # share of a corner that a node of another facet has
+
+
+class Trace(NamedTuple):
+    """Nodes of k facets, q of each.
+
+    node : int array [k, q]. weight : float array [k, q], integrals of the functions of the nodes
+    over the facet, m^(d-1). normal : float array [k, q, d], unit vectors out of the cell. place :
+    float array [k, q, d], m. The order follows from that of the numbers of the facet's vertices.
+    """
+
+    node: np.ndarray
+    weight: np.ndarray
+    normal: np.ndarray
+    place: np.ndarray
+
+
+class Reference(NamedTuple):
+    """A cell with its element: shares of its corners at nodes [nodes, corners], and integrals of
+    the functions of the nodes over each reference facet [facets, nodes]."""
+
+    kind: str
+    shares: np.ndarray
+    integrals: np.ndarray
+
+
+def reference_cell(kind: str, element: Any) -> Reference:
+    """Return the reference cell of a kind with an element of basix, one function a node."""
+    corners = reference(kind, 1)
+    facets, degree = facets_of(kind), 2 * int(np.max(getattr(element, "degree", 1)))
+    shares, integrals = corners.tabulate(0, element.points)[0, :, :, 0], []
+    for facet in facets:
+        if facet.size == 1:
+            at, weight = np.ones((1, 1)), np.ones(1)
+        else:
+            at, weight = quadrature(FACET[kind], degree)
+            at = reference(FACET[kind], 1).tabulate(0, at)[0, :, :, 0]
+        values = element.tabulate(0, at @ corners.points[facet])[0, :, :, 0]
+        integrals.append(weight @ values)
+    return Reference(kind, shares, np.array(integrals))
+
+
+def trace(
+    cell: Reference, nodes: np.ndarray, vertices: np.ndarray, x: np.ndarray, of: Places
+) -> Trace:
+    """Return the nodes of facets of cells.
+
+    nodes, vertices : int arrays [cells, n], of each cell. x : float array [cells, corners, d], of
+    its corners, m. of : k facets.
+    """
+    own = facets_of(cell.kind)[of.facet]
+    order = np.argsort(vertices[of.cell[:, None], own], axis=1)
+    rows = np.column_stack([of.facet, np.take_along_axis(own, order, 1)])
+    kinds, which = np.unique(rows, axis=0, return_inverse=True)
+    which, parts = which.reshape(-1), []
+    for k, (facet, *corners) in enumerate(kinds.tolist()):
+        some = of.cell[which == k]
+        local, shares = _on(cell, corners)
+        places = x[some]
+        normal, area = _normals(cell, facet, local, places)
+        weight = cell.integrals[facet, local] * area
+        parts.append((nodes[some][:, local], weight, normal, shares @ places[:, corners]))
+    back = np.argsort(np.argsort(which, kind="stable"), kind="stable")
+    return Trace(*(np.concatenate(one)[back] for one in zip(*parts, strict=True)))
+
+
+def _on(cell: Reference, corners: list[int]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the nodes on a facet with these corners, and the shares [q, c] of the corners."""
+    others = np.delete(cell.shares, corners, axis=1)
+    local = np.flatnonzero(np.abs(others).max(axis=1) < ON)
+    shares = cell.shares[local][:, corners]
+    order = np.lexsort(np.round(shares, 9).T)
+    return local[order], shares[order]
+
+
+def _normals(
+    cell: Reference, facet: int, local: np.ndarray, x: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the unit normals out of cells with corners x [k, corners, d] at nodes of a facet
+    [k, q, d], and the area of the facet there over that of the reference facet [k, q]."""
+    corners, dim = facets_of(cell.kind)[facet], x.shape[2]
+    if dim == 1:
+        normal = np.ones((len(x), 1, 1))
+    else:
+        flat = reference(FACET[cell.kind], 1)
+        slopes = flat.tabulate(1, cell.shares[local][:, corners] @ flat.points)[1:, :, :, 0]
+        along = np.einsum("aqc,kcd->akqd", slopes, x[:, corners])
+        if dim == 2:
+            normal = np.stack([-along[0, ..., 1], along[0, ..., 0]], axis=-1)
+        else:
+            normal = np.cross(*along)
+    area = np.linalg.norm(normal, axis=2)
+    out = x[:, corners].mean(axis=1) - x.mean(axis=1)
+    sense = np.sign(np.einsum("kqd,kd->kq", normal, out))
+    return normal * (sense / area)[..., None], area

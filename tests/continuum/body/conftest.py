@@ -1,0 +1,40 @@
+"""Bodies of small scenes that the tests of dolfinx bodies share."""
+
+from typing import Any
+
+import pytest
+
+from jointwave.cases.read import load_tables
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.continuum.body.scene import SceneBody, body_of
+from tests.continuum.body.bodies import STIFFNESS
+
+
+@pytest.fixture(scope="session")
+def rock_mass():
+    """Return a function that gives a scene in 6 m x 4 m, or 6 m x 4 m x 5 m, of rock."""
+
+    def scene(*joints, dim=2, continuum=None, **tables) -> RockMass:
+        law = dict(zip(("normal_stiffness", "shear_stiffness"), STIFFNESS, strict=True))
+        table: dict[str, Any] = {
+            "title": "a rock mass",
+            "domain": {"size": [6.0, 4.0, 5.0][:dim]},
+            "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
+            "joint_sets": [{"name": f"set {k}", **law, **one} for k, one in enumerate(joints)],
+            "time": {"duration": 2e-3},
+            "record": {"points": [[2.0, 1.5, 1.0][:dim]]},
+            "numerics": {"continuum": {"size": 1.5, "order": 1, **(continuum or {})}},
+        }
+        return load_tables({**table, **tables})
+
+    return scene
+
+
+@pytest.fixture(scope="session")
+def made(rock_mass):
+    """Return a function that gives the body of a scene, all of its keys as for `rock_mass`."""
+
+    def build(*joints, model="jointed", rock=None, **changes) -> SceneBody:
+        return body_of(rock_mass(*joints, **changes), model, rock)
+
+    return build
