@@ -1,4 +1,5 @@
-"""One leapfrog step of rigid blocks in one, two or three dimensions.
+"""One step of rigid blocks in one, two or three dimensions, by leapfrog or by a stage of a
+composition.
 
 A contact joins block i to block j across a plane face. In its frame, n from i to j and then the
 tangents, the jump at a point of the face, e from its centre, is that of both blocks' motion there:
@@ -14,6 +15,8 @@ are extrapolated to the whole step, those beyond the domain the mean of both hal
 is exact at a step of any length: the work of a force from one whole step to the next is the mean of
 its two values times the displacement increment, the kinetic energy v[n-1/2] M v[n+1/2] / 2. So a
 force works over the half step before it and over the one after it, which are accounted for apart.
+A step that is composed of stages (`dem.composition`) takes each as a leapfrog step with a length of
+its own for velocities, zero in the first, and for displacements.
 
 Contacts are worked on side by side, in lanes; their forces are added to the blocks one after the
 other, always in the same order.
@@ -36,6 +39,7 @@ def step_for(form: KernelFlags) -> Callable:
     dim, freedoms, has_ledger, shaken = form.dim, form.freedoms, form.ledger, form.shaken
     dashpots, varied, rated, drags = form.parts.dashpots, form.parts.varied, form.rated, form.drags
     remembers, recorded, used = form.history.size > 0, form.recorded, rows_of(form.parts)
+    stages, composed = form.stages, form.stages > 1
     relative, onto_blocks, move = relative_for(form), onto_blocks_for(form), motion_for(form)
     forces = point_forces_for(form) if form.points else face_forces_for(form)
     rows, LAST_RATE, LAST_DRAG = form.buffer, form.history.rate, form.history.drag
@@ -97,16 +101,19 @@ def step_for(form: KernelFlags) -> Callable:
 
     @formula
     def step(chunks, blocks, state, force, drive, walls, samples, q, ledger, t, n, s):
-        """Advance tile t by a step.
+        """Advance tile t by a step, or by a stage of a composed one.
 
         chunks, blocks, state, samples : `ChunkTable`, `BlockTable`, `State`, `Samples`. force :
         of all blocks, zero. drive, walls : forces on held blocks and motion of walls. q : a buffer.
-        ledger : of this step. n : of the step in `drive` and `walls`. s : of the sample; negative
-        where none is taken.
+        ledger : of this step. n : of the step in `drive` and `walls`, or the stage in `drive`. s :
+        of the sample; negative where none is taken.
         """
         tiles, dt, last, sampled = chunks.tiles, blocks.dt, blocks.inertia.size, s >= 0
         still, weighed = last - freedoms, 1.0 if sampled else 0.0
-        for g in range(tiles[CHUNK, t], tiles[CHUNK, t + 1]):
+        end = tiles[CHUNK, t + 1]
+        if composed and n % stages == 0 and not sampled:
+            end = tiles[CHUNK, t]  # the kick is zero
+        for g in range(tiles[CHUNK, t], end):
             k, at, row_from = chunks.table[g], chunks.pair[g], chunks.row_from[g]
             lanes = chunks.contacts - g * L
             lanes = lanes if lanes < L else L

@@ -54,6 +54,7 @@ class BlockTable(NamedTuple):
     dt: float
     keep: float
     local: float
+    stages: Any
 
 
 def march(
@@ -68,7 +69,8 @@ def march(
 ) -> None:
     """Take the steps first .. last - 1, with their samples, `stride` steps apart.
 
-    drive : float array [last - first, h, freedoms], N and N m, forces on held blocks in each step.
+    drive : float array [last - first, h, freedoms], N and N m, forces on held blocks in each step;
+    [(last - first) stages, ...] in each stage of composed steps, at `composition.instants`.
     shake : float array [last - first, walls, dim], the velocity of walls in each step, m/s.
     """
     take = make_stepper(model, state, samples, steps[1] - steps[0], drive, shake, threads)
@@ -91,16 +93,16 @@ def make_stepper(
     mass-proportional damping leaves of a velocity in a step, `keep`, in place of the model's.
     """
     form, chunks, f = model.form, model.chunks, model.form.freedoms
-    own, dt = model.blocks, model.blocks.dt
+    own, dt, stages = model.blocks, model.blocks.dt, form.stages
     held, matrices = model.held or (None, None)
     if held is None:
         drive = None  # one kernel, whoever asks
     elif drive is None:
-        drive = np.zeros((most, len(held), f))
+        drive = np.zeros((stages * most, len(held), f))
     walls = None if shake is None else motion_of_walls(state, shake, dt)
-    bands = -(-most // depth_of(chunks, state.history, f, threads))
+    bands = -(-stages * most // depth_of(chunks, state.history, f, threads))
     bands = max(1, bands + -bands % threads)  # as many for each thread
-    depth = max(1, -(-most // bands))
+    depth = max(1, -(-stages * most // bands))
     widest = f * int(np.diff(chunks.first_block).max())
     buffers = zeros((threads, form.buffer.before + widest))
     ledgers = zeros((threads * depth, 2 * AFTER)) if form.ledger else None
@@ -118,6 +120,7 @@ def make_stepper(
     blocks = BlockTable(
         inertia, 1.0 / inertia, held, matrices, places, own.gravity, own.tensor,
         None if own.tensor is None else np.linalg.inv(own.tensor), dt, own.keep, own.local,
+        own.stages,
     )  # fmt: skip
     flat = state._replace(u=state.u.reshape(-1), v=state.v.reshape(-1))
 
@@ -131,7 +134,7 @@ def make_stepper(
         damped = blocks._replace(keep=keep)
 
         def share(thread: int) -> None:
-            span = (thread, first, last, stride, depth)
+            span = (thread, stages * first, stages * last, stages * stride, depth)
             work = (force, buffers[thread], ledgers, progress)
             loop(between, damped, flat, samples, drive, walls, work, span)
 

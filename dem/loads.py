@@ -18,6 +18,7 @@ from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.dem.boundaries import facets_on, points_on, resultants, summed
+from jointwave.dem.composition import instants
 
 #: Samples times held blocks whose forces are there at once.
 AT_ONCE = 100_000
@@ -45,7 +46,8 @@ class Source(Protocol):
 class Loads:
     """All forces on held blocks, step by step; resultants are those of `dem.boundaries`.
 
-    rows : int array [h], the block of each row, ascending. onto : `boundaries.freedoms`.
+    rows : int array [h], the block of each row, ascending. onto : `boundaries.freedoms`. composed :
+    whether they act by their values at the instants of `dem.composition`; else by means over steps.
     """
 
     def __init__(
@@ -55,8 +57,10 @@ class Loads:
         waves: list[Source],
         time: Clock,
         onto: np.ndarray,
+        composed: bool = False,
     ) -> None:
         self.rows, self.time, self.waves, self.onto = rows, time, waves, onto
+        self.composed = composed
         self.histories = [one.history for one in patterns]
         self.shapes = np.zeros((len(patterns), len(rows), onto.shape[1]))
         for shape, one in zip(self.shapes, patterns, strict=True):
@@ -76,17 +80,23 @@ class Loads:
 
     def resultants(self, steps: np.ndarray, rows: np.ndarray) -> np.ndarray:
         """Return what acts in equally spaced steps [n] on some rows [k], ascending:
-        [n, k, d + d^2]. Of a history it is the mean over each step."""
+        [n, k, d + d^2]. Of a history it is the mean over each step, or its value if composed."""
         return self._acting(steps, rows, np.eye(self.onto.shape[1]))
 
     def drive(self, steps: np.ndarray) -> np.ndarray:
-        """Return forces and moments in equally spaced steps [n, h, F], N and N m."""
+        """Return forces and moments in equally spaced steps [n, h, F], or in their stages
+        [n stages, h, F], N and N m."""
+        return self._on_blocks(instants(steps) if self.composed else steps)
+
+    def _on_blocks(self, steps: np.ndarray) -> np.ndarray:
         return self._acting(steps, np.arange(len(self.rows)), self.onto)
 
     def _acting(self, steps: np.ndarray, rows: np.ndarray, onto: np.ndarray) -> np.ndarray:
         means = np.ones((len(self.histories), len(steps)))
         for mean, history in zip(means, self.histories, strict=True):
-            if history is not None:
+            if history is not None and self.composed:
+                mean[:] = history.value(self.time.dt * steps)
+            elif history is not None:
                 mean[:] = mean_of(history, steps, self.time.dt)
         found = np.tensordot(means, self.shapes[:, rows] @ onto.T, axes=(0, 0))
         for wave in self.waves if len(steps) else ():
@@ -108,7 +118,7 @@ class Loads:
         parts = -(-len(steps) * max(1, len(self.rows)) // AT_ONCE)
         felt = 0.0
         for some in np.array_split(steps, parts):
-            forces = self.drive(some) - self.steady
+            forces = self._on_blocks(some) - self.steady
             felt += float(np.sqrt((forces**2 / inertia).sum(axis=(1, 2))).sum())
         return time.dt * stride * felt
 

@@ -85,7 +85,8 @@ class KernelFlags(NamedTuple):
     energies are kept. stressed : whether contacts start under a traction. shaken : whether walls
     move. relaxed : whether the same kernel brings the blocks to rest first, for which it can damp
     their motion, without a place in the ledger. in_row : whether contacts mostly join block after
-    block. oblique : whether rotations of a block have inertia in common.
+    block. oblique : whether rotations of a block have inertia in common. stages : of a step, 1 of
+    leapfrog.
     """
 
     dim: int
@@ -102,6 +103,7 @@ class KernelFlags(NamedTuple):
     relaxed: bool = False
     in_row: bool = False
     oblique: bool = False
+    stages: int = 1
 
     @property
     def rotations(self) -> int:
@@ -196,7 +198,8 @@ class Blocks(NamedTuple):
     inertia : float array [N, freedoms], mass (kg) and moments of inertia (kg m2). dt : s. keep :
     what mass-proportional damping leaves of a velocity in a step. local : Cundall's damping.
     gravity : float array [dim], m/s2. tensor : float array [N, 3, 3], kg m2, of inertia; None where
-    no rotations of a block have inertia in common.
+    no rotations of a block have inertia in common. stages : kick and drift of each stage of a step
+    that is composed of them [stages, 2], s; None of leapfrog.
     """
 
     inertia: np.ndarray
@@ -205,6 +208,7 @@ class Blocks(NamedTuple):
     local: float
     gravity: np.ndarray
     tensor: Any = None
+    stages: Any = None
 
 
 class Model(NamedTuple):
@@ -230,7 +234,7 @@ class Model(NamedTuple):
 
 class State(NamedTuple):
     """The state: displacement u [N, freedoms] at a whole step, velocity v [N, freedoms] half a step
-    before it, of the blocks and then the walls.
+    before it, or with it in composed steps, of the blocks and then the walls.
 
     history : float array [chunks, rows LANES], what contacts remember; None where that is nothing.
     sums : float array [terms], J, what has been dissipated or put in; None without a ledger.

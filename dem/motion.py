@@ -1,4 +1,5 @@
-"""Motion of the blocks of one tile in one leapfrog step, by the forces on them."""
+"""Motion of the blocks of one tile in one leapfrog step, or in one stage of a composed step, by the
+forces on them."""
 
 from collections.abc import Callable
 from math import copysign
@@ -23,7 +24,9 @@ def motion_for(form: KernelFlags) -> Callable:
     )  # fmt: skip
     mass_damping, local_damping = form.mass_damping or form.relaxed, form.local_damping
     damped, oblique = form.mass_damping or local_damping, form.oblique
-    SPARE, BEFORE = form.buffer.spare, form.buffer.before
+    SPARE, BEFORE, stages, composed = (
+        form.buffer.spare, form.buffer.before, form.stages, form.stages > 1
+    )  # fmt: skip
 
     @formula
     def add_forces(blocks, first, last, begin, u, v, force, inertia, before, drive, n):
@@ -45,7 +48,7 @@ def motion_for(form: KernelFlags) -> Callable:
         return potential
 
     @formula
-    def advance(u, v, force, inverse, before, pushed, dt, keep, local):
+    def advance(u, v, force, inverse, before, pushed, drift, keep, local):
         """Advance velocities by their forces, and displacements by these."""
         for i in range(u.size):
             old, gain = v[i], pushed * force[i]
@@ -57,12 +60,12 @@ def motion_for(form: KernelFlags) -> Callable:
             else:
                 force[i] = 0.0
             v[i] = new
-            u[i] += dt * new
+            u[i] += drift * new
 
     @formula
-    def advance_oblique(blocks, first, u, v, force, before, pushed):
+    def advance_oblique(blocks, first, u, v, force, before, pushed, drift):
         """The same of blocks from `first` on whose rotations have inertia in common."""
-        dt, keep = blocks.dt, blocks.keep
+        keep = blocks.keep
         for block in range(u.size // freedoms):
             back = blocks.back[first + block]
             for b in range(freedoms):
@@ -79,7 +82,7 @@ def motion_for(form: KernelFlags) -> Callable:
                 if has_ledger:
                     before[i] = old
                 v[i] = new
-                u[i] += dt * new
+                u[i] += drift * new
         if not has_ledger:
             force[:] = 0.0
 
@@ -108,48 +111,49 @@ def motion_for(form: KernelFlags) -> Callable:
                 v[i + a] = spare[a]
 
     @formula
-    def account_held(blocks, first, last, begin, v, force, before, drive, n, ledger):
+    def account_held(blocks, first, last, begin, v, force, before, drive, n, kick, ledger):
         """Enter the work of external forces, and of dashpots, which it adds to the forces."""
-        half = 0.5 * blocks.dt
         for r in range(first, last):
             i, matrices = freedoms * blocks.held[r] - begin, blocks.matrices[r]
             for a in range(freedoms):
-                taken, old, new = 0.0, before[i + a], v[i + a]
+                drag, old, new = 0.0, before[i + a], v[i + a]
                 for m in range(freedoms):
-                    taken += half * matrices[2, a, m] * (0.5 * (before[i + m] + v[i + m]))
-                given = half * drive[n, r, a]
+                    drag += matrices[2, a, m] * (0.5 * (before[i + m] + v[i + m]))
+                taken, given = 0.5 * kick * drag, 0.5 * kick * drive[n, r, a]
                 ledger[BOUNDARY] += taken * old
                 ledger[BOUNDARY + AFTER] += taken * new
                 ledger[WORK] += given * old
                 ledger[WORK + AFTER] += given * new
-                force[i + a] -= 2.0 * taken / blocks.dt
+                force[i + a] -= drag
 
     @formula
     def move(blocks, tiles, state, all_forces, drive, q, ledger, t, n, sampled):
-        """Move the blocks of tile t in step n of `drive`, and set their forces to zero."""
+        """Move the blocks of tile t in step or stage n of `drive`, and set their forces to zero."""
         begin, end = freedoms * tiles[BLOCK, t], freedoms * tiles[BLOCK, t + 1]
-        first, last, dt = tiles[HELD, t], tiles[HELD, t + 1], blocks.dt
+        first, last, kick, drift = tiles[HELD, t], tiles[HELD, t + 1], blocks.dt, blocks.dt
+        if composed:
+            kick, drift = blocks.stages[n % stages, 0], blocks.stages[n % stages, 1]
         # Slices begin at 0: else indices are taken to wrap around, and loops are not vectorised.
         u, v, force = state.u[begin:end], state.v[begin:end], all_forces[begin:end]
         inertia, inverse = blocks.inertia[begin:end], blocks.inverse[begin:end]
-        before, pushed = q[BEFORE:], 0.5 * dt * (1.0 + blocks.keep)
+        before, pushed = q[BEFORE:], 0.5 * kick * (1.0 + blocks.keep)
         potential = add_forces(blocks, first, last, begin, u, v, force, inertia, before, drive, n)
         if oblique:
-            advance_oblique(blocks, tiles[BLOCK, t], u, v, force, before, pushed)
+            advance_oblique(blocks, tiles[BLOCK, t], u, v, force, before, pushed, drift)
         else:
-            advance(u, v, force, inverse, before, pushed, dt, blocks.keep, blocks.local)
+            advance(u, v, force, inverse, before, pushed, drift, blocks.keep, blocks.local)
         if held:
             drag_held(blocks, first, last, begin, u, v, before, q[SPARE:])
         if has_ledger:
             if held:
-                account_held(blocks, first, last, begin, v, force, before, drive, n, ledger)
+                account_held(blocks, first, last, begin, v, force, before, drive, n, kick, ledger)
             if damped or sampled:
                 kinetic, lost, lost_after = 0.0, 0.0, 0.0
                 for i in range(end - begin):
                     after = momentum(blocks, inertia, tiles[BLOCK, t], i, v)
                     if damped:  # what is missing in the block's momentum
                         missing = after - momentum(blocks, inertia, tiles[BLOCK, t], i, before)
-                        missing -= dt * force[i]
+                        missing -= kick * force[i]
                         lost, lost_after = lost + missing * before[i], lost_after + missing * v[i]
                     kinetic += before[i] * after
                 ledger[VISCOUS] -= 0.5 * lost

@@ -40,7 +40,7 @@ def start(system: BlockSystem, state: State) -> Rest | None:
     """
     scene, blocks = system.blocks.scene, system.model.blocks
     static = scene.gravity is not None and scene.gravity.static
-    rest, bears = None, bool(system.bearing.any())
+    rest, bears, form = None, bool(system.bearing.any()), system.model.form
     if not static:
         refuse_beyond_strength(scene)
     if static or scene.prestress is not None:
@@ -50,20 +50,20 @@ def start(system: BlockSystem, state: State) -> Rest | None:
         rest = rest._replace(steps=before + rest.steps)
         state.u[:] = relaxation.state.u
         if state.history is not None:
-            points = system.model.form.history.point
+            points = form.history.point
             state.history[:, points:] = relaxation.state.history[:, points:]
         if static and bears:
             system.loads.add_steady(relaxation.borne())
     if scene.gravity is not None and not static:
         # Gravity from t = 0 on: the velocity at t = 0 is the mean of those half a step around it.
-        count = len(blocks.inertia)
-        state.v[:count, : len(blocks.gravity)] = -0.5 * blocks.dt * blocks.gravity
+        count, ahead = len(blocks.inertia), 0.5 * blocks.dt if form.stages == 1 else 0.0
+        state.v[:count, : len(blocks.gravity)] = -ahead * blocks.gravity
         if bears:
             relaxation = BlockRelaxation(system, True, sticks=True)
             settle(scene, relaxation, UNBORNE)
             found, loads = relaxation.borne(), system.loads
             loads.add_steady(found)
-            impulse = 0.5 * blocks.dt * found @ loads.onto.T
+            impulse = ahead * found @ loads.onto.T
             state.v[loads.rows] -= impulse / blocks.inertia[loads.rows]
     return rest
 
@@ -93,8 +93,8 @@ class BlockRelaxation:
     Damping and rates do not affect a static state: dashpots, also of quiet sides, and local
     damping are zero, and friction is independent of rate. Quiet sides that bear the weight are
     held: their blocks do not move as these do not let them. The kernel is that of the motion, so
-    that a first run compiles one. sticks : whether the weight alone acts, and no joint opens, slips
-    or breaks.
+    that a first run compiles one, but where that is composed of stages. sticks : whether the weight
+    alone acts, and no joint opens, slips or breaks.
     """
 
     def __init__(self, system: BlockSystem, weighed: bool, sticks: bool = False) -> None:
@@ -126,7 +126,8 @@ class BlockRelaxation:
             resistance = nothing.copy()
             resistance[np.searchsorted(rows, loads.rows)] = self.onto @ self.bearing
             held.matrices[:, 1] = still(resistance, blocks.masses[rows])
-        self.model = model._replace(blocks=own, laws=laws, held=held)
+        form = model.form._replace(stages=1)
+        self.model = model._replace(form=form, blocks=own, laws=laws, held=held)
         self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 0)
         self.count, most = len(own.inertia), STEPS_BETWEEN_LOOKS
         self._drive = np.zeros((most, *self.steady.shape))

@@ -115,7 +115,8 @@ def moved_apart(system: BlockSystem, state: State) -> Moved | None:
 def step(system: BlockSystem, state: State, samples: Samples, first: int, last: int) -> None:
     """Take the steps first .. last - 1, in batches whose forces fit in memory."""
     model, loads = system.model, system.loads
-    size = max(1, MOST_OF_DRIVE // max(1, loads.onto.shape[1] * len(loads.rows)))
+    width = model.form.stages * loads.onto.shape[1] * len(loads.rows)
+    size = max(1, MOST_OF_DRIVE // max(1, width))
     for begin in range(first, max(last, first + 1), size):
         end = min(begin + size, last)
         steps = np.arange(begin, end)

@@ -1,30 +1,10 @@
-"""Steps of fourth order of the undamped chain: PEFRL, a symmetric composition of four kicks.
-
-A step is D K D K D K D K D: drifts u += a dt v and kicks v += b dt F / m. The weights xi, lambda,
-chi are those of the position-extended Forest-Ruth-like scheme: Omelyan, Mryglod & Folk, Comput.
-Phys. Commun. 146 (2002), 188-202. Displacement and velocity both live at whole steps.
-
-Chosen by its error at equal work, measured on the paper's undamped pillar under a Ricker wavelet
-of T = 10 ms: relative L2 of the stress at y = 20 m, 0-0.12 s, at 240 forces per T. PEFRL 2.0e-6,
-the six-stage schemes of Blanes & Moan (J. Comput. Appl. Math. 142, 2002) 2.2e-6 (S6) and 2.4e-6
-(SRKN6b), VEFRL 2.8e-5, Suzuki's of five stages 1.5e-4 (at 200), Forest & Ruth (1990) 6.7e-4,
-leapfrog 2.5e-3.
-
-The load acts with its value at the time of each kick; a mean over the step, as leapfrog takes it,
-would leave second order. The order is four while the load is smooth within steps: a kink within a
-step leaves order two, a jump order one, and neither costs anything at the end of a step. Where
-joints carry no tension the force has a kink wherever one opens or closes, which leaves order two.
-
-The ledger closes to the fourth order, not to round-off: the map conserves an energy that differs
-from the true one by O(dt^4), and this difference stays bounded over any number of steps.
-"""
+"""Steps of fourth order of the undamped chain, composed as `dem.composition` says."""
 
 from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import Polynomial
 
 from jointwave.cases.loads import load_history, until_it_ends
 from jointwave.cases.material.calibrate import calibrate
@@ -36,6 +16,8 @@ from jointwave.dem.axial.samples import Samples
 from jointwave.dem.axial.springs import spring_forces
 from jointwave.dem.axial.stability import critical_chain_step
 from jointwave.dem.axial.state import State, state_at_rest
+from jointwave.dem.composition import DRIFTS, INSTANTS, stability_limit
+from jointwave.dem.composition import KICKS as OF_STAGES
 from jointwave.dem.size import refuse_large, refuse_too_many
 from jointwave.dem.static import stiffest
 from jointwave.joints.energy import elastic_energy
@@ -47,37 +29,10 @@ from jointwave.numerics.divergence import EVERY, SPEED, Guard, guard, out_of_bou
 from jointwave.numerics.jit import jitted
 from jointwave.numerics.sums import total_of
 
-XI, LAMBDA, CHI = 0.1786178958448091, -0.2123418310626054, -0.06626458266981849
-
-DRIFTS = (XI, CHI, 1 - 2 * (CHI + XI), CHI, XI)
-KICKS = ((1 - 2 * LAMBDA) / 2, LAMBDA, LAMBDA, (1 - 2 * LAMBDA) / 2)
+KICKS = OF_STAGES[1:]
 
 #: When drifts begin and end, and when kicks act, in steps from the start of the step.
-EDGES = np.array([0.0, XI, XI + CHI, 1 - XI - CHI, 1 - XI, 1.0])
-
-
-def half_trace() -> Polynomial:
-    """Return half the trace of one step of u'' = -omega^2 u, a polynomial in (omega dt)^2.
-
-    The step has determinant one: its eigenvalues lie on the unit circle where this is in [-1, 1].
-    Both diagonal entries of a symmetric step are equal, so that one suffices.
-    """
-    square, u, v = Polynomial([0.0, 1.0]), Polynomial([1.0]), Polynomial([0.0])
-    for drift, kick in zip(DRIFTS, (*KICKS, 0.0), strict=True):
-        u = u + drift * v
-        v = v - kick * square * u
-    return u
-
-
-def stability_limit() -> float:
-    """Return the omega dt up to which every mode is bounded: 2.98945, where leapfrog has 2.
-
-    Beyond it the first mode to grow alternates at every step: half the trace passes -1.
-    """
-    trace = half_trace()
-    squares = np.concatenate([(trace - 1).roots(), (trace + 1).roots()])
-    real = squares.real[np.abs(squares.imag) < 1e-9]
-    return float(np.sqrt(real[real > 1e-6].min()))
+EDGES = np.append(INSTANTS, 1.0)
 
 
 class Composition(NamedTuple):
@@ -116,8 +71,8 @@ def compose(scene: Scene, time: Clock) -> Composition:
     load, dt, force = load_history(scene), time.dt, _unit_force(scene)
     edges = dt * (np.arange(time.steps + time.stride)[:, None] + EDGES)
     return Composition(
-        drifts=dt * np.array(DRIFTS),
-        kicks=dt * np.array(KICKS) / calibrate(scene).block_mass,
+        drifts=dt * DRIFTS,
+        kicks=dt * KICKS / calibrate(scene).block_mass,
         loads=until_it_ends(force * load.value(edges[:, 1:-1])),
         impulses=until_it_ends(force * np.diff(load.impulse(edges), axis=1)),
     )

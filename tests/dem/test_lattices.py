@@ -10,9 +10,17 @@ from itertools import product
 import numpy as np
 import pytest
 
+from jointwave.dem import composition
 from jointwave.dem.chunks import chunks_of
 from jointwave.dem.leapfrog import march
-from jointwave.dem.model import Blocks, KernelFlags, Model, samples_for, state_at_rest
+from jointwave.dem.model import (
+    Blocks,
+    KernelFlags,
+    Model,
+    held_by,
+    samples_for,
+    state_at_rest,
+)
 from jointwave.dem.receivers import Faces, frames_of
 from jointwave.joints.law import law, parts_of, table_of
 
@@ -121,6 +129,65 @@ def test_bloch_waves_step_on_as_leapfrog_has_them(dim, waves, points):
         np.testing.assert_allclose(
             state.u, at(STEPS * dt), rtol=0, atol=TOLERANCE * np.abs(shape).max()
         )
+
+
+def composed(model, dt, **flags):
+    """Return a model with a ledger whose steps of dt (s) are composed."""
+    stages = composition.table(dt)
+    form = model.form._replace(stages=len(stages), ledger=True, **flags)
+    return model._replace(form=form, blocks=model.blocks._replace(dt=dt, stages=stages))
+
+
+def orders(errors):
+    """Return the order from each step to its half."""
+    return -np.diff(np.log2(errors), axis=0)
+
+
+@pytest.mark.parametrize("points", [False, True], ids=["faces", "points"])
+@pytest.mark.parametrize("waves", [[70], [2, 3], [1, 2, 1]])
+def test_composed_steps_are_of_fourth_order(waves, points):
+    """Standing waves of all branches at once against their frequencies; their energy swings by the
+    same order."""
+    dim, errors = len(waves), []
+    model, faces = lattice(dim, points)
+    angles = 2 * np.pi * np.array(waves) / COUNT[dim]
+    places = np.stack(np.unravel_index(np.arange(COUNT[dim] ** dim), (COUNT[dim],) * dim), 1)
+    frequencies, motions = bloch(model, faces, angles)
+    shapes = (np.exp(1j * places @ angles)[:, None] * motions[:, None]).real
+    dt, steps = 4 * model.blocks.dt, 40
+    exact = np.tensordot(np.cos(frequencies * steps * dt), shapes, axes=1)
+    for halved in (1, 2, 4):
+        stepped = composed(model, dt / halved)
+        state, samples = state_at_rest(stepped), samples_for(stepped, steps)
+        state.u[:] = shapes.sum(axis=0)
+        march(stepped, state, samples, halved, (0, steps * halved))
+        energy = samples.energy[:2].sum(axis=0)
+        errors.append([np.abs(state.u - exact).max(), np.ptp(energy)])
+    assert orders(errors) == pytest.approx(4.0, abs=0.2)
+
+
+@pytest.mark.parametrize("dim", [1, 2, 3])
+def test_forces_and_their_work_in_composed_steps_are_of_fourth_order(dim):
+    """A block that is pushed and turned for a while: its motion, and the ledger of all."""
+    model, _ = lattice(dim, False)
+    dt, steps, form, errors, last = 4 * model.blocks.dt, 40, model.form, [], []
+    none, block = np.zeros((1, form.freedoms, form.freedoms)), np.array([7])
+    masses = model.blocks.inertia[:, :, None] * np.eye(form.freedoms)
+    for halved in (1, 2, 4, 8):
+        stepped = composed(model, dt / halved, held=True)._replace(
+            held=held_by(none, block, masses, dt / halved), places=block
+        )
+        state, samples = state_at_rest(stepped), samples_for(stepped, steps + 1)
+        at = composition.instants(np.arange(steps * halved + 1)) / halved
+        drive = 1e5 * np.sin(3 * at / steps)[:, None, None] * np.ones((1, form.freedoms))
+        march(stepped, state, samples, halved, (0, steps * halved + 1), drive)
+        energy, work = samples.energy[:-1].sum(axis=0), samples.energy[-1]
+        errors.append(np.abs(energy - work).max() / work.max())
+        last.append(np.append(samples.displacement[0, :, -1], samples.velocity[0, :, -1] / 1e3))
+    assert errors[1] < 1e-4
+    assert orders(errors[1:]) == pytest.approx(4.0, abs=0.2)
+    moved = np.abs(np.diff(last, axis=0)).max(axis=1)
+    assert orders(moved) == pytest.approx(4.0, abs=0.3)
 
 
 def test_square_lattice_has_its_three_branches():
