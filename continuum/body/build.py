@@ -8,6 +8,7 @@ import ufl
 from scipy.sparse import csr_matrix
 
 from jointwave.cases.geometry.relations import joined
+from jointwave.continuum.body.bubbles import bubble_element
 from jointwave.continuum.body.compat import (
     cell_nodes,
     input_cells,
@@ -15,6 +16,7 @@ from jointwave.continuum.body.compat import (
     make_mesh,
     matrix,
     reference,
+    vector_space,
 )
 from jointwave.continuum.body.conforming import Conforming, Places, cut_open, shared
 from jointwave.continuum.body.domain import Marks
@@ -35,13 +37,20 @@ class Elements:
 
     tied: np.ndarray | None
 
-    def __init__(self, mesh: Conforming, opened: tuple, order: int, components: int) -> None:
-        cells, origin = opened
+    def __init__(
+        self, mesh: Conforming, opened: tuple, order: int, components: int, consistent: bool
+    ) -> None:
+        (cells, origin), kind = opened, mesh.kind
         self.mesh, self.corners, self.tied = mesh, mesh.x[mesh.cells], None
-        self.domain = make_mesh(mesh.kind, mesh.x[origin], cells)
+        self.domain = make_mesh(kind, mesh.x[origin], cells)
         self.row = input_cells(self.domain)
-        self.space = lagrange(self.domain, order, components)
-        self.cell = reference_cell(mesh.kind, reference(mesh.kind, order))
+        if kind in SIMPLEX and order == 2 and not consistent:
+            element = bubble_element(kind)
+            self.space = vector_space(self.domain, element, components)
+        else:
+            element = reference(kind, order)
+            self.space = lagrange(self.domain, order, components)
+        self.cell = reference_cell(kind, element)
         self.nodes = np.empty((len(self.row), len(self.cell.shares)), np.int64)
         self.nodes[self.row] = cell_nodes(self.space)
         self.x = np.empty((self.nodes.max() + 1, mesh.x.shape[1]))
@@ -83,7 +92,7 @@ def build_body(
     pairs, size = shared(mesh), components or mesh.x.shape[1]
     column = _marked(marks.column, mesh.on[pairs.cell, pairs.facet]).max(axis=1)
     cut = column >= 0
-    found = Elements(mesh, cut_open(mesh, pairs, cut), order, size)
+    found = Elements(mesh, cut_open(mesh, pairs, cut), order, size, consistent)
     block = mesh.block[found.row]
     forms = assembled(rock(found.space, block), mesh.kind, order, consistent)
     found.tie(across)
@@ -123,7 +132,8 @@ def _joints(
     i, j = (
         Trace(*map(np.concatenate, zip(*side, strict=True))) for side in zip(*traces, strict=True)
     )
-    return jump_operator(i, j, np.concatenate(columns), int(found.nodes.max()) + 1, size)
+    shape = int(found.nodes.max()) + 1, size
+    return jump_operator(i, j, np.concatenate(columns), shape, found.cell)
 
 
 def _sides(found: Elements, marks: Marks) -> dict[str, Facets]:

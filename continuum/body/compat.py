@@ -34,6 +34,8 @@ with quiet_logging():
     from mpi4py import MPI
 
 NEW = hasattr(basix, "ufl")  #: whether elements of basix are UFL's
+if not NEW:
+    import basix.ufl_wrapper
 
 
 def make_mesh(kind: str, x: np.ndarray, cells: np.ndarray, comm: Any = None) -> Any:
@@ -65,6 +67,32 @@ def lagrange(domain: Any, order: int, components: int) -> Any:
     On intervals, quadrilaterals and hexahedra its nodes are Gauss-Lobatto-Legendre points.
     """
     return _space(domain, "Lagrange", order, components)
+
+
+def vector_space(domain: Any, element: Any, components: int) -> Any:
+    """Return the space of vectors with one of basix's elements, of scalars, for each component."""
+    with quiet_logging():
+        if NEW:
+            whole = basix.ufl.blocked_element(basix.ufl.wrap_element(element), shape=(components,))
+            return fem.functionspace(domain, whole)
+        scalar = basix.ufl_wrapper.BasixElement(element)
+        return fem.FunctionSpace(domain, basix.ufl_wrapper.VectorElement(scalar, components))
+
+
+def custom_element(kind: str, span: np.ndarray, points: list, complete: int, degree: int) -> Any:
+    """Return basix's element of functions that are given by their values at points.
+
+    span : float array [n, m], of orthonormal polynomials up to `degree`. points : for each entity
+    of each dimension its points [k, d]. complete : the highest degree that is there completely.
+    """
+    cell, dim = getattr(basix.CellType, kind), points[0][0].shape[1]
+    x = [*points, *[[]] * (3 - dim)]
+    values = [[np.eye(len(one))[:, None, :, None] for one in entities] for entities in x]
+    given: tuple[Any, ...] = cell, [], span, x, values, 0, basix.MapType.identity
+    if not NEW:
+        return basix.create_custom_element(*given, False, complete, degree)
+    continuous = basix.SobolevSpace.H1, False, complete, degree, basix.PolysetType.standard
+    return basix.create_custom_element(*given, *continuous)
 
 
 def cell_constants(domain: Any, values: np.ndarray) -> Any:

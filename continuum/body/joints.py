@@ -1,40 +1,46 @@
 """The joints of a body: from pairs of facets to the jump operator."""
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import bsr_matrix, csr_matrix, identity, kron
 
 from jointwave.cases.geometry.measure import frames
 from jointwave.continuum.body.model import JumpOperator
-from jointwave.continuum.body.traces import Trace
+from jointwave.continuum.body.traces import Reference, Trace
 
 
 def jump_operator(
-    one: Trace, other: Trace, column: np.ndarray, nodes: int, components: int
+    one: Trace,
+    other: Trace,
+    column: np.ndarray,
+    shape: tuple[int, int],
+    cell: Reference,
 ) -> JumpOperator:
     """Return the jump operator of facets of block i and those of block j at the same places.
 
-    column : of the law, int array [facets]. nodes : of the body. At the end of a joint in rock both
-    sides have one node, and no jump.
+    column : of the law, int array [facets]. shape : nodes of the body, and components. At the end
+    of a joint in rock both sides have one node, and no jump.
     """
-    apart = one.node != other.node
-    frame = frames_of(one.normal[apart], components)
-    points, axes = len(frame), np.arange(components)
-    row = components * np.arange(points)[:, None, None] + axes[:, None]
-    entries = []
-    for sign, side in ((-1.0, one), (1.0, other)):
-        freedom = components * side.node[apart][:, None, None] + axes
-        parts = np.broadcast_arrays(row, freedom, sign * frame)
-        entries.append([part.ravel() for part in parts])
-    row, freedom, value = np.concatenate(entries, axis=1)
-    shape = points * components, nodes * components
-    matrix = csr_matrix((value, (row.astype(int), freedom.astype(int))), shape)
-    matrix.eliminate_zeros()
+    facets, (nodes, components) = len(one.node), shape
+    count, weight, place = one.node.size, one.weight, one.place
+    row, ones = np.tile(np.arange(count), 2), np.ones(count)
+    at = row, np.append(one.node.ravel(), other.node.ravel())
+    jump = csr_matrix((np.append(-ones, ones), at), (count, nodes))
+    if cell.points is not None and cell.areas is not None:
+        jump = csr_matrix(kron(identity(facets), cell.points) @ jump)
+        weight = weight.sum(axis=1)[:, None] * cell.areas
+        place = cell.points @ place
+    jump.eliminate_zeros()
+    open_, points = np.flatnonzero(np.diff(jump.indptr)), weight.shape[1]
+    normal = np.repeat(one.normal[:, :1], points, axis=1).reshape(-1, one.normal.shape[2])
+    frame, each = frames_of(normal[open_], components), np.arange(len(open_) + 1)
+    size = len(open_) * components
+    turned = bsr_matrix((frame, each[:-1], each), shape=(size, size))
     return JumpOperator(
-        matrix=matrix,
-        weight=one.weight[apart],
-        column=np.broadcast_to(column[:, None], apart.shape)[apart],
+        matrix=csr_matrix(turned @ kron(jump[open_], identity(components), format="csr")),
+        weight=weight.ravel()[open_],
+        column=np.repeat(column, points)[open_],
         frame=frame,
-        place=one.place[apart],
+        place=place.reshape(-1, place.shape[2])[open_],
     )
 
 

@@ -21,7 +21,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.body import rock as materials
 from jointwave.continuum.body.boxes import along_edges, box_corners, box_mesh, extents
-from jointwave.continuum.body.build import build_body
+from jointwave.continuum.body.build import SIMPLEX, build_body
 from jointwave.continuum.body.conforming import Conforming
 from jointwave.continuum.body.domain import marks_of
 from jointwave.continuum.body.model import Body
@@ -77,7 +77,8 @@ def _rock_mass(scene: RockMass, model: str, rock: Rock | None, implicit: bool) -
         raise SceneError(scene.where, error.key, None, str(error)) from None
     own = materials.rock_mass(scene, smeared, model)
     chosen = _chosen(scene, rock, own, blocks.body)
-    body = build_body(mesh, marks, numerics.order, chosen, dim, False, faces)
+    whole = implicit and numerics.order == 2 and mesh.kind in SIMPLEX
+    body = build_body(mesh, marks, numerics.order, chosen, dim, whole, faces)
     return SceneBody(resolved, blocks, across, own, body)
 
 

@@ -27,28 +27,46 @@ class Trace(NamedTuple):
 
 
 class Reference(NamedTuple):
-    """A cell with its element: shares of its corners at nodes [nodes, corners], and integrals of
-    the functions of the nodes over each reference facet [facets, nodes]."""
+    """A cell with its element.
+
+    shares : of its corners at the nodes [nodes, corners]. integrals : of the functions of the nodes
+    over each reference facet [facets, nodes]. points : functions of the nodes of a facet at the
+    points of a rule [p, q] that is exact for their products; None where the nodes are the points.
+    areas : weights of the points, over the area of the facet [p].
+    """
 
     kind: str
     shares: np.ndarray
     integrals: np.ndarray
+    points: np.ndarray | None
+    areas: np.ndarray | None
 
 
 def reference_cell(kind: str, element: Any) -> Reference:
     """Return the reference cell of a kind with an element of basix, one function a node."""
     corners = reference(kind, 1)
-    facets, degree = facets_of(kind), 2 * int(np.max(getattr(element, "degree", 1)))
-    shares, integrals = corners.tabulate(0, element.points)[0, :, :, 0], []
-    for facet in facets:
-        if facet.size == 1:
-            at, weight = np.ones((1, 1)), np.ones(1)
-        else:
-            at, weight = quadrature(FACET[kind], degree)
-            at = reference(FACET[kind], 1).tabulate(0, at)[0, :, :, 0]
+    shares = corners.tabulate(0, element.points)[0, :, :, 0]
+    degree = int(element.highest_degree if hasattr(element, "highest_degree") else element.degree)
+    integrals = []
+    for facet in facets_of(kind):
+        at, weight = _rule(kind, 2 * degree)
         values = element.tabulate(0, at @ corners.points[facet])[0, :, :, 0]
         integrals.append(weight @ values)
-    return Reference(kind, shares, np.array(integrals))
+    found = Reference(kind, shares, np.array(integrals), None, None)
+    facet = facets_of(kind)[0].tolist()
+    local = _on(found, facet)[0]
+    if (found.integrals[0, local] > ON).all():
+        return found
+    points = element.tabulate(0, at @ corners.points[facet])[0, :, local, 0].T
+    return found._replace(points=points, areas=weight / weight.sum())
+
+
+def _rule(kind: str, degree: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return points of a facet, by shares of its corners [n, corners], and weights [n]."""
+    if kind == "interval":
+        return np.ones((1, 1)), np.ones(1)
+    at, weight = quadrature(FACET[kind], degree)
+    return reference(FACET[kind], 1).tabulate(0, at)[0, :, :, 0], weight
 
 
 def trace(

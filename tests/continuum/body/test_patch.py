@@ -18,6 +18,7 @@ SPACE = [
 ]
 CASES = [(2, joints, 1) for joints in [*PLANE, CROSSED]]
 CASES += [(2, PLANE[0], order) for order in (2, 3, 4)] + [(3, SPACE[0], 2)]
+CASES += [(2, CROSSED, 2), (2, PLANE[1], 2), (3, SPACE[1], 2)]  # with bubbles
 CASES += [(3, joints, 1) for joints in SPACE]
 
 
