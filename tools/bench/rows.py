@@ -1,4 +1,4 @@
-"""Rows and lattices of rigid blocks of any size, and functions that take their steps alone."""
+"""Rows and lattices of rigid blocks of any size, and functions that take the steps of rows."""
 
 from pathlib import Path
 from typing import Any
@@ -6,21 +6,16 @@ from typing import Any
 from timing import Timed
 
 from jointwave import cases
-from jointwave.cases.effects import is_spatial
-from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import pillar_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.validate import validated
+from jointwave.compare.engines import solver
 from jointwave.compare.scenes import find
-from jointwave.dem.axial.samples import buffers
-from jointwave.dem.axial.simulate import scheme_of
-from jointwave.dem.spatial.build import buffers_for, samples_for, state_at_rest
-from jointwave.dem.spatial.march import make_stepper
-from jointwave.dem.spatial.simulate import prepare
+from jointwave.dem import simulate
 
-BLOCK_STEPS = 5_000_000  # of one call, at most, unless it has a single sample
-BLOCK_STEPS_IN_SPACE = 50_000  # each takes ten times as long
+BLOCK_STEPS = 20_000_000  # of one run
+LEAST = 64  # steps of one run
 ELASTIC = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 
 
@@ -49,27 +44,16 @@ def lattice(blocks: int, law: dict, tables: dict[str, Any], dim: int = 2) -> Roc
 
 
 def stretch(scene: Scene, threads: int = 1) -> Timed:
-    """Return a function that takes some samples of a pillar, and its number of block-steps."""
-    return _in_space(scene, threads) if is_spatial(scene) else _along_axis(scene)
-
-
-def _along_axis(scene: Scene) -> Timed:
-    scheme = scheme_of(scene)
-    model, state, time, _ = scheme.build(scene)
-    count = _samples(time, state.u.size, BLOCK_STEPS)
-    samples = buffers(model, state, count)
-    march = scheme.make_stepper(scene, time)(model, state, samples, time.stride, None)
-    return lambda: march(0, count), count * time.stride * state.u.size
-
-
-def _in_space(scene: Scene, threads: int) -> Timed:
-    p, model, time, _ = prepare(scene)
-    count = _samples(time, p.block_count, BLOCK_STEPS_IN_SPACE)
-    state, samples, steps = state_at_rest(model), samples_for(model, count), count * time.stride
-    march = make_stepper(model, state, buffers_for(model, threads, None), samples)
-    march(0, 0)
-    return lambda: march(0, steps), steps * p.block_count
-
-
-def _samples(time: Clock, blocks: int, most: int) -> int:
-    return min(time.samples, max(64, most // blocks) // time.stride + 1)
+    """Return a function that runs a pillar for some steps and returns the seconds that these took,
+    and its number of block-steps."""
+    dt = solver("dem").prepare(scene).dt
+    samples = max(LEAST, BLOCK_STEPS // scene.block_count) * dt // scene.interval + 1
+    tables = {
+        "time": {"duration": samples * scene.interval},
+        "numerics": {"dem": scene.numerics.dem.model_copy(update={"threads": threads})},
+    }
+    brief = scene.model_copy(
+        update={key: getattr(scene, key).model_copy(update=one) for key, one in tables.items()}
+    )
+    steps = solver("dem").prepare(brief).steps
+    return lambda: simulate(brief).attrs["seconds_stepping"], steps * scene.block_count

@@ -7,15 +7,18 @@ from time import perf_counter
 ROUNDS = 9
 SHORTEST = 0.03  # s
 
-Timed = tuple[Callable[[], object], int]  # takes steps; block-steps or freedom-steps of one call
+#: Takes steps, and returns the seconds that they took if not all of it counts; block-steps or
+#: freedom-steps of one call.
+Timed = tuple[Callable[[], float | None], int]
 
 
-def rate(take: Callable[[], object], steps: int) -> float:
+def rate(take: Callable[[], float | None], steps: int) -> float:
     """Return steps a second, from calls that take long enough to be timed."""
-    calls, began, spent = 0, perf_counter(), 0.0
+    calls, spent = 0, 0.0
     while spent < SHORTEST:
-        take()
-        calls, spent = calls + 1, perf_counter() - began
+        began = perf_counter()
+        counted = take()
+        calls, spent = calls + 1, spent + (perf_counter() - began if counted is None else counted)
     return calls * steps / spent
 
 

@@ -1,0 +1,109 @@
+"""Blocks pay only for what their scene calls for, proved on what is compiled, without a clock."""
+
+from pathlib import Path
+
+import pytest
+
+from jointwave.cases.validate import validated
+from jointwave.dem import leapfrog, simulate
+
+SEVERAL = r" <\d+ x double>"  # of several contacts at once
+SQRT = r"(?:tail )?call \S+ @llvm\.sqrt\S*"
+NORMALS = {2: [(0.0, 0.0), (90.0, 0.0)], 3: [(0.0, 0.0), (90.0, 0.0), (90.0, 90.0)]}
+
+
+def lattice(dim=2, joints=(), **tables):
+    """Return free blocks of 1 m without a ledger, 4 along each axis; tables added."""
+    own = {
+        "title": "a lattice",
+        "domain": {"size": [4.0] * dim},
+        "rock": {"density": 2600.0, "intact_modulus": 5e10},
+        "joint_sets": [
+            {"name": f"set {k}", "dip": dip, "spacing": 1.0, "through": [0.0] * dim}
+            | ({"dip_direction": way} if dim == 3 else {})
+            | {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+            | dict(joints)
+            for k, (dip, way) in enumerate(NORMALS[dim])
+        ],
+        "time": {"duration": 1e-3},
+        "record": {"points": [[0.5] * dim], "energy": False},
+    }
+    return validated(own | tables, Path("lattice.toml"), frozenset())
+
+
+@pytest.fixture
+def kernel(monkeypatch):
+    """Return a function of a scene: the flags of the time loop that it runs, the loop, and what
+    this is given. No step is taken."""
+    loop_for, found = leapfrog.loop_for, []
+
+    def seen(form):
+        return lambda *given: found.append((form, loop_for(form), given))
+
+    monkeypatch.setattr(leapfrog, "loop_for", seen)
+
+    def of(scene):
+        found.clear()
+        simulate(scene)
+        return found[0]
+
+    return of
+
+
+@pytest.fixture
+def counted(kernel, instructions):
+    """Return a function that counts kinds of instructions in the time loop of a scene."""
+
+    def count(scene, *kinds):
+        _, loop, given = kernel(scene)
+        return [instructions(loop, given, kind) for kind in kinds]
+
+    return count
+
+
+def test_absent_effects_leave_no_instruction(counted):
+    """No comparison, division or root between elastic blocks; friction brings all three. Both work
+    on several contacts at once."""
+    kinds = "fcmp", "fdiv", SQRT, "fmul" + SEVERAL
+    elastic, slips = counted(lattice(3), *kinds), counted(lattice(3, SLIP), *kinds)
+    assert elastic[:3] == [0, 0, 0] and elastic[3] > 0
+    assert min(slips) > 0
+
+
+SLIP = {"friction_angle": 20.0}
+ADDED = {
+    "dashpots": ("fmul", {"joints": {"damping_ratio": 0.02}}),
+    "no tension": ("fcmp", {"joints": {"tension": False}}),
+    "quiet sides": ("fadd", {"boundaries": {"top": "quiet"}}),
+    "mass damping": ("fmul", {"damping": {"mass_proportional": 10.0}}),
+    "local damping": ("fcmp", {"damping": {"local": 0.5}}),
+    "gravity": ("fadd", {"gravity": {"static": False}}),
+    "ledger": ("fadd", {"record": {"points": [[0.5, 0.5]], "energy": True}}),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "changes"), ADDED.values(), ids=ADDED)
+def test_each_effect_adds_instructions(counted, kind, changes):
+    """So blocks without it have none of them."""
+    assert counted(lattice(), kind) < counted(lattice(**changes), kind)
+
+
+@pytest.mark.parametrize(
+    "nothing",
+    [
+        {"joints": {"tension": True, "damping_ratio": None}},
+        {"damping": {"local": 0.0, "mass_proportional": 0.0}},
+        {"boundaries": {"top": "free"}},
+    ],
+    ids=["joints", "damping", "sides"],
+)
+def test_a_key_that_calls_for_nothing_changes_no_flag(kernel, nothing):
+    assert kernel(lattice(**nothing))[0] == kernel(lattice())[0]
+
+
+def test_absent_effects_leave_no_array(kernel):
+    """No forces or dashpots on blocks, moving walls, energies, or memory of joints."""
+    _, blocks, state, samples, drive, walls, *_ = kernel(lattice())[2]
+    absent = blocks.held, blocks.tensor, state.history, samples.energy, drive, walls
+    assert absent == (None,) * 6
