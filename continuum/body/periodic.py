@@ -1,6 +1,8 @@
 """Facets of a mesh at periodic sides, and those that they face across the domain."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -40,7 +42,8 @@ def facing(mesh: Conforming, body: Complex, across: Across, first: int) -> Facin
     far, near, partner = _matched(body, across, middle, np.ones(len(middle), bool))
     if len(far) != len(near) or (partner < 0).any():
         at = middle[far[np.argmin(partner)]]
-        raise GeometryError(at, "is periodic, but joints do not end alike there", "boundaries")
+        cause = "is periodic, but the faces of blocks there differ from those that they face"
+        raise GeometryError(at, cause, "boundaries")
     near = near[partner]
     at_far, at_near = (np.unique(corners[one]) for one in (far, near))
     _, match = cKDTree(mesh.x[at_far]).query(mesh.x[at_near] + across.shift)
@@ -74,6 +77,40 @@ def matching_vertices(body: Complex, across: Sequence[Across]) -> np.ndarray:
         far, near, alike = _matched(body, one, body.vertices, np.ones(len(found), bool))
         found[near[alike[alike >= 0]]] = found[far[alike >= 0]]
     return found
+
+
+def fitted(body: Complex, across: Sequence[Across]) -> Complex:
+    """Return a complex in the plane whose edges at periodic sides end at the same places on both,
+    each split where the other side has a vertex; in space the complex as it is."""
+    for one in across if body.dim == 2 else ():
+        axis = int(np.flatnonzero(one.shift)[0])
+        ends = body.vertices[:, axis].max(), body.vertices[:, axis].min()
+        tolerance = SAME * float(np.ptp(body.vertices, axis=0).max())
+        for k, shift in ((0, one.shift), (1, -one.shift)):
+            x = body.vertices
+            own, other = (np.abs(x[:, axis] - ends[end]) < tolerance for end in (k, 1 - k))
+            body = _split(body, own, x[other] + shift, tolerance)
+    return body
+
+
+def _split(body: Complex, own: np.ndarray, places: np.ndarray, tolerance: float) -> Complex:
+    """Return a complex in the plane with the edges between some vertices (bool array [v]) split at
+    those places [n, 2], m, that lie within them."""
+    ends = body.bounds[0][:, 1].reshape(-1, 2)
+    pieces, of, x = [], [], [*body.vertices]
+    for facet, (a, b) in enumerate(ends.tolist()):
+        chain, along = [a, b], body.vertices[b] - body.vertices[a]
+        if own[a] and own[b]:
+            length = float(np.linalg.norm(along))
+            s = np.sort((places - body.vertices[a]) @ along / length)
+            inside = s[(s > tolerance) & (s < length - tolerance)]
+            chain[1:1] = range(len(x), len(x) + len(inside))
+            x += [body.vertices[a] + along * (one / length) for one in inside]
+        pieces += list(pairwise(chain))
+        of += [facet] * (len(chain) - 1)
+    bounds = np.stack([np.repeat(np.arange(len(of)), 2), np.ravel(pieces)], axis=1)
+    facets = {key: getattr(body, key)[of] for key in ("sides", "plane", "joint_set", "side")}
+    return replace(body, vertices=np.array(x), bounds=(bounds,), **facets)
 
 
 def _matched(

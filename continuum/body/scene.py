@@ -25,7 +25,7 @@ from jointwave.continuum.body.build import SIMPLEX, build_body
 from jointwave.continuum.body.conforming import Conforming
 from jointwave.continuum.body.domain import marks_of
 from jointwave.continuum.body.model import Body
-from jointwave.continuum.body.periodic import facing, matching_facets, matching_vertices
+from jointwave.continuum.body.periodic import facing, fitted, matching_facets, matching_vertices
 from jointwave.continuum.body.rock import Material, Rock, rock_of_cells
 from jointwave.continuum.body.simplices import are_simplices, own_cells, simplex_mesh
 from jointwave.continuum.body.size import element_size, elements_along, refuse_large_mesh
@@ -67,6 +67,7 @@ def _rock_mass(scene: RockMass, model: str, rock: Rock | None, implicit: bool) -
     resolved = scene.model_copy(update={"joint_sets": kept})
     blocks, numerics = blocks_of_scene(resolved), scene.numerics.continuum
     across, dim = across_periodic(scene, blocks), blocks.body.dim
+    blocks = replace(blocks, body=fitted(blocks.body, across))
     joint = of_all(blocks, across, "joint_set") >= 0
     marks = marks_of(blocks, joint, shape_of(scene.domain).sides)
     try:

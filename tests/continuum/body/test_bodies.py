@@ -68,6 +68,21 @@ def test_a_joint_along_periodic_sides_joins_them(made, cell):
     assert rigid_motions(body.stiffness + springs(body)) == 2
 
 
+def test_bricks_may_face_others_across_periodic_sides(made):
+    """Three rows, each offset by 0.3 of a brick: the bottom's ends are not those of the top."""
+    beds = {"name": "beds", "dip": 0.0, "spacing": 1.0}
+    heads = {"dip": 90.0, "spacing": 1.5, "ends_at": ["beds"], "offset": 0.3}
+    sides = {"bottom": "periodic", "top": "periodic"}
+    found = made(
+        beds, heads, continuum={"size": 0.6}, boundaries=sides, domain={"size": [6.0, 3.0]}
+    )
+    body, (across,) = found.body, found.across
+    assert len(across.contacts) > 5  # than four or five bricks of one row
+    reaches = body.joints.column >= len(found.blocks.contacts)
+    assert np.isclose(body.joints.weight[reaches].sum(), 6.0)
+    assert np.abs(body.joints.matrix @ np.tile([0.3, -0.2], len(body.x))).max() < 1e-15
+
+
 def test_the_equivalent_rock_has_no_joints_of_a_spacing(made):
     one, other = {"dip": 20.0, "spacing": 1.5}, {"dip": 70.0, "through": [3.0, 2.0]}
     found = made(one, other, model="equivalent")
