@@ -5,14 +5,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from jointwave import dem
+from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.sampling import Clock
-from jointwave.dem.spatial.build import buffers_for, build_model, samples_for, state_at_rest
-from jointwave.dem.spatial.layout import LANES, STRIDE
-from jointwave.dem.spatial.march import make_stepper
 from jointwave.results.dataset import energy_residual
 
-DT = 2e-5
 BLOW = {
     "pillar__length": 5.0,
     "load__direction": [0.6, 0.8, 0.0],
@@ -22,107 +18,83 @@ BLOW = {
     "time__duration": 0.02,
     "motion__rotation": "finite",
 }
-LOOSE = {**BLOW, "joints__tension": False, "joints__friction_angle": 30.0}
+LOOSE = {"joints__tension": False, "joints__friction_angle": 30.0}
+PUSH = {"shape": "triangle", "amplitude": 1e7, "rise": 2e-3, "decay": 2e-3}
 
 
-class Row:
-    """A row of blocks that turn by any angle, with its state by block."""
-
-    def __init__(self, scene):
-        self.p = calibrate(scene)
-        model = build_model(scene, self.p, Clock(DT, 1, 1))
-        still = model.load._replace(stress=np.zeros(0))
-        form = model.form._replace(ledger=False)
-        self.model = model._replace(load=still, form=form, stride=1 << 40)
-        self.state = state_at_rest(self.model)
-        self.rows = self.state.motion.reshape(len(self.state.motion), -1, STRIDE)[:, :, :LANES]
-        self.march = make_stepper(
-            self.model, self.state, buffers_for(self.model, 1), samples_for(self.model, 1)
-        )
-        self.y = self.p.spacing * (np.arange(self.p.block_count) + 0.5)
-
-    def part(self, first, count=3):
-        """Return rows first .. of every block, [blocks, count], as a view of the one tile."""
-        return self.rows[0, first : first + count, : self.p.block_count].T
-
-    def places(self):
-        return self.part(0) + np.stack([0 * self.y, self.y, 0 * self.y], axis=1)
-
-    def orientation(self):
-        return Rotation.from_quat(np.concatenate([self.part(3), self.part(12, 1)], axis=1))
-
-    def turn(self, rotation):
-        """Turn the whole row about the origin, with its motion."""
-        places, turned = self.places(), rotation * self.orientation()
-        self.part(0)[:] += rotation.apply(places) - places
-        quaternions = turned.as_quat()
-        self.part(3)[:], self.part(12, 1)[:] = quaternions[:, :3], quaternions[:, 3:]
-        for first in (6, 9):
-            self.part(first)[:] = rotation.apply(self.part(first))
-
-    def momenta(self):
-        """Return momentum and angular momentum about the origin, with places at the whole step."""
-        p = self.p.block_mass * self.part(6)
-        return p.sum(axis=0), (np.cross(self.places(), p) + self.part(9)).sum(axis=0)
+def orientations(result):
+    """Return the orientation of every recorded block at each sample, [sample][block]."""
+    return [Rotation.from_rotvec(one) for one in np.moveaxis(result.rotation.values, 1, 0)]
 
 
-def set_moving(row, seed=1):
-    """Give every block a velocity and an angular momentum of its own."""
-    random = np.random.default_rng(seed)
-    row.part(6)[:] = 0.1 * random.standard_normal((row.p.block_count, 3))
-    row.part(9)[:] = row.p.inertia_across * random.standard_normal((row.p.block_count, 3))
+def turned_freely(p, orientation, momentum, time):
+    """Return where angular momenta [N, 3] turn free blocks within a time (s): symmetric tops turn
+    about L by L t / I_t, and about their own axis y."""
+    along = np.einsum("ij,ij->i", orientation.apply([0.0, 1.0, 0.0]), momentum)
+    own = np.zeros_like(momentum)
+    own[:, 1] = time * along * (1 / p.inertia_along - 1 / p.inertia_across)
+    about = Rotation.from_rotvec(time * momentum / p.inertia_across)
+    return about * orientation * Rotation.from_rotvec(own)
+
+
+def momenta_between(p, before, after, time):
+    """Return the angular momenta [N, 3] that turn free blocks from one orientation to another."""
+    inertia = np.array([p.inertia_across, p.inertia_along, p.inertia_across])
+    found = np.zeros((len(before), 3))
+    for _ in range(8):  # the error falls by as much as they turn within this time
+        left = after * turned_freely(p, before, found, time).inv()
+        found += before.apply(inertia * before.inv().apply(left.as_rotvec())) / time
+    return found
 
 
 def test_free_block_is_the_symmetric_top(pillar):
-    """Far from its neighbours a block turns about L by L t / I_t, and about its own axis.
-
-    Exact for any step; 5000 steps leave the round-off of as many quaternion products, below 1e-12.
-    """
-    row = Row(pillar(**LOOSE))
-    row.part(0)[:, 1] += 5.0 * np.arange(row.p.block_count)  # all apart
-    momentum = np.array([3.0, -2.0, 4.0]) * row.p.inertia_across
-    row.part(9)[3] = momentum
-    row.march(1, 5001)
-    across, along = row.p.inertia_across, row.p.inertia_along
-    own = (1 / along - 1 / across) * momentum[1]  # the axis is y at first, so L_y stays along it
-    time = 5000 * DT
-    exact = Rotation.from_rotvec(time * momentum / across) * Rotation.from_rotvec(
-        [0, time * own, 0]
+    """Torn off at the start, it turns by several radians about one angular momentum: what two
+    samples have, all further ones have, to 1e-10. It comes from the load's impulse about the
+    centroid, but for what the arms turn within 4 ms."""
+    load = PUSH | {"direction": [0.28, -0.96, 0.0], "at": [0.05, 0.03]}
+    scene = pillar(
+        pillar={"length": 4.0, "side": 0.5, "block": 0.4},
+        load=load,
+        joints__tension=False,
+        motion__rotation="finite",
+        numerics__allow_large_motion=True,
+        record={"stress": [], "velocity": [0.2], "interval": 1e-3},
+        time__duration=0.4,
     )
-    assert (exact.inv() * row.orientation()[3]).magnitude() < 1e-12
-    assert (row.part(9)[3] == momentum).all()
+    p, result = calibrate(scene), dem.simulate(scene)
+    turns, times = orientations(result)[10:], result.time.values[10:]
+    momentum = momenta_between(p, turns[0], turns[1], 1e-3)
+    for now, time in zip(turns, times, strict=True):
+        expected = turned_freely(p, turns[0], momentum, time - times[0])
+        assert (expected.inv() * now).magnitude().max() < 1e-10
+    turned = np.linalg.norm(momentum) / p.inertia_across * (times[-1] - times[0])
+    assert turned > 4 and abs(1 - p.inertia_along / p.inertia_across) > 0.1
+    impulse = load_history(scene).impulse(0.01) * p.area * np.array(load["direction"])
+    assert momentum[0] == pytest.approx(np.cross([0.05, -0.2, 0.03], impulse), rel=0.1)
 
 
-@pytest.mark.parametrize("changes", [BLOW, LOOSE], ids=["elastic", "no tension, friction"])
-def test_momentum_and_angular_momentum_are_conserved(pillar, changes):
-    """Both forces of a joint act at one place: 2000 steps change neither sum but by round-off.
-
-    Each step adds round-off of the momenta exchanged, some 1e-16 of their sizes.
-    """
-    row = Row(pillar(**changes))
-    set_moving(row)
-    before = row.momenta()
-    size = np.abs(row.p.block_mass * row.part(6)).sum() * row.y[-1]
-    row.march(1, 2001)
-    assert np.abs(row.part(3)).max() > 1e-3  # they have turned
-    for old, new in zip(before, row.momenta(), strict=True):
-        assert np.abs(new - old).max() < 1e-12 * size
-
-
-def test_a_turned_row_moves_as_the_row_turned(pillar):
-    """Space has no direction: turning first or afterwards gives the same to round-off, grown by
-    the row's own stiffness: 1e-16 of 5 m over closures of 1e-4 m is 5e-12 a step's force."""
-    rotation = Rotation.from_rotvec([0.7, -1.9, 0.4])
-    first, after = Row(pillar(**LOOSE)), Row(pillar(**LOOSE))
-    set_moving(first)
-    set_moving(after)
-    first.turn(rotation)
-    first.march(1, 301)
-    after.march(1, 301)
-    after.turn(rotation)
-    np.testing.assert_allclose(first.places(), after.places(), atol=1e-10)
-    np.testing.assert_allclose(first.part(6), after.part(6), atol=1e-8)
-    assert (first.orientation().inv() * after.orientation()).magnitude().max() < 1e-9
+@pytest.mark.parametrize("joints", [{}, LOOSE], ids=["elastic", "no tension, friction"])
+def test_momentum_and_angular_momentum_are_conserved(pillar, joints):
+    """Both forces of a joint act at one place: from the end of the load on neither sum changes. Of
+    motion from whole step to whole step, whose last digits are 1e-16 m and rad over 1e-5 s."""
+    y = (0.25 + 0.5 * np.arange(10)).tolist()
+    record = {"stress": [], "velocity": y, "interval": 1e-5}
+    load = PUSH | {"direction": [0.6, 0.8, 0.0], "at": [0.1, 0.05]}
+    scene = pillar(**BLOW | joints | {"load": load}, record=record)
+    p, result = calibrate(scene), dem.simulate(scene)
+    assert result.attrs["dt"] == 1e-5
+    places = np.moveaxis(result.displacement.values, 1, 0) + np.multiply.outer(y, [0.0, 1.0, 0.0])
+    turns, found = orientations(result), []
+    for n in (450, 2000):
+        linear = p.block_mass * (places[n] - places[n - 1]) / 1e-5
+        own = momenta_between(p, turns[n - 1], turns[n], 1e-5)
+        found.append((linear.sum(axis=0), (np.cross(places[n], linear) + own).sum(axis=0)))
+    size = np.abs(linear).sum() * y[-1]
+    assert turns[-1].magnitude().max() > 1e-3
+    for old, new in zip(*found, strict=True):
+        assert np.abs(new - old).max() < 1e-10 * size
+    push = p.area * np.array(load["direction"]) * load_history(scene).impulse(0.02)
+    assert found[1][0] == pytest.approx(push, rel=1e-10, abs=1e-10 * np.abs(push).max())
 
 
 def test_small_rotations_are_the_limit(pillar):

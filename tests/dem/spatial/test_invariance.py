@@ -9,6 +9,10 @@ JOINTS = {
     "elastic": {},
     "slip": {"joints": {"friction_angle": 20.0, "cohesion": 1e4}},
     "no tension": {"joints": {"tension": False}},
+    "finite rotations": {
+        "motion__rotation": "finite",
+        "joints": {"tension": False, "friction_angle": 20.0},
+    },
 }
 QUARTER = np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0]])  # about y
 MIRROR = np.diag([-1, 1, 1])
