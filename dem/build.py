@@ -69,6 +69,11 @@ class RigidBlocks:
         """Mass and moments of inertia of each block [N, F]."""
         return np.ascontiguousarray(np.diagonal(self.masses, axis1=1, axis2=2))
 
+    @cached_property
+    def points(self) -> np.ndarray:
+        """`columns.points_on`, where joints can fail."""
+        return points_on(self.contacts, self.columns.rules)
+
     @property
     def critical(self) -> float:
         """A lower bound of the critical step, s."""
@@ -107,12 +112,11 @@ def masses_of(cut: Cut, density: np.ndarray) -> np.ndarray:
 def form_of(blocks: RigidBlocks, held: bool, shaken: bool) -> KernelFlags:
     """Return the effects of a rock mass."""
     scene, own, dim = blocks.scene, blocks.columns, blocks.dim
-    number = max(number for _, number in own.rules) ** (dim - 1)
     return KernelFlags(
         dim=dim,
         turns=dim > 1,
         parts=parts_of(own.law)._replace(planar=dim == 2),
-        points=number * own.fails,
+        points=blocks.points.shape[1] if own.fails else 0,
         mass_damping=scene.damping.alpha is not None,
         local_damping=bool(scene.damping.local),
         gravity=scene.gravity is not None,
@@ -159,20 +163,17 @@ def constants(blocks: RigidBlocks, dt: float) -> Blocks:
 def chunks(blocks: RigidBlocks) -> Chunks:
     """Return the table of contacts, with their tractions under a prestress."""
     own, met = blocks.columns, blocks.contacts
-    points, second = points_on(met, own.rules), None
-    if not own.fails:
-        places, area = points[..., :-1], points[..., -1:]
-        moments = places.swapaxes(1, 2) @ (area * places)
-        upper = ((), ((0, 0),), ((0, 0), (1, 1), (0, 1)))[blocks.dim - 1]
-        second = np.array([moments[:, i, j] for i, j in upper]).T
+    upper = ((), ((0, 0),), ((0, 0), (1, 1), (0, 1)))[blocks.dim - 1]
+    share = own.bending[met.column] * met.area
+    second = np.array([share * met.spread[:, i, j] for i, j in upper])
     return chunks_of(
         faces_of(blocks),
         blocks.cut.count,
         blocks.masses.shape[1],
         law=met.column if parts_of(own.law).varied else None,
         start=None if blocks.scene.prestress is None else carried(blocks),
-        points=points if own.fails else None,
-        second=second,
+        points=blocks.points if own.fails else None,
+        second=None if own.fails else second.T,
     )
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.material.contact_points import CUT, points_of
+from jointwave.cases.material.contact_points import CUT, bending, points_of, vertex_points
 from jointwave.cases.material.rigid_blocks import RigidJoints
 from jointwave.cases.material.rock_mass import Stiffness, set_time_constants
 from jointwave.cases.material.strength import strength_of
@@ -17,6 +17,9 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.dem.contacts import Contacts
 from jointwave.joints.law import Law, law, stiffest, uniform
 
+#: Rule of points, and their number along each tangent.
+Rule = tuple[str, int | None]
+
 
 class Columns(NamedTuple):
     """The law in its columns, and K_n and K_s of each [columns], Pa/m, as they are.
@@ -24,8 +27,8 @@ class Columns(NamedTuple):
     stiffest : K_n and K_s of joints that have closed as far as is in reach, and slide where that
     lifts them [2, columns], Pa/m.
     time_constants : viscosity over stiffness, normal and in shear [2, columns], s; None without
-    dashpots. rules : rule of points and their number along each tangent, one for all or one a
-    column. fails : whether points have a history of their own.
+    dashpots. rules : of points and their number, one for all or one a column. fails : whether
+    points have a history of their own.
     """
 
     law: Law
@@ -33,8 +36,13 @@ class Columns(NamedTuple):
     shear: np.ndarray
     stiffest: np.ndarray
     time_constants: np.ndarray | None
-    rules: list[tuple[str, int]]
+    rules: list[Rule]
     fails: bool
+
+    @property
+    def bending(self) -> np.ndarray:
+        """Part of a face's second moments that its points have, by column."""
+        return np.resize([bending(*rule) for rule in self.rules], len(self.normal))
 
 
 def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
@@ -86,32 +94,50 @@ def _time_constants(
     return eta
 
 
-def points_on(contacts: Contacts, rules: list[tuple[str, int]]) -> np.ndarray:
+def points_on(contacts: Contacts, rules: list[Rule]) -> np.ndarray:
     """Return places, m, from the centre and along the tangents, and the area of each point of all
-    contacts [c, points, d].
+    contacts [c, points, d]; where they are fewer, points of no area fill them up.
 
-    rules : rule and number of points along each tangent, one for all or one a column. A rule is
-    that of a rectangle with the face's second moments, whose edges it has in the plane, and of
-    rectangles; shorter ones are filled up by points of no area.
+    rules : one for all or one a column.
     """
-    dim = contacts.frame.shape[1]
-    variance, axes = np.linalg.eigh(contacts.spread)
-    half = (axes * np.sqrt(3 * np.maximum(variance, 0.0))[:, None]) @ axes.swapaxes(1, 2)
-    most = max(number for _, number in rules) ** (dim - 1)
-    found = np.zeros((len(contacts.area), most, dim))
-    which = np.minimum(contacts.column, len(rules) - 1)
+    which, parts = np.minimum(contacts.column, len(rules) - 1), []
     for k, (rule, number) in enumerate(rules):
-        x, w = points_of(rule, number)
-        places = np.array(list(product(2 * x - 1, repeat=dim - 1))).reshape(-1, dim - 1)
-        weight = np.array([np.prod(one) for one in product(w, repeat=dim - 1)])
-        own = which == k
-        found[own, : len(weight), :-1] = places @ half[own]
-        found[own, : len(weight), -1] = contacts.area[own, None] * weight
+        own = np.flatnonzero(which == k)
+        if rule == "vertices" and contacts.frame.shape[1] > 1:
+            parts.append((own, *vertex_points(_corners(contacts, own), contacts.spread[own])))
+        else:
+            parts.append((own, *_grid(contacts.spread[own], *points_of(rule, number))))
+    most = max(shares.shape[1] for _, _, shares in parts)
+    found = np.zeros((len(contacts.area), most, contacts.frame.shape[1]))
+    for own, places, shares in parts:
+        found[own, : shares.shape[1], :-1] = places
+        found[own, : shares.shape[1], -1] = contacts.area[own, None] * shares
     return found
 
 
-def _rules(scene: RockMass, which: np.ndarray) -> list[tuple[str, int]]:
+def _grid(spread: np.ndarray, x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return places [c, points, d - 1] and shares [c, points] of a rule, places and weights on an
+    edge from 0 to 1, on edges and on the parallelograms with these second moments."""
+    axes = spread.shape[1]
+    variance, turn = np.linalg.eigh(spread)
+    half = (turn * np.sqrt(3 * np.maximum(variance, 0.0))[:, None]) @ turn.swapaxes(1, 2)
+    places = np.array(list(product(2 * x - 1, repeat=axes))).reshape(-1, axes)
+    shares = [np.prod(one) for one in product(w, repeat=axes)]
+    return places @ half, np.tile(shares, (len(spread), 1))
+
+
+def _corners(contacts: Contacts, own: np.ndarray) -> np.ndarray:
+    """Return the corners of some contacts, from the centre and along the tangents [c, k, d - 1], m;
+    where they are fewer the last one is repeated."""
+    corners, first = contacts.outlines
+    begin, end = first[own, None], first[own + 1, None]
+    at = np.minimum(begin + np.arange((end - begin).max(initial=1)), end - 1)
+    away = corners[at] - contacts.centre[own, None]
+    return away @ contacts.frame[own, 1:].swapaxes(1, 2)
+
+
+def _rules(scene: RockMass, which: np.ndarray) -> list[Rule]:
     """Return the rules of all columns, one where they are the same."""
     of_sets = [*((one.point_rule, one.contact_points) for one in scene.joint_sets), CUT]
-    named: list[tuple[str, int]] = [of_sets[k] for k in which]
+    named: list[Rule] = [of_sets[k] for k in which]
     return named[:1] if len(set(named)) == 1 else named

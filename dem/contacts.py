@@ -8,10 +8,11 @@ import numpy as np
 
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import NO_SET
+from jointwave.cases.geometry.measure import Outlines, joined
 from jointwave.cases.material.elastic import shear_modulus
 from jointwave.cases.material.rigid_blocks import welds
 from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus
-from jointwave.cases.partition.periodic import across_periodic, of_all
+from jointwave.cases.partition.periodic import Across, across_periodic, of_all
 from jointwave.cases.partition.regions import ROCK, rocks_of
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
@@ -25,7 +26,8 @@ class Contacts(NamedTuple):
     blocks : i and j [c, 2]; a wall is a j beyond the last block. area : m^(d-1). centre : [c, d],
     m, that of block i's face. frame : [c, d, d], the normal from i to j, then the tangents. arm :
     [c, 2, d], from the centroids of i and j, where they touch, to the centre. spread : second
-    moments over the area, in the frame's tangents [c, d - 1, d - 1], m2. column : of the law [c].
+    moments over the area, in the frame's tangents [c, d - 1, d - 1], m2. outlines : corners of the
+    faces between blocks, m. column : of the law [c].
     kinds : of the columns of sets, `RigidJoints` [columns, 3]. others : stiffness of the contacts
     that no set has, by column after those. walls : names of the fixed and the roller sides.
     """
@@ -36,6 +38,7 @@ class Contacts(NamedTuple):
     frame: np.ndarray
     arm: np.ndarray
     spread: np.ndarray
+    outlines: Outlines
     column: np.ndarray
     kinds: np.ndarray
     others: Stiffness
@@ -52,7 +55,8 @@ def contacts_of(
     rock is: half a block. So is intact rock between blocks where no set made the cut. A roller side
     is such a wall without stiffness in shear.
     """
-    pairs, area, centre, normal, second, joint_set, shift = _between(scene, blocks)
+    across = across_periodic(scene, blocks)
+    pairs, area, centre, normal, second, joint_set, shift = _between(blocks, across)
     walls, held, wall = _at_walls(scene, blocks, sides)
     edges, block = blocks.boundary, blocks.boundary.blocks[held, 0]
     kinds, column = _columns(scene, blocks, joint_set, pairs, len(further))
@@ -74,6 +78,7 @@ def contacts_of(
         frame=frame,
         arm=np.concatenate(arms),
         spread=frame[:, 1:] @ second @ frame[:, 1:].swapaxes(1, 2),
+        outlines=joined([blocks.contacts.outlines, *(one.contacts.outlines for one in across)]),
         column=column,
         kinds=kinds,
         others=Stiffness(*map(np.concatenate, zip(*others, strict=True))),
@@ -81,10 +86,9 @@ def contacts_of(
     )
 
 
-def _between(scene: RockMass, blocks: Blocks) -> tuple[np.ndarray, ...]:
+def _between(blocks: Blocks, across: list[Across]) -> tuple[np.ndarray, ...]:
     """Return pairs, area, centroid, normal, second moments and joint set of the contacts of blocks,
     and by which blocks j stand elsewhere, across periodic sides [c, d], m."""
-    across = across_periodic(scene, blocks)
     beside = [np.zeros(blocks.body.dim), *(one.shift for one in across)]
     number = [len(blocks.contacts), *(len(one.contacts) for one in across)]
     keys = "blocks", "area", "centroid", "normal", "second_moment", "joint_set"

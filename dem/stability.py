@@ -23,7 +23,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jointwave.dem.columns import Columns, points_on
+from jointwave.dem.columns import Columns
 from jointwave.dem.contacts import Contacts, jumps_of, springs_of
 from jointwave.numerics.critical_step import critical_step
 
@@ -64,9 +64,7 @@ def _stiffness(
     per area in each column, normal and in shear, with the second moments of its points."""
     count, freedoms, _ = masses.shape
     dim = contacts.frame.shape[1]
-    points = points_on(contacts, columns.rules)
-    places, area = points[..., :-1], points[..., -1:]
-    spread = places.swapaxes(1, 2) @ (area * places) / contacts.area[:, None, None]
+    spread = columns.bending[contacts.column, None, None] * contacts.spread
     normal, shear = (x[contacts.column] for x in values)
     springs = springs_of(normal, shear, contacts.area, spread, freedoms - dim)
     found = np.zeros((count, freedoms, freedoms))

@@ -438,6 +438,11 @@ MISTAKES = {
         LAYER + "contact_points = 3\n",
         ["soft_layers[0].contact_points = 3", "applies to all joints"],
     ),
+    "a number of points with vertices": (
+        "[joints]",
+        "[joints]\ncontact_points = 3",
+        ["joints.contact_points = 3", "needs point_rule = 'midpoint' or 'gauss'"],
+    ),
     "point rule of one layer": (
         LAYER,
         LAYER + 'point_rule = "gauss"\n',

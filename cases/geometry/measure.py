@@ -5,6 +5,7 @@ the second moment V / ((k + 1) (k + 2)) (sum v v + sum v sum v) about the origin
 over their facets.
 """
 
+from collections.abc import Sequence
 from math import factorial
 from typing import NamedTuple
 
@@ -128,6 +129,12 @@ class Outlines(NamedTuple):
     def of(self, k: int) -> np.ndarray:
         """Return the corners of one piece [n, d], m."""
         return self.corners[self.first[k] : self.first[k + 1]]
+
+
+def joined(parts: Sequence[Outlines]) -> Outlines:
+    """Return the pieces of all parts, one part after the other."""
+    sizes = np.concatenate([np.diff(one.first) for one in parts])
+    return Outlines(np.concatenate([one.corners for one in parts]), np.append(0, np.cumsum(sizes)))
 
 
 def outline_moments(pieces: Outlines) -> Moments:

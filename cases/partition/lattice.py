@@ -181,8 +181,7 @@ def by_direction(sets: list[JointSet], dim: int) -> list[list[JointSet]]:
 
 def _set(normal: np.ndarray, spacing: float, through: list[float] | None) -> JointSet:
     keys = {"name": "cut", "spacing": spacing, "through": through, **dips_of(normal)}
-    law = {"contact_points": 2, "point_rule": "gauss"}
-    return JointSet.model_validate(keys | law, context={"dimension": len(normal)})
+    return JointSet.model_validate(keys, context={"dimension": len(normal)})
 
 
 def _planes(

@@ -40,17 +40,19 @@ class JointLaw(Table):
 class Joints(JointLaw):
     """The law of every joint, and the contact points of its face."""
 
-    #: of rigid blocks: n x n per face of a pillar, n per edge of a rock mass
-    contact_points: Annotated[int, Field(ge=1, le=8)] = 2
-    #: midpoint: cell centres, 1 - 1/n^2 of the face's bending stiffness, and where it opens a lever
-    #: of 1 - 1/n of its half width; gauss: all of the stiffness, and 0.58, 0.77, 0.86, ... 0.96
-    #: of the half width for n = 2, 3, 4, ... 8; lobatto: all of both, for n of 3 or more
-    point_rule: Literal["midpoint", "gauss", "lobatto"] = "midpoint"
+    #: of rigid blocks, with midpoint or gauss: n per edge in the plane, n x n per face in space;
+    #: absent: 2
+    contact_points: Annotated[int, Field(ge=1, le=8)] | None = None
+    #: vertices: corners and centroid, all of the face's bending stiffness, and where it opens its
+    #: whole half width as lever; midpoint: cell centres, 1 - 1/n^2 of the stiffness and 1 - 1/n of
+    #: the half width; gauss: all of the stiffness and 0.58, 0.77, 0.86, ... 0.96 of the half width
+    #: for n = 2, 3, 4, ... 8
+    point_rule: Literal["vertices", "midpoint", "gauss"] = "vertices"
 
     @model_validator(mode="after")
-    def _lobatto_bends(self) -> "Joints":
-        if self.point_rule == "lobatto" and self.contact_points < 3:
-            allowed = "must be at least 3 with point_rule = 'lobatto'"
+    def _vertices_are_as_many_as_they_are(self) -> "Joints":
+        if self.point_rule == "vertices" and self.contact_points is not None:
+            allowed = "needs point_rule = 'midpoint' or 'gauss': vertices have no other number"
             raise contradiction(".contact_points", self.contact_points, allowed)
         return self
 

@@ -161,7 +161,7 @@ def of_lever(table: str, joints: Joints) -> Iterator[str]:
     if (found := lever(rule, count)) < LEAST_LEVER:
         thicker = f"{1 / found:.3g} times the thickness" if found else "more than any thickness"
         yield (
-            f"{table}.contact_points = {count} ({rule}): a face of rigid blocks that opens bears "
-            f"at {found:.3g} of its half width, so that what stands by its edges needs {thicker}; "
-            "contact_points = 3 with point_rule = 'lobatto' bears at its edges"
+            f"{table}.point_rule = {rule!r} of {count or 2} points: a face of rigid blocks that "
+            f"opens bears at {found:.3g} of its half width, so that what stands by its edges needs "
+            f"{thicker}; 'vertices' bear at its edges"
         )

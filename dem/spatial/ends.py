@@ -51,8 +51,7 @@ def contact_points(scene: Scene) -> np.ndarray:
     if scene.motion.rotation == "none":
         return np.array([[0.0], [0.0], [scene.pillar.area]])
     joints = scene.joints
-    rule = joints.point_rule or "midpoint"
-    return np.array(face_points(scene.pillar.side, joints.contact_points or 2, rule))
+    return np.array(face_points(scene.pillar.side, joints.contact_points, joints.point_rule))
 
 
 def face_of(points: np.ndarray) -> Face:

@@ -10,7 +10,7 @@ from math import exp, pi, sqrt
 import numpy as np
 import pytest
 
-from jointwave.cases import SceneError
+from jointwave.cases import SceneError, load
 from jointwave.cases.histories import Recorded, Ricker, Sine, Step
 from jointwave.cases.loads import base_steps, load_history, step_means
 from jointwave.cases.material.calibrate import calibrate
@@ -20,6 +20,7 @@ from jointwave.cases.records import read_history
 from jointwave.cases.sampling import clock, interpolation, sample_times
 from jointwave.cases.schema.damping import Rayleigh
 from jointwave.cases.schema.scene import Scene
+from jointwave.compare.scenes import SHIPPED
 from jointwave.results.subcells import linear_cells
 
 ROCK = {
@@ -370,11 +371,21 @@ class TestFaces:
 
     def test_midpoints(self):
         """The paper's are 2 x 2, (2)."""
-        assert (scene().joints.contact_points, scene().joints.point_rule) == (2, "midpoint")
+        paper = load(SHIPPED / "guo-li-2002" / "fig-03.toml")[0]
+        assert (paper.joints.contact_points, paper.joints.point_rule) == (None, "midpoint")
+        assert face_points(3.0, None, "midpoint")[2] == exact(np.full(4, 2.25))
         x, z, area = face_points(3.0, 3, "midpoint")
         assert x == pytest.approx([-1, -1, -1, 0, 0, 0, 1, 1, 1], abs=1e-15)
         assert z == pytest.approx([-1, 0, 1] * 3, abs=1e-15)
         assert area == exact(np.ones(9))
+
+    def test_vertices(self):
+        """The default: twelfths of the area at the corners, two thirds in the middle."""
+        assert (scene().joints.contact_points, scene().joints.point_rule) == (None, "vertices")
+        x, z, area = face_points(3.0, None, "vertices")
+        assert x == exact(1.5 * np.array([-1, -1, 1, 1, 0]))
+        assert z == exact(1.5 * np.array([-1, 1, -1, 1, 0]))
+        assert area == exact(np.array([0.75, 0.75, 0.75, 0.75, 6.0]))
 
     def test_gauss_points(self):
         """Side 2: points sqrt(3/5) of weights 5/9, 8/9, 5/9."""

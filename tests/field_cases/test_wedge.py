@@ -44,7 +44,7 @@ def wedge(friction):
     """Return a box whose planes part a wedge, two blocks at its sides and one below, all but the
     wedge fixed at sides; friction : a tangent."""
     law = {"normal_stiffness": 1e10, "shear_stiffness": 1e9, "tension": False}
-    law |= {"friction_angle": np.degrees(np.arctan(friction)).item(), "point_rule": "gauss"}
+    law |= {"friction_angle": np.degrees(np.arctan(friction)).item()}
     sets = [
         {"name": name, "through": THROUGH, "dip": np.degrees(np.arccos(n[2])).item()}
         | {"dip_direction": np.degrees(np.arctan2(n[0], n[1])).item() % 360}

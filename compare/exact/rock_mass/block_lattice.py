@@ -16,7 +16,7 @@ from scipy.sparse import bsr_array, csr_array
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.incident import tractions
-from jointwave.cases.material.contact_points import points_of
+from jointwave.cases.material.contact_points import bending, points_of
 from jointwave.cases.material.quiet_sides import impedances
 from jointwave.cases.material.rigid_blocks import rigid_joints, welds
 from jointwave.cases.material.rock_mass import inertia
@@ -102,17 +102,16 @@ def _between_blocks(scene: RockMass, partition: Partition) -> list[Contacts]:
     further, blocks, parts = further_sets(scene), partition.blocks, []
     joints, sets = rigid_joints(scene, further), [*scene.joint_sets, *further]
     springs = np.stack([joints.normal, joints.shear], axis=1)
-    rules = [points_of(one.point_rule, one.contact_points) for one in sets]
-    bends = np.array([12 * weight @ (x - 0.5) ** 2 for x, weight in rules])
+    bends = np.array([bending(one.point_rule, one.contact_points) for one in sets])
     across = [(one.contacts, one.shift) for one in across_periodic(scene, blocks)]
     for facets, shift in [(blocks.contacts, np.zeros(2)), *across]:
-        k, bending = springs[facets.joint_set], bends[facets.joint_set]
+        k, share = springs[facets.joint_set], bends[facets.joint_set]
         rock = facets.joint_set == NO_SET
         weld = facets.blocks[rock], facets.centroid[rock], facets.normal[rock]
         shifts = np.tile(shift, (len(weld[0]), 1))
         k[rock] = np.stack(welds(scene, partition.blocks, further, *weld, shifts), axis=1)
-        bending[rock] = 1.0
-        parts.append(contacts_of(blocks, facets, k, 0 * k, bending, shift))
+        share[rock] = 1.0
+        parts.append(contacts_of(blocks, facets, k, 0 * k, share, shift))
     return parts
 
 

@@ -356,7 +356,7 @@ def test_the_good_scene_is_good(written):
     assert one.interval == 0.01 / 200 and other.interval == 0.1 / 2000
     assert other.waves[0].history.stress.tolist() == [0.0, 1.0, 0.0]
     assert one.boundaries.top == "free" and one.gravity.direction == [0.0, -1.0]
-    assert one.joint_sets[1].friction_angle == 30.0 and one.joint_sets[1].contact_points == 2
+    assert one.joint_sets[1].friction_angle == 30.0 and one.joint_sets[1].point_rule == "vertices"
 
 
 @pytest.mark.parametrize("name", MISTAKES)

@@ -59,10 +59,10 @@ def test_above_it_accelerates_by_what_friction_leaves(slope):
 
 
 @pytest.mark.parametrize(
-    "angle, friction, topples", [(20, 40, False), (45, 30, False), (45, 40, True)]
+    "angle, friction, topples", [(20, 40, False), (60, 45, False), (60, 55, True)]
 )
 def test_a_block_that_may_turn_topples_where_friction_holds_it(slope, angle, friction, topples):
-    """What the joint carries leaves the 2 x 2 points, a/4 = d/4 from the centre, where along z, of
-    0.8 of the slope, 0.8 min(tan beta, tan phi) exceeds 1/2: 0.29, 0.46, 0.67."""
+    """What the joint carries leaves the face, a/2 = d/2 from the centre, where along z, of 0.8 of
+    the slope, 0.8 min(tan beta, tan phi) exceeds 1: 0.29, 0.8, 1.14."""
     answer = sliding_block.applies(slope(angle, friction, motion={"rotation": "small"}))
     assert answer.reason == ("the block topples" if topples else "")

@@ -28,7 +28,7 @@ class Points:
 
     def __init__(self, scene):
         p, self.scene, self.d, self.load = calibrate(scene), scene, 0.5, drive(scene)
-        self.points = face_points(0.5, 2, "midpoint")
+        self.points = face_points(0.5, scene.joints.contact_points, scene.joints.point_rule)
         eta, joints = p.time_constant or 0.0, p.joint_time_constant
         joints = np.zeros(3) if joints is None else joints
         self.half = self.matrix(2 * p.regular_stiffness, 2 * p.regular_shear_stiffness), eta

@@ -109,7 +109,7 @@ def test_options_make_the_configuration(planned):
 
 def test_what_the_plan_does_not_vary_stays_the_scenes_own():
     """The dimension, and points of a face."""
-    scene = short(numerics__continuum__dim=2, joints__contact_points=3)
+    scene = short(numerics__continuum__dim=2, joints={"point_rule": "gauss", "contact_points": 3})
     made = configured(scene, "continuum-jointed", rock(scene, 3) | {"step_fraction": 0.5})
     assert made.numerics.continuum.dim == 2 and made.joints.contact_points == 3
     assert (made.numerics.continuum.order, made.numerics.continuum.step_fraction) == (3, 0.5)

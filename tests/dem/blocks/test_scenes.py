@@ -105,7 +105,6 @@ def test_a_row_is_the_row_in_space(law, rock_mass, pillar, plain):
     """Blocks under an oblique blow beside their axis, which compresses, bends and shears them: per
     metre of thickness they are the row of square section over its side, to the round-off of 250
     steps."""
-    law = {"point_rule": "gauss"} | law
     blow = SINE | {"kind": "force", "quantity": "force", "at": [0.35, 0.0], "amplitude": 5e5}
     plane = {"loads": [blow | {"direction": [0.6, 0.8]}], "time": {"duration": 2e-3}}
     critical = simulate(column(rock_mass, top="free", joint=law, **plane)).critical_dt

@@ -9,8 +9,9 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.compare.exact.blocks.row_of_blocks import system_of
 
 FACES = {
-    "2 x 2 midpoint": ({"contact_points": 2}, 3 / 4),
-    "3 x 3 midpoint": ({"contact_points": 3}, 8 / 9),
+    "vertices": ({}, 1.0),
+    "2 x 2 midpoint": ({"point_rule": "midpoint"}, 3 / 4),
+    "3 x 3 midpoint": ({"contact_points": 3, "point_rule": "midpoint"}, 8 / 9),
     "2 x 2 Gauss": ({"contact_points": 2, "point_rule": "gauss"}, 1.0),
 }
 ACROSS = {"load": {"shape": "step", "amplitude": 0.0}, "ends__end": "fixed"}
