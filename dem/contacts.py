@@ -26,10 +26,10 @@ class Contacts(NamedTuple):
     blocks : i and j [c, 2]; a wall is a j beyond the last block. area : m^(d-1). centre : [c, d],
     m, that of block i's face. frame : [c, d, d], the normal from i to j, then the tangents. arm :
     [c, 2, d], from the centroids of i and j, where they touch, to the centre. spread : second
-    moments over the area, in the frame's tangents [c, d - 1, d - 1], m2. outlines : corners of the
-    faces between blocks, m. column : of the law [c].
+    moments over the area, in the frame's tangents [c, d - 1, d - 1], m2. column : of the law [c].
     kinds : of the columns of sets, `RigidJoints` [columns, 3]. others : stiffness of the contacts
     that no set has, by column after those. walls : names of the fixed and the roller sides.
+    outlines : corners of the faces between blocks, m; None of rectangles along the tangents.
     """
 
     blocks: np.ndarray
@@ -38,11 +38,11 @@ class Contacts(NamedTuple):
     frame: np.ndarray
     arm: np.ndarray
     spread: np.ndarray
-    outlines: Outlines
     column: np.ndarray
     kinds: np.ndarray
     others: Stiffness
     walls: tuple[str, ...]
+    outlines: Outlines | None = None
 
 
 def contacts_of(
@@ -78,11 +78,11 @@ def contacts_of(
         frame=frame,
         arm=np.concatenate(arms),
         spread=frame[:, 1:] @ second @ frame[:, 1:].swapaxes(1, 2),
-        outlines=joined([blocks.contacts.outlines, *(one.contacts.outlines for one in across)]),
         column=column,
         kinds=kinds,
         others=Stiffness(*map(np.concatenate, zip(*others, strict=True))),
         walls=walls,
+        outlines=joined([blocks.contacts.outlines, *(one.contacts.outlines for one in across)]),
     )
 
 

@@ -1,0 +1,76 @@
+"""Contact points of the faces of blocks, in the plane and in space."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jointwave.cases.validate import validated
+from jointwave.dem.columns import points_on
+from jointwave.dem.system import prepared
+
+ASKEW = {2: [(20.0,), (75.0,), (140.0,)], 3: [(15.0, 40.0), (80.0, 100.0), (60.0, 200.0)]}
+ALONG = {2: [(0.0,), (90.0,)], 3: [(0.0, 0.0), (90.0, 0.0), (90.0, 90.0)]}
+
+
+def blocks_of(dim, attitudes, **rule):
+    """Return blocks between joints without tension, on a fixed bottom, most askew to the sides."""
+    law = {"spacing": 1.3, "tension": False, "normal_stiffness": 1e10, "shear_stiffness": 5e9}
+    tables = {
+        "title": "blocks",
+        "domain": {"size": [5.2, 2.6, 3.9][:dim], "slivers": "merge", "least_width": 0.03},
+        "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
+        "joint_sets": [
+            {"name": str(k), "through": [1.3] * dim}
+            | dict(zip(("dip", "dip_direction"), one, strict=False))
+            | law
+            | rule
+            for k, one in enumerate(attitudes)
+        ],
+        "boundaries": {"bottom": "fixed"},
+        "gravity": {},
+        "time": {"duration": 1e-3},
+        "record": {"points": [[2.1, 2.2, 1.4][:dim]]},
+    }
+    return prepared(validated(tables, Path("blocks.toml"), frozenset())).blocks
+
+
+@pytest.mark.parametrize("rule", [{}, {"point_rule": "gauss"}], ids=["vertices", "gauss"])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_points_have_the_moments_of_faces(dim, rule):
+    """Area, centroid and second moments of all faces, those of the fixed side too, with no weight
+    below zero; polygons of some sides in space."""
+    blocks = blocks_of(dim, ASKEW[dim], **rule)
+    met, places, area = blocks.contacts, blocks.points[..., :-1], blocks.points[..., -1]
+    size = np.sqrt(np.trace(met.spread, axis1=1, axis2=2))
+    assert (area >= 0).all() and len(set(np.diff(met.outlines.first))) == (4 if dim == 3 else 1)
+    np.testing.assert_allclose(area.sum(axis=1), met.area, rtol=1e-12)
+    first = (area[..., None] * places).sum(axis=1) / (met.area * size)[:, None]
+    np.testing.assert_allclose(first, 0, atol=1e-10)
+    second = places.swapaxes(1, 2) @ (area[..., None] * places) / met.area[:, None, None]
+    scale = size[:, None, None] ** 2
+    np.testing.assert_allclose(second / scale, met.spread / scale, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_faces_bear_at_their_corners(dim):
+    blocks = blocks_of(dim, ASKEW[dim])
+    met, first = blocks.contacts, blocks.contacts.outlines.first
+    at = met.centre[:, None] + blocks.points[..., :-1] @ met.frame[:, 1:]
+    for c, points in enumerate(at[: len(first) - 1]):
+        corners = met.outlines.of(c)
+        away = np.linalg.norm(corners[:, None] - points, axis=2)
+        assert (away.argmin(axis=1) == np.arange(len(corners))).all() and away.min(
+            axis=1
+        ).max() < 1e-12
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_rectangles_along_the_tangents_need_no_outlines(dim):
+    """Those between blocks; contacts with walls have other points."""
+    blocks = blocks_of(dim, ALONG[dim])
+    bare = points_on(blocks.contacts._replace(outlines=None), blocks.columns.rules)
+    own = len(blocks.contacts.outlines.first) - 1
+    for found, expected in zip(bare[:own], blocks.points[:own], strict=True):
+        order = [np.lexsort(np.round(one, 9).T) for one in (found, expected)]
+        np.testing.assert_allclose(found[order[0]], expected[order[1]], rtol=0, atol=1e-12)
