@@ -111,10 +111,12 @@ def build_block(scene: Scene, p: Properties, dt: float, points: np.ndarray) -> B
         g, direction[:3] = scene.gravity.acceleration, scene.gravity.direction
     across, along, face = p.inertia_across, p.inertia_along, face_of(points)
     inertia = np.array([p.block_mass, p.block_mass, p.block_mass, across, along, across])
+    # Corners leave the other face with a quarter of the side, as midpoints do.
+    reach = 0.75 if scene.joints.point_rule == "vertices" else 0.5
     return Block(
         dt=dt,
         arm=p.spacing / 2,
-        half_side=p.side / 2,
+        half_side=reach * p.side,
         keep=(1 - drag) / (1 + drag),
         local=p.local_damping or 0.0,
         mass=p.block_mass,

@@ -148,10 +148,10 @@ def incline(pillar, slope):
 
 
 def test_a_block_topples_where_its_weight_leaves_its_base(pillar):
-    """Cube on 2 x 2 midpoints at a quarter of the side: the edge of its base is d/4 from the
-    centre, its centroid d/2 above, so it topples beyond tan(slope) = 1/2 and not before."""
-    assert incline(pillar, 0.46) < 1e-3
-    assert incline(pillar, 0.54) > 0.3
+    """The edge of a cube's base is d/2 from the centre, its centroid d/2 above, so it topples
+    beyond tan(slope) = 1 and not before."""
+    assert incline(pillar, 0.96) < 1e-3
+    assert incline(pillar, 1.04) > 0.3
 
 
 def test_a_row_without_points_has_no_rotations(pillar):
