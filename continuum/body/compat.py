@@ -145,3 +145,12 @@ def reference(kind: str, order: int) -> Any:
     """Return basix's Lagrange element of a cell; `points` are its nodes, one for each function."""
     family, variant = basix.ElementFamily.P, basix.LagrangeVariant.gll_warped
     return basix.create_element(family, getattr(basix.CellType, kind), order, variant)
+
+
+def cell_corners(domain: Any) -> np.ndarray:
+    """Return the corners of each cell of a mesh of straight cells, float array [cells, corners, d],
+    m."""
+    geometry = domain.geometry
+    table = geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap
+    table = np.asarray(getattr(table, "array", table)).reshape(len(input_cells(domain)), -1)
+    return geometry.x[table][..., : geometry.dim]

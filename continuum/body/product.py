@@ -1,0 +1,208 @@
+"""The product of a symmetric matrix with a vector of freedoms, chosen by the matrix's structure.
+
+Blocks that are all alike share one matrix, which is applied to many of them at a time: entries are
+read once for `LANES` blocks. Else rows of d freedoms a node are multiplied together, with 32-bit
+indices; beyond the cache only the half on and above the diagonal is read.
+"""
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.sparse import bsr_matrix, csr_matrix
+
+from jointwave.joints.formula import formula
+
+LANES = 16  # blocks whose freedoms lie side by side
+LEAST_BLOCKS = 12  # that share a matrix with profit
+SAME = 1e-12  # of the largest entry: by how much the matrices of equal blocks may differ
+CACHE = 8 << 20  # bytes of a matrix from which on memory decides
+
+ROWS, HALF, SHARED = "rows", "half", "shared"
+
+
+class Table(NamedTuple):
+    """A matrix as kernels take it: rows, or of `HALF` and `SHARED` their numbers, CSR.
+
+    start : int64 array [rows + 1]. column : uint32 array. value : float array.
+    """
+
+    start: np.ndarray
+    column: np.ndarray
+    value: np.ndarray
+
+
+class Product(NamedTuple):
+    """kind : ROWS, HALF or SHARED. table : as its formula takes it. place : int array [freedoms],
+    where each freedom of the body is in vectors of `size`; others there are padding."""
+
+    kind: str
+    table: Table
+    place: np.ndarray
+    size: int
+
+
+def table_of(matrix: csr_matrix, dim: int) -> Table:
+    """Return a matrix by rows of nodes."""
+    rows = bsr_matrix(matrix, blocksize=(dim, dim))
+    rows.sort_indices()
+    return Table(rows.indptr.astype(np.int64), rows.indices.astype(np.uint32), rows.data.ravel())
+
+
+def product_of(matrix: csr_matrix, dim: int, block: np.ndarray, x: np.ndarray) -> Product:
+    """Return the product with a matrix [freedoms, freedoms], whose place and size all vectors take.
+
+    block : int array [nodes], of each. x : float array [nodes, d], m.
+    """
+    shared = shared_by_blocks(matrix, dim, block, x)
+    if shared is not None:
+        return shared
+    place = np.arange(matrix.shape[0])
+    if matrix.nnz * 9 > CACHE:
+        half = bsr_matrix(matrix, blocksize=(dim, dim))
+        row = np.repeat(np.arange(len(half.indptr) - 1), np.diff(half.indptr))
+        upper = half.indices >= row
+        start = np.append(0, np.bincount(row[upper], minlength=len(half.indptr) - 1).cumsum())
+        table = Table(start, half.indices[upper].astype(np.uint32), half.data[upper].ravel())
+        return Product(HALF, table, place, place.size)
+    return Product(ROWS, table_of(matrix, dim), place, place.size)
+
+
+def shared_by_blocks(
+    matrix: csr_matrix, dim: int, block: np.ndarray, x: np.ndarray
+) -> Product | None:
+    """Return the product with a matrix that all blocks share; None where they differ."""
+    count, nodes = int(block.max(initial=-1)) + 1, np.bincount(block)
+    if count < LEAST_BLOCKS or nodes.min() != nodes.max():
+        return None
+    corner = np.full((count, x.shape[1]), np.inf)
+    np.minimum.at(corner, block, x)
+    grid = np.rint((x - corner[block]) / (1e-7 * np.ptp(x, axis=0).max())).astype(np.int64)
+    order = np.lexsort((*grid.T, block))
+    freedoms = (dim * order[:, None] + np.arange(dim)).ravel()
+    own = csr_matrix(matrix[freedoms][:, freedoms])
+    own.sum_duplicates()
+    m = dim * nodes[0]
+    if np.diff(own.indptr).reshape(count, m).ptp(axis=0).any():
+        return None
+    column = own.indices.reshape(count, -1) - m * np.arange(count)[:, None]
+    value = own.data.reshape(count, -1)
+    if column.ptp(axis=0).any() or np.ptp(value, axis=0).max() > SAME * np.abs(value).max():
+        return None
+    number, lane = np.divmod(np.arange(count), LANES)
+    place = np.empty(matrix.shape[0], dtype=np.int64)
+    places = (number[:, None] * m + np.arange(m)) * LANES + lane[:, None]
+    place[freedoms] = places.ravel()
+    table = Table(
+        own.indptr[: m + 1].astype(np.int64), column[0].astype(np.uint32), value[0].copy()
+    )
+    return Product(SHARED, table, place, (-(-count // LANES)) * m * LANES)
+
+
+@cache
+def product_for(kind: str, dim: int) -> Callable[..., None]:
+    """Return the formula (table, x, product) that sets the product of a matrix of this kind and a
+    vector, with its sign changed: a force."""
+    formulas: dict[str, Any] = {ROWS: rows_for, HALF: half_for, SHARED: shared_for}
+    return formulas[kind](dim)
+
+
+def rows_for(dim: int) -> Callable[..., None]:
+    """Return the formula of rows of nodes."""
+    of_node, plane, space = dim * dim, dim > 1, dim > 2
+
+    @formula
+    def rows(table, x, product):
+        column, value = table.column, table.value
+        for i in range(table.start.size - 1):
+            a, b, c = 0.0, 0.0, 0.0
+            for k in range(table.start[i], table.start[i + 1]):
+                j, p = dim * column[k], of_node * k
+                if space:
+                    u, v, w = x[j], x[j + 1], x[j + 2]
+                    a -= value[p] * u + value[p + 1] * v + value[p + 2] * w
+                    b -= value[p + 3] * u + value[p + 4] * v + value[p + 5] * w
+                    c -= value[p + 6] * u + value[p + 7] * v + value[p + 8] * w
+                elif plane:
+                    u, v = x[j], x[j + 1]
+                    a -= value[p] * u + value[p + 1] * v
+                    b -= value[p + 2] * u + value[p + 3] * v
+                else:
+                    a -= value[p] * x[j]
+            product[dim * i] = a
+            if plane:
+                product[dim * i + 1] = b
+            if space:
+                product[dim * i + 2] = c
+
+    return rows
+
+
+def half_for(dim: int) -> Callable[..., None]:
+    """Return the formula of the half on and above the diagonal, which begins each row."""
+    of_node, plane, space = dim * dim, dim > 1, dim > 2
+
+    @formula
+    def half(table, x, product):
+        column, value = table.column, table.value
+        for i in range(product.size):
+            product[i] = 0.0
+        for i in range(table.start.size - 1):
+            first, o = table.start[i], dim * i
+            a, b, c, y, z = 0.0, 0.0, 0.0, 0.0, 0.0
+            if plane:
+                y = x[o + 1]
+            if space:
+                z = x[o + 2]
+            for k in range(first, table.start[i + 1]):
+                j, p = dim * column[k], of_node * k
+                # Of the diagonal the rows alone count.
+                u, v, w = x[o] if k > first else 0.0, y, z
+                if k == first:
+                    v, w = 0.0, 0.0
+                if space:
+                    a -= value[p] * x[j] + value[p + 1] * x[j + 1] + value[p + 2] * x[j + 2]
+                    b -= value[p + 3] * x[j] + value[p + 4] * x[j + 1] + value[p + 5] * x[j + 2]
+                    c -= value[p + 6] * x[j] + value[p + 7] * x[j + 1] + value[p + 8] * x[j + 2]
+                    product[j] -= value[p] * u + value[p + 3] * v + value[p + 6] * w
+                    product[j + 1] -= value[p + 1] * u + value[p + 4] * v + value[p + 7] * w
+                    product[j + 2] -= value[p + 2] * u + value[p + 5] * v + value[p + 8] * w
+                elif plane:
+                    a -= value[p] * x[j] + value[p + 1] * x[j + 1]
+                    b -= value[p + 2] * x[j] + value[p + 3] * x[j + 1]
+                    product[j] -= value[p] * u + value[p + 2] * v
+                    product[j + 1] -= value[p + 1] * u + value[p + 3] * v
+                else:
+                    a -= value[p] * x[j]
+                    product[j] -= value[p] * u
+            product[o] += a
+            if plane:
+                product[o + 1] += b
+            if space:
+                product[o + 2] += c
+
+    return half
+
+
+def shared_for(dim: int) -> Callable[..., None]:
+    """Return the formula of the matrix that all blocks share."""
+
+    @formula
+    def shared(table, x, product):
+        start, column, value = table.start, table.column, table.value
+        own, m = np.empty(LANES), start.size - 1
+        for first in range(0, product.size, m * LANES):
+            tile = x[first : first + m * LANES]
+            for i in range(m):
+                for c in range(LANES):
+                    own[c] = 0.0
+                for k in range(start[i], start[i + 1]):
+                    a, lanes = value[k], tile[np.int64(column[k]) * LANES :]
+                    for c in range(LANES):
+                        own[c] -= a * lanes[c]
+                at = first + i * LANES
+                for c in range(LANES):
+                    product[at + c] = own[c]
+
+    return shared

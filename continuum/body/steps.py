@@ -1,0 +1,304 @@
+"""From a body and what acts on it to the constants, the state and the forces of its steps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from scipy.sparse import csr_matrix, diags
+
+from jointwave.continuum.body.critical import critical_step
+from jointwave.continuum.body.evaluation import blocks_of_nodes
+from jointwave.continuum.body.explicit import (
+    Constants,
+    Quiet,
+    Receivers,
+    Samples,
+    Sparse,
+    State,
+    StepFlags,
+    Work,
+    leapfrog_for,
+)
+from jointwave.continuum.body.model import Body
+from jointwave.continuum.body.product import ROWS, Product, Table, product_of, table_of
+from jointwave.continuum.body.tractions import Points, history_at_rest
+from jointwave.joints.law import Law, LawFlags, parts_of
+from jointwave.joints.law import table_of as law_table
+from jointwave.numerics.cache_lines import zeros
+from jointwave.results.rock_mass import TERMS
+
+BUFFER = 500_000  # numbers: forces with a history that are in memory at a time
+
+
+class Dashpots(NamedTuple):
+    """Nodes on dashpots: node, int array [k]; viscosity, float array [k, d, d], N s/m."""
+
+    node: np.ndarray
+    viscosity: np.ndarray
+
+
+class Held(NamedTuple):
+    """Freedoms whose motion is given: freedom, int array [k], moves by direction [k] times what
+    `moved` returns for steps [n], m from each to the next; None where none moves."""
+
+    freedom: np.ndarray
+    direction: np.ndarray
+    moved: Callable[[np.ndarray], np.ndarray] | None = None
+
+
+class Forces(Protocol):
+    """Forces that each have a history.
+
+    freedom : int array [k].
+    """
+
+    freedom: np.ndarray
+
+    def at(self, first: int, last: int) -> np.ndarray:
+        """Return the forces of steps first .. last - 1 [steps, k], N."""
+
+    def impulse(self, mass: np.ndarray, steps: int, stride: int) -> float:
+        """Return about the integral of |F| over so many steps in the norm of 1 / m, sqrt(J), by
+        one step in `stride`; mass : of all freedoms, kg."""
+
+
+class Readings(NamedTuple):
+    """How receivers read a body: motion [m d, freedoms]; stress [rows, freedoms], Pa, compression
+    positive, and what is at u = 0 [rows]; traction [joints d, points d] of forces, Pa/N, and what
+    is at u = 0 [joints d]; jump [joints d, points d]. lag : time constant of rock's dashpots, by
+    which the rate counts among strains, s."""
+
+    motion: csr_matrix
+    stress: csr_matrix
+    constant: np.ndarray
+    traction: csr_matrix
+    carried: np.ndarray
+    jump: csr_matrix
+    lag: float = 0.0
+
+
+class Problem(NamedTuple):
+    """A body and what acts on it.
+
+    law : of its joints, by columns; stiffest : the largest K_n and K_s of each column in reach,
+    Pa/m, a number or an array. stress : float array [d, d], Pa, compression positive, that rock
+    and joints bear at u = 0. alpha : of mass-proportional damping, 1/s. steady : float array
+    [freedoms], N. Absent parts are None.
+    """
+
+    body: Body
+    readings: Readings
+    law: Law | None = None
+    stiffest: Any = None
+    stress: np.ndarray | None = None
+    alpha: float = 0.0
+    steady: np.ndarray | None = None
+    quiet: Dashpots | None = None
+    forces: Forces | None = None
+    held: Held | None = None
+
+    @property
+    def parts(self) -> LawFlags | None:
+        """The parts of the joints' law; None without joints."""
+        if self.law is None or self.body.joints is None:
+            return None
+        return parts_of(self.law)._replace(planar=self.body.components == 2)
+
+    @property
+    def fixed(self) -> np.ndarray:
+        """Freedoms whose motion is given."""
+        return np.zeros(0, np.int64) if self.held is None else self.held.freedom
+
+    def of_joints(self, normal: Any, shear: Any) -> csr_matrix:
+        """Return B^T W k B of normal and shear values k of each column, or one of all."""
+        joints, dim = self.body.joints, self.body.components
+        assert joints is not None
+        values = np.zeros((len(joints.weight), dim))
+        for c, value in enumerate([normal, *(dim - 1) * [0.0 if shear is None else shear]]):
+            values[:, c] = joints.weight * (value[joints.column] if np.ndim(value) else value)
+        return csr_matrix(joints.matrix.T @ diags(values.ravel()) @ joints.matrix)
+
+    @property
+    def stiffness(self) -> csr_matrix:
+        """The stiffness of rock and joints, closed as far as is in reach, N/m."""
+        if self.law is None or self.body.joints is None:
+            return self.body.stiffness
+        return csr_matrix(self.body.stiffness + self.of_joints(*self.stiffest))
+
+    @property
+    def viscosity(self) -> csr_matrix | None:
+        """The viscosity of rock and joints, N s/m; None without dashpots."""
+        law, found = self.law, self.body.damping
+        if law is not None and law.normal_viscosity is not None and self.body.joints is not None:
+            joints = self.of_joints(law.normal_viscosity, law.shear_viscosity)
+            found = joints if found is None else csr_matrix(found + joints)
+        return found
+
+    def critical_step(self) -> float:
+        """Return the critical step of leapfrog, s."""
+        assert self.body.mass is not None
+        return critical_step(self.body.mass, self.stiffness, self.viscosity, self.fixed)
+
+    def points(self) -> Points:
+        """Return the points of the joints as kernels take them."""
+        joints = self.body.joints
+        if self.law is None or joints is None:
+            none = np.zeros(0)
+            return Points(none, none.astype(np.int64), np.zeros((0, 0)), none)
+        table = law_table(self.law)
+        column = joints.column if table.shape[1] > 1 else np.zeros(len(joints.weight), np.int64)
+        carried = self.carried()
+        return Points(
+            joints.weight,
+            column.astype(np.int64),
+            table,
+            np.zeros(0) if carried is None else carried,
+        )
+
+    def carried(self) -> np.ndarray | None:
+        """Return the tractions that points carry at u = 0 [points * d], Pa; None without."""
+        if self.stress is None or self.body.joints is None:
+            return None
+        frame = self.body.joints.frame
+        return np.einsum("qac,cd,qd->qa", frame, self.stress, frame[:, 0]).ravel()
+
+
+def sparse(matrix: csr_matrix, place: np.ndarray | None = None) -> Sparse:
+    """Return a matrix as kernels take it, with columns where `place` has them."""
+    column = matrix.indices if place is None else place[matrix.indices]
+    return Sparse(matrix.indptr.astype(np.int64), column.astype(np.int64), matrix.data)
+
+
+class Leapfrog:
+    """Explicit steps of a problem.
+
+    Attributes
+    ----------
+    state : `explicit.State`, in the places of `product`. samples : what is recorded. dt : s.
+    """
+
+    def __init__(self, problem: Problem, dt: float, samples: int, energy: bool = True) -> None:
+        self.problem, self.dt, body = problem, dt, problem.body
+        self.product = product_for_steps(body)
+        self.samples = samples_for(problem.readings, samples, energy)
+        self.constants = self._constants()
+        parts, damped = problem.parts, body.damping is not None
+        stressed = self.constants.points.carried.size > 0
+        self.flags = StepFlags(body.components, self.product.kind, parts, stressed, damped, energy)
+        n, jumps = self.product.size, self.constants.jumps.start.size - 1
+        dashpots, limited = (parts.dashpots, parts.limited) if parts else (False, False)
+        viscous = n if damped or dashpots else 0
+        sizes = n, viscous, viscous, jumps, jumps * limited, jumps * dashpots, jumps
+        vectors = [zeros(size) for size in (*sizes, jumps * dashpots)]
+        braking = np.zeros(self.constants.quiet.freedom.shape)
+        self.work = Work(*vectors, braking)  # type: ignore[call-arg]
+        history = np.zeros((0, 0))
+        if parts is not None:
+            history = history_at_rest(self.constants.points, parts, body.components)
+        self.state = State(zeros(n), zeros(n), zeros(n), history, np.zeros(4))
+
+    def take(self, first: int, last: int, stride: int) -> None:
+        """Take the steps first .. last - 1, with a sample at each that `stride` divides."""
+        kernel, (forces, held) = leapfrog_for(self.flags), self.problem[-2:]
+        size = max(1, BUFFER // max(1, self.constants.driven.size))
+        for begin in range(first, max(last, first + 1), size):
+            end = min(begin + size, last)
+            drive, moved = np.zeros((end - begin, 0)), np.zeros(end - begin)
+            if forces is not None:
+                drive = np.ascontiguousarray(forces.at(begin, end))
+            if held is not None and held.moved is not None:
+                moved = np.ascontiguousarray(held.moved(np.arange(begin, end)))
+            span = begin, end, stride
+            kernel(self.constants, self.state, self.work, self.samples, drive, moved, span)
+
+    @property
+    def u(self) -> np.ndarray:
+        """Displacement of the body's freedoms, m."""
+        return self.state.u[self.product.place]
+
+    @property
+    def v(self) -> np.ndarray:
+        """Velocity of the body's freedoms half a step before, m/s."""
+        return self.state.v[self.product.place]
+
+    def start(self, u: np.ndarray, v: np.ndarray | None = None) -> None:
+        """Set displacements (m) and velocities (m/s, half a step before) of all freedoms."""
+        self.state.u[self.product.place] = u
+        if v is not None:
+            self.state.v[self.product.place] = self.state.v_before[self.product.place] = v
+
+    def _constants(self) -> Constants:
+        problem, place, dt = self.problem, self.product.place, self.dt
+        body, held, forces = problem.body, problem.held, problem.forces
+        assert body.mass is not None
+        braked = 1 + problem.alpha * dt / 2
+        inverse = self._placed(dt / (body.mass * braked))
+        none, nothing = np.zeros(0, np.int64), csr_matrix((0, body.mass.size))
+        damping = Table(none, none.astype(np.uint32), np.zeros(0))
+        if body.damping is not None:
+            damping = table_of(body.damping, body.components)
+        return Constants(
+            dt=dt,
+            mass=self._placed(body.mass),
+            inverse=inverse,
+            keep=(1 - problem.alpha * dt / 2) / braked,
+            alpha=problem.alpha,
+            stiffness=self.product.table,
+            damping=damping,
+            jumps=sparse(nothing if body.joints is None else body.joints.matrix, place),
+            points=problem.points(),
+            steady=np.zeros(0) if problem.steady is None else self._placed(problem.steady),
+            driven=none if forces is None else place[forces.freedom],
+            quiet=self._quiet(inverse),
+            fixed=place[problem.fixed],
+            direction=np.zeros(0) if held is None else held.direction,
+            receivers=receivers(problem.readings, place),
+        )
+
+    def _placed(self, values: np.ndarray) -> np.ndarray:
+        found = zeros(self.product.size)
+        found[self.product.place] = values
+        return found
+
+    def _quiet(self, inverse: np.ndarray) -> Quiet:
+        dim = self.problem.body.components
+        node, viscosity = self.problem.quiet or (np.zeros(0, np.int64), np.zeros((0, dim, dim)))
+        own = dim * node[:, None] + np.arange(dim)
+        moves = ~np.isin(own, self.problem.fixed)
+        viscosity = viscosity * (moves[:, :, None] & moves[:, None, :])
+        freedom = self.product.place[own]
+        beta = inverse[freedom][:, :, None] * viscosity / 2
+        return Quiet(freedom, viscosity, beta, np.linalg.inv(np.eye(dim) + beta))
+
+
+def product_for_steps(body: Body) -> Product:
+    """Return the product with the stiffness; by rows where a damping is multiplied, too."""
+    if body.damping is None:
+        return product_of(body.stiffness, body.components, blocks_of_nodes(body), body.x)
+    n = body.stiffness.shape[0]
+    return Product(ROWS, table_of(body.stiffness, body.components), np.arange(n), n)
+
+
+def receivers(readings: Readings, place: np.ndarray) -> Receivers:
+    """Return readings as kernels take them."""
+    return Receivers(
+        motion=sparse(readings.motion, place),
+        stress=sparse(readings.stress, place),
+        lag=readings.lag,
+        traction=sparse(readings.traction),
+        jump=sparse(readings.jump),
+        constant=readings.constant,
+        carried=readings.carried,
+    )
+
+
+def samples_for(readings: Readings, samples: int, energy: bool) -> Samples:
+    """Return empty samples."""
+    motion, stress, jump = (
+        one.shape[0] for one in (readings.motion, readings.stress, readings.jump)
+    )
+    terms = (len(TERMS), samples if energy else 0)
+    shapes = (motion, samples), (motion, samples), (stress, samples), (jump, samples)
+    return Samples(*map(np.zeros, (*shapes, (jump, samples), terms)))

@@ -1,0 +1,187 @@
+"""The joint law at all points of a body: forces, tangents, energies.
+
+Vectors of points are [points * d], the d components of each in its frame, normal first. With the
+jump operator B and the areas W of the points the force on the freedoms is B^T W t, where t is the
+traction on the side that the normal points to, compression positive.
+"""
+
+from collections.abc import Callable
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from jointwave.joints.formula import formula
+from jointwave.joints.law import History, LawFlags, law_of, traction
+from jointwave.joints.normal import gap_under
+from jointwave.joints.tangent import tangent
+from jointwave.numerics.jit import jitted
+
+#: Rows of the history of points [rows, points]: of `joints.law.History`, what has slid in two.
+OPENING, SLIDE, COHESION, PATH = 0, 1, 3, 4
+ROWS = 5
+
+
+class Points(NamedTuple):
+    """The points of joints, as kernels take them.
+
+    weight : float array [points], m^(d-1). column : int array [points], of the law's table.
+    table : `joints.law.table_of`. carried : float array [points * d], tractions (Pa) that points
+    and the rock between them carry at u = 0; [0] without a prestress.
+    """
+
+    weight: np.ndarray
+    column: np.ndarray
+    table: np.ndarray
+    carried: np.ndarray
+
+
+@formula
+def components(dim, values, q):
+    """Return the components (n, x, z) of a vector at a point, 0 for those that are absent."""
+    n, x, z = values[dim * q], 0.0, 0.0
+    if dim > 1:
+        x = values[dim * q + 1]
+    if dim > 2:
+        z = values[dim * q + 2]
+    return n, x, z
+
+
+@formula
+def put(dim, values, q, n, x, z):
+    """Set the components of a vector at a point."""
+    values[dim * q] = n
+    if dim > 1:
+        values[dim * q + 1] = x
+    if dim > 2:
+        values[dim * q + 2] = z
+
+
+@formula
+def history_at(before, q):
+    """Return the `History` of a point."""
+    return History(
+        before[OPENING, q], before[SLIDE, q], before[SLIDE + 1, q], before[COHESION, q],
+        before[PATH, q],
+    )  # fmt: skip
+
+
+@cache
+def tractions_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
+    """Return the formula of the forces of joints of a law with these parts in d dimensions;
+    stressed : whether they carry anything at u = 0."""
+    dashpots, limited, remembers = parts.dashpots, parts.limited, has_history(parts)
+
+    @formula
+    def tractions(points, dt, jump, moved, rate, before, after, force, drag):
+        """Set the forces W t (N) of all points less what they carry at u = 0, those of dashpots
+        apart, and the history; return friction's work in this step, and what springs store and
+        opening has spent (J).
+
+        jump, m; moved : its increments over the step, m, where joints slip; rate : of the jump,
+        m/s, where they have dashpots. before, after : histories, which may be one.
+        """
+        slid, stored, spent = 0.0, 0.0, 0.0
+        history, step, now = History(0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        for q in range(points.weight.size):
+            law, w = law_of(points.table, points.column[q]), points.weight[q]
+            n, x, z = components(dim, jump, q)
+            p_n, p_x, p_z = 0.0, 0.0, 0.0
+            if stressed:
+                p_n, p_x, p_z = components(dim, points.carried, q)
+                stored += w * (p_n * n + p_x * x + p_z * z)
+                n += gap_under(law, parts, p_n)
+                if not limited and dim > 1:
+                    x -= p_x / law.shear_stiffness
+                    z -= p_z / law.shear_stiffness
+            if limited:
+                step = components(dim, moved, q)
+            if dashpots:
+                now = components(dim, rate, q)
+            if remembers:
+                history = history_at(before, q)
+            found = traction(law, parts, (n, x, z), step, now, dt, history)
+            if remembers:
+                after[OPENING, q] = found.history.opening
+                after[SLIDE, q] = found.history.slide_x
+                after[SLIDE + 1, q] = found.history.slide_z
+                after[COHESION, q] = found.history.cohesion
+                after[PATH, q] = found.history.path
+            n, x, z = found.n - p_n, found.x - p_x, found.z - p_z
+            if dashpots:
+                n, x, z = n - found.drag_n, x - found.drag_x, z - found.drag_z
+                put(dim, drag, q, w * found.drag_n, w * found.drag_x, w * found.drag_z)
+            put(dim, force, q, w * n, w * x, w * z)
+            slid += w * found.slid
+            stored += w * found.stored
+            spent += w * found.spent
+        return slid, stored, spent
+
+    return tractions
+
+
+def has_history(parts: LawFlags) -> bool:
+    """Return whether points of a law with these parts remember anything."""
+    return parts.softening or parts.limited or parts.residual or parts.path
+
+
+def history_at_rest(points: Points, parts: LawFlags, dim: int) -> np.ndarray:
+    """Return the history of all points at the start, [rows, points]; [rows, 0] where there is
+    none."""
+    count = points.weight.size if has_history(parts) else 0
+    history = np.zeros((ROWS, count))
+    law = law_of(points.table, points.column[:count])
+    if parts.residual and parts.shear:
+        history[COHESION] = law.cohesion
+    if parts.limited and points.carried.size:
+        slide = points.carried.reshape(-1, dim).T[1:] / law.shear_stiffness
+        history[SLIDE : SLIDE + dim - 1] = slide
+    return history
+
+
+@cache
+def forces_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
+    """Return the kernel of the forces of joints in a trial of an implicit step."""
+    tractions = tractions_for(parts, dim, stressed)
+
+    @jitted
+    def forces(points, dt, jump, moved, rate, before, after, force, drag):
+        return tractions(points, dt, jump, moved, rate, before, after, force, drag)
+
+    return forces
+
+
+@cache
+def tangents_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
+    """Return the kernel of the tangents of joints of a law with these parts."""
+    dashpots, limited, remembers = parts.dashpots, parts.limited, has_history(parts)
+
+    @jitted
+    def tangents(points, dt, r, jump, rate, before, stiffness):
+        """Set how each point resists displacement [points, d, d], N/m: minus the derivatives of
+        its forces with its jump. r : rate factor, 1/s (`joints.tangent`)."""
+        history, now = History(0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        for q in range(points.weight.size):
+            law, w = law_of(points.table, points.column[q]), points.weight[q]
+            n, x, z = components(dim, jump, q)
+            if stressed:
+                p_n, p_x, p_z = components(dim, points.carried, q)
+                n += gap_under(law, parts, p_n)
+                if not limited and dim > 1:
+                    x -= p_x / law.shear_stiffness
+                    z -= p_z / law.shear_stiffness
+            if dashpots:
+                now = components(dim, rate, q)
+            if remembers:
+                history = history_at(before, q)
+            found = tangent(law, parts, (n, x, z), now, dt, history, r)
+            stiffness[q, 0, 0] = -w * found.nn
+            if dim > 1:
+                stiffness[q, 0, 1], stiffness[q, 1, 0] = -w * found.nx, -w * found.xn
+                stiffness[q, 1, 1] = -w * found.xx
+            if dim > 2:
+                stiffness[q, 0, 2], stiffness[q, 2, 0] = -w * found.nz, -w * found.zn
+                stiffness[q, 1, 2] = stiffness[q, 2, 1] = -w * found.xz
+                stiffness[q, 2, 2] = -w * found.zz
+
+    return tangents
