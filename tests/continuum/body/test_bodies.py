@@ -83,6 +83,23 @@ def test_bricks_may_face_others_across_periodic_sides(made):
     assert np.abs(body.joints.matrix @ np.tile([0.3, -0.2], len(body.x))).max() < 1e-15
 
 
+def test_blocks_that_are_alike_have_the_same_mesh(made):
+    """Whole bricks within a wall: cells at the same places of each, to round-off."""
+    beds = {"name": "beds", "dip": 0.0, "spacing": 0.5}
+    heads = {"dip": 90.0, "spacing": 1.0, "ends_at": ["beds"], "offset": 0.5}
+    found = made(beds, heads, continuum={"size": 0.3})
+    body, blocks = found.body, found.blocks
+    middles = body.x[cell_nodes(body.space)].mean(axis=1) - blocks.centroid[body.block]
+    edge = np.zeros(blocks.count, bool)
+    edge[blocks.boundary.blocks[:, 0]] = True
+    inner = np.flatnonzero(~edge)
+    first, *others = (middles[body.block == k] for k in inner)
+    assert len(others) > 20 and len(first) > 10
+    for one in others:
+        away = np.linalg.norm(first[:, None] - one, axis=2).min(axis=1)
+        assert len(one) == len(first) and away.max() < 1e-12
+
+
 def test_the_equivalent_rock_has_no_joints_of_a_spacing(made):
     one, other = {"dip": 20.0, "spacing": 1.5}, {"dip": 70.0, "through": [3.0, 2.0]}
     found = made(one, other, model="equivalent")
