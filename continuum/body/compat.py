@@ -1,38 +1,17 @@
 """What differs between dolfinx 0.5 and 0.11, told apart by what they offer."""
 
 import inspect
-import logging
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 import basix
 import numpy as np
+import ufl
 from scipy.sparse import csr_matrix
 
-from jointwave.continuum.parallel import petsc as _  # noqa: F401  before dolfinx starts it in its own way
+from jointwave.continuum.body.compiling import compiled
+from jointwave.continuum.body.fenicsx import MPI, dolfinx
 
-
-@contextmanager
-def quiet_logging() -> Iterator[None]:
-    """Restore the root logger changed by the form compiler, and hide its progress messages."""
-    root, disabled = logging.getLogger(), logging.root.manager.disable
-    handlers, level = list(root.handlers), root.level
-    logging.disable(max(disabled, logging.INFO))
-    try:
-        yield
-    finally:
-        root.handlers[:] = handlers
-        root.setLevel(level)
-        logging.disable(disabled)
-
-
-with quiet_logging():
-    import dolfinx.fem.petsc
-    import ufl
-    from dolfinx import fem, mesh
-    from mpi4py import MPI
-
+fem, mesh = dolfinx.fem, dolfinx.mesh
 NEW = hasattr(basix, "ufl")  #: whether elements of basix are UFL's
 if not NEW:
     import basix.ufl_wrapper
@@ -50,10 +29,8 @@ def make_mesh(kind: str, x: np.ndarray, cells: np.ndarray, comm: Any = None) -> 
         cell = ufl.Cell(kind, geometric_dimension=dim)
         element = ufl.VectorElement("Lagrange", cell, 1, variant="equispaced")
     name = "e" if "e" in inspect.signature(mesh.create_mesh).parameters else "domain"
-    with quiet_logging():
-        return mesh.create_mesh(
-            comm or MPI.COMM_SELF, cells=cells, x=x, **{name: ufl.Mesh(element)}
-        )
+    given = {"cells": cells, "x": x, name: ufl.Mesh(element)}
+    return compiled(lambda: mesh.create_mesh(comm or MPI.COMM_SELF, **given))
 
 
 def input_cells(domain: Any) -> np.ndarray:
@@ -71,12 +48,12 @@ def lagrange(domain: Any, order: int, components: int) -> Any:
 
 def vector_space(domain: Any, element: Any, components: int) -> Any:
     """Return the space of vectors with one of basix's elements, of scalars, for each component."""
-    with quiet_logging():
-        if NEW:
-            whole = basix.ufl.blocked_element(basix.ufl.wrap_element(element), shape=(components,))
-            return fem.functionspace(domain, whole)
-        scalar = basix.ufl_wrapper.BasixElement(element)
-        return fem.FunctionSpace(domain, basix.ufl_wrapper.VectorElement(scalar, components))
+    if NEW:
+        whole = basix.ufl.blocked_element(basix.ufl.wrap_element(element), shape=(components,))
+        return compiled(lambda: fem.functionspace(domain, whole))
+    scalar = basix.ufl_wrapper.BasixElement(element)
+    vector = basix.ufl_wrapper.VectorElement(scalar, components)
+    return compiled(lambda: fem.FunctionSpace(domain, vector))
 
 
 def custom_element(kind: str, span: np.ndarray, points: list, complete: int, degree: int) -> Any:
@@ -103,10 +80,9 @@ def cell_constants(domain: Any, values: np.ndarray) -> Any:
 
 
 def _space(domain: Any, family: str, order: int, size: int) -> Any:
-    with quiet_logging():
-        if hasattr(fem, "functionspace"):
-            return fem.functionspace(domain, (family, order, (size,)))
-        return fem.VectorFunctionSpace(domain, (family, order), dim=size)
+    if hasattr(fem, "functionspace"):
+        return compiled(lambda: fem.functionspace(domain, (family, order, (size,))))
+    return compiled(lambda: fem.VectorFunctionSpace(domain, (family, order), dim=size))
 
 
 def cell_nodes(space: Any) -> np.ndarray:
@@ -118,17 +94,13 @@ def cell_nodes(space: Any) -> np.ndarray:
 
 def matrix(form: ufl.Form) -> csr_matrix:
     """Assemble a bilinear form."""
-    found = dolfinx.fem.petsc.assemble_matrix(_compiled(form))
+    made = compiled(lambda: fem.form(form, dtype=np.float64))
+    found = dolfinx.fem.petsc.assemble_matrix(made)
     found.assemble()
     start, column, value = (np.array(one) for one in found.getValuesCSR())
     found.destroy()
     size = len(start) - 1
     return csr_matrix((np.real(value), column, start), shape=(size, size))
-
-
-def _compiled(form: ufl.Form) -> Any:
-    with quiet_logging():
-        return fem.form(form, dtype=np.float64)
 
 
 def quadrature(kind: str, degree: int) -> tuple[np.ndarray, np.ndarray]:

@@ -56,9 +56,12 @@ def body_of(
 
     Raises SceneError where the scene cannot be cut or meshed as it asks for.
     """
-    if isinstance(scene, Scene):
-        return _pillar(scene, model, rock, implicit)
-    return _rock_mass(scene, model, rock, implicit)
+    try:
+        if isinstance(scene, Scene):
+            return _pillar(scene, model, rock, implicit)
+        return _rock_mass(scene, model, rock, implicit)
+    except ImportError as error:  # gmsh, or a compiler
+        raise SceneError(scene.where, "numerics.continuum", None, str(error)) from None
 
 
 def _rock_mass(scene: RockMass, model: str, rock: Rock | None, implicit: bool) -> SceneBody:
@@ -102,15 +105,7 @@ def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) ->
     if not np.isfinite(size) and are_simplices(body):
         return own_cells(body)
     alike = [(matching_facets(body, one), one.shift) for one in across]
-    return _by_gmsh(scene, body, size, alike)
-
-
-def _by_gmsh(scene: AnyScene, body: Complex, size: float, alike: list) -> Conforming:
-    try:
-        return simplex_mesh(body, size, alike)
-    except ImportError as error:
-        key, allowed = "numerics.continuum.cell", f"needs gmsh for simplices ({error})"
-        raise SceneError(scene.where, key, scene.numerics.continuum.cell, allowed) from None
+    return simplex_mesh(body, size, alike)
 
 
 def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> SceneBody:
@@ -127,7 +122,7 @@ def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> Scen
     size = float((blocks.volume ** (1 / dim) / many).min())
     refuse_large_mesh(scene, blocks, size, components)
     if numerics.cell == "simplex" and dim == 3:
-        mesh = _by_gmsh(scene, blocks.body, scene.pillar.side / numerics.elements_across, [])
+        mesh = simplex_mesh(blocks.body, scene.pillar.side / numerics.elements_across)
     else:
         corners = box_corners(blocks.body)
         assert corners is not None
