@@ -13,7 +13,8 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.body.loads import loads_of, released, weight_of
 from jointwave.continuum.body.receivers import readings_of
 from jointwave.continuum.body.scene import SceneBody
-from jointwave.continuum.body.sides import held_sides, quiet_sides
+from jointwave.continuum.body.sides import bearing_sides, held_sides, quiet_sides
+from jointwave.continuum.body.static import Rest, elastic_rest, holding, settled
 from jointwave.continuum.body.steps import Problem
 from jointwave.joints.law import Law, law, stiffest
 
@@ -41,37 +42,54 @@ def law_of(found: SceneBody) -> Law | None:
     return own if own.maximum_closure is None else own._replace(rock_compliance=0.0)
 
 
-def problem_of(
-    scene: RockMass,
-    found: SceneBody,
-    time: Clock | None = None,
-    incident: IncidentField | None = None,
-) -> Problem:
-    """Return what acts on the body of a rock mass; time : of its steps, without which no force or
-    motion has a history. incident : of the waves, in intact rock where absent."""
+def problem_of(scene: RockMass, found: SceneBody) -> Problem:
+    """Return the body of a rock mass and what acts on it all the time."""
     body, own = found.body, law_of(found)
     stress = None if scene.prestress is None else scene.prestress.tensor
     region = found.blocks.body.region[body.block]
-    moduli = np.array([one.stiffness for one in found.materials])[region]
-    dim = body.components
-    readings = readings_of(
-        body,
-        moduli,
-        np.array(scene.record.points, dtype=float).reshape(-1, dim),
-        np.array(scene.record.joints, dtype=float).reshape(-1, dim),
-        stress,
-        found.materials[-1].time_constant,
+    moduli, dim = np.array([one.stiffness for one in found.materials])[region], body.components
+    points, joints = (
+        np.array(places, dtype=float).reshape(-1, dim)
+        for places in (scene.record.points, scene.record.joints)
     )
+    lag = found.materials[-1].time_constant
     steady = [one for one in (weight_of(scene, body), released(scene, body)) if one is not None]
     return Problem(
         body,
-        readings,
+        readings_of(body, moduli, points, joints, stress, lag),
         law=own,
         stiffest=None if own is None else stiffest(own, scene),
         stress=stress,
         alpha=scene.damping.alpha or 0.0,
         steady=np.sum(steady, axis=0) if steady else None,
         quiet=quiet_sides(scene, body),
-        forces=None if time is None else loads_of(scene, body, time.dt, incident),
-        held=held_sides(scene, body, time),
+        held=held_sides(scene, body),
     )
+
+
+def in_time(
+    scene: RockMass, problem: Problem, time: Clock, incident: IncidentField | None
+) -> Problem:
+    """Return a problem with forces and motion that have a history, for the steps of a clock;
+    incident : of the waves, in intact rock where absent."""
+    forces = loads_of(scene, problem.body, time.dt, incident)
+    return problem._replace(forces=forces, held=held_sides(scene, problem.body, time))
+
+
+def at_rest(scene: RockMass, problem: Problem) -> tuple[Problem, Rest | None]:
+    """Return a problem on sides that bear its weight, and the state at rest under gravity and
+    around what is excavated; None where it starts unstrained."""
+    gravity, body = scene.gravity, problem.body
+    static, weight = gravity is not None and gravity.static, weight_of(scene, body)
+    if weight is None and not scene.excavated:
+        return problem, None
+    hold = holding(problem, bearing_sides(scene, body))
+    before, rest = problem, None
+    if weight is not None and not static:  # it acts later
+        before = problem._replace(steady=problem.steady - weight)
+    if static or scene.excavated:
+        rest = settled(scene, before, hold if static else None)
+    if weight is not None and hold is not None:
+        held = rest.u if static and rest is not None else elastic_rest(before, weight, hold)
+        problem = problem._replace(steady=problem.steady - hold @ held)
+    return problem, rest

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from time import perf_counter
+from typing import Any
 
 import dolfinx
 import numba
@@ -14,19 +15,21 @@ import xarray as xr
 from jointwave.cases.errors import StoppedError
 from jointwave.cases.incident import IncidentField
 from jointwave.cases.material.prestress import refuse_beyond_strength
-from jointwave.cases.sampling import Clock, clock
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.body.bounds import highest_speed
 from jointwave.continuum.body.explicit import Samples
-from jointwave.continuum.body.problem import problem_of
+from jointwave.continuum.body.implicit import Implicit
+from jointwave.continuum.body.problem import at_rest, in_time, problem_of
 from jointwave.continuum.body.rock import Rock
 from jointwave.continuum.body.scene import body_of
+from jointwave.continuum.body.scheme import Choice, choose
+from jointwave.continuum.body.static import Rest
 from jointwave.continuum.body.steps import Leapfrog, Problem
 from jointwave.numerics.divergence import ENERGY, Guard, audit, guard, look
 from jointwave.numerics.instability import Divergence, stopped
 from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
 from jointwave.results.arrays import size_of
-from jointwave.results.rock_mass import rock_mass_dataset
+from jointwave.results.rock_mass import TERMS, rock_mass_dataset
 
 FREEDOM_STEPS_AT_ONCE = 10_000_000  # some 0.1 s: often enough for a progress bar
 LEAST_CHUNKS = 20  # however short the run
@@ -57,16 +60,22 @@ def simulate(
     """
     began = perf_counter()
     refuse_beyond_strength(scene)
-    found = body_of(scene, model, rock)
-    still, numerics = problem_of(scene, found), scene.numerics.continuum
-    critical = still.critical_step()
-    time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "continuum")
-    problem = problem_of(scene, found, time, incident)
-    steps = Leapfrog(problem, time.dt, time.samples, scene.record.energy)
+    numerics = scene.numerics.continuum
+    found = body_of(scene, model, rock, numerics.scheme == "implicit")
+    still = problem_of(scene, found)
+    critical = still.critical_step() if still.body.mass is not None else 0.0
+    choice = choose(scene, still, critical)
+    time = choice.time
+    problem, rest = at_rest(scene, in_time(scene, still, time, incident))
+    steps = stepper(scene, problem, choice, rest)
+    start, about = None, dict[str, Any]()
+    if rest is not None:
+        start = rest.u
+        about = {"static_steps": rest.steps, "static_out_of_balance": rest.ratio}
+    monitor = guard(highest_speed(scene, found, problem, time, start))
     built = perf_counter()
     steps.take(0, 0, time.stride)
     compiled = perf_counter()
-    monitor = guard(highest_speed(scene, found, problem, time))
 
     def result(count: int) -> xr.Dataset:
         return rock_mass_dataset(
@@ -74,15 +83,18 @@ def simulate(
             f"continuum-{model}",
             time.times[:count],
             quantities(problem, steps.samples, count),
-            steps.samples.energy[:, :count] if scene.record.energy else None,
+            ledger(scene, steps.samples, count),
             model=model,
-            scheme="explicit",
+            scheme=choice.scheme,
+            scheme_reason=choice.reason,
+            dim=problem.body.components,
             dt=time.dt,
             critical_dt=critical,
             steps=time.steps,
             order=numerics.order,
             degrees_of_freedom=len(problem.body.stiffness.indptr) - 1,
-            bytes=size_of(steps.constants, steps.state, steps.work),
+            bytes=size_of(*steps.parts),
+            **about,
             seconds_setup=built - began,
             seconds_compile=compiled - built,
             seconds_stepping=perf_counter() - compiled,
@@ -91,11 +103,11 @@ def simulate(
 
     def march(first: int, last: int) -> None:
         steps.take(first * time.stride, last * time.stride, time.stride)
-        check(scene, steps, monitor, time, critical, first, last)
+        check(scene, steps, monitor, choice, critical, first, last)
 
     chunk = FREEDOM_STEPS_AT_ONCE // (problem.body.stiffness.shape[0] * time.stride)
     chunk = min(chunk, time.samples // LEAST_CHUNKS)
-    parts = steps.state, steps.samples, monitor
+    parts = steps.parts, steps.samples, monitor
     try:
         run_in_chunks(time.samples, chunk, march, parts, progress, None, keeper)
     except StoppedError as error:
@@ -104,17 +116,34 @@ def simulate(
     return result(time.samples)
 
 
+def stepper(
+    scene: RockMass, problem: Problem, choice: Choice, rest: Rest | None
+) -> Leapfrog | Implicit:
+    """Return the steps of a run, from a state at rest if there is one."""
+    time, energy = choice.time, scene.record.energy
+    steps: Leapfrog | Implicit
+    if choice.scheme == "explicit":
+        steps = Leapfrog(problem, time.dt, time.samples, energy)
+    else:
+        rho = scene.numerics.continuum.spectral_radius
+        steps = Implicit(problem, time.dt, time.samples, rho, energy)
+    if rest is not None:
+        steps.start(rest.u, rest.history)
+    return steps
+
+
 def check(
     scene: RockMass,
-    steps: Leapfrog,
+    steps: Leapfrog | Implicit,
     monitor: Guard,
-    time: Clock,
+    choice: Choice,
     critical: float,
     first: int,
     last: int,
 ) -> None:
     """Raise StoppedError where a run leaves its bounds in samples first .. last - 1."""
-    if scene.record.energy:
+    explicit, time = choice.scheme == "explicit", choice.time
+    if scene.record.energy and explicit:  # the ledger of implicit steps is not exact
         audit(monitor, steps.samples.energy, first, last, time.stride)
     speed = np.abs(steps.v).reshape(-1, steps.problem.body.components).max(axis=1)
     look(monitor, speed.max(initial=0.0), last * time.stride)
@@ -123,9 +152,22 @@ def check(
         return
     fastest = int(np.nan_to_num(speed, nan=np.inf).argmax())
     place = tuple(steps.problem.body.x[fastest].tolist())
-    key = "numerics.continuum.step_fraction"
+    key = f"numerics.continuum.{'step_fraction' if explicit else 'steps_per_period'}"
     seen = Divergence("the continuum", key, step, sound, what == ENERGY, place)
-    raise stopped(scene, time, critical, seen)
+    raise stopped(scene, time, critical if explicit else np.inf, seen)
+
+
+def ledger(scene: RockMass, samples: Samples, count: int) -> np.ndarray | None:
+    """Return the energies of the first samples; None where they are not recorded. What prestressed
+    rock gives off where walls of openings give way counts with what it stores."""
+    if not samples.energy.size:
+        return None
+    found = samples.energy[:, :count].copy()
+    if scene.excavated and scene.gravity is None:
+        elastic, steady = TERMS.index("elastic"), TERMS.index("gravity")
+        found[elastic] += found[steady]
+        found[steady] = 0.0
+    return found
 
 
 def quantities(problem: Problem, samples: Samples, count: int) -> dict[str, np.ndarray]:

@@ -223,11 +223,20 @@ class Leapfrog:
         """Velocity of the body's freedoms half a step before, m/s."""
         return self.state.v[self.product.place]
 
-    def start(self, u: np.ndarray, v: np.ndarray | None = None) -> None:
-        """Set displacements (m) and velocities (m/s, half a step before) of all freedoms."""
+    @property
+    def parts(self) -> tuple:
+        """All arrays that change."""
+        return (self.state,)
+
+    def start(self, u: np.ndarray, history: np.ndarray | None = None) -> None:
+        """Begin at rest at displacements u (m), with a history of points."""
         self.state.u[self.product.place] = u
-        if v is not None:
-            self.state.v[self.product.place] = self.state.v_before[self.product.place] = v
+        if history is not None:
+            self.state.history[:] = history
+
+    def throw(self, v: np.ndarray) -> None:
+        """Begin with velocities half a step before the first, m/s."""
+        self.state.v[self.product.place] = self.state.v_before[self.product.place] = v
 
     def _constants(self) -> Constants:
         problem, place, dt = self.problem, self.product.place, self.dt

@@ -2,11 +2,16 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
-from jointwave.cases.read import load
+from jointwave.cases.incident import free_field
+from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.read import load, load_tables
 from jointwave.continuum.body import product
 from jointwave.continuum.body.evaluation import blocks_of_nodes
+from jointwave.continuum.body.implicit import Implicit
 from jointwave.continuum.body.run import simulate
+from jointwave.continuum.body.static import settled
 from jointwave.continuum.body.steps import Dashpots, Held, Leapfrog, Problem
 from jointwave.continuum.simulate import simulate as by_tabulated_elements
 from jointwave.joints.law import law
@@ -43,7 +48,7 @@ def test_without_dashpots_energy_stays(dim):
     steps = Leapfrog(own, 0.5 * own.critical_step(), 101)
     pulse = np.exp(-4 * (body.x[:, -1] - 2.0) ** 2)
     pulse[below] = 0.0
-    steps.start(np.zeros(body.mass.size), np.repeat(pulse, dim))
+    steps.throw(np.repeat(pulse, dim))
     steps.take(0, 1001, 10)
     kinetic, elastic = steps.samples.energy[:2]
     assert elastic.max() > 0.1 * kinetic[0]
@@ -171,3 +176,96 @@ def test_a_rock_mass_moves_as_by_tabulated_elements():
     for name in ("velocity", "traction", "gap", "slip"):
         one, other = found[name].values, known[name].values
         assert np.linalg.norm(one - other) < 1e-7 * np.linalg.norm(other), name
+
+
+@pytest.mark.parametrize("dim", [1, 2, 3])
+def test_implicit_steps_move_as_explicit_ones(dim):
+    """Joints with friction, open to tension, dashpots, a shaken side and a quiet one."""
+    body = stack(dim, 3, 1, 1)
+    body = body._replace(damping=0.02 * body.stiffness)
+    bottom, top = body.sides["bottom"], body.sides["top"]
+    quiet = Dashpots(bottom.node, bottom.weight[:, None, None] * np.eye(dim))
+    along = dim * top.node + dim - 1
+    strengths = {"friction": np.array([0.5, 0.4])} if dim > 1 else {}
+    own = problem(
+        body, joined(2, dim > 1, 0.1, tension=np.zeros(2, bool), **strengths),
+        np.append(bottom.node, top.node), [0, 1], alpha=0.2, quiet=quiet,
+    )  # fmt: skip
+    dt = 0.05 * own.critical_step()
+    period = 600 * dt
+
+    def push(t):
+        return 0.3 * np.sin(np.pi * np.clip(t / period, 0, 1)) ** 2
+
+    def shake(steps):
+        return 2e-2 * dt * np.sin(np.pi * np.clip((steps + 0.5) * dt / period, 0, 1)) ** 2
+
+    freedom, share = dim * bottom.node + dim - 1, bottom.weight
+    if dim > 1:
+        freedom, share = np.append(freedom, freedom - 1), np.append(share, 0.6 * share)
+    own = own._replace(
+        forces=Force(freedom, share, push, dt), held=Held(along, -np.ones(along.size), shake)
+    )
+    one, other = Leapfrog(own, dt, 201), Implicit(own, dt, 201, 1.0)
+    for steps in (one, other):
+        steps.take(0, 2001, 10)
+    for name in ("velocity", "displacement", "traction", "jump"):
+        found, known = (getattr(steps.samples, name) for steps in (other, one))
+        assert np.linalg.norm(found - known) < 2e-3 * np.linalg.norm(known), name
+    energy = other.samples.energy
+    if dim > 1:
+        assert energy[3, -1] > 1e-3 * energy[-1, -1]
+    left = energy.sum(axis=0) - 2 * energy[-1]
+    assert np.abs(left).max() < 2e-3 * np.abs(energy).max()
+
+
+def test_a_column_is_at_rest_under_its_weight():
+    """Strain falls linearly, and joints carry what lies on them: exact by elements of order 2."""
+    body, modulus, pull = stack(1, 3, 2), 2.0, 0.1
+    bottom = body.sides["bottom"].node
+    own = problem(body, joined(2, False), steady=-pull * body.mass, held=Held(bottom, np.zeros(1)))
+    rest = settled(None, own)
+    y, block = body.x[:, 0], blocks_of_nodes(body)
+    below = np.cumsum([0.0, *(pull * (3.0 - k) / NORMAL for k in (1.0, 2.0))])
+    exact = -pull / modulus * (3.0 * y - y**2 / 2) - below[block]
+    np.testing.assert_allclose(rest.u, exact, atol=1e-12 * np.abs(exact).max())
+    steps = Leapfrog(own, 0.5 * own.critical_step(), 11)
+    steps.start(rest.u, rest.history)
+    steps.take(0, 101, 10)
+    assert np.abs(steps.u - exact).max() < 1e-12 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_wave_in_a_column_of_rock_crosses_its_joint(dim):
+    """A P wave between roller sides: behind a joint v' = 2 K / Z (v_incident - v)."""
+    up, table = [*np.zeros(dim - 1), 1.0], {"title": "a column"}
+    names = ["left", "right", "front", "back"][: 2 * dim - 2]
+    places = [[1.0] * (dim - 1) + [z] for z in (4.0, 12.0, 8.0)]
+    joint = {"name": "joint", "dip": 0.0, "through": places[2]}
+    table |= {
+        "domain": {"size": [2.0] * (dim - 1) + [16.0]},
+        "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.25},
+        "joint_sets": [joint | {"normal_stiffness": 1.6e10, "shear_stiffness": 9e9}],
+        "waves": [
+            {"kind": "P", "direction": up, "shape": "ricker", "amplitude": 1e6, "period": 4e-3}
+        ],
+        "boundaries": dict.fromkeys(names, "roller") | {"bottom": "quiet", "top": "quiet"},
+        "time": {"duration": 0.012},
+        "record": {"points": places[:2], "joints": places[2:]},
+        "numerics": {"continuum": {"order": 2, "size": 1.0}},
+    }
+    scene = load_tables(table)
+    found, rock = simulate(scene), elastic_rock(scene.rock)
+    times = np.linspace(0, 0.012, 24_001)
+    incident = free_field(scene)(np.array(places[1:2]), times).velocity[0, -1]
+    a = times[1] * 1.6e10 / rock.p_impedance
+    behind = lfilter([a, a], [1 + a, a - 1], incident)
+    exact = np.interp(found["time"].values, times, behind)
+    for quantity, known in (("velocity", exact), ("stress", rock.p_impedance * exact)):
+        value = found[quantity].values[1, :, dim - 1]
+        assert np.linalg.norm(value - known) < 1e-3 * np.linalg.norm(known), quantity
+    pressed = found["traction"].values[0, :, 0]
+    assert np.isclose(pressed.max(), rock.p_impedance * behind.max(), rtol=1e-3)
+    np.testing.assert_allclose(found["gap"].values[0], -pressed / 1.6e10, atol=1e-12)
+    energy = found["energy"].values
+    assert np.abs(energy.sum(axis=0) - 2 * energy[-1]).max() < 1e-12 * energy.max()

@@ -1,0 +1,201 @@
+"""The forces of a body in any state, and how they resist its motion, for Newton's method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.sparse import bsr_matrix, csr_matrix, diags
+
+from jointwave.continuum.body.steps import Problem
+from jointwave.continuum.body.tractions import forces_for, history_at_rest, tangents_for
+from jointwave.continuum.parallel.petsc import PETSc
+from jointwave.joints.law import IN_MOTION
+
+MOST_ITERATIONS = 12
+#: Unknowns from which MUMPS outweighs what it costs to call; PETSc's own factors are quicker below.
+LARGE = 20_000
+#: Of a displacement: what its last digits weigh cannot be balanced.
+LAST_DIGITS = 8 * float(np.finfo(float).eps)
+
+
+class Forces(NamedTuple):
+    """The forces of a state [freedoms], N.
+
+    whole : all together. viscous : of dashpots of rock and joints, and mass-proportional damping.
+    boundary : of quiet sides. external : with a history. history : of points, after the step.
+    loads, drags : of points' springs and dashpots [points * d], N. jump : m. energies : of all
+    springs, spent by opening, and by friction in the step, J [3]. size : the largest that is summed
+    up [1].
+    """
+
+    whole: np.ndarray
+    viscous: np.ndarray
+    boundary: np.ndarray
+    external: np.ndarray
+    history: np.ndarray
+    loads: np.ndarray
+    drags: np.ndarray
+    jump: np.ndarray
+    energies: np.ndarray
+    size: np.ndarray
+
+
+class Balance:
+    """The forces of a problem.
+
+    Attributes
+    ----------
+    stiffness, damping, quiet, mass : [freedoms, freedoms], of rock with mass-proportional damping,
+    and of quiet sides. free : int array, freedoms that are not held. history : of points at first.
+    """
+
+    def __init__(self, problem: Problem, at_rest: bool = False) -> None:
+        body, self.problem, self.parts = problem.body, problem, problem.parts
+        n, self.dim = body.stiffness.shape[0], body.components
+        self.free = np.setdiff1d(np.arange(n), problem.fixed)
+        self.stiffness, self.points = body.stiffness, problem.points()
+        mass: Any = body.consistent if body.mass is None else diags(body.mass)
+        self.mass = csr_matrix(mass)
+        self.damping, self.quiet = csr_matrix((n, n)), csr_matrix((n, n))
+        if at_rest:
+            table = self.points.table.copy()
+            table[IN_MOTION[: len(table)]] = 0.0
+            self.points = self.points._replace(table=table)
+        else:
+            self.damping = csr_matrix(problem.alpha * self.mass)
+            if body.damping is not None:
+                self.damping = csr_matrix(self.damping + body.damping)
+            self.quiet = self._quiet(n)
+        self.jumps = csr_matrix((0, n)) if body.joints is None else body.joints.matrix
+        self.history = np.zeros((0, 0))
+        if self.parts is not None:
+            self.history = history_at_rest(self.points, self.parts, self.dim)
+        self.steady = np.zeros(n) if problem.steady is None else problem.steady
+
+    def _quiet(self, n: int) -> csr_matrix:
+        quiet, dim = self.problem.quiet, self.dim
+        if quiet is None:
+            return csr_matrix((n, n))
+        own = dim * quiet.node[:, None] + np.arange(dim)
+        row, column = np.repeat(own, dim, axis=1), np.tile(own, dim)
+        return csr_matrix((quiet.viscosity.ravel(), (row.ravel(), column.ravel())), (n, n))
+
+    def forces(
+        self,
+        u: np.ndarray,
+        v: np.ndarray,
+        moved: np.ndarray,
+        dt: float,
+        before: np.ndarray,
+        external: np.ndarray,
+        steady: float = 1.0,
+    ) -> Forces:
+        """Return the forces at displacements u (m) and velocities v (m/s), after moving by `moved`
+        in dt (s) from where the history was `before`; steady : share of the steady forces."""
+        elastic, drag = self.stiffness @ u, self.damping @ v
+        boundary, jump = self.quiet @ v, self.jumps @ u
+        loads, drags = np.zeros((2, len(jump)))
+        after, found, drive = before.copy(), (0.0, 0.0, 0.0), 0.0
+        if self.parts is not None:
+            kernel = forces_for(self.parts, self.dim, self.points.carried.size > 0)
+            rate, slips = self.jumps @ v, self.jumps @ moved
+            given = jump, slips, rate, before, after, loads, drags
+            found = kernel(self.points, dt, *given)
+            drag = drag - self.jumps.T @ drags
+            drive = self.jumps.T @ loads
+        whole = steady * self.steady + external - elastic - drag - boundary + drive
+        sizes = [np.abs(one).max(initial=0.0) for one in (elastic, drag, self.steady, external)]
+        slid, stored, spent = found
+        energies = np.array([0.5 * (u @ elastic) + stored, spent, slid])
+        size = np.array([max(sizes)])
+        return Forces(whole, drag, boundary, external, after, loads, drags, jump, energies, size)
+
+    def of_joints(
+        self, u: np.ndarray, v: np.ndarray, dt: float, r: float, before: np.ndarray
+    ) -> np.ndarray:
+        """Return how each point resists its jump [points, d, d], N/m; r : rate factor, 1/s."""
+        count = len(self.points.weight)
+        found = np.zeros((count, self.dim, self.dim))
+        if self.parts is not None:
+            kernel = tangents_for(self.parts, self.dim, self.points.carried.size > 0)
+            kernel(self.points, dt, r, self.jumps @ u, self.jumps @ v, before, found)
+        return found
+
+    def sticking(self) -> np.ndarray:
+        """Return the same of joints that neither open nor slip."""
+        law, joints, dim = self.problem.law, self.problem.body.joints, self.dim
+        found = np.zeros((len(self.points.weight), dim, dim))
+        if law is not None and joints is not None:
+            for a in range(dim):
+                k = law.normal_stiffness if a == 0 else law.shear_stiffness
+                found[:, a, a] = joints.weight * (k[joints.column] if np.ndim(k) else k)
+        return found
+
+    def with_joints(self, matrix: csr_matrix, tangents: np.ndarray, share: float = 1.0) -> Factors:
+        """Return the factors of a matrix of the freedoms that move, with a share of the joints'
+        tangents."""
+        if len(tangents):
+            count = len(tangents)
+            middle = bsr_matrix((tangents, np.arange(count), np.arange(count + 1)))
+            matrix = matrix + share * (self.jumps.T @ middle @ self.jumps)
+        return Factors(csr_matrix(matrix)[self.free][:, self.free])
+
+
+class Factors:
+    """The LU factors of a matrix [n, n], by PETSc."""
+
+    def __init__(self, matrix: csr_matrix) -> None:
+        matrix = csr_matrix(matrix)
+        pattern = matrix.indptr.astype(PETSc.IntType), matrix.indices.astype(PETSc.IntType)
+        own = PETSc.Mat().createAIJ(matrix.shape, csr=(*pattern, matrix.data), comm=PETSc.COMM_SELF)
+        self._solver = PETSc.KSP().create(PETSc.COMM_SELF)
+        self._solver.setType("preonly")
+        conditioner = self._solver.getPC()
+        conditioner.setType("lu")
+        large = matrix.shape[0] > LARGE and PETSc.Sys.hasExternalPackage("mumps")
+        conditioner.setFactorSolverType("mumps" if large else "petsc")
+        self._solver.setOperators(own)
+        self._x, self._b = own.createVecs()
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Return x of A x = right, [n]."""
+        self._b.array[:] = right
+        self._solver.solve(self._b, self._x)
+        return np.real(self._x.array).copy()
+
+
+class Outcome(NamedTuple):
+    """x : the last iterate. converged : whether it is a solution. errors : largest residual of
+    every iterate, the start first; tolerance : that of the last one."""
+
+    x: np.ndarray
+    converged: bool
+    errors: list[float]
+    tolerance: float
+
+
+def newton(
+    residual: Callable[[np.ndarray], tuple[np.ndarray, float]],
+    correction: Callable[[np.ndarray], np.ndarray],
+    start: np.ndarray,
+) -> Outcome:
+    """Return the solution by Newton's method from a start, after at least one correction where
+    anything is out of balance.
+
+    residual : function of x that returns what is left, and what of it may be. correction : function
+    of that which returns by what to move the last x.
+    """
+    x, errors, tolerance = start.copy(), [], 0.0
+    for _ in range(MOST_ITERATIONS + 1):
+        rest, tolerance = residual(x)
+        errors.append(float(np.abs(rest).max(initial=0.0)))
+        if not np.isfinite(errors[-1]):
+            break
+        if errors[-1] == 0 or (len(errors) > 1 and errors[-1] <= tolerance):
+            return Outcome(x, True, errors, tolerance)
+        if len(errors) > MOST_ITERATIONS:
+            break
+        x += correction(rest)
+    return Outcome(x, False, errors, tolerance)
