@@ -1,9 +1,11 @@
 """The blocks of a pillar: a domain L x a x a with one set of joints across it."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
+from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import Blocks, blocks_of
 from jointwave.cases.geometry.cell_complex import NO_SET, box
 from jointwave.cases.geometry.cut import Planes, cut
@@ -14,14 +16,27 @@ from jointwave.cases.schema.segment import Part
 TOLERANCE = 1e-6  # of the thinnest block, below which points are one point
 
 
-def blocks_of_pillar(scene: Scene, dim: int = 1) -> Blocks:
+def blocks_of_pillar(
+    scene: Scene, dim: int = 1, layers: Mapping[int, float] | None = None
+) -> Blocks:
     """Return the blocks of a pillar from the loaded end on, of length alone, or in space: then y
     runs along it, and its axis is x = z = 0.
 
     dim : 1 or 3. `joint_set` of a contact is 0 of [joints], 1 + k of soft layer k, and NO_SET where
-    it is no joint; `body.region` of a block is the index of its part in `scene.parts`.
+    it is no joint; `body.region` of a block is the index of its part in `scene.parts`. layers :
+    thickness (m) of joints that are blocks of their own, half of it on either side, regions after
+    the parts, without joints on either side.
     """
     y, along = block_ends(scene), dim // 2
+    law, region = _laws(scene, y), _regions(scene)
+    for k, (joint, thickness) in enumerate(sorted((layers or {}).items())):
+        at = joint + k + 1
+        y = np.insert(y, at, y[at] - thickness / 2)
+        y[at + 1] += thickness / 2
+        law, region = np.insert(law, at, NO_SET), np.insert(region, at, len(scene.parts) + k)
+        law[at - 1] = NO_SET
+    if (np.diff(y) <= 0).any():
+        raise SceneError(scene.where, "soft_layers", None, "are thicker than a block is long")
     low, high = np.full((2, dim), scene.pillar.side / 2) * [[-1], [1]]
     low[along], high[along] = y[0], y[-1]
     planes = Planes(
@@ -35,9 +50,12 @@ def blocks_of_pillar(scene: Scene, dim: int = 1) -> Blocks:
     tolerance = TOLERANCE * float(np.diff(y).min())
     body = cut(box(low, high), planes, tolerance).body
     inner, joint_set = body.inner, body.joint_set.copy()
-    joint_set[inner] = _laws(scene, y)[body.sides[inner].min(axis=1)]
-    region = np.repeat(np.arange(len(scene.parts)), [one.blocks for one in scene.parts])
+    joint_set[inner] = law[body.sides[inner].min(axis=1)]
     return blocks_of(replace(body, joint_set=joint_set, region=region), tolerance, in_rows=False)
+
+
+def _regions(scene: Scene) -> np.ndarray:
+    return np.repeat(np.arange(len(scene.parts)), [one.blocks for one in scene.parts])
 
 
 def block_ends(scene: Scene) -> np.ndarray:

@@ -132,22 +132,46 @@ def rock_mass(scene: RockMass, smeared: list[JointSet], model: str) -> list[Mate
     ]
 
 
+def layers_of(scene: Scene) -> dict[int, float]:
+    """Return the thickness (m) of the joints of a pillar that are layers of rock, in order."""
+    found = zip(calibrate(scene).soft.tolist(), scene.soft_layers, strict=True)
+    return dict(sorted((joint, one.thickness) for joint, one in found if one.thickness is not None))
+
+
 def pillar(scene: Scene, model: str, components: int, dim: int) -> list[Material]:
-    """Return the rock of each segment of a pillar, intact ("jointed") or homogenised. In a mesh of
-    one dimension it is a bar: E along it, and G across it where there are three components."""
+    """Return the rock of a pillar's segments, intact ("jointed") or homogenised, and its layers.
+
+    A layer of thickness h is rock of modulus K_n h that does not widen when it is compressed: held
+    by the rock on both sides, a thin layer can not either, and K_n is its whole stiffness. Rock
+    with a quality factor has its unrelaxed modulus and no dashpots: those are of joints alone.
+    """
     p, relaxes, found = calibrate(scene), mechanisms_of(scene, model), []
+
+    def add(density: float, modulus: float, poisson: float, eta: float) -> None:
+        C = _bar(modulus, poisson, components)
+        if dim == 3:
+            speeds = speeds_from_modulus(modulus, poisson, density)
+            C = stiffness(ElasticRock(density, *speeds), [], 3)
+        found.append(Material(density, C, eta))
+
     for one, part in zip(p.each, scene.parts, strict=True):
         modulus, poisson, eta = one.modulus, one.poisson, one.time_constant or 0.0
         if model == "jointed":
             assert one.intact_modulus is not None
             modulus, poisson = one.intact_modulus, scene.alone(part).rock.intact_poisson
-        if relaxes is not None:  # which has the rock's damping
+        if relaxes is not None:
             modulus, eta = modulus * relaxes.unrelaxed, 0.0
-        shear = shear_modulus(modulus, poisson)
-        if dim == 3:
-            speeds = speeds_from_modulus(modulus, poisson, one.density)
-            C = stiffness(ElasticRock(one.density, *speeds), [], 3)
-        else:
-            C = np.diag([modulus] if components == 1 else [shear, modulus, shear])
-        found.append(Material(one.density, C, eta))
+        add(one.density, modulus, poisson, eta)
+    soft = dict(zip(p.soft.tolist(), scene.soft_layers, strict=True))
+    for joint, thickness in layers_of(scene).items():
+        normal = soft[joint].own_stiffness(p.spacing)
+        assert normal is not None
+        etas = p.joint_time_constant
+        add(p.density, normal * thickness, 0.0, 0.0 if etas is None else float(etas[joint]))
     return found
+
+
+def _bar(modulus: float, poisson: float, components: int) -> np.ndarray:
+    """Return the stiffness of a bar: E along it, and G across it where it has three components."""
+    shear = shear_modulus(modulus, poisson)
+    return np.diag([modulus] if components == 1 else [shear, modulus, shear])

@@ -112,13 +112,16 @@ def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> Scen
     """Return the body of a pillar: of one dimension if nothing bends or twists it."""
     bends = is_spatial(scene) and scene.motion.rotation != "none"
     dim, components = (3, 3) if bends else (1, 3 if is_spatial(scene) else 1)
-    blocks, numerics = blocks_of_pillar(scene, dim), scene.numerics.continuum
-    along, normal = dim // 2, blocks.boundary.normal
-    end = np.select([normal[:, along] < -0.5, normal[:, along] > 0.5], [0, 1], 2)
+    p, numerics, layers = calibrate(scene), scene.numerics.continuum, materials.layers_of(scene)
+    blocks, along = blocks_of_pillar(scene, dim, layers), dim // 2
+    normal = blocks.boundary.normal[:, along]
+    end = np.select([normal < -0.5, normal > 0.5], [0, 1], 2)
     blocks = replace(blocks, boundary=replace(blocks.boundary, side=end))
-    resolved = resolved_joints(calibrate(scene), model, components > 1)
-    joint = np.isin(np.arange(len(blocks.contacts)), resolved.number)
-    many = elements_along(scene, model)[blocks.body.region]
+    number = np.arange(p.block_count - 1)  # the joint of each contact, of a layer's two the same
+    number = np.repeat(number, 1 + np.isin(number, [*layers]))
+    joint = np.isin(number, resolved_joints(p, model, components > 1, tuple(layers)).number)
+    each = np.append(elements_along(scene, model), np.ones(len(layers), int))
+    many = each[blocks.body.region]
     size = float((blocks.volume ** (1 / dim) / many).min())
     refuse_large_mesh(scene, blocks, size, components)
     if numerics.cell == "simplex" and dim == 3:
@@ -131,6 +134,8 @@ def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> Scen
     chosen, consistent = _chosen(scene, rock, own, blocks.body), numerics.mass == "consistent"
     marks = marks_of(blocks, joint, ENDS)
     body = build_body(mesh, marks, numerics.order, chosen, components, consistent and implicit)
+    if body.joints is not None:
+        body = body._replace(joints=body.joints._replace(column=number[body.joints.column]))
     return SceneBody(scene, blocks, [], own, body)
 
 

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import ufl
 from dolfinx import fem
+from scipy.sparse.linalg import spsolve
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import calibrate
@@ -189,6 +190,23 @@ def test_a_pillar_has_as_many_dimensions_as_its_motion_asks_for(pillar, changes,
     stored = along.ravel() @ body.stiffness @ along.ravel()  # of terms (length over element)^2
     modulus = 5e10 if dim == 1 else found.materials[0].stiffness[0, 0]
     assert np.isclose(stored, modulus * area * scene.pillar.length, rtol=1e-10)
+
+
+@pytest.mark.parametrize("order", [1, 4])
+def test_a_layer_of_a_thickness_is_soft_rock(pillar, order):
+    """A bar under a stress at its end is longer by its rock and by the layer's own compliance."""
+    layer = {"y": 20.0, "normal_stiffness": 1e8, "thickness": 0.2}
+    keys = {"soft_layers": [layer], "numerics__continuum": {"order": order}}
+    scene = pillar(**keys)
+    found = body_of(scene, "equivalent")
+    body, modulus, length = found.body, calibrate(scene).modulus, scene.pillar.length
+    assert body.joints is None
+    assert np.isclose(found.blocks.volume[found.blocks.body.region == 1].sum(), 0.2)
+    start, end = body.sides["start"].node, body.sides["end"].node
+    free = np.setdiff1d(np.arange(len(body.x)), start)
+    u = spsolve(body.stiffness[free][:, free].tocsc(), (free == end) * 1e6)
+    expected = 1e6 * ((length - 0.2) / modulus + 1 / 1e8)
+    assert np.isclose(u[free == end], expected, rtol=1e-9)
 
 
 def test_mistakes_are_told_in_one_line(made):
