@@ -26,12 +26,12 @@ ENGINES: dict[str, Solver] = {one.name: one for one in (DEM, JOINTED_ROCK, EQUIV
 #: that an engine discretises comes before coarser ones; a module is imported when it is asked for.
 EXACT = {
     "lattice": "blocks.row_of_blocks",
-    "no-tension-chain": "blocks.no_tension",
+    "no-tension-chain": "blocks.row_of_blocks",
     "jointed-bar": "bar.jointed_bar",
     "equivalent-bar": "bar.equivalent_bar",
     "images": "bar.images",
-    "series": "bar.series",
-    "kelvin-voigt": "bar.kelvin_voigt",
+    "series": "bar.modes",
+    "kelvin-voigt": "bar.modes",
     "one-joint": "joint.one_joint",
     "closing-joint": "joint.closing_joint",
     "spatial-lattice": "blocks.row_of_blocks",

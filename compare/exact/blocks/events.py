@@ -14,7 +14,6 @@ vanishes, immediately with the force of its dashpot.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import pairwise
 from math import comb
 from typing import NamedTuple
@@ -54,19 +53,6 @@ class Loads(NamedTuple):
     breaks: np.ndarray
 
 
-@dataclass(frozen=True)
-class Motion:
-    """States of blocks from rest on, and their events.
-
-    states : float array [n, m], of its `BlockSystem`. events : number of openings and closings.
-    steps : number of Taylor series.
-    """
-
-    states: np.ndarray
-    events: int
-    steps: int
-
-
 def integrate(
     system: BlockSystem,
     load: LoadHistory | Loads,
@@ -74,7 +60,7 @@ def integrate(
     period: float | None = None,
     noise: float = 0.0,
     seed: int = 0,
-) -> Motion:
+) -> "Motion":
     """Return the motion of blocks under their load or loads.
 
     Parameters
@@ -86,18 +72,20 @@ def integrate(
     """
     size = len(system.steady)
     require(3 * 8.0 * len(times) * size, f"{len(times):,} states of {size:,} numbers")
-    walk = _Walk(system, load, times, period, noise, seed)
+    motion = Motion(system, load, times, period, noise, seed)
     breaks = [t for t in load.breaks if times[0] < t < times[-1]]
     for start, end in pairwise([times[0], *breaks, times[-1]]):
-        walk.to(start, end)
-    return Motion(walk.states, walk.events, walk.steps)
+        motion.to(start, end)
+    return motion
 
 
-class _Walk:
-    """The state of an integration: time, motion and tension-free joints.
+class Motion:
+    """The motion of blocks from rest on, and of tension-free joints.
 
-    closed, changed : which are, and how often each has changed at the current time. zero : [2,
-    joints], whether the force of spring, or spring and dashpot, is now zero.
+    states : float array [n, m], of its `BlockSystem`. events : number of openings and closings.
+    steps : number of Taylor series. closed, changed : which joints are, and how often each has
+    changed at the current time. zero : [2, joints], whether the force of spring, or spring and
+    dashpot, is now zero.
     """
 
     def __init__(self, system, load, times, period, noise, seed) -> None:

@@ -12,9 +12,10 @@ from jointwave.cases import Scene
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
-from jointwave.compare.exact.blocks import no_tension
+from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.exact.blocks.events import integrate
-from jointwave.compare.exact.blocks.row_of_blocks import receivers, system_of
+from jointwave.compare.exact.blocks.pillar import system_of
+from jointwave.compare.exact.blocks.row_of_blocks import receivers
 from jointwave.compare.exact.conditions import drive
 
 D, C = 0.5, 1350.0  # m, about the paper's bar speed, m/s
@@ -195,7 +196,7 @@ def test_chains_that_open_and_close_are_those_of_matrix_exponentials(seed, tmp_p
 def test_rigid_blocks_converge_to_a_rattling_chain():
     """At second order in the step on the whole, once the step resolves single contacts. A solver
     with a step control lost half of this: it stepped over openings and closings."""
-    exact, errors = no_tension.solve(Scene.model_validate(RATTLING)), []
+    exact, errors = row_of_blocks.solve(Scene.model_validate(RATTLING)), []
     for fraction in (0.0125, 0.003125):
         table = RATTLING | {"numerics": {"dem": {"step_fraction": fraction}}}
         result = dem.simulate(Scene.model_validate(table))
@@ -214,7 +215,7 @@ def test_the_bound_of_the_error_holds(seed, tmp_path):
     if np.finfo(np.longdouble).eps > 1e-18:
         pytest.skip("no extended precision here")
     scene = random_chain(seed, tmp_path)
-    model, times, found = system_of(scene), sample_times(scene), no_tension.solve(scene)
+    model, times, found = system_of(scene), sample_times(scene), row_of_blocks.solve(scene)
     finer = integrate(
         model, drive(scene), times.astype(np.longdouble), scene.load.period
     ).states.astype(float)
@@ -241,7 +242,7 @@ def test_the_time_is_said_from_which_bouncing_is_chaotic(tmp_path):
         "record": {"stress": [2.5], "velocity": [1.0], "interval": 1e-4},
     }
     scene = Scene.model_validate(table)
-    model, times, found = system_of(scene), sample_times(scene), no_tension.solve(scene)
+    model, times, found = system_of(scene), sample_times(scene), row_of_blocks.solve(scene)
     until = found.attrs["known_until"]
     assert 0.03 < until < 0.09
     other = integrate(model, drive(scene), times, 0.002, noise=500.0, seed=7).states

@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from jointwave.compare.exact.bar import equivalent_bar, images, series
+from jointwave.compare.exact.bar import equivalent_bar, images, modes
 
 FIELDS = ("stress", "velocity", "displacement")
 
@@ -50,8 +50,8 @@ def test_the_series_is_as_far_off_as_its_truncation(scene, misfit):
     of the last digit but one: the misfit gathers at the kinks, so sampling moves it by 0.4 %."""
     at = scene(record={"velocity": []})
     exact = images.solve(at)
-    assert misfit(series.solve(at, series.PAPER_TERMS), exact) == pytest.approx(5.85e-3, abs=5e-5)
-    assert misfit(series.solve(at), exact) == pytest.approx(1.4e-4, abs=5e-6)
+    assert misfit(modes.solve(at, modes.PAPER_TERMS), exact) == pytest.approx(5.85e-3, abs=5e-5)
+    assert misfit(modes.solve(at), exact) == pytest.approx(1.4e-4, abs=5e-6)
 
 
 @pytest.mark.parametrize("cycles", [1, 3])
@@ -62,7 +62,7 @@ def test_the_series_holds_for_cycles_and_at_resonance(scene, misfit, cycles, mod
     speed = np.sqrt(2 * 800.0**2 * (1 + 0.423809523809524))
     load = {"cycles": cycles, "period": 0.01 if mode is None else 100 / speed / mode}
     at = scene(load=load, record={"interval": 5e-5})
-    exact, sum_of_modes = images.solve(at), series.solve(at)
+    exact, sum_of_modes = images.solve(at), modes.solve(at)
     for variable, bound in zip(FIELDS, (1.5e-4, 8e-4, 5e-4), strict=True):
         assert misfit(sum_of_modes, exact, variable) < bound
 

@@ -10,9 +10,9 @@ from closed_forms import leapfrog
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
-from jointwave.compare.exact.bar import images, jointed_bar, kelvin_voigt
+from jointwave.compare.exact.bar import images, jointed_bar, modes
 from jointwave.compare.exact.blocks import row_of_blocks
-from jointwave.compare.exact.blocks.row_of_blocks import system_of
+from jointwave.compare.exact.blocks.pillar import system_of
 
 SHORT = {"length": 5.0, "side": 0.5, "block": 0.5}
 QUICK = {"shape": "sine", "amplitude": 1e6, "period": 0.002}
@@ -133,8 +133,8 @@ def test_the_modes_under_a_sine_agree(scene, misfit, zeta):
     p, load, times = calibrate(at), load_history(at), sample_times(at)
     omega = leapfrog.frequencies(p.regular_stiffness * p.area, p.block_mass, 100)
     shapes = np.cos(np.outer(np.arange(100) + 0.5, np.arange(100)) * np.pi / 100)
-    q, _ = kelvin_voigt.sums(np.eye(99), omega[1:], p.time_constant, load, times)
-    q = np.array([kelvin_voigt.rigid(load, times)[1], *q])
+    q, _ = modes.sums(np.eye(99), omega[1:], p.time_constant, load, times)
+    q = np.array([load.double_impulse(times), *q])
     weights = p.area * shapes[0] / (p.block_mass * (shapes**2).sum(axis=0))
     expected = shapes[[0, 39, 99]] @ (weights[:, None] * q)
     assert misfit(row_of_blocks.solve(at).displacement.values[..., 0], expected) < 1e-10

@@ -12,7 +12,7 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.contact_points import face_points
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.exact.blocks import row_of_blocks
-from jointwave.compare.exact.blocks.row_of_blocks import bodies, system_of
+from jointwave.compare.exact.blocks.pillar import bodies, system_of
 from jointwave.compare.exact.conditions import drive
 
 ACROSS = {"direction": [1.0, 0.0, 0.0]}

@@ -7,7 +7,7 @@ import pytest
 
 from jointwave import cases
 from jointwave.compare.engines import solve
-from jointwave.compare.exact.blocks import no_tension, row_of_blocks
+from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.report.claims import joints, pillar, travel
 from jointwave.compare.report.claims.claim import CLAIMS
@@ -22,8 +22,7 @@ SECTIONS = {4: {"record.stress": [10.0, 20.0, 30.0, 40.0, 47.5]}}
 
 def exact_chain(scene):
     """Return a comparison whose rigid blocks are the exact solution of their own equations."""
-    solution = row_of_blocks if row_of_blocks.applies(scene) else no_tension
-    return Comparison(scene, {"dem": solution.solve(scene)})
+    return Comparison(scene, {"dem": row_of_blocks.solve(scene)})
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import pytest
 
 from jointwave import dem
 from jointwave.cases.errors import SceneError
-from jointwave.compare.exact.blocks import no_tension, row_of_blocks
+from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.results.dataset import energy_residual
 
@@ -113,7 +113,7 @@ def test_no_tension_converges_at_second_order(fourth):
                 record={"stress": [20.0], "interval": 1e-3},
             )
         )
-    exact = no_tension.solve(scenes[0])  # no step changes it
+    exact = row_of_blocks.solve(scenes[0])  # no step changes it
     for scene in scenes:
         result = dem.simulate(scene)
         assert float(result.stress.min()) >= 0.0

@@ -6,7 +6,7 @@ import pytest
 from closed_forms import cantilever
 from jointwave import dem
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.compare.exact.blocks.row_of_blocks import system_of
+from jointwave.compare.exact.blocks.pillar import system_of
 
 FACES = {
     "vertices": ({}, 1.0),

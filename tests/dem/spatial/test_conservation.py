@@ -6,7 +6,7 @@ import pytest
 from jointwave import dem
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.compare.exact.blocks.row_of_blocks import drive_vector
+from jointwave.compare.exact.blocks.pillar import drive_vector
 
 JOINTS = {
     "elastic": {},

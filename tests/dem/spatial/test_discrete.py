@@ -7,7 +7,7 @@ from closed_forms import leapfrog
 from jointwave import dem
 from jointwave.cases.loads import load_history, step_means
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.compare.exact.blocks.row_of_blocks import bodies, drive_vector
+from jointwave.compare.exact.blocks.pillar import bodies, drive_vector
 from jointwave.compare.exact.blocks.system import relative
 
 TWO_TILES = {"pillar__length": 50.0, "time__duration": 0.05}

@@ -23,7 +23,8 @@ from jointwave.cases.histories import LoadHistory, Recorded, Step
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.exact.blocks.row_of_blocks import contact_forces, system_of
+from jointwave.compare.exact.blocks.pillar import system_of
+from jointwave.compare.exact.blocks.row_of_blocks import contact_forces
 from jointwave.compare.exact.conditions import drive
 from jointwave.compare.exact.linear import _load_on_nodes, gauss, twins
 
