@@ -18,6 +18,7 @@ from math import floor
 import numpy as np
 import xarray as xr
 
+from jointwave.cases.histories import LoadHistory
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
@@ -41,22 +42,28 @@ def applies(scene: Scene) -> Answer:
     return holds(scene, ("prestress", "thick layers"), (trips > MOST_TRIPS, many))
 
 
+def entering(scene: Scene) -> LoadHistory:
+    """Return the stress wave that the end stress of a scene sends into the bar, Pa."""
+    share = ENTERS[scene.ends.start]
+    load = scene.load.model_copy(update={"amplitude": share * scene.load.amplitude})
+    return load_history(scene.model_copy(update={"load": load}))
+
+
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement of the scene's homogenised bar."""
-    p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
+    p, load, times = calibrate(scene), entering(scene), sample_times(scene)
     ends = scene.ends.start, scene.ends.end
 
     def waves(signal: Callable, places: list[float]) -> tuple[np.ndarray, np.ndarray]:
         start, end = (REFLECTION[kind] for kind in ends)
         return images(signal, places, times, scene.pillar.length, p.bar_speed, start, end)
 
-    enters = ENTERS[scene.ends.start]
     there, back = waves(load.value, scene.record.stress)
-    stress = enters * (there + back)
+    stress = there + back
     there, back = waves(load.value, scene.record.velocity)
-    velocity = enters * (there - back) / p.impedance
+    velocity = (there - back) / p.impedance
     there, back = waves(load.impulse, scene.record.velocity)
-    displacement = enters * (there - back) / p.impedance
+    displacement = (there - back) / p.impedance
     return dataset(scene, SOLVER.name, times, stress + static_stress(scene), velocity, displacement)
 
 

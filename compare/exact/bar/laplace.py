@@ -72,7 +72,7 @@ def bounded(
     from scipy.ndimage import maximum_filter1d
 
     places, front = np.array([*stress_y, *velocity_y]), _front(bar, times[-1])
-    dt, stride, count = _fine_step(times, period, len(nodes_of(bar, places)[0]) + 4 * len(places))
+    dt, stride, count = _fine_step(times, period, len(nodes_of(bar, places)) + 4 * len(places))
     require(8.0 * count * (10 + 7 * len(places)), f"{count:,} instants of the load")
     decay = -log(WRAPPED) / (count * dt)
     t = dt * np.arange(count)
@@ -154,19 +154,14 @@ class Front(NamedTuple):
     ) -> list[np.ndarray]:
         """Return its stress, velocity and displacement [receivers, n]."""
         _, density, modulus, *_ = self.bar.rocks[0]
-        z = np.sqrt(density * modulus)
-        found = []
-        for signal, places, sign, scale in (
-            (load.value, stress_y, 1, 1.0),
-            (load.value, velocity_y, -1, z),
-            (load.impulse, velocity_y, -1, z),
-        ):
+        z, found = np.sqrt(density * modulus), []
+        bar = self.bar.length, z / density, self.start, self.end
+        signals = load.value, load.value, load.impulse
+        for signal, places in zip(signals, (stress_y, velocity_y, velocity_y), strict=True):
             y, out = np.array(places), np.zeros((len(places), len(times)))
-            shares = self.shares(y)
+            shares, sign, scale = self.shares(y), *((-1, z) if found else (1, 1.0))
             ahead = shares > 0
-            there, back = images(
-                signal, y[ahead], times, self.bar.length, z / density, self.start, self.end
-            )
+            there, back = images(signal, y[ahead], times, *bar)
             out[ahead] = shares[ahead, None] * self.enters / scale * (there + sign * back)
             found.append(out)
         return found
@@ -178,12 +173,12 @@ def _front(bar: Bar, duration: float) -> Front | None:
     if first.time_constant or first.relaxation is not None:
         return None
     z = np.sqrt(first.density * first.modulus)
-    joints = np.flatnonzero(bar.joint_compliance)
+    joints, _, etas = bar.interfaces
     length, far = bar.length, bar.end
+    if etas.any():
+        return None
     if len(joints):
-        if bar.joint_time_constant[joints].any():
-            return None
-        length, far = float(bar.joint_y[joints[0]]), End(0.0)
+        length, far = float(joints[0]), End(0.0)
     if others and others[0].y < length * (1 - 1e-9):
         behind = others[0]
         stiff = np.inf if behind.time_constant else np.sqrt(behind.density * behind.modulus)

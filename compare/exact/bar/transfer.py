@@ -8,10 +8,9 @@ reflection coefficient of stress R = (Z - z)/(Z + z), Z the impedance seen towar
 marched from there (the matrix that carries (v, sigma) from one end overflows):
 
     segment of length h:  R_left = R_right e^{-2q},  q = s rho h / z,  wave a_right = a_left e^{-q}
-    interface:            R_left = (2R - x(1 + R)) / (2 + x(1 + R)),  x = s z / (K (1 + s eta_j)),
-                          a_right = 2 a_left / (2 + x(1 + R_right))
-    to rock of another Z: R_left = (Z(1 + R) - z(1 - R) - x Z(1 + R)) / D, a_right = 2 z a_left / D,
-                          D = Z(1 + R) + z(1 - R) + x Z(1 + R)
+    to rock of another Z: R_left = (p - z(1 - R) - x p) / D,  p = Z(1 + R),
+    over an interface     D = p + z(1 - R) + x p,  x = s z / (K (1 + s eta_j)),
+                          a_right = 2 z a_left / D
     far end:              R = -1 free, (Z - z)/(Z + z) behind a dashpot Z, 1 fixed
 
 The end stress f enters as a = f / (z(1 + R) + Z_start(1 - R)); then sigma = z a (1 + R) and
@@ -19,7 +18,6 @@ v = a (1 - R). These are the impedance recursions of Brekhovskikh (Waves in Laye
 with the joint of Schoenberg (JASA 68, 1980).
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -27,6 +25,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from jointwave.cases.material.calibrate import Properties
+
+NEAR = 1e-9  # of a bar's length: nearer nodes are one
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,11 @@ class End:
             return np.full_like(s, self.dashpot)
         compliance = self.compliance / (1 + s * self.time_constant)
         return self.dashpot / (1 + s * self.dashpot * compliance)
+
+    def reflection(self, s: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Return the reflection coefficient of stress at the end of rock of impedance z, Pa s/m."""
+        Z = self.impedance(s)
+        return np.ones_like(z) if np.isinf(self.dashpot) else (Z - z) / (Z + z)
 
 
 def end_of(kind: str, impedance: float, compliance: float = 0.0, time_constant: float = 0.0) -> End:
@@ -102,20 +107,11 @@ class Bar:
     start: End
     end: End
 
-
-class Cell(NamedTuple):
-    """A part of a bar between two places: reflection from its near and its far side, and
-    transmission to the far side and back, arrays over the Laplace variables."""
-
-    near: np.ndarray
-    far: np.ndarray
-    passed: np.ndarray
-    back: np.ndarray
-
-    def before(self, R: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the reflection with R behind this part, and the wave that then reaches R."""
-        share = self.passed / (1 - self.far * R)
-        return self.near + self.back * share * R, share
+    @property
+    def interfaces(self) -> np.ndarray:
+        """Places (m), compliances (m/Pa) and time constants (s) of compliant joints [3, n]."""
+        every = np.array([self.joint_y, self.joint_compliance, self.joint_time_constant])
+        return every[:, every[1] != 0]
 
 
 def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -124,41 +120,39 @@ def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, n
     s : complex array of Laplace variables, 1/s, with positive real parts.
     """
     zs = [rock.impedance(s) for rock in bar.rocks]
-    slowness = [s * rock.density / z for rock, z in zip(bar.rocks, zs, strict=True)]
-    z, Z = zs[-1], bar.end.impedance(s)
-    R = np.ones_like(z) if np.isinf(bar.end.dashpot) else (Z - z) / (Z + z)
-    stress, velocity = np.zeros((2, len(places), len(s)), dtype=complex)
-    # Places from the far end on, each with the transmission from it to those farther on, and the
-    # transmission to the last of them.
-    reached: list[tuple[np.ndarray, np.ndarray]] = []
-    passing = np.ones_like(R)
-    nodes, joint_of = nodes_of(bar, places)
+    nodes, starts, close = nodes_of(bar, places), [y for y, *_ in bar.rocks[1:]], NEAR * bar.length
+    lengths = np.diff(nodes, prepend=0.0).round(12)
+    before, behind = (np.searchsorted(starts, nodes + off) for off in (-close, close))
+    joints, compliances, etas = bar.interfaces
+    joint_of = dict(zip(np.searchsorted(nodes, joints).tolist(), range(len(joints)), strict=True))
 
     @lru_cache(16)  # of joints that all differ, some
-    def cell(kind: Kind) -> Cell:
-        z, q = zs[kind.rock], np.exp(-kind.h * slowness[kind.rock])
-        x = s * z * kind.compliance / (1 + s * kind.time_constant)
-        if kind.rock == kind.behind:
-            return Cell(-x / (2 + x) * q**2, -x / (2 + x), 2 / (2 + x) * q, 2 / (2 + x) * q)
-        Z = zs[kind.behind]
-        off, whole = Z - z, Z + z + x * Z
-        near, far = (off - x * Z) / whole, (-off - x * Z) / whole
-        return Cell(near * q**2, far, 2 * z / whole * q, 2 * Z / whole * q)
+    def jump(compliance: float, time_constant: float) -> np.ndarray:
+        return s * compliance / (1 + s * time_constant)
 
-    for i, kind in _kinds(bar, nodes, joint_of):
-        here = np.abs(places - nodes[i]) < 1e-9 * bar.length
+    @lru_cache(16)
+    def delay(rock: int, length: float) -> np.ndarray:
+        return np.exp(-length * s * bar.rocks[rock].density / zs[rock])
+
+    R = bar.end.reflection(s, zs[-1])
+    stress, velocity = np.zeros((2, len(places), len(s)), dtype=complex)
+    # Places from the far end on, each with the wave at those farther on over the wave before it.
+    reached: list[tuple[np.ndarray, np.ndarray]] = []
+    passing = np.ones_like(R)
+    for i in range(len(nodes) - 1, -1, -1):
+        z, here, j = zs[before[i]], np.abs(places - nodes[i]) < close, joint_of.get(i)
+        pressed, moved, share = zs[behind[i]] * (1 + R), 1 - R, 1.0
+        if j is not None or before[i] != behind[i]:
+            x = 0.0 if j is None else z * jump(compliances[j], etas[j])
+            whole = (1 + x) * pressed + z * moved
+            R, share = ((1 - x) * pressed - z * moved) / whole, 2 * z / whole
+            passing = passing * share
         if here.any():
-            stress[here], velocity[here] = zs[kind.behind] * (1 + R), 1 - R
-            if kind.compliance or kind.rock != kind.behind:
-                R, share = cell(kind._replace(h=0.0)).before(R)
-                passing = passing * share
-                stress[here] *= share
-                velocity[here] = (velocity[here] * share + 1 - R) / 2
-                kind = Kind(0.0, 0.0, kind.h, kind.rock, kind.rock)
+            stress[here], velocity[here] = share * pressed, (share * moved + 1 - R) / 2
             reached.append((here, passing))
             passing = np.ones_like(R)
-        R, share = cell(kind).before(R)
-        passing = passing * share
+        late = delay(before[i], lengths[i])
+        R, passing = R * late**2, passing * late
     entering = passing / (zs[0] * (1 + R) + bar.start.impedance(s) * (1 - R))
     for here, beyond in reversed(reached):
         stress[here] *= entering
@@ -167,37 +161,10 @@ def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, n
     return stress, velocity
 
 
-class Kind(NamedTuple):
-    """A joint, or none, and the rock from it to the previous node: m/Pa, s, m, and the numbers of
-    that rock and of the one behind."""
-
-    compliance: float
-    time_constant: float
-    h: float
-    rock: int
-    behind: int
-
-
-def _kinds(bar: Bar, nodes: np.ndarray, joint_of: dict[int, int]) -> Iterator[tuple[int, Kind]]:
-    """Yield the nodes with their kinds from the far end on."""
-    h = np.append(0.0, np.diff(nodes)).round(12)
-    starts, close = [rock.y for rock in bar.rocks[1:]], 1e-9 * bar.length
-    before, behind = (np.searchsorted(starts, nodes + off) for off in (-close, close))
-    for i in range(len(nodes) - 1, -1, -1):
-        j = joint_of.get(i)
-        C, eta = (0.0, 0.0) if j is None else (bar.joint_compliance[j], bar.joint_time_constant[j])
-        rocks = int(before[i]), int(behind[i])
-        yield i, Kind(float(C), float(eta), float(h[i]), *rocks)
-
-
-def nodes_of(bar: Bar, places: np.ndarray) -> tuple[np.ndarray, dict[int, int]]:
-    """Return the ends, interfaces and receivers in order, and the joints by node."""
-    joints = np.flatnonzero(bar.joint_compliance)
-    own = bar.joint_y[joints]
-    near = np.abs(places[:, None] - np.concatenate([own, [0.0, bar.length]])).min(axis=1)
-    apart = np.unique(places[near > 1e-9 * bar.length])
-    nodes = np.sort(np.concatenate([[0.0, bar.length], own, apart]))
-    for rock in bar.rocks[1:]:
-        if np.abs(nodes - rock.y).min() > 1e-9 * bar.length:
-            nodes = np.insert(nodes, np.searchsorted(nodes, rock.y), rock.y)
-    return nodes, dict(zip(np.searchsorted(nodes, own).tolist(), joints.tolist(), strict=True))
+def nodes_of(bar: Bar, places: np.ndarray) -> np.ndarray:
+    """Return the ends, interfaces and receivers in order, m."""
+    found = [0.0, bar.length, *bar.interfaces[0]]
+    for y in (*(rock.y for rock in bar.rocks[1:]), *places):
+        if np.abs(np.array(found) - y).min() > NEAR * bar.length:
+            found.append(y)
+    return np.sort(found)

@@ -14,17 +14,17 @@ Valid for one such joint in the homogenised bar, as `one_joint`, without dashpot
 joint in intact rock crossed by a P wave along a periodic strip.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.loads import LoadHistory, load_history
+from jointwave.cases.histories import LoadHistory
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.law_parts import UNLIMITED
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.exact.bar.images import ENTERS
+from jointwave.compare.exact.bar.images import entering
 from jointwave.compare.exact.conditions import holds, static_stress
 from jointwave.compare.exact.joint.one_joint import back_in_time, behind_and_before
 from jointwave.compare.exact.joint.trajectory import Trajectory, edges_of, peak_of
@@ -44,11 +44,6 @@ class ClosingJoint:
     maximum: float
     without: float = 0.0
     prestress: float = 0.0
-
-    def scaled(self, factor: float) -> "ClosingJoint":
-        """Return the joint for stresses and closures divided by this factor."""
-        maximum, prestress = self.maximum / factor, self.prestress / factor
-        return replace(self, maximum=maximum, prestress=prestress)
 
     def closure(self, stress: np.ndarray) -> np.ndarray:
         """Return e (m) at a stress (Pa)."""
@@ -81,7 +76,7 @@ def applies(scene: Scene) -> Answer:
     if not answer:
         return answer
     joint, times = the_joint(scene, p), sample_times(scene)
-    most = ENTERS[scene.ends.start] * np.abs(load_history(scene).value(times)).max()
+    most = np.abs(entering(scene).value(times)).max()
     if joint.compliance(joint.prestress + most) <= 0:
         return Answer("the joint becomes stiffer than the other joints")
     return back_in_time(scene, joint.y, p.bar_speed)
@@ -89,8 +84,8 @@ def applies(scene: Scene) -> Answer:
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement on both sides of the joint that stiffens."""
-    p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
-    joint = the_joint(scene, p).scaled(ENTERS[scene.ends.start])
+    p, load, times = calibrate(scene), entering(scene), sample_times(scene)
+    joint = the_joint(scene, p)
     passed = (Passed(joint, p.impedance, load, times[-1], each) for each in TOLERANCES)
     return behind_and_before(scene, SOLVER.name, joint.y, *passed)
 

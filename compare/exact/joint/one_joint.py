@@ -21,11 +21,10 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.histories import LoadHistory
-from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.exact.bar.images import ENTERS
+from jointwave.compare.exact.bar.images import entering
 from jointwave.compare.exact.conditions import holds, static_stress
 from jointwave.compare.exact.linear import bound, twins
 from jointwave.compare.solvers.record import Answer, Rock, Solver, thin
@@ -33,6 +32,7 @@ from jointwave.results.dataset import dataset
 
 Passes = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 HELD = ("prestress", "damped joints", "soft layers", "stiff layers")
+NEAR = 1e-9  # m: nearer places are on the joint
 
 
 class Joint(NamedTuple):
@@ -68,7 +68,7 @@ def back_in_time(scene: Scene, joint_y: float, speed: float) -> Answer:
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement on both sides of the scene's soft layer."""
-    p, load = calibrate(scene), load_history(scene)
+    p, load = calibrate(scene), entering(scene)
     joint = the_joint(p)
     passed, twin = (partial(transmitted, joint, p.impedance, load, which=which) for which in (0, 1))
     return behind_and_before(scene, SOLVER.name, joint.y, passed, twin)
@@ -79,11 +79,11 @@ def behind_and_before(
 ) -> xr.Dataset:
     """Return the result of a solver for a joint at y (m) with the transmission `passed` (`around`);
     twin : a second computation of it whose difference bounds the error."""
-    p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
+    p, load, times = calibrate(scene), entering(scene), sample_times(scene)
     found = []
     for one in (passed, twin):
         (stress, stress_back), (motion, motion_back) = (
-            ENTERS[scene.ends.start] * around(joint_y, p.bar_speed, one, load, times, places)
+            around(joint_y, p.bar_speed, one, load, times, places)
             for places in (scene.record.stress, scene.record.velocity)
         )
         stress = stress[0] + stress_back[0] + static_stress(scene)
@@ -98,28 +98,20 @@ def around(
     passed: Passes,
     load: LoadHistory,
     times: np.ndarray,
-    places: list[float],
+    places: list[float] | np.ndarray,
 ) -> np.ndarray:
     """Return the waves around a joint between half-spaces, in front of it, on it and behind it.
 
-    passed : sigma_T (Pa) and its impulse (Pa s) at equally spaced times at the joint (s), under the
-        incident stress `load`; joint_y, places in m, speed in m/s.
+    passed : sigma_T (Pa) and its impulse (Pa s) at times at the joint (s), each row of them equally
+        spaced, under the incident stress `load`; joint_y, places in m, speed in m/s.
     The result is [there and back, stress and impulse, place, time].
     """
-    found = [_at(y, joint_y, speed, passed, load, times) for y in places]
-    return np.array(found).reshape(-1, 2, 2, len(times)).transpose(1, 2, 0, 3)
-
-
-def _at(y, joint_y, speed, passed, load, times) -> np.ndarray:
-    """Return [there and back, stress and impulse, time] at y (m)."""
-    after = np.array(passed(times - max(y, joint_y) / speed))
-    behind = np.array([after, np.zeros_like(after)])
-    if y > joint_y + 1e-9:
-        return behind
-    at, later = times - y / speed, times - (2 * joint_y - y) / speed
-    there = load.value(at), load.impulse(at)
-    before = np.array([there, passed(later) - np.array([load.value(later), load.impulse(later)])])
-    return (before + behind) / 2 if abs(y - joint_y) <= 1e-9 else before
+    y = np.asarray(places, dtype=float)[:, None]
+    behind, on = y > joint_y + NEAR, np.abs(y - joint_y) <= NEAR
+    direct, late = times - y / speed, times - np.where(behind, y, 2 * joint_y - y) / speed
+    there, incident = (np.array([load.value(t), load.impulse(t)]) for t in (direct, late))
+    after, before = np.array(passed(late)), np.where(behind, 0.0, np.where(on, 0.5, 1.0))
+    return np.array([after + before * (there - after), before * (after - incident)])
 
 
 def the_joint(p: Properties) -> Joint:
@@ -135,13 +127,15 @@ def transmitted(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return sigma_T (Pa) and its impulse (Pa s) at the joint for the incident stress `load`.
 
-    `times` are equally spaced and begin before the load does. which : 1 for the twin
+    times : [n], or rows of them, equally spaced from before the load begins. which : 1 for the twin
     (`linear.twins`).
     """
     tau = joint.time_constant + impedance / (2 * joint.stiffness)
     share = joint.time_constant / tau
     rate, one = np.array([[-1 / tau]]), np.ones(1)
-    smooth = twins(rate, one / tau, load, times)[which, :, 0]
+    rows = times.reshape(-1, times.shape[-1])
+    smooth = np.array([twins(rate, one / tau, load, row)[which, :, 0] for row in rows])
+    smooth = smooth.reshape(times.shape)
     stress = share * load.value(times) + (1 - share) * smooth
     impulse = load.impulse(times) - (1 - share) * tau * smooth
     return stress, impulse

@@ -44,11 +44,6 @@ class RateJoint(NamedTuple):
     state: float
     compliance: float = 0.0
 
-    def scaled(self, factor: float) -> "RateJoint":
-        """Return the joint for stresses and slips divided by this factor."""
-        names = ("pressure", "distance", "rate")
-        return self._replace(**{name: getattr(self, name) / factor for name in names})
-
     def offset(self, log_state: float) -> float:
         """Return ln V_0 - psi / a at ln theta."""
         aged = log(self.rate / self.distance) + log_state
@@ -134,7 +129,8 @@ class RateStateWave:
         """Return both at times (s)."""
         joint, (slide, log_state, stress) = self.joint, self.state(times)
         if joint.compliance == 0:
-            both = zip(self.load.value(times).tolist(), log_state.tolist(), strict=True)
-            stress = np.array([joint.carries(*each, self.impedance) for each in both])
+            both = zip(self.load.value(times).flat, log_state.flat, strict=True)
+            carried = [joint.carries(*each, self.impedance) for each in both]
+            stress = np.reshape(carried, times.shape)
         slip = joint.compliance * stress + slide
         return stress, self.load.impulse(times) - self.impedance * slip / 2

@@ -21,12 +21,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.law_parts import UNLIMITED
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.exact.bar.images import ENTERS
+from jointwave.compare.exact.bar.images import entering
 from jointwave.compare.exact.conditions import LAYERS, holds, static_stress
 from jointwave.compare.exact.joint import rate_state_joint
 from jointwave.compare.exact.joint.one_joint import around
@@ -94,20 +93,20 @@ def solve(scene: Scene) -> xr.Dataset:
 def _waveforms(scene: Scene, p: Properties, which: int) -> dict[str, Any]:
     """Return the waveforms, of a joint that slip changes also those of stress; which : 1 for the
     twin, whose tolerances are larger."""
-    load, times, joint = load_history(scene), sample_times(scene), the_joint(scene, p)
-    enters, Z = ENTERS[scene.ends.start], p.shear_impedance
+    load, times, joint = entering(scene), sample_times(scene), the_joint(scene, p)
+    Z = p.shear_impedance
     passed: rate_state_joint.RateStateWave | Passed
     if p.direct_effect is not None:
         j, pressure = int(np.flatnonzero(_slips(p))[0]), static_stress(scene)
-        rated = rate_state_joint.rate_joint(p, j, pressure, joint.compliance).scaled(enters)
+        rated = rate_state_joint.rate_joint(p, j, pressure, joint.compliance)
         rest, tolerance = joint.y / p.shear_speed, rate_state_joint.TOLERANCES[which]
         passed = rate_state_joint.RateStateWave(rated, Z, load, times[-1], tolerance, rest)
     else:
         tolerance = TOLERANCES[which]
-        passed = Passed(joint.scaled(enters), Z, load, times[-1], tolerance, p.impedance)
+        passed = Passed(joint, Z, load, times[-1], tolerance, p.impedance)
 
     def waves(places: list[float]) -> np.ndarray:
-        return enters * around(joint.y, p.shear_speed, passed, load, times, places)
+        return around(joint.y, p.shear_speed, passed, load, times, places)
 
     (there, _), (back, _) = waves(scene.record.stress)
     axis = np.array(scene.load.direction)
@@ -116,12 +115,12 @@ def _waveforms(scene: Scene, p: Properties, which: int) -> dict[str, Any]:
     velocity, displacement = (there - back)[..., None] / Z * axis
     own = {"shear": shear, "velocity": velocity, "displacement": displacement}
     if isinstance(passed, Passed) and (joint.dilation or isfinite(joint.distance)):
-        return own | _lifted(scene, p, joint.y, passed, enters, own)
+        return own | _lifted(scene, p, joint.y, passed, own)
     return own
 
 
 def _lifted(
-    scene: Scene, p: Properties, joint_y: float, passed: Passed, enters: float, waves: dict
+    scene: Scene, p: Properties, joint_y: float, passed: Passed, waves: dict
 ) -> dict[str, np.ndarray]:
     """Return stress, velocity and displacement with the pressure waves that the joint radiates
     along the axis on both sides as it dilates; waves : those of the shear wave."""
@@ -129,7 +128,7 @@ def _lifted(
 
     def pressure(places: list[float]) -> np.ndarray:
         late = np.abs(np.array(places)[:, None] - joint_y) / p.bar_speed
-        return enters * np.array(passed.pressure(times - joint_y / p.shear_speed - late))
+        return np.array(passed.pressure(times - joint_y / p.shear_speed - late))
 
     found = {key: waves[key].copy() for key in ("velocity", "displacement")}
     side = np.sign(np.array(scene.record.velocity) - joint_y)[:, None] / p.impedance

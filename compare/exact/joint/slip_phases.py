@@ -77,11 +77,6 @@ class SlipJoint(NamedTuple):
         """Return the derivative of `lift` with respect to the path."""
         return self.dilation * np.maximum(1 - path / self.dilation_distance, 0.0)
 
-    def scaled(self, factor: float) -> "SlipJoint":
-        """Return the joint for stresses and slips divided by this factor; both scale alike."""
-        names = ("strength", "dynamic", "distance", "dilation_distance")
-        return self._replace(**{name: getattr(self, name) / factor for name in names})
-
 
 class Phase(NamedTuple):
     """start, end : s. way : +-1 where it slides, 0 where it sticks. path, slide : S and the signed

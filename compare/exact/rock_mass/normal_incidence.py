@@ -12,6 +12,7 @@ from jointwave.cases.loads import history_of
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.joint.closing_joint import TOLERANCES, ClosingJoint, Passed
+from jointwave.compare.exact.joint.one_joint import around
 from jointwave.compare.exact.linear import bound
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass import stack_waves
@@ -69,18 +70,10 @@ class ClosingField:
 
     def waves(self, points: np.ndarray, times: np.ndarray) -> np.ndarray:
         """Return the waves to and fro [2, stress and impulse, m, n]; Pa, compression positive."""
-        y = ((np.asarray(points) - self.wave.through) @ self.wave.direction)[:, None]
-        joint, speed, load, times = self.joint.y, self.wave.speed, self.load, np.asarray(times)
+        y, joint = (np.asarray(points) - self.wave.through) @ self.wave.direction, self.joint.y
         # On one side of the joint, not on it, where velocity and stress along it have no one value.
-        off = np.copysign(np.maximum(np.abs(y - joint), BESIDE), y - joint)
-        y, behind = joint + off, off > 0
-        # What the joint passes or sends back, at all places in one evaluation.
-        direct = times - y / speed
-        scattered = times - np.where(behind, y, 2 * joint - y) / speed
-        passed = np.array(self.passed(scattered))
-        there = np.where(behind, passed, [load.value(direct), load.impulse(direct)])
-        back = passed - [load.value(scattered), load.impulse(scattered)]
-        return np.array([there, np.where(behind, 0.0, back)])
+        y = joint + np.copysign(np.maximum(np.abs(y - joint), BESIDE), y - joint)
+        return around(joint, self.wave.speed, self.passed, self.load, np.asarray(times), y)
 
     def stress(self, across: np.ndarray) -> np.ndarray:
         """Return (xx, yy, xy) [m, 3, n], tension positive, from the stress on the fronts [m, n]."""

@@ -1,0 +1,116 @@
+"""Bars of rock with interfaces, by marching in the Laplace variable (`laplace`).
+
+The homogenised bar has the rock mass's modulus E_eq (1 + s eta); a soft layer is an interface with
+the additional compliance 1/K = 1/K'_n(soft) - 1/K'_n(regular) and its own time constant, because
+the bar already contains one ordinary joint there. Segments of other rock are bars of their own,
+bonded together.
+
+The jointed bar is intact rock (E, Kelvin-Voigt eta of the rock) between joints of their own
+stiffness K_n (Guo & Li 2002, equation 4) and time constants; the dashpots of quiet and matched ends
+have the rock mass's impedance. This is the physics that both the rigid blocks and the homogenised
+bar approximate (Schoenberg, JASA 68, 1980; Pyrak-Nolte et al., JGR 95, 1990).
+
+Valid for any load; every joint carries tension. In the homogenised bar no layer is stiffer than the
+ordinary joints; the jointed one needs intact_modulus.
+"""
+
+from collections.abc import Mapping
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.constant_q import mechanisms_of
+from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.bar.laplace import solved
+from jointwave.compare.exact.bar.transfer import Bar, end_of, rocks
+from jointwave.compare.exact.conditions import DAMPED, holds
+from jointwave.compare.solvers.record import Answer, Kind, Line, Rock, Solver, thin
+
+HELD = ("prestress", "soft layers", "segments", "scatter", "quality factor", *DAMPED)
+
+
+def applies(scene: Scene, resolved: bool) -> Answer:
+    """Return whether a scene's bar is linear and, if its joints are not resolved, homogenised rock
+    with layers that add compliance; else whether its intact rock is known."""
+    p = calibrate(scene)
+    if resolved:
+        unknown = p.own_stiffness is None, "rock.intact_modulus is not given"
+        return holds(scene, (*HELD, "stiff layers"), unknown)
+    many = scene.rock.quality_factor is not None and len(p.each) > 1
+    return holds(
+        scene,
+        HELD,
+        (bool(p.damps_alone.any()), "a homogenised bar cannot damp a single ordinary joint"),
+        (many, "homogenised segments have no common quality_factor"),
+    )
+
+
+def bar(scene: Scene, resolved: bool) -> Bar:
+    """Return the intact rock of a scene with its N - 1 joints, behind half a joint where an end is
+    matched; if these are not resolved, its homogenised bar with soft layers as interfaces."""
+    p, model = calibrate(scene), "jointed" if resolved else "equivalent"
+    moduli, compliance, etas = (
+        [one.modulus for one in p.each],
+        p.excess_compliance,
+        p.joint_time_constant,
+    )
+    halves = [(), ()]
+    if resolved:
+        assert p.own_stiffness is not None
+        moduli, compliance = [one.intact_modulus or 0.0 for one in p.each], 1 / p.own_stiffness
+        etas = p.own_time_constant
+        halves = [
+            (1 / (2 * one.regular_own_stiffness), one.time_constant or 0.0)
+            for one in (p.at_start, p.at_end)
+        ]
+    return Bar(
+        length=scene.pillar.length,
+        rocks=rocks(p, moduli, mechanisms_of(scene, model)),
+        joint_y=p.joint_y,
+        joint_compliance=compliance,
+        joint_time_constant=np.zeros_like(p.joint_y) if etas is None else etas,
+        start=end_of(scene.ends.start, p.at_start.impedance, *halves[0]),
+        end=end_of(scene.ends.end, p.at_end.impedance, *halves[1]),
+    )
+
+
+def _solver(
+    name: str, rock: Rock, label: str, line: Line, distances: Mapping[Kind, Mapping[str, str]]
+) -> Solver:
+    resolved = rock is Rock.JOINTED
+
+    def solve(scene: Scene) -> xr.Dataset:
+        """Return stress, velocity and displacement of the scene's bar."""
+        return solved(scene, name, bar(scene, resolved))
+
+    applies_to = partial(applies, resolved=resolved)
+    return Solver(name, rock, label, line, applies_to, solve, distances=distances)
+
+
+JOINTED = _solver(
+    "jointed-bar",
+    Rock.JOINTED,
+    "jointed bar, exact",
+    thin("#a83200", 8, (4.5, 8.5)),
+    {
+        Kind.NUMERICAL: {"continuum-jointed": "elements and time stepping of the jointed rock"},
+        Kind.MODELLING: {
+            "dem": "rigid instead of deformable blocks",
+            "continuum-equivalent": "joints smeared over the bar",
+        },
+    },
+)
+EQUIVALENT = _solver(
+    "equivalent-bar",
+    Rock.HOMOGENISED,
+    "homogenised bar, exact",
+    thin("#005a3c", 6, (9, 13)),
+    {
+        Kind.NUMERICAL: {
+            "continuum-equivalent": "elements and time stepping of the homogenised bar"
+        },
+        Kind.MODELLING: {"dem": "the paper's comparison: discrete blocks and a homogenised bar"},
+    },
+)
