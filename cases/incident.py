@@ -74,20 +74,23 @@ class PlaneWave:
         """Return when the pulse begins at points [m, d], s."""
         return (np.asarray(points) - self.through) @ self.direction / self.speed
 
-    def motion(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
-        """Return velocity and stress, sigma = -C : (n g) f / c, at points and times."""
-        f = self.pulse.value(np.asarray(times) - self.lateness(points)[:, None])
+    def unit_stress(self) -> np.ndarray:
+        """Return the stress at 1 m/s, -C : (n g) / c, in the components of a `WaveMotion`, Pa."""
         n, g, rock = self.direction, self.polarisation, self.rock
         tensor = rock.lame * (n @ g) * np.eye(len(n)) + rock.shear_modulus * (
             np.outer(n, g) + np.outer(g, n)
         )
-        stress = -in_components(tensor) / self.speed
-        return WaveMotion(f[:, None] * g[:, None], f[:, None] * stress[:, None])
+        return -in_components(tensor) / self.speed
+
+    def motion(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
+        """Return velocity and stress at points and times."""
+        f = self.pulse.value(np.asarray(times) - self.lateness(points)[:, None])[:, None]
+        return WaveMotion(f * self.polarisation[:, None], f * self.unit_stress()[:, None])
 
 
 @dataclass(frozen=True)
-class FreeField:
-    """The waves of a scene in its intact rock, without any joint."""
+class PlaneWaves:
+    """Plane waves that do not change each other."""
 
     waves: tuple[PlaneWave, ...]
 
@@ -97,6 +100,10 @@ class FreeField:
         return WaveMotion(
             sum((m.velocity for m in found), start=zero), sum((m.stress for m in found), start=zero)
         )
+
+
+class FreeField(PlaneWaves):
+    """The waves of a scene in its intact rock, without any joint."""
 
 
 def free_field(scene: RockMass) -> FreeField:

@@ -27,8 +27,8 @@ ENGINES: dict[str, Solver] = {one.name: one for one in (DEM, JOINTED_ROCK, EQUIV
 EXACT = {
     "lattice": "blocks.row_of_blocks",
     "no-tension-chain": "blocks.row_of_blocks",
-    "jointed-bar": "bar.jointed_bar",
-    "equivalent-bar": "bar.equivalent_bar",
+    "jointed-bar": "bar.bars",
+    "equivalent-bar": "bar.bars",
     "images": "bar.images",
     "series": "bar.modes",
     "kelvin-voigt": "bar.modes",

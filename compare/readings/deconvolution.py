@@ -22,7 +22,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.scene_type import pillar_of
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.exact.bar import equivalent_bar, jointed_bar
+from jointwave.compare.exact.bar.bars import bar_of
 from jointwave.compare.exact.bar.transfer import Bar, RockFrom, end_of, transfer
 from jointwave.compare.exact.conditions import DAMPED, holds
 from jointwave.compare.scenes import AnySource, load
@@ -82,7 +82,7 @@ def _column(scene: Scene) -> tuple[Bar, float]:
         raise SceneError(scene.where, "", None, f"cannot be deconvolved: {answer.reason}")
     if not scene.is_uniform:
         known = p.own_stiffness is not None
-        rock = (jointed_bar if known else equivalent_bar).bar(scene)
+        rock = bar_of(scene, resolved=known)
         impedance = p.at_start.impedance
         return replace(rock, start=end_of("quiet", impedance), end=end_of("free", 0.0)), impedance
     modulus, compliance = _sheared(scene, p) if load.is_across else _stretched(p)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from jointwave.compare.exact.bar import images, jointed_bar
+from jointwave.compare.exact.bar import images
+from jointwave.compare.exact.bar.bars import JOINTED
 from jointwave.continuum import simulate
 
 LAYER = {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.02}]}
@@ -48,7 +49,7 @@ def test_equivalent_bar_meets_images(pillar, ends):
 )
 def test_jointed_bar_meets_the_laplace_bar(pillar, changes):
     scene = pillar(**PLACES, **changes)
-    result, exact = simulate(scene, "jointed"), jointed_bar.solve(scene)
+    result, exact = simulate(scene, "jointed"), JOINTED.run(scene)
     assert misfit(result, exact) < 5e-3
     assert misfit(result, exact, "velocity") < 5e-3
 
@@ -122,5 +123,5 @@ def test_jointed_error_falls_with_the_square_of_the_step(pillar, layer):
         )
         result = simulate(scene, "jointed")
         assert result.dt == pytest.approx(interval)
-        errors.append(misfit(result, jointed_bar.solve(scene)))
+        errors.append(misfit(result, JOINTED.run(scene)))
     assert rates(errors) == pytest.approx([2, 2], abs=0.1)

@@ -14,7 +14,8 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import fitted
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.engines import applies, names, solve
-from jointwave.compare.exact.bar import jointed_bar, laplace
+from jointwave.compare.exact.bar import laplace
+from jointwave.compare.exact.bar.bars import bar_of
 from jointwave.compare.misfit.metrics import misfit, relative_l2
 from jointwave.compare.readings.attenuation import quality_factor
 from jointwave.continuum import applies as reason_against
@@ -230,7 +231,7 @@ def test_four_mechanisms_stand_for_a_constant_quality_factor(pillar, quality, bo
     """The pulse against that of Kjartansson's rock: a modelling error, of the fit."""
     parts = {"segments": [{"y": [0.0, 10.0], "joints": False, "intact_modulus": 4.375e9}]}
     scene = smooth(pillar, **parts, rock__quality_factor=quality)
-    bar, times = jointed_bar.bar(scene), np.arange(0, 0.02, 1e-4)
+    bar, times = bar_of(scene, resolved=True), np.arange(0, 0.02, 1e-4)
 
     def stress(relaxation):
         asked = load_history(scene), times, [7.0], [5.25], 4e-3

@@ -9,7 +9,7 @@ from closed_forms.modes import modes, of_modes
 from hard_runs import BLOCKS, JOINT, REFEREE, ROUND_OFF, SCHEMES, HardRun, marked
 from jointwave.cases.loads import load_history, step_means
 from jointwave.cases.sampling import interpolation
-from jointwave.compare.exact.bar import jointed_bar
+from jointwave.compare.exact.bar.bars import JOINTED
 from jointwave.compare.misfit.metrics import relative_l2
 
 #: Rigid rock, so that blocks move by their joints alone.
@@ -63,7 +63,7 @@ def test_joint_of_almost_no_compliance_leaves_whole_rock(scheme, times):
     layer = {"y": 5.0, "normal_stiffness": times * JOINT}
     changes = {"soft_layers": [layer]} | ({"step": 0.9} if scheme == "explicit" else {})
     run = HardRun("continuum-jointed", scheme, changes)
-    exact = jointed_bar.solve(run.read(soft_layers=[layer | {"normal_stiffness": 1e30}]))
+    exact = JOINTED.run(run.read(soft_layers=[layer | {"normal_stiffness": 1e30}]))
     p = run.properties
     delay = p.impedance * 2 * run.peak / (2 * layer["normal_stiffness"])
     passes = p.bar_speed * run.duration / run.scene.pillar.length

@@ -15,7 +15,7 @@ from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.engines import solve
-from jointwave.compare.exact.bar import equivalent_bar, jointed_bar
+from jointwave.compare.exact.bar.bars import EQUIVALENT, bar_of
 from jointwave.compare.exact.bar.transfer import transfer
 from jointwave.compare.misfit.metrics import misfit
 
@@ -141,7 +141,7 @@ def test_harmonic_waves_through_a_layer(bars):
     rocks = STEEL, GRANITE, SALT
     scene, (Z1, Z2, Z3) = bars(*rocks), (impedance(rock) for rock in rocks)
     omega = 2 * np.pi * np.array([10.0, 500.0, 2500.0, 7000.0])
-    stress, _ = transfer(jointed_bar.bar(scene), 1j * omega, np.array([4.0, 4.6]))
+    stress, _ = transfer(bar_of(scene, resolved=True), 1j * omega, np.array([4.0, 4.6]))
     q = omega * 0.6 * slowness(GRANITE)
     passed = 2 * Z3 / ((Z1 + Z3) * np.cos(q) + 1j * (Z2 + Z1 * Z3 / Z2) * np.sin(q))
     incoming = np.exp(-1j * omega * 4.0 * slowness(STEEL)) / 2
@@ -154,7 +154,7 @@ def test_a_quarter_wave_layer_matches_two_rocks(bars):
     between = 5000.0, Z1 * Z3 / 5000.0
     scene = bars(STEEL, between, SALT)
     omega = np.pi / 2 / (0.6 * slowness(between))
-    (stress,), _ = transfer(jointed_bar.bar(scene), np.array([1j * omega]), np.array([8.0]))
+    (stress,), _ = transfer(bar_of(scene, resolved=True), np.array([1j * omega]), np.array([8.0]))
     assert abs(stress[0]) ** 2 / Z3 == pytest.approx(0.25 / Z1, rel=1e-12)
 
 
@@ -213,7 +213,7 @@ def test_blocks_of_another_thickness_are_the_same_rock_mass(pillar):
     load = {"shape": "ricker", "amplitude": 1e6, "period": 0.01}
     thin = [{"y": [20.0, 30.0], "block": 0.25}]
     scene = pillar(segments=thin, load=load)
-    assert misfit(equivalent_bar.solve(scene), equivalent_bar.solve(pillar(load=load))) < 1e-7
+    assert misfit(EQUIVALENT.run(scene), EQUIVALENT.run(pillar(load=load))) < 1e-7
     p, q = calibrate(scene), calibrate(pillar())
     assert (p.block_count, p.contact_y[-1]) == (120, 50.0)
     k, (thick, half) = q.regular_stiffness, (q.regular_own_stiffness, 2 * q.regular_own_stiffness)

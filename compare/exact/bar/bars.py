@@ -22,6 +22,7 @@ import xarray as xr
 
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
+from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.laplace import solved
 from jointwave.compare.exact.bar.transfer import Bar, end_of, rocks
@@ -47,33 +48,34 @@ def applies(scene: Scene, resolved: bool) -> Answer:
     )
 
 
-def bar(scene: Scene, resolved: bool) -> Bar:
+def bar_of(scene: Scene, resolved: bool) -> Bar:
     """Return the intact rock of a scene with its N - 1 joints, behind half a joint where an end is
     matched; if these are not resolved, its homogenised bar with soft layers as interfaces."""
-    p, model = calibrate(scene), "jointed" if resolved else "equivalent"
-    moduli, compliance, etas = (
-        [one.modulus for one in p.each],
-        p.excess_compliance,
-        p.joint_time_constant,
-    )
-    halves = [(), ()]
+    p = calibrate(scene)
+    model, moduli = "equivalent", [one.modulus for one in p.each]
+    compliance, etas = p.excess_compliance, p.joint_time_constant
     if resolved:
         assert p.own_stiffness is not None
-        moduli, compliance = [one.intact_modulus or 0.0 for one in p.each], 1 / p.own_stiffness
-        etas = p.own_time_constant
-        halves = [
-            (1 / (2 * one.regular_own_stiffness), one.time_constant or 0.0)
-            for one in (p.at_start, p.at_end)
-        ]
+        model, moduli = "jointed", [one.intact_modulus or 0.0 for one in p.each]
+        compliance, etas = 1 / p.own_stiffness, p.own_time_constant
+    start, end = (
+        end_of(kind, rock.impedance, *(_half_joint(rock) if resolved else ()))
+        for kind, rock in ((scene.ends.start, p.at_start), (scene.ends.end, p.at_end))
+    )
     return Bar(
         length=scene.pillar.length,
         rocks=rocks(p, moduli, mechanisms_of(scene, model)),
         joint_y=p.joint_y,
         joint_compliance=compliance,
         joint_time_constant=np.zeros_like(p.joint_y) if etas is None else etas,
-        start=end_of(scene.ends.start, p.at_start.impedance, *halves[0]),
-        end=end_of(scene.ends.end, p.at_end.impedance, *halves[1]),
+        start=start,
+        end=end,
     )
+
+
+def _half_joint(rock: JointedRock) -> tuple[float, float]:
+    """Return compliance (m/Pa) and time constant (s) of half a joint of a rock."""
+    return 1 / (2 * rock.regular_own_stiffness), rock.time_constant or 0.0
 
 
 def _solver(
@@ -83,7 +85,7 @@ def _solver(
 
     def solve(scene: Scene) -> xr.Dataset:
         """Return stress, velocity and displacement of the scene's bar."""
-        return solved(scene, name, bar(scene, resolved))
+        return solved(scene, name, bar_of(scene, resolved))
 
     applies_to = partial(applies, resolved=resolved)
     return Solver(name, rock, label, line, applies_to, solve, distances=distances)

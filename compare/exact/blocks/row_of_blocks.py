@@ -153,34 +153,31 @@ def receivers(scene: Scene, one: BlockSystem, states: np.ndarray) -> Waves:
     """
     (sections, points), c = reads(scene), len(own_freedoms(scene))
     forces = contact_forces(one, states, drive(scene).value(sample_times(scene)))
-    waves = [
-        (matrix @ x.T).reshape(-1, c, len(states))
+    forces, rate, moved = (
+        (matrix @ x.reshape(len(x), -1, c)[:, : matrix.shape[1]]).transpose(1, 2, 0)
         for matrix, x in (
-            (sections, forces[:, : sections.shape[1]]),
+            (sections, forces),
             (points, states @ one.velocity.T),
             (points, states @ one.displacement.T + one.rest),
         )
-    ]
+    )
     if c == 1:
-        return dict(
-            zip(("stress", "velocity", "displacement"), (x[:, 0] for x in waves), strict=True)
-        )
-    forces, rate, moved = waves
+        return {"stress": forces[:, 0], "velocity": rate[:, 0], "displacement": moved[:, 0]}
     turned = moved[:, 3:] if c == 6 else 0 * moved
     along = {"velocity": rate[:, :3], "displacement": moved[:, :3], "rotation": turned}
     return {"stress": forces[:, 1], "shear": forces[:, [0, 2]], **along}
 
 
 def reads(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return the linear interpolations from the forces of contacts to tractions in sections, and
-    from the motion of blocks to that of points, as matrices."""
+    """Return the linear interpolations from the forces of contacts to tractions in sections [s,
+    N + 1], and from the motion of blocks to that of points [p, N]."""
     p, record, found = calibrate(scene), scene.record, []
     for nodes, places in ((p.contact_y, record.stress), (p.centre_y, record.velocity)):
         left, right, weight = interpolation(nodes, places)
         matrix, i = np.zeros((len(places), len(nodes))), np.arange(len(places))
         matrix[i, left] += 1 - weight
         matrix[i, right] += weight
-        found.append(np.kron(matrix, np.eye(len(own_freedoms(scene)))))
+        found.append(matrix)
     return found[0] / p.area, found[1]
 
 

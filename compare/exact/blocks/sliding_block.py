@@ -19,8 +19,9 @@ import xarray as xr
 
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.contact_points import face_points
-from jointwave.cases.sampling import interpolation, sample_times
+from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.blocks.row_of_blocks import reads
 from jointwave.compare.exact.conditions import DAMPED, LAYERS, holds
 from jointwave.compare.solvers.record import Answer, Form, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
@@ -62,23 +63,18 @@ def _topples(scene: Scene, friction: float) -> bool:
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, shear, velocity and displacement of the block and its base."""
-    p, times, record = calibrate(scene), sample_times(scene), scene.record
+    p, times, (sections, points) = calibrate(scene), sample_times(scene), reads(scene)
     assert p.friction is not None
     across, along = _gravity(scene)
     total = hypot(*across)
     held = min(total, float(p.friction[0]) * along)
     down = across / total if total else across
-    contacts, centres = p.spacing * np.arange(3), p.spacing * np.array([0.5, 1.5])
-    weight = p.block_mass / p.area
-    normal = _read(contacts, record.stress, weight * along * np.arange(3))
-    shear = _read(contacts, record.stress, weight * np.array([0.0, held, held + total]))
-    first = _read(centres, record.velocity, np.array([1.0, 0.0]))
-    axis = np.array([down[0], 0.0, down[1]])
-    fall = (total - held) * first[:, None] * np.array([times, times**2 / 2])[:, None]
-    velocity, displacement = fall[..., None] * axis
+    weights = p.block_mass * np.array([along * np.arange(3), [0.0, held, held + total]])
     still = np.ones_like(times)
-    stress, shear = np.outer(normal, still), np.outer(shear, still)[..., None] * down
-    found = {"shear": shear, "velocity": velocity, "displacement": displacement}
+    stress, shear = (np.outer(sections @ weight, still) for weight in weights)
+    falls = (total - held) * np.outer(points[:, 0], [down[0], 0.0, down[1]])[:, None]
+    velocity, displacement = (falls * t[:, None] for t in (times, times**2 / 2))
+    found = {"shear": shear[..., None] * down, "velocity": velocity, "displacement": displacement}
     return dataset(scene, SOLVER.name, times, stress, **found, rotation=np.zeros_like(velocity))
 
 
@@ -87,11 +83,6 @@ def _gravity(scene: Scene) -> tuple[np.ndarray, float]:
     assert scene.gravity is not None
     g = scene.gravity.acceleration * np.array(scene.gravity.direction)
     return g[[0, 2]], float(g[1])
-
-
-def _read(nodes: np.ndarray, places: list[float], values: np.ndarray) -> np.ndarray:
-    left, right, weight = interpolation(nodes, places)
-    return (1 - weight) * values[left] + weight * values[right]
 
 
 SOLVER = Solver(

@@ -19,8 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.histories import LoadHistory
-from jointwave.cases.incident import WaveMotion, across, in_components
+from jointwave.cases.incident import PlaneWave, PlaneWaves, across, in_components
 from jointwave.cases.loads import history_of
 from jointwave.cases.material.effective_medium import compliant, speeds, stiffness, tensor
 from jointwave.cases.material.rock import elastic_rock
@@ -40,37 +39,18 @@ from jointwave.results.rock_mass import rock_mass_dataset
 
 
 @dataclass(frozen=True)
-class MediumWave:
-    """A plane wave of a medium: unit direction; polarisation, a unit vector times a share; speed,
-    m/s; `through`, a point of its front at t = 0, m; stress at 1 m/s, as of a `WaveMotion`, Pa,
-    tension positive; its pulse."""
+class MediumWave(PlaneWave):
+    """A plane wave of a medium: its polarisation is a unit vector times a share; stress : at 1 m/s,
+    as of a `WaveMotion`, Pa, tension positive."""
 
-    direction: np.ndarray
-    polarisation: np.ndarray
-    speed: float
-    through: np.ndarray
     stress: np.ndarray
-    pulse: LoadHistory
 
-    def lateness(self, points: np.ndarray) -> np.ndarray:
-        """Return the time at which the pulse begins at points [m, d], s."""
-        return (np.asarray(points) - self.through) @ self.direction / self.speed
+    def unit_stress(self) -> np.ndarray:
+        return self.stress
 
 
-@dataclass(frozen=True)
-class MediumField:
+class MediumField(PlaneWaves):
     """The waves of a scene in the effective medium of its joints."""
-
-    waves: tuple[MediumWave, ...]
-
-    def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
-        sizes = self.waves[0].polarisation.size, self.waves[0].stress.size
-        total = [np.zeros((len(points), count, len(times))) for count in sizes]
-        for wave in self.waves:
-            f = wave.pulse.value(np.asarray(times) - wave.lateness(points)[:, None])
-            for sum_, shape in zip(total, (wave.polarisation, wave.stress), strict=True):
-                sum_ += f[:, None] * shape[:, None]
-        return WaveMotion(*total)
 
 
 def medium_field(scene: RockMass) -> MediumField:
@@ -102,7 +82,7 @@ def medium_wave(scene: RockMass, wave: Wave, C: np.ndarray) -> MediumWave:
     through = corners[np.argmin(corners @ n)] if wave.through is None else np.array(wave.through)
     over = density * c if wave.quantity == "stress" else 1.0
     pulse = history_of(wave, wave.amplitude / over)
-    return MediumWave(n, g, c, through, -in_components(full), pulse)
+    return MediumWave(elastic_rock(scene.rock), n, g, c, through, pulse, -in_components(full))
 
 
 def _sent_back(wave: MediumWave, C: np.ndarray, scene: RockMass, face: Face) -> list[MediumWave]:
@@ -135,7 +115,7 @@ def _sent_back(wave: MediumWave, C: np.ndarray, scene: RockMass, face: Face) -> 
         speed = float(1 / np.hypot(*s))
         own = r * stress[[0, 1, 0], [0, 1, 1]]
         through = at - late * speed * speed * s
-        back.append(MediumWave(speed * s, r * g, speed, through, own, wave.pulse))
+        back.append(MediumWave(wave.rock, speed * s, r * g, speed, through, wave.pulse, own))
     return back
 
 

@@ -24,6 +24,7 @@ from jointwave.compare.exact.rock_mass import normal_incidence
 from jointwave.compare.exact.rock_mass.conditions import (
     ALONG,
     along,
+    beyond_linear_law,
     directions_of,
     free_face,
     prestress_of,
@@ -147,7 +148,7 @@ def _damped(scene: RockMass) -> float:
 def _beyond_strength(scene: RockMass) -> Iterator[tuple[float, str]]:
     """Yield for each joint set the motion that the tractions of the field beyond its strength would
     be, over the velocity of the wave, and what it sends back less as it closes."""
-    sets = [one for one in scene.joint_sets if not _is_linear(one)]
+    sets = [one for one in scene.joint_sets if beyond_linear_law(one)]
     if not sets:
         return
     field, places = field_of(scene), np.mean(scene.domain.corners, axis=0)[None]
@@ -181,11 +182,6 @@ def _moved(wave: PlaneWave, along_joint: np.ndarray) -> float:
     w = face(wave.rock, abs(float(wave.direction @ along_joint)) / wave.speed)
     V, A = np.array([w.shear_velocity, w.normal_velocity]), np.array([w.shear, w.normal])
     return float(np.linalg.norm(V @ np.linalg.inv(A), 2))
-
-
-def _is_linear(one: JointSet) -> bool:
-    limits = one.friction_angle, one.cohesion, one.tensile_strength, one.maximum_closure
-    return one.tension is not False and all(value is None for value in limits)
 
 
 def _excess(one: JointSet, pressed: np.ndarray, shear: np.ndarray) -> tuple[float, float]:

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from jointwave.cases.loads import load_history
-from jointwave.compare.exact.bar import equivalent_bar, jointed_bar
+from jointwave.compare.exact.bar.bars import EQUIVALENT, JOINTED
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.metrics import mean_period, misfit, relative_l2
@@ -110,7 +110,7 @@ def mostly_dispersion(comparisons: list[Comparison]) -> tuple[str, bool]:
     """The rigid blocks are less than half as far from the bar with joints as from the homogenised
     one."""
     results, scene = comparisons[0].results, comparisons[0].scene
-    exact = (row_of_blocks.AXIAL, equivalent_bar.SOLVER, jointed_bar.SOLVER)
+    exact = (row_of_blocks.AXIAL, EQUIVALENT, JOINTED)
     own, bar, jointed = (results[one.name] for one in exact)
     total, rigid = (misfit(results[DEM.name], one) for one in (bar, jointed))
     holds = rigid < 0.5 * total

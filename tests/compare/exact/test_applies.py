@@ -5,7 +5,8 @@ import pytest
 
 from jointwave.cases import SceneError
 from jointwave.compare.engines import EXACT, solve, solver
-from jointwave.compare.exact.bar import images, jointed_bar
+from jointwave.compare.exact.bar import images
+from jointwave.compare.exact.bar.bars import JOINTED
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.solvers.record import Answer
 
@@ -255,7 +256,7 @@ def test_spatial_solutions_leave_out_softening(scene, name, spatial, tables, rea
 
 def test_friction_does_not_matter_while_nothing_shears_the_joints(scene):
     at = scene(joints={"friction_angle": 30.0, "cohesion": 0.0})
-    assert row_of_blocks.applies(at) and images.applies(at) and jointed_bar.applies(at)
+    assert row_of_blocks.applies(at) and images.applies(at) and JOINTED.applies(at)
 
 
 def test_every_solution_is_asked_both_ways():

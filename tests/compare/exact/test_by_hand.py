@@ -15,7 +15,8 @@ from closed_forms.modes import modes
 from closed_forms.spall import advance
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.exact.bar import equivalent_bar, images, jointed_bar
+from jointwave.compare.exact.bar import images
+from jointwave.compare.exact.bar.bars import EQUIVALENT, JOINTED
 from jointwave.compare.exact.bar.modes import SERIES
 from jointwave.compare.exact.blocks import row_of_blocks, sliding_block
 from jointwave.compare.exact.blocks.pillar import system_of
@@ -172,7 +173,7 @@ def test_drive():
     assert drive(scene(load=load, **base)).value(np.array([-1.0, 2.0])).tolist() == [0, 3]
 
 
-@pytest.mark.parametrize("solve", [images.solve, equivalent_bar.solve])
+@pytest.mark.parametrize("solve", [images.solve, EQUIVALENT.run])
 def test_a_step_in_the_free_bar(solve):
     """At 0.5 m until 0.07 s, then nothing until 0.09 s; v = 2 mm/s a passage: f / Z = 0.02 m/s."""
     at = {"stress": [0.5], "velocity": [0.5], "interval": 0.02}
@@ -203,7 +204,7 @@ def one_layer(**tables):
     return scene(0.12, rock=rock, soft_layers=[layer], ends=ends, **tables)
 
 
-@pytest.mark.parametrize("solve", [one_joint.solve, equivalent_bar.solve])
+@pytest.mark.parametrize("solve", [one_joint.solve, EQUIVALENT.run])
 def test_a_step_meets_one_joint(solve):
     """Half of it enters; Z / 2 K = 0.04 s: 500 (1 - e^(-t / 0.04)) passes, the rest comes back."""
     found = solve(one_layer())
@@ -221,7 +222,7 @@ def test_a_step_meets_one_joint(solve):
 def test_jointed_bar_before_anything_comes_back():
     """Intact rock has z = sqrt(2) Z: sqrt(2) / (1 + sqrt(2)) of the load enters beside a dashpot Z;
     z / 2 K_n after its arrival 1 / e of it has yet to pass the joint."""
-    found = jointed_bar.solve(one_layer())
+    found = JOINTED.run(one_layer())
     enters, speed, lag = 1000 * sqrt(2) / (1 + sqrt(2)), 50 * sqrt(2), sqrt(2) * 0.045
     holds(found.stress[0, 1:3], [enters, enters], rel=1e-3)
     passed = enters * (1 - exp(-(0.03 - 1.5 / speed) / lag))
@@ -235,9 +236,7 @@ def test_far_end_of_the_jointed_bar(end):
     rock = {"density": 1000.0, "equivalent_modulus": 2.5e6, "equivalent_poisson": 0.25}
     rock["intact_modulus"] = 5e6
     at = {"stress": [2.0], "velocity": [1.5], "interval": 0.01}
-    found = jointed_bar.solve(
-        scene(0.06, rock=rock, ends={"start": "quiet", "end": end}, record=at)
-    )
+    found = JOINTED.run(scene(0.06, rock=rock, ends={"start": "quiet", "end": end}, record=at))
     t, a = np.array([0.03, 0.04, 0.05]) - 2 / (50 * sqrt(2)), 1e7 / (5e4 * sqrt(2))
     b, twice = a + 200, 2000 * sqrt(2) / (1 + sqrt(2))
     late, soon = np.exp(-a * t), np.exp(-b * t)

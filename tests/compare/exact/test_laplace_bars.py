@@ -9,7 +9,8 @@ from closed_forms.parallel_joints import transmission
 from jointwave.cases import Scene
 from jointwave.cases.histories import Recorded, Sine, Step
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.compare.exact.bar import equivalent_bar, images, jointed_bar, laplace
+from jointwave.compare.exact.bar import images, laplace
+from jointwave.compare.exact.bar.bars import EQUIVALENT, JOINTED, bar_of
 from jointwave.compare.exact.bar.modes import solve_damped, sums
 from jointwave.compare.exact.bar.transfer import Bar, End, RockFrom, transfer
 
@@ -85,7 +86,7 @@ def test_a_step_and_a_record_arrive_as_images_say(misfit, monkeypatch, front):
 
 
 def random_bar(scene, folder, seed):
-    """Return a module and a scene of a jointed or homogenised bar with any load, layers and ends,
+    """Return a solution and a scene of a jointed or homogenised bar with any load, layers and ends,
     with receivers on its ends, on joints and between."""
     r = np.random.default_rng(seed)
     (folder / "load.csv").write_text("0.001,0.4\n0.004,1\n0.0131,-0.7\n0.02,0.2\n")
@@ -112,8 +113,8 @@ def random_bar(scene, folder, seed):
         },
     ).model_dump(exclude_none=True)
     table["load"] = load | {"amplitude": 1e6}
-    module = equivalent_bar if r.random() < 0.5 else jointed_bar
-    return module, Scene.model_validate(table, context={"folder": folder})
+    solution = EQUIVALENT if r.random() < 0.5 else JOINTED
+    return solution, Scene.model_validate(table, context={"folder": folder})
 
 
 @pytest.mark.parametrize(
@@ -121,13 +122,13 @@ def random_bar(scene, folder, seed):
 )
 def test_the_bound_of_the_error_holds(scene, tmp_path, monkeypatch, seed):
     """Against steps many times as fine in a longer window."""
-    module, at = random_bar(scene, tmp_path, seed)
+    solution, at = random_bar(scene, tmp_path, seed)
     monkeypatch.setattr(laplace, "CHEAP", laplace.CHEAP / 8)
-    found = module.solve(at)
+    found = solution.run(at)
     monkeypatch.setattr(laplace, "CHEAP", 8 * laplace.CHEAP)
     monkeypatch.setattr(laplace, "FINER", 4 * laplace.FINER)
     monkeypatch.setattr(laplace, "TAIL", 2.5)
-    finer = module.solve(at)
+    finer = solution.run(at)
     for name in ("stress", "velocity", "displacement"):
         waves, exact = (
             x[name].values.reshape(-1, len(x.time)).astype(float) for x in (found, finer)
@@ -140,7 +141,7 @@ def test_the_bound_of_the_error_holds(scene, tmp_path, monkeypatch, seed):
 def test_the_pillar_s_stress_is_known_to_a_millionth(scene):
     """A tenth of the bounds of 1e-5 that scenes may set is then judged: inside the rock, at any
     joint and behind; in front of the first joint, where kinks return 700 times, to 1e-4."""
-    found = jointed_bar.solve(scene(record={"velocity": [0.0, 20.0, 33.3]}))
+    found = JOINTED.run(scene(record={"velocity": [0.0, 20.0, 33.3]}))
     for name in ("stress", "velocity", "displacement"):
         waves = found[name].values.reshape(-1, len(found.time))
         relative = found[f"{name}_error"].values.ravel() / np.sqrt((waves**2).mean(axis=1))
@@ -159,7 +160,7 @@ def test_fine_joints_are_the_homogenised_bar(scene, misfit):
             load={"shape": "ricker", "period": 0.04},
             record={"interval": 2e-4},
         )
-        off.append(misfit(jointed_bar.solve(at), equivalent_bar.solve(at)))
+        off.append(misfit(JOINTED.run(at), EQUIVALENT.run(at)))
     assert off[0] < 6.6e-4
     assert np.log2(off[0] / off[1]) == pytest.approx(2, abs=0.05)
 
@@ -169,7 +170,7 @@ def test_the_damped_bar_s_modes_agree(scene, misfit, zeta):
     """Each to its own bound; both are smooth but at y = 0, where kinks of the load fall on
     samples."""
     at = scene(joints={"damping_ratio": zeta})
-    modes, laplace_bar = solve_damped(at), equivalent_bar.solve(at)
+    modes, laplace_bar = solve_damped(at), EQUIVALENT.run(at)
     for variable in ("stress", "velocity", "displacement"):
         assert misfit(modes, laplace_bar, variable) < 9e-5
 
@@ -188,12 +189,12 @@ def test_over_and_critically_damped_modes_satisfy_their_equation():
 
 def test_a_soft_layer_adds_its_excess_compliance_only(scene, soft):
     p = calibrate(scene(soft_layers=soft))
-    bar = equivalent_bar.bar(scene(soft_layers=soft))
+    bar = bar_of(scene(soft_layers=soft), resolved=False)
     assert np.flatnonzero(bar.joint_compliance).tolist() == [39]
     assert 1 / bar.joint_compliance[39] == pytest.approx(
         1 / (1 / p.stiffness[39] - 0.5 / p.modulus), rel=1e-12
     )
-    ordinary = equivalent_bar.bar(scene(soft_layers=[{"y": 20.0}]))
+    ordinary = bar_of(scene(soft_layers=[{"y": 20.0}]), resolved=False)
     assert not ordinary.joint_compliance.any()
 
 
@@ -203,4 +204,4 @@ def test_a_recorded_load_reaches_the_scene(scene, misfit, tmp_path):
     table = scene().model_dump(exclude_none=True)
     table["load"] = {"shape": "table", "amplitude": 1e6, "file": "blast.csv"}
     at = Scene.model_validate(table, context={"folder": tmp_path})
-    assert misfit(equivalent_bar.solve(at), images.solve(at)) < 9e-5
+    assert misfit(EQUIVALENT.run(at), images.solve(at)) < 9e-5

@@ -81,7 +81,7 @@ def test_of_the_spatial_lattice(scene, extended, seed):
     table["load"] = {"shape": "step", "amplitude": 1e6, "direction": [0.6, 0, 0.8], "at": [0.1, 0]}
     at = Scene.model_validate(table)
     found, times, push = row_of_blocks.solve(at), sample_times(at), drive_vector(at)
-    one, (sections, points) = system_of(at), reads(at)
+    one, (sections, points) = system_of(at), (np.kron(x, np.eye(6)) for x in reads(at))
     states = of_step(one.matrix.toarray(), 1e6 * one.load, times).T
     forces = sections @ (one.forces @ states)[: sections.shape[1]]
     moved = (points @ (x @ states) for x in (one.displacement, one.velocity))

@@ -6,7 +6,8 @@ from scipy.linalg import eigh
 
 from closed_forms import generalised_alpha as theory
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.compare.exact.bar import images, jointed_bar
+from jointwave.compare.exact.bar import images
+from jointwave.compare.exact.bar.bars import JOINTED
 from jointwave.continuum.build import critical_step_of, discretise, operators
 from jointwave.continuum.implicit.balance import implicit_matrices
 from jointwave.continuum.implicit.generalised_alpha import scheme
@@ -111,7 +112,7 @@ def test_error_falls_with_the_square_of_the_step(pillar, implicit, rho, kind):
             time__duration=0.04,
             record={"stress": [20.0, 20.2], "velocity": [19.75], "interval": interval},
         )
-        run, exact = implicit(scene, rho).go(), jointed_bar.solve(scene)
+        run, exact = implicit(scene, rho).go(), JOINTED.run(scene)
         errors.append(
             [
                 misfit(run.samples.stress[:2], exact.stress.values),
@@ -185,7 +186,7 @@ def test_a_stiff_joint_takes_steps_of_a_hundred_critical_ones(pillar, implicit):
     )
     p, critical = calibrate(scene), critical_step_of(scene, discretise(scene, "jointed"), "jointed")
     assert p.own_stiffness.max() > 1e4 * p.own_stiffness.min()
-    run, exact = implicit(scene, 0.9).go(), jointed_bar.solve(scene)
+    run, exact = implicit(scene, 0.9).go(), JOINTED.run(scene)
     assert run.clock.dt > 100 * critical
     assert misfit(run.samples.stress[:1], exact.stress.values) < 0.02
     assert misfit(run.samples.velocity, exact.velocity.values[..., 0]) < 0.02

@@ -12,7 +12,7 @@ from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.exact.bar.jointed_bar import bar
+from jointwave.compare.exact.bar.bars import bar_of
 from jointwave.compare.exact.bar.laplace import bounded
 
 
@@ -22,7 +22,9 @@ def jointed_spall(scene: Scene) -> Spall | None:
     if p.tensile_strength is None:
         raise ValueError("no joint has a tensile strength")
     load, period = load_history(scene), scene.load.time_scale
-    (stress, _, _), _ = bounded(bar(scene), load, times, p.joint_y.tolist(), [], period)
+    (stress, _, _), _ = bounded(
+        bar_of(scene, resolved=True), load, times, p.joint_y.tolist(), [], period
+    )
     fails = stress <= -p.tensile_strength[:, None]
     if not fails.any():
         return None
