@@ -16,7 +16,6 @@ or with friction under the prestress, and all else elastic and undamped.
 
 from collections.abc import Iterator
 from math import isfinite
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -81,20 +80,24 @@ def _snaps(scene: Scene, p: Properties) -> bool:
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return shear, velocity and displacement on both sides of the joint that slips."""
-    p, times = calibrate(scene), sample_times(scene)
-    found, twin = (_waveforms(scene, p, which) for which in (0, 1))
-    errors = {name: _bound(found[name], twin[name]) for name in found}
+    times = sample_times(scene)
+    found, twin = (_waveforms(scene, which) for which in (0, 1))
+    errors = {
+        name: bound(x, twin[name]) + ROUND_OFF * np.abs(x).max(initial=0.0)
+        for name, x in found.items()
+    }
     stress = np.full((len(scene.record.stress), len(times)), static_stress(scene))
     stress = stress + found.pop("stress", 0.0)
+    found |= {name: x.swapaxes(1, 2) for name, x in found.items()}
     rotation = np.zeros_like(found["velocity"])
     return dataset(scene, SOLVER.name, times, stress, **found, rotation=rotation, errors=errors)
 
 
-def _waveforms(scene: Scene, p: Properties, which: int) -> dict[str, Any]:
-    """Return the waveforms, of a joint that slip changes also those of stress; which : 1 for the
-    twin, whose tolerances are larger."""
-    load, times, joint = entering(scene), sample_times(scene), the_joint(scene, p)
-    Z = p.shear_impedance
+def _waveforms(scene: Scene, which: int) -> dict[str, np.ndarray]:
+    """Return the waveforms [receiver, axis, n], of a joint that slip changes also those of stress
+    [receiver, n]; which : 1 for the twin, whose tolerances are larger."""
+    p, load, times, record = calibrate(scene), entering(scene), sample_times(scene), scene.record
+    joint, Z, axis = the_joint(scene, p), p.shear_impedance, np.array(scene.load.direction)[:, None]
     passed: rate_state_joint.RateStateWave | Passed
     if p.direct_effect is not None:
         j, pressure = int(np.flatnonzero(_slips(p))[0]), static_stress(scene)
@@ -102,47 +105,21 @@ def _waveforms(scene: Scene, p: Properties, which: int) -> dict[str, Any]:
         rest, tolerance = joint.y / p.shear_speed, rate_state_joint.TOLERANCES[which]
         passed = rate_state_joint.RateStateWave(rated, Z, load, times[-1], tolerance, rest)
     else:
-        tolerance = TOLERANCES[which]
-        passed = Passed(joint, Z, load, times[-1], tolerance, p.impedance)
-
-    def waves(places: list[float]) -> np.ndarray:
-        return around(joint.y, p.shear_speed, passed, load, times, places)
-
-    (there, _), (back, _) = waves(scene.record.stress)
-    axis = np.array(scene.load.direction)
-    shear = (there + back)[..., None] * axis[[0, 2]]
-    there, back = waves(scene.record.velocity)
-    velocity, displacement = (there - back)[..., None] / Z * axis
-    own = {"shear": shear, "velocity": velocity, "displacement": displacement}
+        passed = Passed(joint, Z, load, times[-1], TOLERANCES[which], p.impedance)
+    sheared, ((there, _), (back, _)) = (
+        around(joint.y, p.shear_speed, passed, load, times, places)
+        for places in (record.velocity, record.stress)
+    )
+    moved = (sheared[0] - sheared[1])[:, :, None] / Z * axis
+    found = {"shear": (there + back)[:, None] * axis[[0, 2]]}
     if isinstance(passed, Passed) and (joint.dilation or isfinite(joint.distance)):
-        return own | _lifted(scene, p, joint.y, passed, own)
-    return own
-
-
-def _lifted(
-    scene: Scene, p: Properties, joint_y: float, passed: Passed, waves: dict
-) -> dict[str, np.ndarray]:
-    """Return stress, velocity and displacement with the pressure waves that the joint radiates
-    along the axis on both sides as it dilates; waves : those of the shear wave."""
-    times = sample_times(scene)
-
-    def pressure(places: list[float]) -> np.ndarray:
-        late = np.abs(np.array(places)[:, None] - joint_y) / p.bar_speed
-        return np.array(passed.pressure(times - joint_y / p.shear_speed - late))
-
-    found = {key: waves[key].copy() for key in ("velocity", "displacement")}
-    side = np.sign(np.array(scene.record.velocity) - joint_y)[:, None] / p.impedance
-    for key, sent in zip(found, pressure(scene.record.velocity), strict=True):
-        found[key][..., 1] += side * sent
-    return found | {"stress": pressure(scene.record.stress)[0]}
-
-
-def _bound(one: np.ndarray, twin: np.ndarray) -> np.ndarray:
-    """Return the error bound of waveforms [receiver, n, axis], or [receiver, n], from a twin of
-    larger tolerances."""
-    peak = np.abs(one).max(initial=0.0)
-    own, other = (np.moveaxis(x, 1, -1) for x in (one, twin))
-    return bound(own, other) + ROUND_OFF * peak
+        # The pressure waves along the axis that the joint radiates to both sides as it dilates.
+        off, of_stress = (np.array(y)[:, None] - joint.y for y in (record.velocity, record.stress))
+        at = times - joint.y / p.shear_speed
+        sent = np.array(passed.pressure(at - np.abs(off) / p.bar_speed))
+        moved[:, :, 1] += np.sign(off) / p.impedance * sent
+        found["stress"] = passed.pressure(at - np.abs(of_stress) / p.bar_speed)[0]
+    return found | dict(zip(("velocity", "displacement"), moved, strict=True))
 
 
 def the_joint(scene: Scene, p: Properties) -> SlipJoint:

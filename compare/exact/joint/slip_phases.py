@@ -16,7 +16,6 @@ both sides, Z_n along the normal, and its strength rises by mu(S) p:
     (Z / 2 + mu w' Z_n / 2) S' = |sigma_I| - tau(S);   the impulse of p is Z_n w / 2.
 """
 
-from collections.abc import Callable
 from itertools import pairwise
 from math import inf
 from typing import Any, NamedTuple
@@ -185,12 +184,18 @@ class Passed:
         return float(self.load.value(np.asarray(t)))
 
     def _stick(self, start: float, stop: float, stress: float, path: float, slide: float) -> Phase:
+        from scipy.optimize import brentq
+
         joint, limit = self.joint, self.joint.left(path)
+
+        def excess(t: float) -> float:
+            return abs(self._incident(t)) - limit
+
         if joint.compliance == 0 or limit == 0:
             times = np.linspace(start + SHORTEST, stop, SPANS)
             beyond = np.flatnonzero(np.abs(self.load.value(times)) > limit)
             if beyond.size and beyond[0] > 0:
-                stop = self._crossing(limit, *times[beyond[0] - 1 : beyond[0] + 1])
+                stop = brentq(excess, *times[beyond[0] - 1 : beyond[0] + 1], xtol=1e-16)
             return Phase(start, stop, 0, path, slide, None)
         relaxation = self.impedance * joint.compliance / 2
 
@@ -200,43 +205,36 @@ class Passed:
         def yields(t: float, s: np.ndarray) -> float:
             return abs(float(s[0])) - limit - BEYOND * self.peak
 
-        found = self._solved(rate, start, stop, stress, self.peak, yields)
+        found = self._solved(rate, start, stop, stress, self.peak, {yields: 1})
         return Phase(start, found.t[-1], 0, path, slide, found.sol)
-
-    def _crossing(self, limit: float, before: float, after: float) -> float:
-        from scipy.optimize import brentq
-
-        return brentq(lambda t: abs(self._incident(t)) - limit, before, after, xtol=1e-16)
 
     def _slide(self, start: float, stop: float, way: int, path: float, slide: float) -> Phase:
         joint = self.joint
-        weakens = path < joint.distance * (1 - NEAR)
+        weakens = bool(joint.fall) and path < joint.distance * (1 - NEAR)
         share = 1 - joint.compliance * joint.fall if weakens else 1.0
 
         def rate(t: float, s: np.ndarray) -> float:
             return self._rate(way * self._incident(t), float(s[0]), share)
 
-        def stops(t: float, s: np.ndarray) -> float:
-            return rate(t, s)
-
         def is_weak(t: float, s: np.ndarray) -> float:
-            return float(s[0]) - joint.distance if weakens and joint.fall else -1.0
+            return float(s[0]) - joint.distance
 
         scale = min(joint.distance, self.peak / self.impedance * SPANS * self.span)
-        found = self._solved(rate, start, stop, path, scale, stops, is_weak)
+        ends = {rate: -1} | ({is_weak: 1} if weakens else {})
+        found = self._solved(rate, start, stop, path, scale, ends)
         return Phase(start, found.t[-1], way, path, slide, found.sol)
 
     def _solved(
-        self, rate: Callable, start: float, stop: float, now: float, scale: float, *ends: Callable
+        self, rate: Any, start: float, stop: float, now: float, scale: float, ends: dict[Any, int]
     ) -> Any:
-        """Return the solution from `now` on, ending where an event falls or rises to 0."""
+        """Return the solution from `now` on, up to where one of `ends` is 0 as it falls (-1) or
+        rises (1)."""
         from scipy.integrate import solve_ivp
 
-        for event in ends:
-            event.terminal = True  # type: ignore[attr-defined]
-            event.direction = -1 if event.__name__ == "stops" else 1  # type: ignore[attr-defined]
+        for event, direction in ends.items():
+            event.terminal, event.direction = True, direction
         with np.errstate(over="ignore", invalid="ignore"):  # of trial steps that are too long
             return solve_ivp(
-                rate, (start, stop), np.array([now]), "DOP853", events=ends, dense_output=True,
+                rate, (start, stop), np.array([now]), "DOP853", events=[*ends], dense_output=True,
                 max_step=self.span, rtol=self.tolerance, atol=self.tolerance * scale,
             )  # fmt: skip
