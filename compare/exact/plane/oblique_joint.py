@@ -15,7 +15,6 @@ Valid for every angle below 90 degrees and every K from 0 (free faces) to inf (w
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -32,15 +31,6 @@ class Joint:
     shear_stiffness: Values
     normal_viscosity: Values = 0.0
     shear_viscosity: Values = 0.0
-
-
-class Coefficients(NamedTuple):
-    """Complex amplitudes of particle velocity, relative to the incident wave."""
-
-    R_p: np.ndarray
-    R_s: np.ndarray
-    T_p: np.ndarray
-    T_s: np.ndarray
 
 
 def scattering(

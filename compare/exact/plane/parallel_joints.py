@@ -18,12 +18,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointwave.cases.material.rock import ElasticRock, Values
-from jointwave.compare.exact.plane.oblique_joint import (
-    Coefficients,
-    Joint,
-    layers_at_once,
-    scattering,
-)
+from jointwave.compare.exact.plane.oblique_joint import Joint, layers_at_once, scattering
 from jointwave.compare.exact.plane.pulse import Layers, PulseStack, axes_of
 from jointwave.compare.exact.plane.waves import KINDS, Kind, slowness_along, slownesses_across
 
@@ -35,21 +30,38 @@ def coefficients(
     rock: ElasticRock,
     joints: list[Joint],
     spacings: np.ndarray,
-) -> Coefficients:
-    """Return R_p, R_s at the first joint and T_p, T_s at the last one.
+) -> np.ndarray:
+    """Return R_p, R_s at the first joint and T_p, T_s at the last one, complex array [4, ...].
 
     incidence : "P" or "SV". angle : of travel from the normal, rad. omega : rad/s, Re >= 0; with a
     positive imaginary part it is a Laplace variable. These and rock are broadcast together.
     joints : in the order in which the wave meets them. spacings : between them, m, one less.
     """
     slowness = slowness_along(rock, incidence, angle)
-    rocks = [rock] * (len(joints) + 1)
-    R, behind = march(rocks, joints, spacings, slowness, omega)
-    E, T = _phases(rocks, spacings, slowness, omega), behind[0]
-    for e, Y in zip(E, behind[1:], strict=True):
-        T = Y @ (e[..., :, None] * T)
-    R_p, R_s, T_p, T_s = (x[..., k, KINDS.index(incidence)] for x in (R[0], T) for k in (0, 1))
-    return Coefficients(R_p, R_s, T_p, T_s)
+    rocks, incident = [rock] * (len(joints) + 1), np.eye(2)[KINDS.index(incidence)]
+    down, up = layers(rocks, joints, spacings, slowness, omega, incident)
+    return np.moveaxis(np.concatenate([up[0], down[-1]], axis=-1), -1, 0)
+
+
+def layers(
+    rocks: Sequence[ElasticRock],
+    joints: list[Joint],
+    spacings: np.ndarray,
+    slowness: Values,
+    omega: Values,
+    incident: np.ndarray,
+) -> Layers:
+    """Return the waves of all layers under an incident one [2], P and SV, at the first joint."""
+    R, Y = march(rocks, joints, spacings, slowness, omega)
+    E = _phases(rocks, spacings, slowness, omega)
+    down, up = [np.broadcast_to(incident, Y[0].shape[:-1])], [R[0] @ incident]
+    meets = down[0]
+    for i, y in enumerate(Y):
+        down.append((y @ meets[..., None])[..., 0])
+        if i < len(E):
+            meets = E[i] * down[-1]
+            up.append((R[i + 1] @ meets[..., None])[..., 0])
+    return Layers(np.stack(down), np.stack([*up, np.zeros_like(up[0])]))
 
 
 def march(
@@ -99,21 +111,13 @@ def stack_of(
     depths, met = np.asarray(offsets, dtype=float), joints
     if np.asarray(direction) @ (-np.sin(dip), np.cos(dip)) < 0:
         depths, met, rocks = -depths[::-1], met[::-1], rocks[::-1]
-    axes, spacings = axes_of(rocks[0], kind, direction, dip), np.diff(depths)
+    axes = axes_of(rocks[0], kind, direction, dip)
+    of = rocks, met, np.diff(depths), axes.slowness
 
-    def layers(omega: np.ndarray) -> Layers:
-        R, Y = march(rocks, met, spacings, axes.slowness, omega)
-        E = _phases(rocks, spacings, axes.slowness, omega)
-        down, up = [np.broadcast_to(axes.incident, Y[0].shape[:-1])], [R[0] @ axes.incident]
-        meets = down[0]
-        for i, y in enumerate(Y):
-            down.append((y @ meets[..., None])[..., 0])
-            if i < len(E):
-                meets = E[i] * down[-1]
-                up.append((R[i + 1] @ meets[..., None])[..., 0])
-        return Layers(np.stack(down), np.stack([*up, np.zeros_like(up[0])]))
+    def at(omega: np.ndarray) -> Layers:
+        return layers(*of, omega, axes.incident)
 
-    return PulseStack(axes, depths, layers, layers_at_once(rocks, met[0], axes), rocks)
+    return PulseStack(axes, depths, at, layers_at_once(rocks, met[0], axes), rocks)
 
 
 def _phases(

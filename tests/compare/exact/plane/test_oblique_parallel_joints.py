@@ -22,7 +22,7 @@ def test_numbers_at_thirty_degrees(rock, joint, count, T_p, T_s):
     two independent programs."""
     spacings = [0.1 * rock.p_speed / 100] * (count - 1)
     found = coefficients("P", np.radians(30), OMEGA, rock, [joint] * count, spacings)
-    assert np.abs([found.T_p, found.T_s]) == pytest.approx([T_p, T_s], abs=5.1e-5)
+    assert np.abs(found[2:]) == pytest.approx([T_p, T_s], abs=5.1e-5)
 
 
 @KINDS
@@ -33,7 +33,7 @@ def test_normal_incidence_is_the_closed_form(rock, joint, kind, count, spacing):
     speed = rock.p_speed if kind == "P" else rock.s_speed
     spacings = [spacing * speed / 100] * (count - 1)
     found = coefficients(kind, 0.0, OMEGA, rock, [joint] * count, spacings)
-    own = found.T_p if kind == "P" else found.T_s
+    own = found[2] if kind == "P" else found[3]
     expected = normal_incidence.transmission(count, 1.0, spacing)
     assert abs(own) == pytest.approx(expected, rel=1e-11)
 
@@ -57,7 +57,7 @@ def test_all_boundary_conditions_at_once_agree(referee, kind, count):
         )
         slowness = float(slowness_along(ElasticRock(*rock), kind, angle))
         expected = referee(rock, joints, spacings).solve(kind, slowness, OMEGA)
-        np.testing.assert_allclose(np.array(found), expected, rtol=0, atol=1e-11)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11)
 
 
 @KINDS
@@ -76,7 +76,7 @@ def test_joints_far_apart_in_evanescent_waves(rock, joint):
     alone are a Fabry-Perot of their T_s and R_s."""
     angle, d = np.radians(70.0), 1e5 / 3
     one = coefficients("SV", angle, OMEGA, rock, [joint], [])
-    T_s, R_s = one.T_s, one.R_s
+    _, R_s, _, T_s = one
     e = np.exp(1j * OMEGA * d * np.cos(angle) / rock.s_speed)
     found = coefficients("SV", angle, OMEGA, rock, [joint] * 2, [d])
-    assert found.T_s == pytest.approx(T_s * e * T_s / (1 - (R_s * e) ** 2), rel=1e-9)
+    assert found[3] == pytest.approx(T_s * e * T_s / (1 - (R_s * e) ** 2), rel=1e-9)
