@@ -27,13 +27,13 @@ from jointwave.cases.histories import Step
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import interpolation, sample_times
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.exact.blocks.events import NOISE, Motion, integrate
+from jointwave.compare.exact.blocks.events import NOISE, integrate
 from jointwave.compare.exact.blocks.pillar import own_freedoms, system_of
 from jointwave.compare.exact.blocks.system import BlockSystem
 from jointwave.compare.exact.conditions import DAMPED, LAYERS, drive, holds
 from jointwave.compare.exact.linear import bound, twins
 from jointwave.compare.solvers.record import Answer, Kind, Line, Rock, Solver, thin
-from jointwave.results.dataset import dataset, scene_hash
+from jointwave.results.dataset import dataset
 
 Waves = dict[str, np.ndarray]
 DENSE, EVENTS = "the matrix exponential is dense", "too many events"
@@ -91,7 +91,8 @@ def solve(scene: Scene) -> xr.Dataset:
     about: dict[str, Any] = {}
     name, known = (IN_SPACE if is_spatial(scene) else AXIAL).name, len(times)
     if len(one.one_sided):
-        motions = _motions(scene)
+        of = one, drive(scene), times, scene.load.time_scale
+        motions = [integrate(*of, noise) for noise in (0.0, NOISE)]
         states = [motion.states for motion in motions]
         name, known, about["events"] = NO_TENSION.name, _known(one, *states), motions[0].events
     else:
@@ -103,21 +104,6 @@ def solve(scene: Scene) -> xr.Dataset:
     errors = {key: bound(x[..., :known], twin[key][..., :known]) for key, x in found.items()}
     about |= {key: x if x.ndim == 2 else x.swapaxes(1, 2) for key, x in found.items()}
     return dataset(scene, name, times, errors=errors, **about)
-
-
-def _motions(scene: Scene) -> list[Motion]:
-    """Return the motion of a chain that opens and closes and the perturbed one, as long as none of
-    another chain is asked for: they are the same wherever the receivers are."""
-    record = scene.record.model_copy(update={"stress": [], "velocity": [], "fields": None})
-    key = scene_hash(scene.model_copy(update={"record": record}))
-    if key not in _last:
-        about = system_of(scene), drive(scene), sample_times(scene), scene.load.time_scale
-        _last.clear()
-        _last[key] = [integrate(*about, noise) for noise in (0.0, NOISE)]
-    return _last[key]
-
-
-_last: dict[str, list[Motion]] = {}
 
 
 def _known(one: BlockSystem, states: np.ndarray, other: np.ndarray) -> int:

@@ -25,6 +25,19 @@ class Face(NamedTuple):
     offset: float
 
 
+def beyond_waves(scene: RockMass) -> str | None:
+    """Return what else than waves acts on a scene, or that none enters; None if only waves act on
+    rock without openings."""
+    gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
+    reasons = [
+        (not scene.waves, "no wave enters"),
+        (bool(scene.loads), "a load acts"),
+        (gravity, "gravity acts"),
+        (bool(scene.domain.holes), "the domain has openings"),
+    ]
+    return next((why for there, why in reasons if there), None)
+
+
 def beyond_linear_rock(scene: RockMass) -> str | None:
     """Return why a scene is not undamped rock with linear joints, None if it is."""
     damping = scene.damping

@@ -127,18 +127,6 @@ def stiffnesses(scene: RockMass) -> np.ndarray:
     return np.array(found).reshape(-1, 2).T
 
 
-def against(scene: RockMass) -> str | None:
-    """Return why a scene is not one of plane waves at a stack of joints, None if it is."""
-    gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
-    reasons = [
-        (not scene.waves, "no wave enters"),
-        (bool(scene.loads), "a load acts"),
-        (gravity, "gravity acts"),
-        (bool(scene.domain.holes), "the domain has openings"),
-    ]
-    return next((why for there, why in reasons if there), None) or scatters_otherwise(scene)
-
-
 def scatters_otherwise(scene: RockMass, leaves: bool = True) -> str | None:
     """Return why the incident waves and the joints do not form the field of a stack, None if they
     do; other loads and openings add to it. leaves : whether waves must leave through the sides."""

@@ -24,8 +24,8 @@ from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane.layer_pulses import fields
 from jointwave.compare.exact.plane.waves import PlaneMotion
-from jointwave.compare.exact.rock_mass.conditions import prestress_of
-from jointwave.compare.exact.rock_mass.stack import JointStack, against, begun, stack_of
+from jointwave.compare.exact.rock_mass.conditions import beyond_waves, prestress_of
+from jointwave.compare.exact.rock_mass.stack import JointStack, begun, scatters_otherwise, stack_of
 from jointwave.compare.solvers.record import Answer, Kind, Line, Rock, Solver, thin
 from jointwave.results.rock_mass import rock_mass_dataset
 
@@ -46,7 +46,7 @@ Motion = Callable[["RockMass", JointStack, np.ndarray, np.ndarray], PlaneMotion]
 
 def holds(scene: RockMass, one: bool) -> Answer:
     """Return whether a scene has plane waves at one joint or, if not `one`, at several."""
-    if reason := against(scene):
+    if reason := beyond_waves(scene) or scatters_otherwise(scene):
         return Answer(reason)
     stack = stack_of(scene)
     count = len(stack.joints) - stack.has_face
