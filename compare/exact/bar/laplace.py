@@ -154,12 +154,13 @@ class Front(NamedTuple):
     ) -> list[np.ndarray]:
         """Return its stress, velocity and displacement [receivers, n]."""
         _, density, modulus, *_ = self.bar.rocks[0]
-        z, found = np.sqrt(density * modulus), []
+        z, found = np.sqrt(density * modulus), list[np.ndarray]()
         bar = self.bar.length, z / density, self.start, self.end
         signals = load.value, load.value, load.impulse
         for signal, places in zip(signals, (stress_y, velocity_y, velocity_y), strict=True):
             y, out = np.array(places), np.zeros((len(places), len(times)))
-            shares, sign, scale = self.shares(y), *((-1, z) if found else (1, 1.0))
+            sign, scale = (-1, z) if found else (1, 1.0)
+            shares = self.shares(y)
             ahead = shares > 0
             there, back = images(signal, y[ahead], times, *bar)
             out[ahead] = shares[ahead, None] * self.enters / scale * (there + sign * back)

@@ -26,6 +26,7 @@ Valid for shape "sine", free ends, no soft layers, every joint carrying tension.
 """
 
 from math import pi, sqrt
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -40,7 +41,7 @@ from jointwave.compare.exact.conditions import DAMPED, holds, is_free, static_st
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
-Waves = dict[str, np.ndarray]
+Waves = dict[str, Any]
 PAPER_TERMS = 100
 SAFETY = 2.0
 ROUND_OFF = 1e-12, 1e-9  # of a waveform's peak, without and with damping

@@ -96,8 +96,8 @@ def solve(scene: Scene) -> xr.Dataset:
         states = [motion.states for motion in motions]
         name, known, about["events"] = NO_TENSION.name, _known(one, *states), motions[0].events
     else:
-        states = twins(one.matrix, one.load, drive(scene), times)
-        states += twins(one.matrix, one.steady, Step(1.0), times)
+        driven = twins(one.matrix, one.load, drive(scene), times)
+        states = [*(driven + twins(one.matrix, one.steady, Step(1.0), times))]
     if known < len(times):
         about["known_until"] = float(times[known - 1])
     found, twin = (receivers(scene, one, x) for x in states)

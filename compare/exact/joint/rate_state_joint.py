@@ -78,9 +78,9 @@ def _exp(x: float) -> float:
 
 def rate_joint(p: Properties, j: int, pressure: float, compliance: float) -> RateJoint:
     """Return joint j under a pressure (Pa), with its additional compliance (m/Pa)."""
-    names = *("friction", "direct_effect", "evolution_effect"), "critical_slip_distance"
+    names = "friction", "direct_effect", "evolution_effect", "critical_slip_distance"
     own = (float(getattr(p, name)[j]) for name in (*names, "reference_rate", "initial_state"))
-    return RateJoint(pressure, *own, compliance)
+    return RateJoint(pressure, *own)._replace(compliance=compliance)
 
 
 class RateStateWave:

@@ -16,6 +16,7 @@ or with friction under the prestress, and all else elastic and undamped.
 
 from collections.abc import Iterator
 from math import isfinite
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -93,7 +94,7 @@ def solve(scene: Scene) -> xr.Dataset:
     return dataset(scene, SOLVER.name, times, stress, **found, rotation=rotation, errors=errors)
 
 
-def _waveforms(scene: Scene, which: int) -> dict[str, np.ndarray]:
+def _waveforms(scene: Scene, which: int) -> dict[str, Any]:
     """Return the waveforms [receiver, axis, n], of a joint that slip changes also those of stress
     [receiver, n]; which : 1 for the twin, whose tolerances are larger."""
     p, load, times, record = calibrate(scene), entering(scene), sample_times(scene), scene.record
