@@ -14,6 +14,7 @@ Valid for any load; no dashpots, no soft layers, every joint carries tension.
 
 from collections.abc import Callable
 from math import floor
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -51,20 +52,48 @@ def entering(scene: Scene) -> LoadHistory:
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement of the scene's homogenised bar."""
-    p, load, times = calibrate(scene), entering(scene), sample_times(scene)
-    ends = scene.ends.start, scene.ends.end
+    p, record, times, ends = calibrate(scene), scene.record, sample_times(scene), scene.ends
+    reflects = REFLECTION[ends.start], REFLECTION[ends.end]
+    bar = Front(scene.pillar.length, p.bar_speed, p.impedance, *reflects)
+    stress, *moved = bar.waves(entering(scene), times, record.stress, record.velocity)
+    return dataset(scene, SOLVER.name, times, stress + static_stress(scene), *moved)
 
-    def waves(signal: Callable, places: list[float]) -> tuple[np.ndarray, np.ndarray]:
-        start, end = (REFLECTION[kind] for kind in ends)
-        return images(signal, places, times, scene.pillar.length, p.bar_speed, start, end)
 
-    there, back = waves(load.value, scene.record.stress)
-    stress = there + back
-    there, back = waves(load.value, scene.record.velocity)
-    velocity = (there - back) / p.impedance
-    there, back = waves(load.impulse, scene.record.velocity)
-    displacement = (there - back) / p.impedance
-    return dataset(scene, SOLVER.name, times, stress + static_stress(scene), velocity, displacement)
+class Front(NamedTuple):
+    """Undamped rock from the loaded end on, which reflects kinks and jumps at its two ends.
+
+    length, speed, impedance : m, m/s, Pa s/m. start, end : reflection coefficients of stress.
+    enters : the fraction of the wave that enters. on_end : its share in the motion at its end.
+    """
+
+    length: float
+    speed: float
+    impedance: float
+    start: float
+    end: float
+    enters: float = 1.0
+    on_end: float = 1.0
+
+    def shares(self, places: np.ndarray) -> np.ndarray:
+        """Return this part's share in each place's motion: 1 inside, 0 behind it."""
+        off = (places - self.length) / self.length
+        return np.where(np.abs(off) < 1e-9, self.on_end, np.where(off < 0, 1.0, 0.0))
+
+    def waves(
+        self, load: LoadHistory, times: np.ndarray, stress_y: list[float], velocity_y: list[float]
+    ) -> list[np.ndarray]:
+        """Return its stress, velocity and displacement [receivers, n]."""
+        found, signals = list[np.ndarray](), (load.value, load.value, load.impulse)
+        for signal, places in zip(signals, (stress_y, velocity_y, velocity_y), strict=True):
+            y, out = np.array(places), np.zeros((len(places), len(times)))
+            sign, scale = (-1, self.impedance) if found else (1, 1.0)
+            shares = self.shares(y)
+            ahead = shares > 0
+            bar = self.length, self.speed, self.start, self.end
+            there, back = images(signal, y[ahead], times, *bar)
+            out[ahead] = shares[ahead, None] * self.enters / scale * (there + sign * back)
+            found.append(out)
+        return found
 
 
 def images(

@@ -17,7 +17,7 @@ twice the largest difference of the two within some fine steps of each sample.
 
 from dataclasses import replace
 from math import ceil, log
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -27,7 +27,7 @@ from jointwave.cases.loads import load_history
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.size import require
-from jointwave.compare.exact.bar.images import images
+from jointwave.compare.exact.bar.images import Front
 from jointwave.compare.exact.bar.transfer import Bar, End, nodes_of, transfer
 from jointwave.compare.exact.conditions import static_stress
 from jointwave.results.dataset import dataset
@@ -71,7 +71,7 @@ def bounded(
     from scipy.fft import irfft  # of many rows in a third of numpy's time
     from scipy.ndimage import maximum_filter1d
 
-    places, front = np.array([*stress_y, *velocity_y]), _front(bar, times[-1])
+    places, ahead_of = np.array([*stress_y, *velocity_y]), _front(bar, times[-1])
     dt, stride, count = _fine_step(times, period, len(nodes_of(bar, places)) + 4 * len(places))
     require(8.0 * count * (10 + 7 * len(places)), f"{count:,} instants of the load")
     decay = -log(WRAPPED) / (count * dt)
@@ -83,13 +83,14 @@ def bounded(
         load_transform * np.exp(-36 * np.minimum(share * fraction, 1.5) ** 8) for share in (1, 2)
     ]
     sigma, v = transfer(bar, s, places)
-    shares = np.zeros(len(places)) if front is None else front.shares(places)
     sharp = [np.zeros((len(y), len(times))) for y in (stress_y, velocity_y, velocity_y)]
-    if front is not None:
+    if ahead_of is not None:
+        front, rock = ahead_of
+        shares = front.shares(places)
         ahead = shares > 0
         sigma[ahead], v[ahead] = (
             x[ahead] - shares[ahead, None] * part
-            for x, part in zip((sigma, v), transfer(front.bar, s, places[ahead]), strict=True)
+            for x, part in zip((sigma, v), transfer(rock, s, places[ahead]), strict=True)
         )
         sharp = front.waves(load, times, stress_y, velocity_y)
     n, growth = len(stress_y), np.exp(decay * dt * stride * np.arange(len(times)))
@@ -130,46 +131,9 @@ def _jumps(load: LoadHistory) -> list[tuple[float, float]]:
     return []
 
 
-class Front(NamedTuple):
-    """The undamped rock in front of the first joint, `bar`, whose ends reflect kinks and jumps.
-
-    start, end : their reflection coefficients of stress. enters : the fraction of the end stress
-    that enters. interface : whether it ends at a joint, not at the end of the whole bar.
-    """
-
-    bar: Bar
-    start: float
-    end: float
-    enters: float
-    interface: bool
-
-    def shares(self, places: np.ndarray) -> np.ndarray:
-        """Return this part's share in each place's motion: 1 inside, on the joint 1/2, else 0."""
-        off = (places - self.bar.length) / self.bar.length
-        on = 0.5 if self.interface else 1.0
-        return np.where(np.abs(off) < 1e-9, on, np.where(off < 0, 1.0, 0.0))
-
-    def waves(
-        self, load: LoadHistory, times: np.ndarray, stress_y: list[float], velocity_y: list[float]
-    ) -> list[np.ndarray]:
-        """Return its stress, velocity and displacement [receivers, n]."""
-        _, density, modulus, *_ = self.bar.rocks[0]
-        z, found = np.sqrt(density * modulus), list[np.ndarray]()
-        bar = self.bar.length, z / density, self.start, self.end
-        signals = load.value, load.value, load.impulse
-        for signal, places in zip(signals, (stress_y, velocity_y, velocity_y), strict=True):
-            y, out = np.array(places), np.zeros((len(places), len(times)))
-            sign, scale = (-1, z) if found else (1, 1.0)
-            shares = self.shares(y)
-            ahead = shares > 0
-            there, back = images(signal, y[ahead], times, *bar)
-            out[ahead] = shares[ahead, None] * self.enters / scale * (there + sign * back)
-            found.append(out)
-        return found
-
-
-def _front(bar: Bar, duration: float) -> Front | None:
-    """Return the part of a bar in which kinks of the load travel to and fro, None without one."""
+def _front(bar: Bar, duration: float) -> tuple[Front, Bar] | None:
+    """Return the part of a bar in front of its first joint, in which kinks of the load travel to
+    and fro, and as a bar; None without one."""
     first, *others = bar.rocks
     if first.time_constant or first.relaxation is not None:
         return None
@@ -193,7 +157,8 @@ def _front(bar: Bar, duration: float) -> Front | None:
     start, end = (
         1.0 if np.isinf(e.dashpot) else (e.dashpot - z) / (e.dashpot + z) for e in (near, far)
     )
-    return Front(rock, start, end, z / (z + near.dashpot), length < bar.length)
+    enters, on_end = z / (z + near.dashpot), 0.5 if length < bar.length else 1.0
+    return Front(length, z / first.density, z, start, end, enters, on_end), rock
 
 
 def _fine_step(times: np.ndarray, period: float | None, nodes: int) -> tuple[float, int, int]:

@@ -12,7 +12,7 @@ from scipy.sparse.linalg import spsolve
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.material.contact_points import face_points
+from jointwave.cases.material.contact_points import bending
 from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.blocks.system import (
@@ -75,9 +75,8 @@ def bodies(scene: Scene, held: bool = False) -> tuple[np.ndarray, Contacts]:
     pairs = np.stack([np.r_[n, :n, n + matched], np.r_[:n, n + 1, 0 * matched + OUTSIDE]], axis=1)
     axis, second = np.ones(1), np.zeros((1, 1))
     if len(own) > 1:
-        of = scene.pillar.side, scene.joints.contact_points, scene.joints.point_rule
-        x, z, area = face_points(*of)
-        axis, second = np.array([0.0, 1.0, 0.0]), np.diag([area @ x**2, 0.0, area @ z**2])
+        part = bending(scene.joints.point_rule, scene.joints.contact_points)
+        axis, second = np.eye(3)[1], part * p.area**2 / 12 * np.diag([1.0, 0.0, 1.0])
     return np.vstack([np.stack([masses] * 3 + inertia, axis=1), faces])[:, own], Contacts(
         blocks=pairs,
         arm=(y[:, None] - places[pairs])[..., None] * axis,

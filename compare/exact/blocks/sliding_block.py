@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.material.contact_points import face_points
+from jointwave.cases.material.contact_points import lever
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.blocks.row_of_blocks import reads
@@ -54,11 +54,11 @@ def _topples(scene: Scene, friction: float) -> bool:
     """Return whether the joint's resultant lies outside the square of its contact points."""
     if scene.motion.rotation == "none":
         return False
-    x, _, _ = face_points(scene.pillar.side, scene.joints.contact_points, scene.joints.point_rule)
+    reach = lever(scene.joints.point_rule, scene.joints.contact_points) * scene.pillar.side / 2
     across, along = _gravity(scene)
     share = min(1.0, friction * along / hypot(*across)) if across.any() else 0.0
-    lever = share * np.abs(across) / along * scene.pillar.block / 2
-    return bool((lever > x.max()).any())
+    off = share * np.abs(across) / along * scene.pillar.block / 2
+    return bool((off > reach).any())
 
 
 def solve(scene: Scene) -> xr.Dataset:
