@@ -19,7 +19,7 @@ def waveforms(result):
         {"joints__damping_ratio": 0.0},
         {"record__energy": False},
         {"soft_layers": [{"y": 2.0}]},
-        {"joints__point_rule": "vertices"},
+        {"joints__contact_points": 2},
     ],
     ids=["dashpots of zero", "ledger", "layer like the rock", "points by default"],
 )
