@@ -19,10 +19,10 @@ TOLERANCE = 1e-6  # of the thinnest block, below which points are one point
 def blocks_of_pillar(
     scene: Scene, dim: int = 1, layers: Mapping[int, float] | None = None
 ) -> Blocks:
-    """Return the blocks of a pillar from the loaded end on, of length alone, or in space: then y
-    runs along it, and its axis is x = z = 0.
+    """Return the blocks of a pillar from the loaded end on, of length alone, or in the plane or in
+    space: then y runs along it, and its axis is x = z = 0.
 
-    dim : 1 or 3. `joint_set` of a contact is 0 of [joints], 1 + k of soft layer k, and NO_SET where
+    dim : 1 to 3. `joint_set` of a contact is 0 of [joints], 1 + k of soft layer k, and NO_SET where
     it is no joint; `body.region` of a block is the index of its part in `scene.parts`. layers :
     thickness (m) of joints that are blocks of their own, half of it on either side, regions after
     the parts, without joints on either side.

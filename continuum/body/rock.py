@@ -148,10 +148,11 @@ def pillar(scene: Scene, model: str, components: int, dim: int) -> list[Material
     p, relaxes, found = calibrate(scene), mechanisms_of(scene, model), []
 
     def add(density: float, modulus: float, poisson: float, eta: float) -> None:
-        C = _bar(modulus, poisson, components)
         if dim == 3:
             speeds = speeds_from_modulus(modulus, poisson, density)
             C = stiffness(ElasticRock(density, *speeds), [], 3)
+        else:
+            C = plane_stress(modulus, poisson) if dim == 2 else bar(modulus, poisson, components)
         found.append(Material(density, C, eta))
 
     for one, part in zip(p.each, scene.parts, strict=True):
@@ -171,7 +172,13 @@ def pillar(scene: Scene, model: str, components: int, dim: int) -> list[Material
     return found
 
 
-def _bar(modulus: float, poisson: float, components: int) -> np.ndarray:
+def plane_stress(modulus: float, poisson: float) -> np.ndarray:
+    """Return the stiffness of a sheet that widens freely across its plane."""
+    within = np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
+    return modulus / (1 - poisson**2) * within
+
+
+def bar(modulus: float, poisson: float, components: int) -> np.ndarray:
     """Return the stiffness of a bar: E along it, and G across it where it has three components."""
     shear = shear_modulus(modulus, poisson)
     return np.diag([modulus] if components == 1 else [shear, modulus, shear])

@@ -109,9 +109,11 @@ def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) ->
 
 
 def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> SceneBody:
-    """Return the body of a pillar: of one dimension if nothing bends or twists it."""
+    """Return the body of a pillar: in one dimension if nothing bends or twists it, or in as many as
+    it asks for."""
     bends = is_spatial(scene) and scene.motion.rotation != "none"
-    dim, components = (3, 3) if bends else (1, 3 if is_spatial(scene) else 1)
+    dim = scene.numerics.continuum.dim or (3 if bends else 1)
+    components = 3 if dim == 1 and is_spatial(scene) else dim
     p, numerics, layers = calibrate(scene), scene.numerics.continuum, materials.layers_of(scene)
     blocks, along = blocks_of_pillar(scene, dim, layers), dim // 2
     normal = blocks.boundary.normal[:, along]
@@ -122,10 +124,12 @@ def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> Scen
     joint = np.isin(number, resolved_joints(p, model, components > 1, tuple(layers)).number)
     each = np.append(elements_along(scene, model), np.ones(len(layers), int))
     many = each[blocks.body.region]
-    size = float((blocks.volume ** (1 / dim) / many).min())
-    refuse_large_mesh(scene, blocks, size, components)
-    if numerics.cell == "simplex" and dim == 3:
-        mesh = simplex_mesh(blocks.body, scene.pillar.side / numerics.elements_across)
+    across = numerics.elements_across
+    cells = float(many.sum()) * across ** (dim - 1)
+    refuse_large_mesh(scene, blocks, (blocks.volume.sum() / cells) ** (1 / dim), components)
+    if numerics.cell == "simplex" and dim > 1:
+        longest = blocks.volume / scene.pillar.side ** (dim - 1) / many
+        mesh = simplex_mesh(blocks.body, min(scene.pillar.side / across, longest.min()))
     else:
         corners = box_corners(blocks.body)
         assert corners is not None
