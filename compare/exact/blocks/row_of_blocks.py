@@ -25,7 +25,7 @@ import xarray as xr
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.histories import Step
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.sampling import interpolation, sample_times
+from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.blocks.events import NOISE, integrate
 from jointwave.compare.exact.blocks.pillar import own_freedoms, system_of
@@ -157,14 +157,12 @@ def receivers(scene: Scene, one: BlockSystem, states: np.ndarray) -> Waves:
 def reads(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """Return the linear interpolations from the forces of contacts to tractions in sections [s,
     N + 1], and from the motion of blocks to that of points [p, N]."""
-    p, record, found = calibrate(scene), scene.record, []
-    for nodes, places in ((p.contact_y, record.stress), (p.centre_y, record.velocity)):
-        left, right, weight = interpolation(nodes, places)
-        matrix, i = np.zeros((len(places), len(nodes))), np.arange(len(places))
-        matrix[i, left] += 1 - weight
-        matrix[i, right] += weight
-        found.append(matrix)
-    return found[0] / p.area, found[1]
+    p, record = calibrate(scene), scene.record
+    sections, points = (
+        np.stack([np.interp(places, nodes, one) for one in np.eye(len(nodes))], axis=1)
+        for nodes, places in ((p.contact_y, record.stress), (p.centre_y, record.velocity))
+    )
+    return sections / p.area, points
 
 
 def _solver(name: str, label: str, line: Line, does: str, **about: Any) -> Solver:
