@@ -3,11 +3,11 @@
 from functools import cache
 from typing import NamedTuple
 
-import basix
 import numpy as np
 from scipy.sparse import csr_matrix
 
 from jointwave.continuum.body import compat
+from jointwave.continuum.body.bubbles import bubble_element
 from jointwave.continuum.body.model import Body
 
 INSIDE = 1e-7  # of the reference cell: how far outside it a point on its face may come out
@@ -15,6 +15,7 @@ CLOSE = 1e-12  # of the reference cell: when Newton's iteration has found a poin
 ROUNDS = 20
 NOTHING = 1e-11  # a basis function that is zero but for round-off
 HIGHEST = 4  # order of elements
+WITH_BUBBLES = {"triangle": 7, "tetrahedron": 15}  # nodes of elements of order 2
 #: Kinds of cells by their dimension and corners.
 KINDS = {
     (1, 2): "interval", (2, 3): "triangle", (2, 4): "quadrilateral", (3, 4): "tetrahedron",
@@ -56,18 +57,16 @@ def kind_of(body: Body) -> str:
 
 def order_of(body: Body) -> int:
     """Return the order of a body's elements."""
-    nodes = nodes_of_cells(body).shape[1]
-    return int(element(kind_of(body), nodes).degree)
+    kind, nodes = kind_of(body), nodes_of_cells(body).shape[1]
+    return 2 if nodes == WITH_BUBBLES.get(kind) else int(element(kind, nodes).degree)
 
 
 @cache
 def element(kind: str, nodes: int):
-    """Return the Lagrange element of a cell with so many nodes; `points` are their places."""
-    family, variant = basix.ElementFamily.P, basix.LagrangeVariant.gll_warped
-    every = (
-        basix.create_element(family, getattr(basix.CellType, kind), order, variant)
-        for order in range(1, HIGHEST + 1)
-    )
+    """Return the element of a cell with so many nodes; `points` are their places."""
+    if nodes == WITH_BUBBLES.get(kind):
+        return bubble_element(kind)
+    every = (compat.reference(kind, order) for order in range(1, HIGHEST + 1))
     return next(one for one in every if len(one.points) == nodes)
 
 

@@ -66,11 +66,29 @@ def history_at(before, q):
     )  # fmt: skip
 
 
+def strained_for(parts: LawFlags, dim: int) -> Callable:
+    """Return the formula of the jump of a point that carries tractions at u = 0: the springs are
+    strained by them. What has slid holds those along the joint where it can slide."""
+    limited = parts.limited
+
+    @formula
+    def strained(law, jump, carried):
+        n, x, z = jump
+        n += gap_under(law, parts, carried[0])
+        if dim > 1 and not limited:
+            x -= carried[1] / law.shear_stiffness
+            z -= carried[2] / law.shear_stiffness
+        return n, x, z
+
+    return strained
+
+
 @cache
 def tractions_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
     """Return the formula of the forces of joints of a law with these parts in d dimensions;
     stressed : whether they carry anything at u = 0."""
     dashpots, limited, remembers = parts.dashpots, parts.limited, has_history(parts)
+    strained = strained_for(parts, dim)
 
     @formula
     def tractions(points, dt, jump, moved, rate, before, after, force, drag):
@@ -90,10 +108,7 @@ def tractions_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
             if stressed:
                 p_n, p_x, p_z = components(dim, points.carried, q)
                 stored += w * (p_n * n + p_x * x + p_z * z)
-                n += gap_under(law, parts, p_n)
-                if not limited and dim > 1:
-                    x -= p_x / law.shear_stiffness
-                    z -= p_z / law.shear_stiffness
+                n, x, z = strained(law, (n, x, z), (p_n, p_x, p_z))
             if limited:
                 step = components(dim, moved, q)
             if dashpots:
@@ -154,7 +169,7 @@ def forces_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
 @cache
 def tangents_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
     """Return the kernel of the tangents of joints of a law with these parts."""
-    dashpots, limited, remembers = parts.dashpots, parts.limited, has_history(parts)
+    dashpots, remembers, strained = parts.dashpots, has_history(parts), strained_for(parts, dim)
 
     @jitted
     def tangents(points, dt, r, jump, rate, before, stiffness):
@@ -165,11 +180,7 @@ def tangents_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
             law, w = law_of(points.table, points.column[q]), points.weight[q]
             n, x, z = components(dim, jump, q)
             if stressed:
-                p_n, p_x, p_z = components(dim, points.carried, q)
-                n += gap_under(law, parts, p_n)
-                if not limited and dim > 1:
-                    x -= p_x / law.shear_stiffness
-                    z -= p_z / law.shear_stiffness
+                n, x, z = strained(law, (n, x, z), components(dim, points.carried, q))
             if dashpots:
                 now = components(dim, rate, q)
             if remembers:
