@@ -99,9 +99,7 @@ def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) ->
         wanted = np.maximum(1, np.ceil(extents(body, corners) / size * (1 - 1e-9))).astype(int)
         like = matching_vertices(body, across)
         return box_mesh(body, corners, along_edges(corners, wanted, like))
-    if numerics.order > 2:
-        key, allowed = "numerics.continuum.order", "must be at most 2 for triangles and tetrahedra"
-        raise SceneError(scene.where, key, numerics.order, allowed)
+    _refuse_order(scene)
     if not np.isfinite(size) and are_simplices(body):
         return own_cells(body)
     alike = [(matching_facets(body, one), one.shift) for one in across]
@@ -119,21 +117,11 @@ def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> Scen
     normal = blocks.boundary.normal[:, along]
     end = np.select([normal < -0.5, normal > 0.5], [0, 1], 2)
     blocks = replace(blocks, boundary=replace(blocks.boundary, side=end))
+    ones = np.ones(len(layers), int)
     number = np.arange(p.block_count - 1)  # the joint of each contact, of a layer's two the same
     number = np.repeat(number, 1 + np.isin(number, [*layers]))
     joint = np.isin(number, resolved_joints(p, model, components > 1, tuple(layers)).number)
-    each = np.append(elements_along(scene, model), np.ones(len(layers), int))
-    many = each[blocks.body.region]
-    across = numerics.elements_across
-    cells = float(many.sum()) * across ** (dim - 1)
-    refuse_large_mesh(scene, blocks, (blocks.volume.sum() / cells) ** (1 / dim), components)
-    if numerics.cell == "simplex" and dim > 1:
-        longest = blocks.volume / scene.pillar.side ** (dim - 1) / many
-        mesh = simplex_mesh(blocks.body, min(scene.pillar.side / across, longest.min()))
-    else:
-        corners = box_corners(blocks.body)
-        assert corners is not None
-        mesh = box_mesh(blocks.body, corners, _along(blocks.body, corners, many, numerics))
+    mesh = _mesh_of_pillar(scene, blocks, np.append(elements_along(scene, model), ones), components)
     own = materials.pillar(scene, model, components, dim)
     chosen, consistent = _chosen(scene, rock, own, blocks.body), numerics.mass == "consistent"
     marks = marks_of(blocks, joint, ENDS)
@@ -143,11 +131,36 @@ def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> Scen
     return SceneBody(scene, blocks, [], own, body)
 
 
-def _along(body: Complex, corners: np.ndarray, many: np.ndarray, numerics) -> np.ndarray:
+def _mesh_of_pillar(scene: Scene, blocks: Blocks, each: np.ndarray, components: int) -> Conforming:
+    """Return the mesh of the blocks of a pillar; each : elements along those of each region."""
+    body, numerics, many = blocks.body, scene.numerics.continuum, each[blocks.body.region]
+    across, faces = numerics.elements_across, body.dim - 1
+    cells = float(many.sum()) * across**faces
+    refuse_large_mesh(scene, blocks, (blocks.volume.sum() / cells) ** (1 / body.dim), components)
+    if numerics.cell == "simplex" and faces:
+        _refuse_order(scene)
+        longest = blocks.volume / scene.pillar.side**faces / many
+        return simplex_mesh(body, min(scene.pillar.side / across, longest.min()))
+    corners = box_corners(body)
+    assert corners is not None
+    return box_mesh(body, corners, _along(body, corners, many, across))
+
+
+def _refuse_order(scene: AnyScene) -> None:
+    """Raise SceneError where simplices have no diagonal mass."""
+    order, allowed = (
+        scene.numerics.continuum.order,
+        "must be at most 2 for triangles and tetrahedra",
+    )
+    if order > 2:
+        raise SceneError(scene.where, "numerics.continuum.order", order, allowed)
+
+
+def _along(body: Complex, corners: np.ndarray, many: np.ndarray, across: int) -> np.ndarray:
     """Return the numbers of cells along the axes of the blocks of a pillar, int array [n, d]."""
     arms = body.vertices[corners[:, 1 << np.arange(body.dim)]] - body.vertices[corners[:, :1]]
     lengthwise = np.abs(arms).argmax(axis=2) == body.dim // 2
-    return np.where(lengthwise, many[:, None], numerics.elements_across)
+    return np.where(lengthwise, many[:, None], across)
 
 
 def _chosen(scene: AnyScene, rock: Rock | None, own: list[Material], body: Complex):
