@@ -1,5 +1,6 @@
 """A body from a conforming mesh of blocks: nodes of their own along joints, rock and joints."""
 
+import logging
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -25,6 +26,7 @@ from jointwave.continuum.body.model import Body, Facets, Forms, JumpOperator
 from jointwave.continuum.body.periodic import Facing
 from jointwave.continuum.body.traces import Trace, reference_cell, trace
 
+log = logging.getLogger("jointwave")
 SIMPLEX = ("triangle", "tetrahedron")
 
 
@@ -132,6 +134,13 @@ def _joints(
     i, j = (
         Trace(*map(np.concatenate, zip(*side, strict=True))) for side in zip(*traces, strict=True)
     )
+    if closed := int((i.node == j.node).all(axis=1).sum()):
+        log.warning(
+            "%d of %d facets of joints have all nodes at the ends of joints and cannot open: "
+            "take smaller elements",
+            closed,
+            len(i.node),
+        )
     shape = int(found.nodes.max()) + 1, size
     return jump_operator(i, j, np.concatenate(columns), shape, found.cell)
 

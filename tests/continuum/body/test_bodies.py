@@ -35,6 +35,19 @@ def test_a_joint_that_ends_in_rock_leaves_it_in_one_piece(made):
     assert np.isclose(body.joints.weight.sum() + (tip - 2.1) / 2, length)
 
 
+def test_a_joint_of_one_element_within_rock_is_told(made, caplog):
+    """Both of its nodes are at its ends; with two elements it opens at the one between them."""
+    lines = {"band": 1.5, "top": 2.5}
+    regions = [{"name": k, "dip": 0.0, "through": [0.0, y]} for k, y in lines.items()]
+    joint = {"dip": 90.0, "through": [3.0, 2.0], "regions": ["band"]}
+    closed = made(joint, continuum={"size": 1.5}, regions=regions).body
+    assert "1 of 1 facets of joints have all nodes at the ends of joints" in caplog.text
+    assert closed.joints.matrix.shape == (0, 2 * len(closed.x))
+    opens = made(joint, continuum={"size": 0.6}, regions=regions).body
+    assert np.allclose(opens.joints.place, [[3.0, 2.0]] * 2)
+    assert np.isclose(opens.joints.weight.sum(), 0.5)
+
+
 def test_without_springs_each_block_moves_alone(made):
     body = made({"dip": 30.0, "through": [3.0, 2.0]}, continuum={"size": 2.0}).body
     assert rigid_motions(body.stiffness) == 6
