@@ -12,7 +12,7 @@ import numba
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.errors import StoppedError
+from jointwave.cases.errors import SceneError, StoppedError
 from jointwave.cases.incident import IncidentField
 from jointwave.cases.material.prestress import refuse_beyond_strength
 from jointwave.cases.schema.rock_mass import RockMass
@@ -25,6 +25,7 @@ from jointwave.continuum.body.scene import body_of
 from jointwave.continuum.body.scheme import Choice, choose
 from jointwave.continuum.body.static import Rest
 from jointwave.continuum.body.steps import Leapfrog, Problem
+from jointwave.continuum.plane.validity import applies
 from jointwave.numerics.divergence import ENERGY, Guard, audit, guard, look
 from jointwave.numerics.instability import Divergence, stopped
 from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
@@ -59,6 +60,7 @@ def simulate(
     motion leaves its bounds.
     """
     began = perf_counter()
+    refuse(scene, model)
     refuse_beyond_strength(scene)
     numerics = scene.numerics.continuum
     found = body_of(scene, model, rock, numerics.scheme == "implicit")
@@ -114,6 +116,18 @@ def simulate(
         error.result = result(error.samples)
         raise
     return result(time.samples)
+
+
+def refuse(scene: RockMass, model: str) -> None:
+    """Raise SceneError for what bodies do not have."""
+    if why := applies(scene, model):
+        raise SceneError(scene.where, "model", model, why)
+    for key, value in (
+        ("rock.quality_factor", scene.rock.quality_factor),
+        ("record.fields", scene.record.fields),
+    ):
+        if value is not None:
+            raise SceneError(scene.where, key, value, "is not supported by dolfinx bodies")
 
 
 def stepper(

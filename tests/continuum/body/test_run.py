@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jointwave.cases.errors import InterruptedRun, StoppedError
+from jointwave.cases.errors import InterruptedRun, SceneError, StoppedError
 from jointwave.continuum.body import rock
 from jointwave.continuum.body.run import simulate
 from tests.continuum.body.bodies import LAME, SHEAR
@@ -60,3 +60,17 @@ def test_a_script_gives_the_rock(rock_mass):
     found = simulate(scene, rock=lambda _, space: rock.isotropic(space, 2600.0, LAME, SHEAR))
     known = simulate(scene)
     np.testing.assert_allclose(found["velocity"], known["velocity"], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("key", "tables"),
+    [
+        ("rock.quality_factor", {"rock": {"quality_factor": 30.0}}),
+        ("record.fields", {"record": {"points": [[2.0, 3.0]], "fields": 1e-4}}),
+        ("damping", {"damping": {"local": 0.1}}),
+    ],
+)
+def test_what_bodies_do_not_have_is_refused(rock_mass, key, tables):
+    rock = {"density": 2600.0, "intact_modulus": 5e10, **tables.pop("rock", {})}
+    with pytest.raises(SceneError, match=f"{key}|local damping"):
+        simulate(rock_mass(JOINT, loads=[LOAD], rock=rock, **tables))
