@@ -1,5 +1,5 @@
 """Rigid blocks joined by springs and dashpots: the model of Guo & Li (2002)."""
 
-from jointwave.dem.simulate import simulate
+from jointwave.dem.run import plan, simulate
 
-__all__ = ["simulate"]
+__all__ = ["plan", "simulate"]

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from jointwave.dem.receivers import Faces
+from jointwave.dem.contacts import Contacts
 from jointwave.numerics.cache_lines import zeros
 
 LANES = 64  # contacts in a chunk
@@ -38,38 +38,40 @@ class Chunks(NamedTuple):
 
 
 def chunks_of(
-    faces: Faces,
+    contacts: Contacts,
     count: int,
     freedoms: int,
     *,
     law: np.ndarray | None = None,
+    extent: np.ndarray | None = None,
     start: np.ndarray | None = None,
     points: np.ndarray | None = None,
     second: np.ndarray | None = None,
 ) -> Chunks:
-    """Return the contacts of some faces.
+    """Return contacts in chunks.
 
     count : of blocks; a j from there on is a wall. freedoms : of a block. law : int array [c],
-    column of each; None where all joints are alike. start : gap and slips that stand for what each
-    carries at first [c, d], m. points : places in the face, m, from its centre, and area of each
-    point [c, points, d]. second : second moments of faces without points, as `model.TableRows`
+    column of each; None where all joints are alike. extent : as `model.TableRows` has it, with
+    finite rotations [c, d], m. start : gap and slips that stand for what each carries at first
+    [c, d], m. points : places in the face, m, from its centre, and area of each point [c, points,
+    d]. second : second moments of faces without points, as `model.TableRows`
     has them [c, d (d - 1) / 2].
     """
-    blocks, dim = faces.blocks, faces.frame.shape[1]
-    axes = faces.frame[:, : (0, 1, 3)[dim - 1]]  # the tangent of the plane follows from n
+    blocks, dim = contacts.blocks, contacts.frame.shape[1]
+    axes = contacts.frame[:, : (0, 1, 3)[dim - 1]]  # the tangent of the plane follows from n
     rows = [*axes.reshape(len(blocks), -1).T]
     if freedoms > dim:
-        rows += [*faces.arm.reshape(len(blocks), -1).T]
-    rows.append(faces.area)
-    for one in (start, second, points):
+        rows += [*contacts.arm.reshape(len(blocks), -1).T]
+    rows.append(contacts.area)
+    for one in (extent, start, second, points):
         rows += [] if one is None else [*one.reshape(len(blocks), -1).T]
     low, high = blocks.min(axis=1), np.where(blocks < count, blocks, 0).max(axis=1)
     order = np.argsort(low, kind="stable")
     place = np.empty(len(order), dtype=np.int64)
     place[order] = np.arange(len(order))
     pair = np.stack([*(freedoms * blocks.T), *(() if law is None else [law])])[:, order]
-    chunks = _tiles(low[order], high[order])
-    first = np.append(low[order[LANES * np.array(chunks[1:-1], dtype=int)]], count)
+    begins = _tiles(low[order], high[order])
+    first = np.append(low[order[LANES * np.array(begins[1:-1], dtype=int)]], count)
     table = _chunks(np.array(rows)[:, order], "constant")
     aligned = zeros(table.shape)
     aligned[:] = table
@@ -81,7 +83,7 @@ def chunks_of(
         aligned,
         place,
         np.where(follow & (j[:, -1] < freedoms * count), i[:, 0], -1),
-        np.array(chunks),
+        np.array(begins),
         np.append(0, first),
     )
 

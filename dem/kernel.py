@@ -18,6 +18,23 @@ force works over the half step before it and over the one after it, which are ac
 A step that is composed of stages (`dem.composition`) takes each as a leapfrog step with a length of
 its own for velocities, zero in the first, and for displacements.
 
+With rotations of any size (`finite`, in space) R_i and R_j turn the blocks from where they were at
+the start. The points belong to block i. The jump at one is how far the point of block j that was
+there at the start is from it, in axes that turn with j; x the centroids,
+
+    jump = E (R_j^T (x_j - x_i) + r_j - A r_i) + E (1 - A) E^T e,   A = R_j^T R_i,
+
+all by differences from no rotation, which keep the digits of small ones. The force R_j E^T w t acts
+on both blocks at the point itself: it is the gradient of the joint's energy, and conserves momentum
+and angular momentum. About the centre of the face on j it has, in the frame, the moment
+
+    sum over tangents k of (E A k) x (sum of e_k w t), less jump x force, both of the centre.
+
+A point that is off the other face, or behind that block, carries nothing. Rates are differences of
+the jump over the step. Blocks have angular momenta at half steps, in the axes of space, and unit
+quaternions at whole steps (`dem.rotation`); the ledger takes the angular velocities that momenta
+give in the orientation of the step, and closes to second order.
+
 Contacts are worked on side by side, in lanes; their forces are added to the blocks one after the
 other, always in the same order.
 """
@@ -28,7 +45,8 @@ from typing import Any
 from jointwave.dem.chunks import LANES as L
 from jointwave.dem.kinematics import onto_blocks_for, relative_for
 from jointwave.dem.model import KernelFlags
-from jointwave.dem.motion import AFTER, CHUNK, PLACE, SEEN, VISCOUS, WORK, motion_for
+from jointwave.dem.motion import AFTER, CHUNK, HELD, PLACE, SEEN, VISCOUS, WORK, motion_for
+from jointwave.dem.rotation import dot, three
 from jointwave.dem.tractions import face_forces_for, point_forces_for
 from jointwave.joints.formula import formula
 from jointwave.joints.law import rows_of
@@ -38,19 +56,30 @@ def step_for(form: KernelFlags) -> Callable:
     """Return the formula of one step of one tile: what its form lacks is not compiled."""
     dim, freedoms, has_ledger, shaken = form.dim, form.freedoms, form.ledger, form.shaken
     dashpots, varied, rated, drags = form.parts.dashpots, form.parts.varied, form.rated, form.drags
+    matched = form.matched
     remembers, recorded, used = form.history.size > 0, form.recorded, rows_of(form.parts)
     stages, composed = form.stages, form.stages > 1
     relative, onto_blocks, move = relative_for(form), onto_blocks_for(form), motion_for(form)
     forces = point_forces_for(form) if form.points else face_forces_for(form)
-    rows, LAST_RATE, LAST_DRAG = form.buffer, form.history.rate, form.history.drag
+    finite, motions, FRAME = form.finite, form.motions, form.table.frame
+    rows, LAST_RATE, LAST_DRAG, LAST_JUMP = (
+        form.buffer, form.history.rate, form.history.drag, form.history.jump
+    )  # fmt: skip
     LAW, JUMP, RATE, NOW, FORCE, DRAG, ON_J = (
         rows.law, rows.jump, rows.rate, rows.now, rows.force, rows.drag, rows.on_j
     )  # fmt: skip
 
     @formula
+    def differ(h, q, dt):
+        """Put the rates half a step before of motion that is no linear function of the blocks'."""
+        for c in range(motions * L):
+            jump = q[JUMP + c]
+            q[RATE + c], h[LAST_JUMP + c] = (jump - h[LAST_JUMP + c]) / dt, jump
+
+    @formula
     def extrapolate(h, q, ledger, dt):
         """Put the rates that dashpots see; enter what theirs of the last step took since."""
-        for a in range(freedoms):
+        for a in range(motions):
             for c in range(a * L, a * L + L):
                 rate, before = q[RATE + c], h[LAST_RATE + c]
                 if drags:
@@ -60,7 +89,7 @@ def step_for(form: KernelFlags) -> Callable:
     @formula
     def account_drags(h, q, ledger, dt):
         """Enter what dashpots took in the half step before."""
-        for a in range(freedoms):
+        for a in range(motions):
             for c in range(a * L, a * L + L):
                 ledger[VISCOUS + c - a * L] -= 0.5 * dt * (q[DRAG + c] * q[RATE + c])
                 h[LAST_DRAG + c] = q[DRAG + c]
@@ -86,6 +115,9 @@ def step_for(form: KernelFlags) -> Callable:
                     samples.contact[row, a, s] = q[FORCE + a * L + c]
                 for a in range(dim):
                     samples.contact[row, recorded - dim + a, s] = q[JUMP + a * L + c]
+                    if finite:
+                        e = three(chunks.table[g], FRAME + 3 * a * L + c, L)
+                        samples.contact[row, a, s] = dot(e, three(q, ON_J + c, L))
 
     @formula
     def record_blocks(chunks, blocks, state, samples, t, s, share):
@@ -98,6 +130,8 @@ def step_for(form: KernelFlags) -> Callable:
                     samples.displacement[row, a, s] = state.u[i + a]
                     samples.velocity[row, a, s] = 0.0
                 samples.velocity[row, a, s] += 0.5 * state.v[i + a]
+            if finite and share == 0:
+                samples.displacement[row, freedoms, s] = state.turn[blocks.places[0, r]]
 
     @formula
     def step(chunks, blocks, state, force, drive, walls, samples, q, ledger, t, n, s):
@@ -120,9 +154,11 @@ def step_for(form: KernelFlags) -> Callable:
             h: Any = None
             if remembers:
                 h = state.history[g]
-            relative(state.u, walls, n, 0, still, at, row_from, k, q, JUMP)
-            if rated:
-                relative(state.v, walls, n, 1, still, at, row_from, k, q, RATE)
+            relative(state.u, state.turn, walls, n, 0, still, at, row_from, k, q, JUMP)
+            if rated and finite:
+                differ(h, q, dt)
+            elif rated:
+                relative(state.v, state.turn, walls, n, 1, still, at, row_from, k, q, RATE)
             if dashpots:
                 extrapolate(h, q, ledger, dt)
             if varied:
@@ -139,6 +175,10 @@ def step_for(form: KernelFlags) -> Callable:
                 record_contacts(chunks, samples, q, g, t, s)
         if sampled:
             record_blocks(chunks, blocks, state, samples, t, s, 0)
+            if matched:
+                for r in range(tiles[HELD, t], tiles[HELD, t + 1]):
+                    for a in range(freedoms):
+                        samples.closure[r, a, s] = state.closure[r, a]
         move(blocks, tiles, state, force, drive, q, ledger, t, n, sampled)
         if sampled:
             record_blocks(chunks, blocks, state, samples, t, s, 1)

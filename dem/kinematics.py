@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from jointwave.dem.chunks import LANES as L
+from jointwave.dem.finite import finite_jump_for, finite_moments_for
 from jointwave.dem.model import KernelFlags
 from jointwave.joints.formula import formula
 
@@ -19,6 +20,7 @@ def relative_for(form: KernelFlags) -> Callable:
     """Return the formula of the relative motion of a chunk's contacts."""
     dim, turns, freedoms, rotations = form.dim, form.turns, form.freedoms, form.rotations
     shaken, in_row, GATHERED = form.shaken, form.in_row, form.buffer.gathered
+    finite, finite_jump = form.finite, finite_jump_for(form)
     FRAME, ARM_I, ARM_J = form.table.frame, form.table.arm_i, form.table.arm_j
 
     @formula
@@ -50,14 +52,17 @@ def relative_for(form: KernelFlags) -> Callable:
                 q[GATHERED + (freedoms + b) * L + c] = m[j + a]
 
     @formula
-    def relative(m, walls, n, kind, still, at, row_from, k, q, to):
+    def relative(m, turn, walls, n, kind, still, at, row_from, k, q, to):
         """Put the jump at the centres of contacts, and the rotation of j against i, in their frame,
         into the rows from `to` on.
 
-        m : motion of blocks. kind : row of it in the motion of walls. still : where theirs begins,
-        less one block. k : the chunk's table. q : the buffer.
+        m : motion of blocks. turn : as in `State`. kind : row of it in the motion of walls. still :
+        where theirs begins, less one block. k : the chunk's table. q : the buffer.
         """
         gather(m, walls, n, kind, still, at, row_from, q)
+        if finite:
+            finite_jump(turn, at, k, q)
+            return
         for c in range(L):
             r = GATHERED + c
             if dim == 1:
@@ -92,6 +97,7 @@ def relative_for(form: KernelFlags) -> Callable:
 def onto_blocks_for(form: KernelFlags) -> Callable:
     """Return the formula that adds the forces of a chunk's contacts to their blocks."""
     dim, turns, freedoms, in_row = form.dim, form.turns, form.freedoms, form.in_row
+    finite, finite_moments = form.finite, finite_moments_for(form)
     FRAME, ARM_I, ARM_J = form.table.frame, form.table.arm_i, form.table.arm_j
     FORCE, SPREAD, ON_J, ON_I = (
         form.buffer.force, form.buffer.spread, form.buffer.on_j, form.buffer.on_i
@@ -136,7 +142,10 @@ def onto_blocks_for(form: KernelFlags) -> Callable:
 
         lanes : contacts of the chunk. last : where the motion of walls begins.
         """
-        about_centroids(k, q)
+        if finite:
+            finite_moments(k, q)
+        else:
+            about_centroids(k, q)
         if in_row and row_from >= 0:
             own = force[row_from:]
             for b in range(freedoms):

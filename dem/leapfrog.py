@@ -18,6 +18,7 @@ from jointwave.dem.chunks import LANES, depth_of, marks
 from jointwave.dem.kernel import step_for
 from jointwave.dem.model import KernelFlags, Model, Samples, State
 from jointwave.dem.motion import AFTER, SUMMED
+from jointwave.dem.rotation import free_motion
 from jointwave.numerics.atomic import give_way, peek, post
 from jointwave.numerics.cache_lines import zeros
 from jointwave.numerics.denormals import flush_denormals, restore_denormals
@@ -40,17 +41,19 @@ class ChunkTable(NamedTuple):
 
 class BlockTable(NamedTuple):
     """Blocks as the kernel takes them: `model.Blocks`, with one over the inertia of each freedom,
-    numbers and matrices of held blocks, places and rows of recorded ones [2, r], and `back`, the
-    inverse of the tensor."""
+    numbers, matrices and springs of held blocks, places and rows of recorded ones [2, r], `back`,
+    the inverse of the tensor, and `free`, as `rotation.free_motion` has it."""
 
     inertia: np.ndarray
     inverse: np.ndarray
     held: Any
     matrices: Any
+    springs: Any
     places: np.ndarray
     gravity: np.ndarray
     tensor: Any
     back: Any
+    free: Any
     dt: float
     keep: float
     local: float
@@ -94,7 +97,7 @@ def make_stepper(
     """
     form, chunks, f = model.form, model.chunks, model.form.freedoms
     own, dt, stages = model.blocks, model.blocks.dt, form.stages
-    held, matrices = model.held or (None, None)
+    held, matrices, springs = model.held or (None, None, None)
     if held is None:
         drive = None  # one kernel, whoever asks
     elif drive is None:
@@ -107,7 +110,7 @@ def make_stepper(
     buffers = zeros((threads, form.buffer.before + widest))
     ledgers = zeros((threads * depth, 2 * AFTER)) if form.ledger else None
     progress = np.zeros(threads + 1, dtype=np.int64)
-    loop, inertia = loop_for(form), own.inertia.ravel()
+    loop, inertia = loop_for(form), model.inertia.ravel()
     force = np.zeros(inertia.size)
     first_place, places = marks(model.places, chunks.first_block)
     first_seen, seen = marks(chunks.place[model.watched], LANES * chunks.first_chunk)
@@ -118,9 +121,9 @@ def make_stepper(
         len(chunks.place),
     )  # fmt: skip
     blocks = BlockTable(
-        inertia, 1.0 / inertia, held, matrices, places, own.gravity, own.tensor,
-        None if own.tensor is None else np.linalg.inv(own.tensor), dt, own.keep, own.local,
-        own.stages,
+        inertia, 1.0 / inertia, held, matrices, springs, places, own.gravity, own.tensor,
+        None if own.tensor is None else np.linalg.inv(own.tensor),
+        free_motion(own) if form.finite else None, dt, own.keep, own.local, own.stages,
     )  # fmt: skip
     flat = state._replace(u=state.u.reshape(-1), v=state.v.reshape(-1))
 

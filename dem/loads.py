@@ -1,5 +1,4 @@
-"""External forces on blocks, in any dimension: pressures, forces, compliant bases, the reactions of
-rock beyond to a static stress, and incident waves."""
+"""External forces on blocks, in any dimension, step by step."""
 
 from __future__ import annotations
 
@@ -8,16 +7,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from jointwave.cases.geometry.blocks import Blocks
-from jointwave.cases.geometry.locate import blocks_at
-from jointwave.cases.geometry.measure import Outlines
 from jointwave.cases.histories import LoadHistory
-from jointwave.cases.loads import velocity_of
-from jointwave.cases.material.quiet_sides import base_traction, impedances
-from jointwave.cases.partition.parts import covered
 from jointwave.cases.sampling import Clock
-from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.sources import PlaneLoad
-from jointwave.dem.boundaries import facets_on, points_on, resultants, summed
+from jointwave.dem.boundaries import points_on, resultants, summed
 from jointwave.dem.composition import instants
 
 #: Samples times held blocks whose forces are there at once.
@@ -149,38 +141,3 @@ def reactions(
     if along:
         traction -= (traction * points.normal).sum(axis=1)[:, None] * points.normal
     return Pattern(points.block, points.arm, points.area[:, None] * traction, None)
-
-
-def load_pattern(
-    scene: RockMass, blocks: Blocks, sides: tuple[str, ...], load: PlaneLoad
-) -> Pattern:
-    """Return a pressure, a force or a compliant base of a scene; sides : the names of the blocks'
-    sides, in order."""
-    history = velocity_of(load, load.amplitude)
-    if load.kind == "force":
-        at = np.array(load.at)
-        block = blocks_at(blocks, at[None])[0][:1]
-        return Pattern(block, at - blocks.centroid[block], np.array([load.direction]), history)
-    facets, parts = facets_on(blocks, sides, [load.side or f"opening {load.opening}"]), None
-    if load.between is not None:
-        facets, parts = _covered(scene, blocks, load, facets)
-    points = points_on(blocks, facets, parts)
-    if load.kind == "base":
-        assert load.direction is not None
-        impedance = impedances(scene, points.normal, blocks.body.region[points.block])
-        traction = base_traction(points.normal, impedance, load.direction)
-    else:
-        traction = -points.normal
-    return Pattern(points.block, points.arm, points.area[:, None] * traction, history)
-
-
-def _covered(
-    scene: RockMass, blocks: Blocks, load: PlaneLoad, facets: np.ndarray
-) -> tuple[np.ndarray, Outlines]:
-    """Return those of some edges that a load acts on in part, and these parts of them."""
-    start, end = blocks.boundary.outlines.corners.reshape(-1, 2, 2)[facets].swapaxes(0, 1)
-    part = covered(scene.domain, load, start, end)
-    acts = part[:, 1] > part[:, 0]
-    place = part[acts, :, None]
-    ends = start[acts, None] * (1 - place) + end[acts, None] * place
-    return facets[acts], Outlines(ends.reshape(-1, 2), 2 * np.arange(acts.sum() + 1))

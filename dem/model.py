@@ -18,15 +18,18 @@ class TableRows(NamedTuple):
     """Where the rows of the table of contacts begin, in numbers.
 
     frame : axes n and tangents, the tangent left out in the plane. arm_i, arm_j : from centroids to
-    the centre of the face, m. area : m2. start : gap and slip that stand for what a contact carries
-    at first, m. second : second moments along the first tangent, along the second, and mixed, m4.
-    point : place in the face, m, and area of each point. size : number of rows.
+    the centre of the face, m. area : m2. extent : how far block j reaches behind the centre of the
+    face and along its tangents, m, where points may leave it. start : gap and slip that stand for
+    what a contact carries at first, m. second : second moments along the first tangent, along the
+    second, and mixed, m4. point : place in the face, m, and area of each point. size : number of
+    rows.
     """
 
     frame: int
     arm_i: int
     arm_j: int
     area: int
+    extent: int
     start: int
     second: int
     point: int
@@ -36,7 +39,8 @@ class TableRows(NamedTuple):
 class BufferRows(NamedTuple):
     """Where the rows of a chunk's buffer begin, in numbers.
 
-    law : parameters of the law, where joints differ. gathered : of the motion of blocks. jump,
+    law : parameters of the law, where joints differ. gathered : of the motion of blocks, with
+    finite rotations the scalar parts of quaternions last. jump,
     rate, now : relative motion at the step, its rates half a step before and now. force, spread :
     in the frame, and first moments about the face's centre. drag : the dashpots' force and
     moment. on_j, on_i : force on block j and moments. spare : of one block. before : velocities of
@@ -62,14 +66,17 @@ class HistoryRows(NamedTuple):
     """Where the rows of what contacts remember begin, in numbers.
 
     rate : of relative motion one and a half steps before. drag : the dashpots' force and moment at
-    the last step. point : of each point what has slid, m, and from there its largest opening, m,
-    cohesion, Pa, and path, m. point_rows, size : numbers of a point and of a contact.
+    the last step. jump : relative motion at the last step, with finite rotations. point : of each
+    point what has slid, m, and from there its largest opening, m, steps until it broke, cohesion,
+    Pa, and path, m. point_rows, size : numbers of a point and of a contact.
     """
 
     rate: int
     drag: int
+    jump: int
     point: int
     opening: int
+    whole: int
     cohesion: int
     path: int
     point_rows: int
@@ -81,12 +88,13 @@ class KernelFlags(NamedTuple):
 
     dim : 1, 2 or 3. turns : whether blocks rotate. parts : of the joint law. points : points of a
     contact; 0 where joints always hold, which need none. mass_damping, local_damping, gravity : of
-    the blocks. held : whether some blocks have dashpots of their own, or forces. ledger : whether
-    energies are kept. stressed : whether contacts start under a traction. shaken : whether walls
-    move. relaxed : whether the same kernel brings the blocks to rest first, for which it can damp
-    their motion, without a place in the ledger. in_row : whether contacts mostly join block after
-    block. oblique : whether rotations of a block have inertia in common. stages : of a step, 1 of
-    leapfrog.
+    the blocks. held : whether some blocks have dashpots of their own, or forces; matched : dashpots
+    behind springs. ledger : whether energies are kept. stressed : whether contacts start under a
+    traction. shaken : whether walls move. relaxed : whether the same kernel brings the blocks to
+    rest first, for which it can damp their motion, without a place in the ledger. in_row : whether
+    contacts mostly join block after block. oblique : whether rotations of a block have inertia in
+    common. stages : of a step, 1 of leapfrog. finite : whether blocks in space turn by any angle;
+    their contacts then have points.
     """
 
     dim: int
@@ -103,7 +111,9 @@ class KernelFlags(NamedTuple):
     relaxed: bool = False
     in_row: bool = False
     oblique: bool = False
+    matched: bool = False
     stages: int = 1
+    finite: bool = False
 
     @property
     def rotations(self) -> int:
@@ -112,8 +122,13 @@ class KernelFlags(NamedTuple):
 
     @property
     def freedoms(self) -> int:
-        """Displacements and rotations of a block, and of one against another."""
+        """Displacements and rotations of a block."""
         return self.dim + self.rotations
+
+    @property
+    def motions(self) -> int:
+        """Numbers of the motion of one block against another at a contact."""
+        return self.dim + (self.spread_rows if self.finite else self.rotations)
 
     @property
     def rated(self) -> bool:
@@ -142,7 +157,7 @@ class KernelFlags(NamedTuple):
         """Rows of the table of contacts."""
         dim, arms = self.dim, self.dim * self.turns
         sizes = (
-            (0, 2, 9)[dim - 1], arms, arms, 1, dim * self.stressed,
+            (0, 2, 9)[dim - 1], arms, arms, 1, dim * self.finite, dim * self.stressed,
             dim * (dim - 1) // 2 * (self.turns and not self.points), dim * self.points,
         )  # fmt: skip
         begins = np.append(0, np.cumsum(sizes))
@@ -151,30 +166,33 @@ class KernelFlags(NamedTuple):
     @property
     def buffer(self) -> BufferRows:
         """Rows of a chunk's buffer."""
-        f, drags = self.freedoms, self.drags
-        laws = len(Law._fields) * self.parts.varied
-        gathered = self.dim + 2 * self.rotations
+        f, m = self.freedoms, self.motions
+        laws, drags = len(Law._fields) * self.parts.varied, m * self.drags
+        gathered = self.dim + 2 * self.rotations + 2 * self.finite
         sizes = (
-            laws, gathered, f, f, f, self.dim, self.spread_rows, f * drags, f, self.rotations, 1,
+            laws, gathered, m, m, m, self.dim, self.spread_rows, drags, f, self.rotations, 1,
         )  # fmt: skip
         begins = (LANES * np.append(0, np.cumsum(sizes))).tolist()
-        rows = self.dim + self.spread_rows + f * drags
+        rows = self.dim + self.spread_rows + drags
         return BufferRows._make([*begins, LANES * rows])
 
     @property
     def history(self) -> HistoryRows:
         """Rows of what contacts remember."""
-        p, rates = self.parts, self.freedoms * self.parts.dashpots
-        own = self.dim - 1, p.softening, p.residual, p.path
+        p, rates = self.parts, self.motions * self.parts.dashpots
+        own = self.dim - 1, p.softening, p.softening, p.residual, p.path
         begins, point_rows = LANES * np.cumsum((0, *own)), sum(own)
-        first = rates * (1 + self.ledger)
+        before = rates * (1 + self.ledger)
+        first = before + self.motions * (self.finite and self.rated)
         return HistoryRows(
             rate=0,
             drag=LANES * rates,
+            jump=LANES * before,
             point=LANES * first,
             opening=int(begins[1]),
-            cohesion=int(begins[2]),
-            path=int(begins[3]),
+            whole=int(begins[2]),
+            cohesion=int(begins[3]),
+            path=int(begins[4]),
             point_rows=LANES * point_rows,
             size=LANES * (first + self.points * point_rows),
         )
@@ -185,11 +203,14 @@ class Held(NamedTuple):
 
     block : int array [h], ascending. matrices : float array [h, 3, freedoms, freedoms]: what is
     left of its velocity in a step, the share of the velocity without its dashpots, and all its
-    dashpots, N s/m.
+    dashpots, N s/m. springs : float array [h, 3, freedoms, freedoms], of dashpots behind springs:
+    what a step leaves of the closures, what it adds to them over the velocity, s, and the force
+    that these take from the block, N/m; None where there are none.
     """
 
     block: np.ndarray
     matrices: np.ndarray
+    springs: Any = None
 
 
 class Blocks(NamedTuple):
@@ -231,41 +252,63 @@ class Model(NamedTuple):
     watched: np.ndarray
     walls: int = 0
 
+    @property
+    def inertia(self) -> np.ndarray:
+        """Momenta over what the state has as velocities [N, freedoms]."""
+        found = self.blocks.inertia
+        return np.hstack([found[:, :3], np.ones((len(found), 3))]) if self.form.finite else found
+
 
 class State(NamedTuple):
     """The state: displacement u [N, freedoms] at a whole step, velocity v [N, freedoms] half a step
-    before it, or with it in composed steps, of the blocks and then the walls.
+    before it, or with it in composed steps, of the blocks and then the walls. With finite rotations
+    those in u are the vector parts of unit quaternions, with the scalar parts in turn [N], else
+    None, and those in v angular momenta, N m s.
 
     history : float array [chunks, rows LANES], what contacts remember; None where that is nothing.
     sums : float array [terms], J, what has been dissipated or put in; None without a ledger.
+    closure : float array [h, freedoms], m, of the springs of held blocks; None without.
     """
 
     u: np.ndarray
     v: np.ndarray
     history: Any
     sums: Any
+    closure: Any = None
+    turn: Any = None
 
 
 class Samples(NamedTuple):
-    """What is recorded: displacement and velocity of blocks [place, freedoms, sample], contacts
-    [watched, `KernelFlags.recorded`, sample], and the ledger [term, sample], J; None without."""
+    """What is recorded: displacement and velocity of blocks [place, freedoms, sample], as in
+    `State`, with scalar parts of quaternions as a further displacement, contacts [watched,
+    `KernelFlags.recorded`, sample], the ledger [term, sample], J, and the closures of held blocks
+    [h, freedoms, sample], m; None without."""
 
     displacement: np.ndarray
     velocity: np.ndarray
     contact: np.ndarray
     energy: Any
+    closure: Any = None
 
 
-def held_by(dashpot: np.ndarray, block: np.ndarray, masses: np.ndarray, dt: float) -> Held:
+def held_by(
+    dashpot: np.ndarray,
+    block: np.ndarray,
+    masses: np.ndarray,
+    dt: float,
+    keep: float = 1.0,
+    springs: np.ndarray | None = None,
+) -> Held:
     """Return held blocks from their dashpots [h, freedoms, freedoms], N s/m, and their numbers [h],
-    ascending; masses : matrices of mass and inertia of all blocks [N, freedoms, freedoms].
+    ascending; masses : matrices of mass and inertia of all blocks [N, freedoms, freedoms]. keep :
+    what mass-proportional damping leaves of a velocity in a step. springs : as in `Held`.
 
-    Their dashpots see the mean velocity of both half steps:
-    (1 + dt M^-1 C / 2) v[n+1/2] = v - (dt M^-1 C / 2) v[n-1/2], v the velocity without them.
+    Their dashpots see the mean velocity of both half steps: with a = dt (1 + keep) / 4,
+    (1 + a M^-1 C) v[n+1/2] = v - a M^-1 C v[n-1/2], v the velocity without them.
     """
-    lost = 0.5 * dt * np.linalg.solve(masses[block], dashpot)
+    lost = 0.25 * dt * (1 + keep) * np.linalg.solve(masses[block], dashpot)
     moves = np.linalg.inv(np.eye(dashpot.shape[1]) + lost)
-    return Held(block, np.stack([-moves @ lost, moves, dashpot], axis=1))
+    return Held(block, np.stack([-moves @ lost, moves, dashpot], axis=1), springs)
 
 
 def state_at_rest(model: Model) -> State:
@@ -285,14 +328,18 @@ def state_at_rest(model: Model) -> State:
         v=zeros((count, form.freedoms)),
         history=history,
         sums=np.zeros(len(TERMS)) if form.ledger else None,
+        closure=np.zeros((len(model.held.block), form.freedoms)) if form.matched else None,
+        turn=np.ones(count) if form.finite else None,
     )
 
 
 def samples_for(model: Model, count: int) -> Samples:
     """Return empty samples of this number."""
-    form = model.form
-    displacement, velocity = np.zeros((2, len(model.places), form.freedoms, count))
+    form, places, closure = model.form, len(model.places), None
+    displacement = np.zeros((places, form.freedoms + form.finite, count))
+    velocity = np.zeros((places, form.freedoms, count))
     contact = np.zeros((len(model.watched), form.recorded, count))
-    return Samples(
-        displacement, velocity, contact, np.zeros((len(TERMS), count)) if form.ledger else None
-    )
+    if form.matched:
+        closure = np.zeros((len(model.held.block), form.freedoms, count))
+    energy = np.zeros((len(TERMS), count)) if form.ledger else None
+    return Samples(displacement, velocity, contact, energy, closure)

@@ -6,6 +6,8 @@ from math import copysign
 
 from jointwave.dem.chunks import LANES as L
 from jointwave.dem.model import KernelFlags
+from jointwave.dem.rotation import angular_momentum, three
+from jointwave.dem.turning import rate, turn_blocks
 from jointwave.joints.formula import formula
 
 #: Rows of the tiles' table: their first chunk, block, held block, recorded block, watched contact.
@@ -23,13 +25,32 @@ def motion_for(form: KernelFlags) -> Callable:
         form.dim, form.freedoms, form.ledger, form.held, form.gravity
     )  # fmt: skip
     mass_damping, local_damping = form.mass_damping or form.relaxed, form.local_damping
-    damped, oblique = form.mass_damping or local_damping, form.oblique
-    SPARE, BEFORE, stages, composed = (
-        form.buffer.spare, form.buffer.before, form.stages, form.stages > 1
-    )  # fmt: skip
+    damped, finite, matched = form.mass_damping or local_damping, form.finite, form.matched
+    oblique, SPARE, BEFORE = form.oblique and not finite, form.buffer.spare, form.buffer.before
+    stages, composed = form.stages, form.stages > 1
 
     @formula
-    def add_forces(blocks, first, last, begin, u, v, force, inertia, before, drive, n):
+    def sprung(blocks, closure, r, a):
+        """Return what the springs of a held block take from its freedom a."""
+        found = 0.0
+        for m in range(freedoms):
+            found += blocks.springs[r, 2, a, m] * closure[r, m]
+        return found
+
+    @formula
+    def close_springs(blocks, first, turn, closure, r, u, v, i, spare):
+        """Advance the closures of the springs of a held block by its velocity."""
+        for a in range(freedoms):
+            spare[a] = 0.0
+            for m in range(freedoms):
+                moving = rate(blocks, first, turn, u, v, i + m) if finite else v[i + m]
+                spare[a] += blocks.springs[r, 0, a, m] * closure[r, m]
+                spare[a] += blocks.springs[r, 1, a, m] * moving
+        for a in range(freedoms):
+            closure[r, a] = spare[a]
+
+    @formula
+    def add_forces(blocks, first, last, begin, u, v, force, inertia, before, drive, state, n):
         """Add weight and external forces; return the potential energy of the weight, J."""
         potential = 0.0
         if gravity:
@@ -45,6 +66,8 @@ def motion_for(form: KernelFlags) -> Callable:
                 for a in range(freedoms):
                     before[i + a] = v[i + a]
                     force[i + a] += drive[n, r, a]
+                    if matched:
+                        force[i + a] -= sprung(blocks, state.closure, r, a)
         return potential
 
     @formula
@@ -60,6 +83,8 @@ def motion_for(form: KernelFlags) -> Callable:
             else:
                 force[i] = 0.0
             v[i] = new
+            if finite and i % 6 > 2:
+                continue  # momenta turn quaternions
             u[i] += drift * new
 
     @formula
@@ -111,7 +136,47 @@ def motion_for(form: KernelFlags) -> Callable:
                 v[i + a] = spare[a]
 
     @formula
-    def account_held(blocks, first, last, begin, v, force, before, drive, n, kick, ledger):
+    def drag_turned(blocks, first, r, turn, u, v, inertia, before, closure, spare):
+        """Do with finite rotations what `drag_held` does, for row r: dashpots give a block the
+        impulse that they would if it had not turned. Leave velocities before, impulses, and what
+        springs take."""
+        block, matrices = blocks.held[r] - first, blocks.matrices[r]
+        i = 6 * block
+        for a in range(6):
+            spare[a] = rate(blocks, first, turn, u, before, i + a)
+            spare[6 + a] = rate(blocks, first, turn, u, v, i + a)
+        for a in range(6):
+            change = -spare[6 + a]
+            for m in range(6):
+                change += matrices[0, a, m] * spare[m] + matrices[1, a, m] * spare[6 + m]
+            spare[12 + a] = change
+            if matched:
+                spare[18 + a] = sprung(blocks, closure, r, a)
+        for a in range(3):
+            u[i + a] += blocks.dt * spare[12 + a]
+            spare[12 + a] *= inertia[i + a]
+        spun = angular_momentum(blocks.free[first + block], three(spare, 15, 1))
+        spare[15], spare[16], spare[17] = spun
+        for a in range(6):
+            v[i + a] += spare[12 + a] / inertia[i + a]
+
+    @formula
+    def account_turned(blocks, first, r, turn, u, v, force, drive, n, kick, spare, ledger):
+        """Do what `account_held` does, by what `drag_turned` leaves."""
+        for a in range(6):
+            i = 6 * (blocks.held[r] - first) + a
+            old, new = spare[a], rate(blocks, first, turn, u, v, i)
+            taken, given = -0.5 * spare[12 + a], 0.5 * kick * drive[n, r, a]
+            if matched:
+                taken += 0.5 * kick * spare[18 + a]
+            ledger[BOUNDARY] += taken * old
+            ledger[BOUNDARY + AFTER] += taken * new
+            ledger[WORK] += given * old
+            ledger[WORK + AFTER] += given * new
+            force[i] += spare[12 + a] / kick
+
+    @formula
+    def account_held(blocks, first, last, begin, v, force, before, drive, state, n, kick, ledger):
         """Enter the work of external forces, and of dashpots, which it adds to the forces."""
         for r in range(first, last):
             i, matrices = freedoms * blocks.held[r] - begin, blocks.matrices[r]
@@ -120,6 +185,8 @@ def motion_for(form: KernelFlags) -> Callable:
                 for m in range(freedoms):
                     drag += matrices[2, a, m] * (0.5 * (before[i + m] + v[i + m]))
                 taken, given = 0.5 * kick * drag, 0.5 * kick * drive[n, r, a]
+                if matched:
+                    taken += 0.5 * kick * sprung(blocks, state.closure, r, a)
                 ledger[BOUNDARY] += taken * old
                 ledger[BOUNDARY + AFTER] += taken * new
                 ledger[WORK] += given * old
@@ -136,31 +203,55 @@ def motion_for(form: KernelFlags) -> Callable:
         # Slices begin at 0: else indices are taken to wrap around, and loops are not vectorised.
         u, v, force = state.u[begin:end], state.v[begin:end], all_forces[begin:end]
         inertia, inverse = blocks.inertia[begin:end], blocks.inverse[begin:end]
-        before, pushed = q[BEFORE:], 0.5 * kick * (1.0 + blocks.keep)
-        potential = add_forces(blocks, first, last, begin, u, v, force, inertia, before, drive, n)
+        before, pushed, turn = q[BEFORE:], 0.5 * kick * (1.0 + blocks.keep), state.turn
+        if finite:
+            turn = turn[tiles[BLOCK, t] : tiles[BLOCK, t + 1]]
+        potential = add_forces(
+            blocks, first, last, begin, u, v, force, inertia, before, drive, state, n
+        )
         if oblique:
             advance_oblique(blocks, tiles[BLOCK, t], u, v, force, before, pushed, drift)
         else:
             advance(u, v, force, inverse, before, pushed, drift, blocks.keep, blocks.local)
-        if held:
+        if held and finite:
+            block, spare = tiles[BLOCK, t], q[SPARE:]
+            for r in range(first, last):
+                drag_turned(blocks, block, r, turn, u, v, inertia, before, state.closure, spare)
+                if has_ledger:
+                    account_turned(
+                        blocks, block, r, turn, u, v, force, drive, n, kick, spare, ledger
+                    )
+        elif held:
             drag_held(blocks, first, last, begin, u, v, before, q[SPARE:])
         if has_ledger:
-            if held:
-                account_held(blocks, first, last, begin, v, force, before, drive, n, kick, ledger)
+            if held and not finite:
+                account_held(
+                    blocks, first, last, begin, v, force, before, drive, state, n, kick, ledger
+                )
             if damped or sampled:
                 kinetic, lost, lost_after = 0.0, 0.0, 0.0
                 for i in range(end - begin):
                     after = momentum(blocks, inertia, tiles[BLOCK, t], i, v)
+                    old, new = before[i], v[i]
+                    if finite:
+                        old = rate(blocks, tiles[BLOCK, t], turn, u, before, i)
+                        new = rate(blocks, tiles[BLOCK, t], turn, u, v, i)
                     if damped:  # what is missing in the block's momentum
                         missing = after - momentum(blocks, inertia, tiles[BLOCK, t], i, before)
                         missing -= kick * force[i]
-                        lost, lost_after = lost + missing * before[i], lost_after + missing * v[i]
-                    kinetic += before[i] * after
+                        lost, lost_after = lost + missing * old, lost_after + missing * new
+                    kinetic += old * after
                 ledger[VISCOUS] -= 0.5 * lost
                 ledger[VISCOUS + AFTER] -= 0.5 * lost_after
                 if sampled:
                     ledger[KINETIC] += 0.5 * kinetic
                     ledger[GRAVITY] += potential
             force[:] = 0.0
+        if matched:
+            for r in range(first, last):
+                i = freedoms * blocks.held[r] - begin
+                close_springs(blocks, tiles[BLOCK, t], turn, state.closure, r, u, v, i, q[SPARE:])
+        if finite:
+            turn_blocks(blocks, tiles[BLOCK, t], turn, u, v, drift)
 
     return move

@@ -1,70 +1,80 @@
-"""Simulation of a rock mass by rigid blocks."""
+"""Simulation by rigid blocks: the run of a rock mass or of a pillar, from its scene to a result."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from time import perf_counter
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.incident import IncidentField
-from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.dem.bounds import highest_energy, motion_of_contacts
+from jointwave.cases.errors import SceneError
+from jointwave.cases.sampling import Clock
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.damping import NOT_OF_BLOCKS
+from jointwave.cases.schema.scene import Scene
+from jointwave.dem.bounds import highest_energy
 from jointwave.dem.leapfrog import march
 from jointwave.dem.model import Samples, State, samples_for, state_at_rest
+from jointwave.dem.pillar import record as pillar_record
+from jointwave.dem.pillar import system as pillar
 from jointwave.dem.relaxation import start
-from jointwave.dem.system import BlockSystem, prepared
-from jointwave.dem.time_loop import Run, followed, refuse_beyond_bounds, versions
-from jointwave.dem.waveforms import recorder, waveforms
+from jointwave.dem.system import BlockSystem
+from jointwave.dem.time_loop import Run, followed, refuse_beyond_bounds, thread_count, versions
 from jointwave.numerics.divergence import SPEED, Guard, audit, guard
-from jointwave.numerics.small_motion import (
-    Moved,
-    farthest,
-    matters,
-    overlapping,
-    refuse_large_motion,
-)
+from jointwave.numerics.small_motion import matters, refuse_large_motion
 from jointwave.numerics.time_loop import Checkpointer
 from jointwave.results.arrays import size_of
-from jointwave.results.rock_mass import rock_mass_dataset
+
+if TYPE_CHECKING:
+    from jointwave.cases.incident import IncidentField
 
 MOST_OF_DRIVE = 2_000_000  # numbers: forces on held blocks in memory at a time
 
 
 def simulate(
-    scene: RockMass,
+    scene: AnyScene,
     progress: Callable[[float], None] | None = None,
     keeper: Checkpointer | None = None,
     incident: IncidentField | None = None,
 ) -> xr.Dataset:
-    """Simulate a rock mass, in the plane or in space."""
+    """Simulate a scene with rigid blocks, with the degrees of freedom that it needs.
+
+    progress : called with the finished fraction. keeper : of checkpoints,
+    `numerics.time_loop`. incident : of a rock mass, the field that enters through quiet sides;
+    absent: that of its waves in rock without joints.
+
+    Raises SceneError for an unstable step, a static state that does not exist, rotations too large
+    for their kinematics and a quality factor; StoppedError, an UnstableError with the
+    result so far, when the motion leaves its bounds.
+    """
+    if (quality := scene.rock.quality_factor) is not None:
+        raise SceneError(scene.where, "rock.quality_factor", quality, NOT_OF_BLOCKS)
     began = perf_counter()
-    system = prepared(scene, incident)
+    kind, reads = modules(scene)
+    system = kind.prepared(scene, incident)
     model, time = system.model, system.time
     state, samples = state_at_rest(model), samples_for(model, time.samples)
     rest = start(system, state)
     monitor = guard(highest_energy(system, state))
     built = perf_counter()
     step(system, state, samples, 0, 0)
-    snapshots = recorder(system, state)
+    snapshots = reads.recorder(system, state)
     compiled = perf_counter()
 
     def result(count: int) -> xr.Dataset:
-        found = rock_mass_dataset(
-            scene,
-            "dem",
-            time.times[:count],
-            waveforms(system, samples, count),
-            None if samples.energy is None else samples.energy[:, :count],
+        found = reads.dataset_of(
+            system,
+            state,
+            samples,
+            count,
             model="rigid blocks",
-            scheme="leapfrog",
             dt=time.dt,
             critical_dt=system.critical,
             steps=time.steps,
-            blocks=system.blocks.cut.count,
+            blocks=system.blocks.count,
             degrees_of_freedom=model.blocks.inertia.size,
-            left_over=system.blocks.joints.left_over,
             threads=system.threads,
             bytes=size_of(model, state),
             **({} if rest is None else rest.attributes),
@@ -80,36 +90,44 @@ def simulate(
         look(system, state, samples, monitor, first, last)
 
     def check(first: int, last: int) -> None:
-        speeds, places = _energies(system, state), system.blocks.cut.centroid
-        refuse_beyond_bounds(scene, time, system.critical, monitor, speeds, places)
+        speeds, t = _energies(system, state), last * time.stride * time.dt
+        refuse_beyond_bounds(scene, time, system.critical, monitor, speeds, system.blocks.centroid)
+        reads.refuse_large_rotation(system, state, t)
         if matters(scene):
-            t = last * time.stride * time.dt
-            refuse_large_motion(scene, "the rigid blocks", moved_apart(system, state), t, first)
+            refuse_large_motion(
+                scene, "the rigid blocks", reads.moved_apart(system, state), t, first
+            )
 
     parts = (state, samples, monitor)
-    run = Run(time, system.blocks.cut.count, march_samples, check, parts)
+    run = Run(time, system.blocks.count, march_samples, check, parts)
     return followed(run, result, progress, snapshots, keeper)
 
 
-def moved_apart(system: BlockSystem, state: State) -> Moved | None:
-    """Return the contact that has moved furthest over the size of its smaller block, or in the
-    plane blocks that overlap without one; None in a single block."""
-    blocks, met, dim = system.blocks, system.blocks.contacts, system.blocks.dim
-    count = blocks.cut.count
-    if dim == 2 and (overlap := overlapping(blocks.partition, state.u[:count])) is not None:
-        return overlap
-    if not len(met.blocks):
-        return None
-    moved = motion_of_contacts(system, state)
-    reach = np.sqrt(3 * np.trace(met.spread, axis1=1, axis2=2))  # of a rectangle's corners
-    ends = reach * np.linalg.norm(moved[:, dim:], axis=1)
-    by = np.hypot(np.abs(moved[:, 0]) + ends, np.linalg.norm(moved[:, 1:dim], axis=1))
-    volume = np.append(blocks.cut.volume, np.full(len(met.walls), np.inf))
-    size = volume[met.blocks].min(axis=1) ** (1 / dim)
-    k = farthest(by, size)
-    i, j = met.blocks[k].tolist()
-    place = tuple(met.centre[k].tolist())
-    return Moved(i, j if j < count else -1, float(by[k]), float(size[k]), place)
+class Plan(NamedTuple):
+    """A run before it: its clock, the critical step (s), degrees of freedom, and threads."""
+
+    time: Clock
+    critical: float
+    freedoms: int
+    threads: int
+
+
+def plan(scene: AnyScene) -> Plan:
+    """Return what a run would take; raises SceneError as it would."""
+    kind, _ = modules(scene)
+    blocks = kind.blocks_of(scene)
+    time, critical = kind.clock_of(blocks)
+    threads = thread_count(scene.numerics.dem.threads, blocks.count)
+    return Plan(time, critical, blocks.inertia.size, threads)
+
+
+def modules(scene: AnyScene) -> tuple[Any, Any]:
+    """Return the module that makes blocks of a scene, and the one that reads its results."""
+    if isinstance(scene, Scene):
+        return pillar, pillar_record
+    from jointwave.dem.rock_mass import system, waveforms  # with shapely, which no pillar needs
+
+    return system, waveforms
 
 
 def step(system: BlockSystem, state: State, samples: Samples, first: int, last: int) -> None:
@@ -143,5 +161,7 @@ def look(
 
 def _energies(system: BlockSystem, state: State) -> np.ndarray:
     """Return sqrt(m) v of the fastest freedom of each block [N], sqrt(J)."""
-    masses = system.blocks.inertia
-    return (np.sqrt(masses) * np.abs(state.v[: len(masses)])).max(axis=1)
+    masses, momenta = system.blocks.inertia, system.model.inertia
+    if system.model.form.finite:
+        masses = np.hstack([masses[:, :3], np.full_like(masses[:, 3:], masses[:, 3:].max())])
+    return (momenta / np.sqrt(masses) * np.abs(state.v[: len(masses)])).max(axis=1)

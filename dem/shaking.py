@@ -1,20 +1,29 @@
-"""The motion of fixed sides that move as a base, in any dimension."""
+"""The motion of walls that move as a base, in any dimension."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
 from jointwave.cases.loads import history_of
-from jointwave.cases.schema.sources import PlaneLoad
+from jointwave.cases.schema.pulse import Pulse
 
 #: Of (steps): the velocity of every wall in each [n, walls, d], m/s.
 Shaking = Callable[[np.ndarray], np.ndarray]
 
 
-def shaking(bases: list[PlaneLoad], walls: tuple[str, ...], dim: int, dt: float) -> Shaking | None:
-    """Return the motion of walls, named by their sides, in steps of dt (s); None without a base.
+class Base(NamedTuple):
+    """A base that moves: the wall's name, the pulse that it moves by, and its direction [d]."""
+
+    wall: str
+    pulse: Pulse
+    direction: np.ndarray
+
+
+def shaking(bases: list[Base], walls: tuple[str, ...], dim: int, dt: float) -> Shaking | None:
+    """Return the motion of walls in steps of dt (s); None without a base.
 
     A velocity is the mean over the step, so that displacements are exact; an acceleration gives
     the velocity at the half step, as leapfrog does.
@@ -24,13 +33,13 @@ def shaking(bases: list[PlaneLoad], walls: tuple[str, ...], dim: int, dt: float)
 
     def velocity(steps: np.ndarray) -> np.ndarray:
         found = np.zeros((len(steps), len(walls), dim))
-        for one in bases:
-            history = history_of(one, one.amplitude)
-            if one.quantity == "velocity":
-                along = np.diff(history.impulse(dt * np.append(steps, steps[-1:] + 1))) / dt
+        for wall, pulse, direction in bases:
+            history = history_of(pulse, pulse.amplitude)
+            if pulse.quantity == "velocity":
+                along = (history.impulse(dt * (steps + 1)) - history.impulse(dt * steps)) / dt
             else:
                 along = history.impulse(dt * (steps + 0.5))
-            found[:, walls.index(one.side or "")] += np.outer(along, one.direction or [])
+            found[:, walls.index(wall)] += np.outer(along, direction)
         return found
 
     return velocity

@@ -22,10 +22,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.linalg import LinAlgError, cholesky_banded
 
 from jointwave.dem.columns import Columns
 from jointwave.dem.contacts import Contacts, jumps_of, springs_of
 from jointwave.numerics.critical_step import critical_step
+
+CLOSE_ENOUGH = 1e-14  # relative, to the largest eigenvalue
 
 
 def critical_time_step(
@@ -64,9 +67,7 @@ def _stiffness(
     per area in each column, normal and in shear, with the second moments of its points."""
     count, freedoms, _ = masses.shape
     dim = contacts.frame.shape[1]
-    spread = columns.bending[contacts.column, None, None] * contacts.spread
-    normal, shear = (x[contacts.column] for x in values)
-    springs = springs_of(normal, shear, contacts.area, spread, freedoms - dim)
+    springs = springs_on(contacts, columns, values, freedoms - dim)
     found = np.zeros((count, freedoms, freedoms))
     for side in (0, 1):
         own = contacts.blocks[:, side]
@@ -74,3 +75,93 @@ def _stiffness(
         jump = jumps_of(contacts.frame[real], contacts.arm[real, side], freedoms - dim)
         np.add.at(found, own[real], jump.swapaxes(1, 2) @ springs[real] @ jump)
     return found
+
+
+def springs_on(
+    contacts: Contacts, columns: Columns, values: Sequence[np.ndarray], rotations: int
+) -> np.ndarray:
+    """Return the stiffness or viscosity of contacts against their jumps and rotations [c, F, F], of
+    those per area in each column, normal and in shear, with the second moments of the points."""
+    spread = columns.bending[contacts.column, None, None] * contacts.spread
+    normal, shear = (x[contacts.column] for x in values)
+    return springs_of(normal, shear, contacts.area, spread, rotations)
+
+
+def critical_step_of_row(
+    contacts: Contacts,
+    columns: Columns,
+    masses: np.ndarray,
+    local: float,
+    ends: Sequence[tuple[int, np.ndarray]],
+) -> float:
+    """Return the critical step (s) of blocks one after the other, as `critical_time_step` has it,
+    to the last digits; ends : blocks that are held, and by what stiffness [F, F]."""
+    eta, local = columns.time_constants, 1 + local
+    back = np.linalg.inv(np.linalg.cholesky(masses))
+
+    def band(normal: np.ndarray, shear: np.ndarray, held: float) -> np.ndarray:
+        found = _coupled(contacts, columns, (normal, shear), masses.shape)
+        for block, matrix in ends:
+            found[0, block] += held * matrix
+        found[0] = back @ found[0] @ back.swapaxes(1, 2)
+        found[1, :-1] = back[1:] @ found[1, :-1] @ back[:-1].swapaxes(1, 2)
+        return lower_band(found)
+
+    (normal, shear), damping = columns.stiffest, np.zeros(1)
+    own = band(normal, shear, 1.0)
+    if eta is not None:
+        damping = band(eta[0] * columns.normal, eta[1] * columns.shear, 0.0)
+    return critical_step(
+        lambda a, b: local * largest_eigenvalue(a * own + b * damping), eta is not None
+    )
+
+
+def _coupled(
+    contacts: Contacts, columns: Columns, values: Sequence[np.ndarray], shape: tuple[int, ...]
+) -> np.ndarray:
+    """Return the matrices of each block, and of the next one's motion in what acts on it, of
+    stiffness or viscosity per area in each column [2, N, F, F]."""
+    count, freedoms, _ = shape
+    rotations = freedoms - contacts.frame.shape[1]
+    springs = springs_on(contacts, columns, values, rotations)
+    found, (i, j) = np.zeros((2, *shape)), contacts.blocks.T
+    of_i, of_j = (jumps_of(contacts.frame, arm, rotations) for arm in contacts.arm.swapaxes(0, 1))
+    inner = j < count
+    np.add.at(found[0], i, of_i.swapaxes(1, 2) @ springs @ of_i)
+    np.add.at(found[0], j[inner], (of_j.swapaxes(1, 2) @ springs @ of_j)[inner])
+    found[1, i[inner]] = -(of_j.swapaxes(1, 2) @ springs @ of_i)[inner]
+    return found
+
+
+def lower_band(matrices: np.ndarray) -> np.ndarray:
+    """Return the lower band [2 F, N F] of a symmetric matrix, of its diagonal blocks and those
+    below them [2, N, F, F]."""
+    _, count, size, _ = matrices.shape
+    found = np.zeros((2 * size, count, size))
+    for below, block in enumerate(matrices):
+        for row in range(size):
+            for column in range(size):
+                if (off := below * size + row - column) >= 0:
+                    found[off, :, column] = block[:, row, column]
+    return found.reshape(2 * size, -1)
+
+
+def largest_eigenvalue(band: np.ndarray) -> float:
+    """Return the largest eigenvalue of a symmetric matrix by its lower band, by bisection for the
+    shift that makes s - K positive definite.
+
+    A long row has its largest eigenvalues so close together that Lanczos takes minutes.
+    """
+    whole = np.abs(band).sum(axis=0)
+    for off in range(1, len(band)):
+        whole[off:] += np.abs(band[off, :-off])
+    low, high = float(band[0].max()), float(whole.max())
+    while high - low > CLOSE_ENOUGH * high:
+        shifted = -band
+        shifted[0] += (low + high) / 2
+        try:
+            cholesky_banded(shifted, overwrite_ab=True, lower=True, check_finite=False)
+            high = (low + high) / 2
+        except LinAlgError:
+            low = (low + high) / 2
+    return high

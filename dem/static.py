@@ -10,20 +10,13 @@ some ln(1 / tolerance) / (omega dt) steps. Underwood, Dynamic relaxation, in: Co
 for Transient Analysis (1983).
 """
 
-from dataclasses import replace
 from math import sqrt
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.calibrate import Properties
-from jointwave.cases.sampling import Interpolation
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
-from jointwave.joints.law import Law, parts_of
-from jointwave.joints.law import stiffest as stiffest_springs
-from jointwave.joints.normal import gap_under
 
 STEPS_BETWEEN_LOOKS = 10
 STEP_FRACTION = 0.9  # of the critical step: only the final state matters
@@ -79,83 +72,6 @@ class Rest(NamedTuple):
     def attributes(self) -> dict[str, Any]:
         """Attributes of a result."""
         return {"static_steps": self.steps, "static_out_of_balance": self.ratio}
-
-
-def fastest_of_row(p: Properties, change: np.ndarray, dt: float) -> tuple[str, float]:
-    """Return the block of a pillar that moves farthest in a step dt (s), in words, and how fast
-    (m/s); change : [directions, blocks], m."""
-    moved = np.linalg.norm(change, axis=0)
-    k = int(moved.argmax())
-    y = (p.contact_y[k] + p.contact_y[k + 1]) / 2
-    return f"the block at y = {y:.4g} m", float(moved[k]) / dt
-
-
-def prestressed(scene: Scene, p: Properties) -> np.ndarray:
-    """Return the displacement of every block under the prestress alone [N], m: where results count
-    displacement from.
-
-    A held end does not move (the far one if both are); between two free ends the displacement has
-    zero mean.
-    """
-    start, end = held_ends(scene)
-    normal = scene.prestress.normal if scene.prestress else 0.0
-    u = np.append(0.0, np.cumsum(gaps_under(p, normal)))
-    if end == "fixed":
-        return u - u[-1] + normal / p.at_end.wall_stiffness
-    half = normal / p.at_start.wall_stiffness
-    return u - half if start == "fixed" else u - u.mean()
-
-
-def held_ends(scene: Scene) -> tuple[str, str]:
-    """Return how the ends are held while a static state is sought: fixed where they bear it."""
-    kinds, weighed = (scene.ends.start, scene.ends.end), scene.gravity and scene.gravity.static
-    start, end = (
-        "fixed" if kind == "fixed" or (weighed and bears) else "free"
-        for kind, bears in zip(kinds, scene.bears, strict=True)
-    )
-    return start, end
-
-
-def gaps_under(p: Properties, stress: float | np.ndarray) -> np.ndarray:
-    """Return the gaps of joints whose springs carry a normal stress (Pa), or each its own, m."""
-    law = _springs(p)
-    return gap_under(law, parts_of(law), stress)
-
-
-def undamped(p: Properties) -> Properties:
-    """Return the numbers of a scene without dashpots and damping."""
-    return replace(
-        p, time_constant=None, joint_time_constant=None, mass_damping=None, local_damping=None
-    )
-
-
-def stiffest(scene: Scene, p: Properties) -> Properties:
-    """Return the numbers of a scene with its joints as stiff as they become within reach, dashpots
-    as they are; p itself where none stiffens."""
-    (stiffness, _), eta = stiffest_springs(_springs(p), scene), p.joint_time_constant
-    if stiffness is p.stiffness:
-        return p
-    if eta is None:
-        return replace(p, stiffness=stiffness)
-    eta = eta * p.stiffness / stiffness
-    return replace(p, stiffness=stiffness, joint_time_constant=eta, time_constant=float(eta.max()))
-
-
-def _springs(p: Properties) -> Law:
-    rock = p.rock_compliance
-    return Law(p.stiffness, rock_compliance=rock, **p.strengths(shears=False))
-
-
-def since_prestress(
-    scene: Scene, p: Properties, displacement: np.ndarray, points: Interpolation
-) -> np.ndarray:
-    """Return displacements along y [points, n] (m) as results count them: from the prestressed
-    state."""
-    if scene.prestress is None:
-        return displacement
-    u = prestressed(scene, p)
-    at_rest = (1 - points.weight) * u[points.left] + points.weight * u[points.right]
-    return displacement - at_rest[:, None]
 
 
 def settle(scene: AnyScene, system: System, unborne: str = "") -> Rest:

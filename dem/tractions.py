@@ -6,6 +6,7 @@ from collections.abc import Callable
 from jointwave.dem.chunks import LANES as L
 from jointwave.dem.model import KernelFlags
 from jointwave.dem.motion import ELASTIC, FRACTURE, FRICTION
+from jointwave.dem.rotation import three
 from jointwave.joints.formula import formula
 from jointwave.joints.law import History, law_at, law_of, traction
 
@@ -21,15 +22,20 @@ def point_forces_for(form: KernelFlags) -> Callable:
     parts, points, dim, turns, stressed = (
         form.parts, form.points, form.dim, form.turns, form.stressed
     )  # fmt: skip
-    dashpots, varied, has_ledger = parts.dashpots, parts.varied, form.ledger
+    dashpots, varied, has_ledger, finite = parts.dashpots, parts.varied, form.ledger, form.finite
     softening, residual, path_dependent = parts.softening, parts.residual, parts.path
     rated, drags, past, rows = form.rated, form.drags, form.history, form.buffer
-    LAW, JUMP, RATE, NOW, FORCE, SPREAD, DRAG = (
-        rows.law, rows.jump, rows.rate, rows.now, rows.force, rows.spread, rows.drag
+    LAW, JUMP, RATE, NOW, FORCE, DRAG = (
+        rows.law, rows.jump, rows.rate, rows.now, rows.force, rows.drag
     )  # fmt: skip
-    START, POINT, zeroed = form.table.start, form.table.point, rows.zeroed
-    PAST, OPENING, COHESION, PATH, past_rows = (
-        past.point, past.opening, past.cohesion, past.path, past.point_rows
+    START, POINT, EXTENT, zeroed = (
+        form.table.start, form.table.point, form.table.extent, rows.zeroed
+    )  # fmt: skip
+    START, POINT, EXTENT, zeroed = (
+        form.table.start, form.table.point, form.table.extent, rows.zeroed
+    )  # fmt: skip
+    PAST, OPENING, WHOLE, COHESION, PATH, past_rows = (
+        past.point, past.opening, past.whole, past.cohesion, past.path, past.point_rows
     )  # fmt: skip
 
     @formula
@@ -40,10 +46,24 @@ def point_forces_for(form: KernelFlags) -> Callable:
             return gap - e_1 * q[row + 2 * L + c], q[row + L + c], 0.0
         if dim == 3:
             x, z = q[row + L + c], q[row + 2 * L + c]
-            if turns:
+            if finite:
+                further, other = three(q, row + 3 * L + c, L), three(q, row + 6 * L + c, L)
+                gap = gap + (e_1 * further[0] + e_2 * other[0])
+                x, z = (
+                    x + (e_1 * further[1] + e_2 * other[1]),
+                    z + (e_1 * further[2] + e_2 * other[2]),
+                )
+            elif turns:
                 p_n, p_1, p_2 = q[row + 3 * L + c], q[row + 4 * L + c], q[row + 5 * L + c]
                 gap, x, z = gap + (p_1 * e_2 - p_2 * e_1), x - p_n * e_2, z + p_n * e_1
         return gap, x, z
+
+    @formula
+    def area_within(k, c, area, x, z, gap):
+        """Return the area of a point, none where it is off the face of j or behind that block."""
+        behind, along, across = three(k, EXTENT + c, L)
+        # One condition, not three in a row: branches would keep lanes from being worked together.
+        return area if max(abs(x) - along, abs(z) - across, -behind - gap) <= 0.0 else 0.0
 
     @formula
     def history_at(h, before, c):
@@ -76,21 +96,22 @@ def point_forces_for(form: KernelFlags) -> Callable:
             h[before + PATH + c] = after.path
 
     @formula
-    def add_force(q, c, e_1, e_2, f_n, f_x, f_z):
-        """Add the force at a point, and its first moments about the centre of the face."""
-        add(q, FORCE + c, f_n)
+    def add_force(q, row, c, e_1, e_2, f_n, f_x, f_z):
+        """Add the force at a point, and its first moments about the centre of the face, to rows."""
+        add(q, row + c, f_n)
         if dim > 1:
-            add(q, FORCE + L + c, f_x)
+            add(q, row + L + c, f_x)
         if dim > 2:
-            add(q, FORCE + 2 * L + c, f_z)
+            add(q, row + 2 * L + c, f_z)
         if turns:
-            add(q, SPREAD + c, e_1 * f_n)
-            add(q, SPREAD + L + c, e_1 * f_x)
+            spread = row + dim * L + c
+            add(q, spread, e_1 * f_n)
+            add(q, spread + L, e_1 * f_x)
             if dim > 2:
-                add(q, SPREAD + 2 * L + c, e_1 * f_z)
-                add(q, SPREAD + 3 * L + c, e_2 * f_n)
-                add(q, SPREAD + 4 * L + c, e_2 * f_x)
-                add(q, SPREAD + 5 * L + c, e_2 * f_z)
+                add(q, spread + 2 * L, e_1 * f_z)
+                add(q, spread + 3 * L, e_2 * f_n)
+                add(q, spread + 4 * L, e_2 * f_x)
+                add(q, spread + 5 * L, e_2 * f_z)
 
     @formula
     def add_drag(q, c, e_1, e_2, f_n, f_x, f_z):
@@ -127,6 +148,8 @@ def point_forces_for(form: KernelFlags) -> Callable:
                 if dim > 2:
                     e_2 = k[own + L + c]
                 gap, x, z = at_point(q, JUMP, c, e_1, e_2)
+                if finite:
+                    area = area_within(k, c, area, e_1 - x, e_2 - z, gap)
                 if stressed:
                     gap = gap + k[START + c]
                     if dim > 1:
@@ -141,10 +164,17 @@ def point_forces_for(form: KernelFlags) -> Callable:
                     rate = at_point(q, NOW, c, e_1, e_2)
                 found = traction(law, parts, (gap, x, z), moved, rate, dt, history_at(h, before, c))
                 remember(h, before, c, found.history)
-                add_force(q, c, e_1, e_2, area * found.n, area * found.x, area * found.z)
+                if softening:
+                    whole = found.history.opening < law.critical_opening
+                    h[before + WHOLE + c] += 1.0 if whole else 0.0
+                add_force(q, FORCE, c, e_1, e_2, area * found.n, area * found.x, area * found.z)
                 if drags:
                     f_n, f_x, f_z = found.drag_n, found.drag_x, found.drag_z
-                    add_drag(q, c, e_1, e_2, area * f_n, area * f_x, area * f_z)
+                    f_n, f_x, f_z = area * f_n, area * f_x, area * f_z
+                    if finite:
+                        add_force(q, DRAG, c, e_1, e_2, f_n, f_x, f_z)
+                    else:
+                        add_drag(q, c, e_1, e_2, f_n, f_x, f_z)
                 if has_ledger:
                     ledger[FRICTION + c] += area * found.slid
                     ledger[ELASTIC + c] += weighed * area * found.stored

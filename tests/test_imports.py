@@ -32,10 +32,6 @@ MOST_ARGUMENTS = 12
 #: Kernels of the present engines. This list may only shrink.
 LONG_KERNELS = {
     ("joints/slide.py", "after_slide"),
-    ("dem/spatial/leapfrog.py", "step"),
-    ("dem/spatial/march.py", "diagonals"),
-    ("dem/axial/leapfrog.py", "steps"),
-    ("dem/axial/fourth_order.py", "steps"),
     ("continuum/explicit/leapfrog.py", "add_work"),
     ("continuum/explicit/leapfrog.py", "steps"),
     ("continuum/implicit/record.py", "take"),

@@ -26,18 +26,15 @@ def run(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -> xr.Da
 
 def prepare(scene: Scene | RockMass) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
-    from jointwave.cases.effects import is_spatial
-    from jointwave.cases.schema.scene import Scene
+    from jointwave.dem import plan
 
+    incident(scene)  # which is not known of all waves in layers
     with estimates() as parts:
-        if isinstance(scene, Scene):
-            time, critical, freedoms, threads = (_spatial if is_spatial(scene) else _axial)(scene)
-        else:
-            time, critical, freedoms, threads = _in_plane(scene)
-    scheme = scene.numerics.dem.scheme if isinstance(scene, Scene) else "leapfrog"
-    settings = {"scheme": scheme, "threads": threads}
-    size = sum(parts.values())
-    return Prepared(scheme, time.steps, time.dt, critical, freedoms, size, settings)
+        found = plan(scene)
+    scheme = getattr(scene.numerics.dem, "scheme", "leapfrog")
+    settings = {"scheme": scheme, "threads": found.threads}
+    time, size = found.time, sum(parts.values())
+    return Prepared(scheme, time.steps, time.dt, found.critical, found.freedoms, size, settings)
 
 
 def applies(scene: Scene | RockMass) -> Answer:
@@ -54,35 +51,6 @@ def applies(scene: Scene | RockMass) -> Answer:
 
     reason = against(scene)
     return Answer(f"numerics.dem.block {reason}") if reason else Answer()
-
-
-def _in_plane(scene: RockMass):
-    from jointwave.dem.build import rigid_blocks
-    from jointwave.dem.system import clock_of
-    from jointwave.dem.time_loop import thread_count
-
-    blocks = rigid_blocks(scene)
-    incident(scene)  # which is not known of all waves in layers
-    threads = thread_count(scene.numerics.dem.threads, blocks.cut.count)
-    return *clock_of(blocks), blocks.inertia.size, threads
-
-
-def _axial(scene: Scene):
-    from jointwave.dem.axial.simulate import scheme_of
-
-    _, _, time, critical = scheme_of(scene).build(scene)
-    return time, critical, scene.block_count, 1
-
-
-def _spatial(scene: Scene):
-    from jointwave.dem.spatial import simulate
-    from jointwave.dem.time_loop import thread_count
-
-    count = scene.block_count
-    freedoms = (3 if scene.motion.rotation == "none" else 6) * count
-    prepared = simulate.prepare(scene)
-    threads = thread_count(scene.numerics.dem.threads, count)
-    return prepared.time, prepared.critical, freedoms, threads
 
 
 DEM = Solver(

@@ -9,9 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.compare.solvers.dem import DEM
 
 MOST = 0.05  # of all parts: those that are lifted
@@ -38,21 +36,13 @@ def limiting(name: str, model: str | None, scene: AnyScene) -> dict[str, Any] | 
 
 def _blocks(scene: AnyScene, model: Any) -> tuple:
     """Return the squared frequencies (1/s2), masses and places of rigid blocks, and their sizes."""
-    if isinstance(scene, Scene):
-        from jointwave.dem.static import stiffest
-
-        p = stiffest(scene, calibrate(scene))
-        k = np.pad(p.stiffness * p.area, 1)
-        mass = np.full(p.block_count, p.block_mass) if p.masses is None else p.masses
-        length = np.diff(p.contact_y)
-        return 2 * (k[1:] + k[:-1]) / mass, mass, p.centre_y[:, None], lambda i: length[i]
-    from jointwave.dem.build import rigid_blocks
+    from jointwave.dem.run import modules
     from jointwave.dem.stability import squared_frequencies
 
-    blocks = rigid_blocks(scene)
+    kind, _ = modules(scene)
+    blocks = kind.blocks_of(scene)
     square = squared_frequencies(blocks.contacts, blocks.columns, blocks.masses)
-    volume, dim = blocks.cut.volume, blocks.dim
-    return square, blocks.inertia[:, 0], blocks.cut.centroid, lambda i: volume[i] ** (1 / dim)
+    return square, blocks.inertia[:, 0], blocks.centroid, lambda i: blocks.size[i]
 
 
 def _elements(scene: AnyScene, model: Any) -> tuple:

@@ -1,11 +1,11 @@
 """What the tests of rigid blocks share: short rows in space, and steps as plain Python."""
 
-from contextlib import suppress
 from copy import deepcopy
-from importlib import import_module
 from typing import Any
 
 import pytest
+
+from jointwave.dem import leapfrog
 
 SHORT: dict[str, Any] = {
     "pillar__length": 8.0,
@@ -15,14 +15,6 @@ SHORT: dict[str, Any] = {
     "load__at": [0.1, -0.05],
     "time__duration": 0.03,
     "record": {"stress": [0.0, 2.0, 5.0, 8.0], "velocity": [3.0, 6.0], "interval": 1e-4},
-}
-
-
-#: What returns the time loop of some effects, by module.
-LOOPS = {
-    "jointwave.dem.leapfrog": "loop_for",
-    "jointwave.dem.axial.leapfrog": "loop_for",
-    "jointwave.dem.spatial.march": "march_for",
 }
 
 
@@ -63,9 +55,6 @@ def plain(monkeypatch):
         "peek": lambda counters, i: counters[i],
         "post": lambda counters, i, value: counters.__setitem__(i, value),
     }
-    for name, loop in LOOPS.items():
-        with suppress(ModuleNotFoundError):
-            module = import_module(name)
-            monkeypatch.setattr(module, loop, in_python(getattr(module, loop)))
-            for key in stand_ins.keys() & vars(module):
-                monkeypatch.setattr(module, key, stand_ins[key])
+    monkeypatch.setattr(leapfrog, "loop_for", in_python(leapfrog.loop_for))
+    for key, stand_in in stand_ins.items():
+        monkeypatch.setattr(leapfrog, key, stand_in)

@@ -23,9 +23,10 @@ from jointwave.dem.boundaries import (
     points_on,
     resultants,
 )
-from jointwave.dem.loads import Loads, load_pattern, reactions
+from jointwave.dem.loads import Loads, reactions
+from jointwave.dem.rock_mass.loads import load_pattern
+from jointwave.dem.rock_mass.waves import incoming
 from jointwave.dem.shaking import shaking
-from jointwave.dem.waves import incoming
 
 SIZE = np.array([3.0, 2.0, 2.5])
 SIDES = ("left", "right", "front", "back", "bottom", "top")

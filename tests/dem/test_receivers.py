@@ -15,7 +15,7 @@ from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.compare.runs.field_files import write_pvd
 from jointwave.dem.boundaries import freedoms as freedoms_of
-from jointwave.dem.receivers import (
+from jointwave.dem.rock_mass.receivers import (
     Faces,
     Stencil,
     everywhere,
@@ -24,8 +24,8 @@ from jointwave.dem.receivers import (
     stencils_in_rock,
     stencils_on_joints,
 )
-from jointwave.dem.record import at_points, jumps, mean_stress, quantities
-from jointwave.dem.snapshots import BlockFrame, BlockRecorder, corner_motion, triangles
+from jointwave.dem.rock_mass.record import at_points, jumps, mean_stress, quantities
+from jointwave.dem.rock_mass.snapshots import BlockFrame, BlockRecorder, corner_motion, triangles
 from jointwave.results.rock_mass import rock_mass_dataset
 from jointwave.results.snapshots import snapshots_of
 from jointwave.results.stress import stress_components

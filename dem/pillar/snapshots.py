@@ -12,7 +12,6 @@ from jointwave.cases.loads import with_load_itself
 from jointwave.cases.material.calibrate import Properties
 from jointwave.cases.sampling import interpolation
 from jointwave.cases.schema.scene import Scene
-from jointwave.dem.static import prestressed
 from jointwave.results.snapshots import SnapshotRecorder, in_space, snapshots, with_snapshots
 from jointwave.results.subcells import CORNERS
 
@@ -44,7 +43,6 @@ class BlockRecorder(SnapshotRecorder):
     ) -> None:
         super().__init__(scene, CORNERS_OF_A_BLOCK * p.block_count, capture)
         self.scene, self.p, self.step = scene, p, step
-        self.at_rest = prestressed(scene, p) if scene.prestress else None
 
     def add_to(self, result: xr.Dataset) -> xr.Dataset:
         """Return the run's result with its snapshots."""
@@ -54,8 +52,6 @@ class BlockRecorder(SnapshotRecorder):
         frames = self.frames[: len(time)]
         motion = [corner_motion(frame, corners, self.p) for frame in frames]
         u, v = (np.stack(x) for x in zip(*motion, strict=True))
-        if self.at_rest is not None:
-            u[..., 1] -= self.at_rest[:, None]
         u, v = (x.reshape(len(time), -1, 3) for x in (u, v))
         stress = np.stack([frame.stress for frame in frames])
         if self.step is not None:

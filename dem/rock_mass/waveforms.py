@@ -2,18 +2,39 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+import xarray as xr
 
 from jointwave.cases.geometry.measure import Outlines
 from jointwave.cases.partition.shape import shape_of
-from jointwave.dem.build import faces_of
+from jointwave.dem.bounds import motion_of_contacts
 from jointwave.dem.leapfrog import march
 from jointwave.dem.model import Samples, State, samples_for
-from jointwave.dem.receivers import Receivers, everywhere
-from jointwave.dem.record import jumps, mean_stress, quantities
-from jointwave.dem.snapshots import BlockFrame, BlockRecorder
+from jointwave.dem.rock_mass.receivers import Receivers, everywhere
+from jointwave.dem.rock_mass.record import jumps, mean_stress, quantities
+from jointwave.dem.rock_mass.snapshots import BlockFrame, BlockRecorder
 from jointwave.dem.system import BlockSystem
+from jointwave.numerics.small_motion import Moved, farthest, overlapping
 from jointwave.results.arrays import copied
+from jointwave.results.rock_mass import rock_mass_dataset
+
+
+def dataset_of(
+    system: BlockSystem, state: State, samples: Samples, count: int, **attributes: Any
+) -> xr.Dataset:
+    """Return the result of the first `count` samples of a run."""
+    return rock_mass_dataset(
+        system.blocks.scene,
+        "dem",
+        system.time.times[:count],
+        waveforms(system, samples, count),
+        None if samples.energy is None else samples.energy[:, :count],
+        scheme="leapfrog",
+        left_over=system.blocks.joints.left_over,
+        **attributes,
+    )
 
 
 def waveforms(system: BlockSystem, samples: Samples, count: int) -> dict[str, np.ndarray]:
@@ -29,7 +50,7 @@ def recorder(system: BlockSystem, state: State) -> BlockRecorder | None:
     scene, cut = system.blocks.scene, system.blocks.cut
     if scene.record.fields is None:
         return None
-    receivers = everywhere(cut.volume, faces_of(system.blocks))
+    receivers = everywhere(cut.volume, system.blocks.faces)
     model = system.model._replace(places=receivers.places, watched=receivers.watched)
 
     def capture(sample: int) -> BlockFrame:
@@ -70,3 +91,28 @@ def acting(
         sums -= system.resistance[row] @ loads.onto.T @ velocity[held]
         found[held] = sums[:, dim:].reshape(len(held), dim, dim, -1)
     return found
+
+
+def moved_apart(system: BlockSystem, state: State) -> Moved | None:
+    """Return the contact that has moved furthest over the size of its smaller block, or in the
+    plane blocks that overlap without one; None in a single block."""
+    blocks, met, dim = system.blocks, system.blocks.contacts, system.blocks.dim
+    count = blocks.count
+    if dim == 2 and (overlap := overlapping(blocks.partition, state.u[:count])) is not None:
+        return overlap
+    if not len(met.blocks):
+        return None
+    moved = motion_of_contacts(system, state)
+    reach = np.sqrt(3 * np.trace(met.spread, axis1=1, axis2=2))  # of a rectangle's corners
+    ends = reach * np.linalg.norm(moved[:, dim:], axis=1)
+    by = np.hypot(np.abs(moved[:, 0]) + ends, np.linalg.norm(moved[:, 1:dim], axis=1))
+    volume = np.append(blocks.cut.volume, np.full(len(met.walls), np.inf))
+    size = volume[met.blocks].min(axis=1) ** (1 / dim)
+    k = farthest(by, size)
+    i, j = met.blocks[k].tolist()
+    place = tuple(met.centre[k].tolist())
+    return Moved(i, j if j < count else -1, float(by[k]), float(size[k]), place)
+
+
+def refuse_large_rotation(system: BlockSystem, state: State, t: float) -> None:
+    """Do nothing: `moved_apart` sees what rotations do to faces."""

@@ -1,0 +1,113 @@
+"""Rigid blocks of a rock mass from its scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from jointwave.cases.errors import SceneError
+from jointwave.cases.geometry.blocks import Blocks as Cut
+from jointwave.cases.geometry.cell_complex import GeometryError
+from jointwave.cases.material.rigid_blocks import RigidJoints, rigid_joints
+from jointwave.cases.partition.blocks import Partition, plane_partition
+from jointwave.cases.partition.lattice import further_sets
+from jointwave.cases.partition.regions import rocks_of
+from jointwave.cases.partition.scene import blocks_of_scene
+from jointwave.cases.partition.shape import shape_of
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.dem.build import RigidBlocks
+from jointwave.dem.rock_mass.columns import columns
+from jointwave.dem.rock_mass.contacts import contacts_of
+from jointwave.dem.rock_mass.receivers import Faces
+from jointwave.dem.stability import critical_time_step
+
+#: Rotations of a block, by dimension.
+ROTATIONS = {1: 0, 2: 1, 3: 3}
+
+
+@dataclass(frozen=True, kw_only=True)
+class BlocksOfRockMass(RigidBlocks):
+    """A rock mass as rigid blocks.
+
+    cut : the blocks. sides : names of the boundary's sides, in order. joints : the stiffness
+    between blocks, and the homogenised stiffness.
+    """
+
+    scene: RockMass
+    cut: Cut
+    sides: tuple[str, ...]
+    joints: RigidJoints
+
+    @property
+    def size(self) -> np.ndarray:
+        """The root of the area or volume of each block [N], m."""
+        return self.cut.volume ** (1 / self.dim)
+
+    @cached_property
+    def partition(self) -> Partition:
+        """The blocks in the plane, with the corners of each."""
+        names = tuple(one.name for one in self.scene.joint_sets)
+        return plane_partition(self.cut, self.sides, names)
+
+    @property
+    def critical(self) -> float:
+        """A lower bound of the critical step, s."""
+        local = self.scene.damping.local or 0.0
+        return critical_time_step(self.contacts, self.columns, self.masses, local)
+
+    @cached_property
+    def faces(self) -> Faces:
+        """The contacts as they are read."""
+        met, excess = self.contacts, np.append(self.joints.excess, np.zeros((2, 1)), axis=1)
+        own = excess[:, np.minimum(met.column, excess.shape[1] - 1)].T
+        return Faces(met.blocks, met.area, met.frame, met.arm, own)
+
+
+def blocks_of(scene: RockMass) -> BlocksOfRockMass:
+    """Return the rigid blocks of a scene; raises SceneError if they cannot be made."""
+    further, sides = further_sets(scene), shape_of(scene.domain).sides
+    cut = blocks_of_scene(scene, further)
+    try:
+        contacts, kinds, others = contacts_of(scene, cut, sides, further)
+    except GeometryError as error:  # periodic sides that do not fit each other
+        raise SceneError(scene.where, error.key, None, str(error)) from None
+    joints = rigid_joints(scene, further, kinds)
+    density = np.array([one.density for one in rocks_of(scene)])[cut.body.region]
+    gravity, stress = np.zeros(cut.body.dim), scene.prestress
+    if scene.gravity is not None:
+        gravity = scene.gravity.acceleration * np.array(scene.gravity.direction)
+    return BlocksOfRockMass(
+        scene=scene,
+        centroid=cut.centroid,
+        contacts=contacts,
+        columns=columns(scene, joints, others),
+        masses=masses_of(cut, density),
+        gravity=gravity,
+        prestress=None if stress is None else np.array(stress.tensor),
+        cut=cut,
+        sides=sides,
+        joints=joints,
+    )
+
+
+def masses_of(cut: Cut, density: np.ndarray) -> np.ndarray:
+    """Return the matrices of mass and inertia about the centroids [N, F, F] of blocks of densities
+    [N], kg/m3."""
+    dim, second = cut.body.dim, cut.second_moment
+    found = np.zeros((cut.count, *[dim + ROTATIONS[dim]] * 2))
+    found[:, :dim, :dim] = cut.volume[:, None, None] * np.eye(dim)
+    polar = np.trace(second, axis1=1, axis2=2)
+    if dim == 2:
+        found[:, 2, 2] = polar
+    elif dim == 3:
+        found[:, 3:, 3:] = polar[:, None, None] * np.eye(3) - second
+    return density[:, None, None] * found
+
+
+def relaxed(scene: RockMass) -> bool:
+    """Return whether a scene asks for a static state, by dynamic relaxation."""
+    gravity, quiet = scene.gravity, bool(scene.boundaries.sides("quiet"))
+    weighed = gravity is not None and (gravity.static or quiet)
+    return weighed or scene.prestress is not None

@@ -1,1 +1,0 @@
-"""Blocks that translate and rotate in space, stepped 64 at a time."""
