@@ -65,6 +65,7 @@ def custom_element(kind: str, span: np.ndarray, points: list, complete: int, deg
     cell, dim = getattr(basix.CellType, kind), points[0][0].shape[1]
     x = [*points, *[[]] * (3 - dim)]
     values = [[np.eye(len(one))[:, None, :, None] for one in entities] for entities in x]
+    span = np.ascontiguousarray(span)
     given: tuple[Any, ...] = cell, [], span, x, values, 0, basix.MapType.identity
     if not NEW:
         return basix.create_custom_element(*given, False, complete, degree)
