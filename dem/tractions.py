@@ -31,9 +31,6 @@ def point_forces_for(form: KernelFlags) -> Callable:
     START, POINT, EXTENT, zeroed = (
         form.table.start, form.table.point, form.table.extent, rows.zeroed
     )  # fmt: skip
-    START, POINT, EXTENT, zeroed = (
-        form.table.start, form.table.point, form.table.extent, rows.zeroed
-    )  # fmt: skip
     PAST, OPENING, WHOLE, COHESION, PATH, past_rows = (
         past.point, past.opening, past.whole, past.cohesion, past.path, past.point_rows
     )  # fmt: skip
