@@ -6,10 +6,10 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from jointwave.dem.chunks import chunks_of
-from jointwave.dem.contacts import extents
+from jointwave.dem.contacts import Contacts, extents
 from jointwave.dem.leapfrog import march
 from jointwave.dem.model import Blocks, KernelFlags, Model, held_by, samples_for, state_at_rest
-from jointwave.dem.rock_mass.receivers import Faces, frames_of
+from jointwave.dem.rock_mass.receivers import frames_of
 from jointwave.joints.law import law, parts_of, table_of
 
 SIDES, DENSITY, NORMAL, SHEAR = np.array([1.0, 1.3, 0.8]), 2500.0, 3e9, 1.1e9
@@ -32,12 +32,15 @@ def blocks_of(turned=None, finite=True, ledger=False, dashpots=0.0, held=None, *
     frame, half = frames_of(normal), SIDES[axis, None] / 2 * normal
     sizes = np.abs(frame[:, 1:] @ SIDES)
     frame, half = turned.apply(frame.reshape(-1, 3)).reshape(frame.shape), turned.apply(half)
-    faces = Faces(
+    faces = Contacts(
         blocks=np.concatenate(ahead),
         area=sizes.prod(axis=1),
+        centre=np.zeros((count, 3)),
         frame=frame,
         arm=np.stack([half, -half], axis=1),
-        excess=np.zeros((count, 2)),
+        spread=sizes[:, :, None] ** 2 / 12 * np.eye(2),
+        column=np.zeros(count, dtype=int),
+        walls=(),
     )
     gauss = np.array([[1, 1], [1, -1], [-1, 1], [-1, -1]]) / np.sqrt(12)
     share = np.tile(faces.area[:, None, None] / 4, (1, 4, 1))
