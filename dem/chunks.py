@@ -77,7 +77,10 @@ def chunks_of(
     aligned[:] = table
     pair = _chunks(pair.astype(np.int32), "edge")
     i, j = pair[:, :LANES], pair[:, LANES : 2 * LANES]
-    follow = (np.diff(i, axis=1) == freedoms).all(axis=1) & (j - i == freedoms).all(axis=1)
+    steps = np.diff(i, axis=1)
+    if dim == 1:  # there the last chunk may be a part
+        steps[-1:, (len(order) - 1) % LANES :] = freedoms
+    follow = (steps == freedoms).all(axis=1) & (j - i == freedoms).all(axis=1)
     return Chunks(
         pair,
         aligned,

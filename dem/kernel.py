@@ -47,6 +47,7 @@ from jointwave.dem.kinematics import onto_blocks_for, relative_for
 from jointwave.dem.model import KernelFlags
 from jointwave.dem.motion import AFTER, CHUNK, HELD, PLACE, SEEN, VISCOUS, WORK, motion_for
 from jointwave.dem.rotation import dot, three
+from jointwave.dem.row import row_forces_for
 from jointwave.dem.tractions import face_forces_for, point_forces_for
 from jointwave.joints.formula import formula
 from jointwave.joints.law import rows_of
@@ -58,7 +59,7 @@ def step_for(form: KernelFlags) -> Callable:
     dashpots, varied, rated, drags = form.parts.dashpots, form.parts.varied, form.rated, form.drags
     matched = form.matched
     remembers, recorded, used = form.history.size > 0, form.recorded, rows_of(form.parts)
-    stages, composed = form.stages, form.stages > 1
+    stages, composed, row = form.stages, form.stages > 1, form.in_row and form.dim == 1
     relative, onto_blocks, move = relative_for(form), onto_blocks_for(form), motion_for(form)
     forces = point_forces_for(form) if form.points else face_forces_for(form)
     finite, motions, FRAME = form.finite, form.motions, form.table.frame
@@ -133,6 +134,8 @@ def step_for(form: KernelFlags) -> Callable:
             if finite and share == 0:
                 samples.displacement[row, freedoms, s] = state.turn[blocks.places[0, r]]
 
+    row_forces = row_forces_for(form, record_contacts)
+
     @formula
     def step(chunks, blocks, state, force, drive, walls, samples, q, ledger, t, n, s):
         """Advance tile t by a step, or by a stage of a composed one.
@@ -147,7 +150,11 @@ def step_for(form: KernelFlags) -> Callable:
         end = tiles[CHUNK, t + 1]
         if composed and n % stages == 0 and not sampled:
             end = tiles[CHUNK, t]  # the kick is zero
+        if row:
+            row_forces(chunks, state, force, samples, q, ledger, t, end, dt, s)
         for g in range(tiles[CHUNK, t], end):
+            if row and chunks.row_from[g] >= 0:
+                continue
             k, at, row_from = chunks.table[g], chunks.pair[g], chunks.row_from[g]
             lanes = chunks.contacts - g * L
             lanes = lanes if lanes < L else L

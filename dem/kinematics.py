@@ -149,11 +149,11 @@ def onto_blocks_for(form: KernelFlags) -> Callable:
         if in_row and row_from >= 0:
             own = force[row_from:]
             for b in range(freedoms):
-                on_i = (ON_J if b < dim else ON_I - dim * L) + b * L
-                for c in range(L):
-                    own[freedoms * c + b] -= q[on_i + c]
-                for c in range(L):
-                    own[freedoms * (c + 1) + b] += q[ON_J + b * L + c]
+                on_j, on_i = ON_J + b * L, (ON_J if b < dim else ON_I - dim * L) + b * L
+                own[b] -= q[on_i]
+                for c in range(1, L):
+                    own[freedoms * c + b] += q[on_j + c - 1] - q[on_i + c]
+                own[freedoms * L + b] += q[on_j + L - 1]
             return
         for c in range(lanes):
             i, j = np.uint64(at[c]), np.uint64(at[L + c])

@@ -165,10 +165,20 @@ def motion_of_walls(state: State, shake: np.ndarray, dt: float) -> np.ndarray:
     return found.reshape(steps + 1, 2, -1)
 
 
+def widths_of(form: KernelFlags) -> tuple[int, ...]:
+    """Return how many lanes of each term of the ledger there are, 0 of terms that are absent."""
+    parts, held, lanes = form.parts, int(form.held), LANES
+    damped = int(form.mass_damping or form.local_damping)
+    return (
+        1, lanes, lanes if parts.dashpots else damped, lanes * (form.points > 0 and form.dim > 1),
+        lanes * parts.softening, held, int(form.gravity), lanes if form.shaken else held,
+    )  # fmt: skip
+
+
 @cache
 def loop_for(form: KernelFlags) -> Callable:
     """Return the time loop of blocks with these effects; absent ones are not compiled."""
-    step, has_ledger = step_for(form), form.ledger
+    step, has_ledger, widths = step_for(form), form.ledger, widths_of(form)
 
     @jitted
     def loop(chunks, blocks, state, samples, drive, walls, work, span):
@@ -211,13 +221,15 @@ def loop_for(form: KernelFlags) -> Callable:
                 for j in range(n, n + steps):
                     one = ledgers[thread * depth + j - n]
                     for term in range(state.sums.size):
-                        before, after = 0.0, 0.0
-                        for i in range(term * LANES, (term + 1) * LANES):  # always in this order
+                        begin, before, after = term * LANES, 0.0, 0.0
+                        sampled, summed = j % stride == 0, begin in SUMMED
+                        end = begin + (widths[term] if sampled or summed else 0)
+                        for i in range(begin, end):  # always in this order
                             before, after = before + one[i], after + one[AFTER + i]
                             one[i], one[AFTER + i] = 0.0, 0.0
-                        if j % stride == 0:
+                        if sampled:
                             samples.energy[term, j // stride] = state.sums[term] + before
-                        if term * LANES in SUMMED:
+                        if summed:
                             state.sums[term] += before + after
             post(progress, threads, band + 1)
         restore_denormals(setting)

@@ -26,6 +26,7 @@ def motion_for(form: KernelFlags) -> Callable:
     )  # fmt: skip
     mass_damping, local_damping = form.mass_damping or form.relaxed, form.local_damping
     damped, finite, matched = form.mass_damping or local_damping, form.finite, form.matched
+    balanced = has_ledger and (damped or finite)  # by the forces of the step
     oblique, SPARE, BEFORE = form.oblique and not finite, form.buffer.spare, form.buffer.before
     stages, composed = form.stages, form.stages > 1
 
@@ -71,16 +72,17 @@ def motion_for(form: KernelFlags) -> Callable:
         return potential
 
     @formula
-    def advance(u, v, force, inverse, before, pushed, drift, keep, local):
-        """Advance velocities by their forces, and displacements by these."""
+    def advance(u, v, force, inverse, before, pushed, drift, keep, local, noted):
+        """Advance velocities by their forces, and displacements by these; note velocities before if
+        their energy is asked for."""
         for i in range(u.size):
             old, gain = v[i], pushed * force[i]
             if local_damping:  # less by local |gain| along v
                 gain = gain - local * copysign(abs(gain), old) if old != 0.0 else gain
             new = (keep * old if mass_damping else old) + gain * inverse[i]
-            if has_ledger:
+            if has_ledger and noted:
                 before[i] = old
-            else:
+            if not balanced:
                 force[i] = 0.0
             v[i] = new
             if finite and i % 6 > 2:
@@ -108,8 +110,6 @@ def motion_for(form: KernelFlags) -> Callable:
                     before[i] = old
                 v[i] = new
                 u[i] += drift * new
-        if not has_ledger:
-            force[:] = 0.0
 
     @formula
     def momentum(blocks, inertia, first, i, v):
@@ -191,7 +191,8 @@ def motion_for(form: KernelFlags) -> Callable:
                 ledger[BOUNDARY + AFTER] += taken * new
                 ledger[WORK] += given * old
                 ledger[WORK + AFTER] += given * new
-                force[i + a] -= drag
+                if damped:
+                    force[i + a] -= drag
 
     @formula
     def move(blocks, tiles, state, all_forces, drive, q, ledger, t, n, sampled):
@@ -212,7 +213,10 @@ def motion_for(form: KernelFlags) -> Callable:
         if oblique:
             advance_oblique(blocks, tiles[BLOCK, t], u, v, force, before, pushed, drift)
         else:
-            advance(u, v, force, inverse, before, pushed, drift, blocks.keep, blocks.local)
+            advance(
+                u, v, force, inverse, before, pushed, drift, blocks.keep, blocks.local,
+                balanced or sampled,
+            )  # fmt: skip
         if held and finite:
             block, spare = tiles[BLOCK, t], q[SPARE:]
             for r in range(first, last):
@@ -246,6 +250,7 @@ def motion_for(form: KernelFlags) -> Callable:
                 if sampled:
                     ledger[KINETIC] += 0.5 * kinetic
                     ledger[GRAVITY] += potential
+        if balanced or oblique:
             force[:] = 0.0
         if matched:
             for r in range(first, last):

@@ -203,8 +203,8 @@ def face_forces_for(form: KernelFlags) -> Callable:
                 if stressed:
                     moved = moved + k[START + r]
                 f = -stiffness * area * moved
-                if has_ledger:
-                    ledger[ELASTIC + c] -= weighed * (0.5 * f * moved)
+                if has_ledger and weighed > 0.0:
+                    ledger[ELASTIC + c] -= 0.5 * f * moved
                 if dashpots:
                     viscosity = law.normal_viscosity if a == 0 else law.shear_viscosity
                     d = -viscosity * area * q[NOW + r]
@@ -227,10 +227,10 @@ def face_forces_for(form: KernelFlags) -> Callable:
                 s_2, s_12 = k[SECOND + L + c], k[SECOND + 2 * L + c]
                 p_n, p_1, p_2 = q[r], q[r + L], q[r + 2 * L]
             k_n, k_s = law.normal_stiffness, law.shear_stiffness
-            if has_ledger:
+            if has_ledger and weighed > 0.0:
                 bent = s_1 * p_2 * p_2 + s_2 * p_1 * p_1 - 2.0 * s_12 * p_1 * p_2
                 turned = k_s * (s_1 + s_2) * p_n * p_n
-                ledger[ELASTIC + c] += weighed * (0.5 * (k_n * bent + turned))
+                ledger[ELASTIC + c] += 0.5 * (k_n * bent + turned)
             p_n, p_1, p_2 = k_s * p_n, k_n * p_1, k_n * p_2
             if dashpots:
                 k_n, k_s, r = law.normal_viscosity, law.shear_viscosity, NOW + dim * L + c
