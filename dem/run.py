@@ -151,9 +151,10 @@ def look(
     first: int,
     last: int,
 ) -> None:
-    """Check the motion after samples first .. last - 1, all of which may be invalid."""
+    """Check the motion after samples first .. last - 1, all of which may be invalid, and its energy
+    where the ledger is exact."""
     stride, limit = system.time.stride, monitor.limit.view(np.float64)
-    if samples.energy is not None:
+    if samples.energy is not None and system.model.form.stages == 1:
         audit(monitor, samples.energy, first, last, stride)
     if monitor.found[0] < 0 and not _energies(system, state).max(initial=0.0) <= limit[0]:
         monitor.found[:] = last * stride, SPEED, first * stride - 1
