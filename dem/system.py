@@ -40,7 +40,7 @@ class BlockSystem(NamedTuple):
     model: Model
     receivers: Any
     loads: Loads
-    resistance: np.ndarray
+    resistance: Any
     bearing: np.ndarray
     shaking: Shaking | None
     threads: int

@@ -64,12 +64,7 @@ def prepared(scene: Scene, incident: None = None) -> BlockSystem:
     loads, dashpot, springs = held_blocks(blocks, ends_of(blocks, time.dt), moving, time)
     bears = bearing(blocks, loads.rows)
     own, reads = constants(blocks, time.dt), sections_of(blocks)
-    form = form_of(
-        blocks,
-        held=True,
-        shaken=moving is not None,
-        relaxed=scene.prestress is not None or scene.gravity is not None,
-    )
+    form = form_of(blocks, True, moving is not None, relaxed(scene))
     form = form._replace(in_row=True, matched=springs is not None)
     if loads.composed:
         own, form = own._replace(stages=table(time.dt)), form._replace(stages=len(KICKS))
@@ -85,8 +80,14 @@ def prepared(scene: Scene, incident: None = None) -> BlockSystem:
     )
     threads = thread_count(scene.numerics.dem.threads, blocks.count)
     return BlockSystem(
-        blocks, time, critical, model, reads, loads, bears, bears, moving, threads, static(blocks)
+        blocks, time, critical, model, reads, loads, None, bears, moving, threads, static(blocks)
     )
+
+
+def relaxed(scene: Scene) -> bool:
+    """Return whether a scene asks for a static state, by dynamic relaxation."""
+    weighed = scene.gravity is not None and (scene.gravity.static or any(scene.bears))
+    return weighed or scene.prestress is not None
 
 
 def _base(blocks: BlocksOfPillar) -> list[Base]:
@@ -115,9 +116,8 @@ def clock_of(blocks: BlocksOfPillar) -> tuple[Clock, float]:
     scene, numerics = blocks.scene, blocks.scene.numerics.dem
     ends = [(one.block, one.stiffness) for one in ends_of(blocks)]
     own = blocks.contacts, blocks.columns, blocks.masses, blocks.scene.damping.local or 0.0
-    critical = critical_step_of_row(*own, ends) * (
-        stability_limit() / 2 if is_composed(scene) else 1
-    )
+    limit = stability_limit() / 2 if is_composed(scene) else 1.0
+    critical = limit * critical_step_of_row(*own, ends)
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
     refuse_large(scene, time, form_of(blocks).points if blocks.dim > 1 else None)
     return time, critical
