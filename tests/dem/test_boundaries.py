@@ -26,7 +26,7 @@ from jointwave.dem.boundaries import (
 from jointwave.dem.loads import Loads, reactions
 from jointwave.dem.rock_mass.loads import load_pattern
 from jointwave.dem.rock_mass.waves import incoming
-from jointwave.dem.shaking import shaking
+from jointwave.dem.shaking import Base, shaking
 
 SIZE = np.array([3.0, 2.0, 2.5])
 SIDES = ("left", "right", "front", "back", "bottom", "top")
@@ -204,7 +204,8 @@ def test_a_wall_is_shaken_along_its_direction():
         | {"shape": "ricker", "period": 0.01, "direction": [0.0, 0.6, 0.8]},
         context={"dimension": 3},
     )
-    moving = shaking([base], ("top", "bottom"), 3, CLOCK.dt)
+    one = Base("bottom", base, np.array(base.direction))
+    moving = shaking([one], ("top", "bottom"), 3, CLOCK.dt)
     moved = CLOCK.dt * moving(np.arange(170)).sum(axis=0)
     way = history_of(base, 0.3).impulse(np.array([170 * CLOCK.dt]))
     np.testing.assert_allclose(moved, [np.zeros(3), way * base.direction], atol=1e-16)

@@ -54,7 +54,8 @@ def solved(*scenes, by=("lattice", "jointed-bar", "equivalent-bar")):
         ("guo-li-2002/fig-09", "joints.tension"),
         ("guo-li-2002/fig-10", "joints.tension"),
         ("beyond/prestressed-no-tension", "prestress.normal"),
-        ("beyond/shear-pulse", None),  # rotation and the points' rule
+        ("beyond/shear-pulse", "motion.rotation"),
+        ("beyond/cantilever-gravity", None),  # several
         ("guo-li-2002/fig-04", None),  # no variants
     ],
 )

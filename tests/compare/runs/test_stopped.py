@@ -13,7 +13,7 @@ def test_what_a_stopped_run_computed_is_written_beside_its_result(pillar, tmp_pa
     """Without an iteration no step converges: the first sample is all there is."""
     scene, result = pillar(**KEYS), tmp_path / "continuum-jointed.nc"
     result.write_bytes(b"CDF\2 of an earlier run")
-    (job,) = jobs.plan([scene], [("continuum", "jointed")], tmp_path)
+    (job,), _ = jobs.plan([scene], [("continuum", "jointed")], tmp_path)
     monkeypatch.setattr("jointwave.continuum.implicit.newton.MOST_ITERATIONS", 0)
     with pytest.raises(StoppedError, match=r"do not converge .*; what was computed is in .*\.nc$"):
         run.execute([job], lambda fraction: None)
