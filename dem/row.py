@@ -24,9 +24,8 @@ def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
     AREA, START, LAW, JUMP, FORCE = (
         form.table.area, form.table.start, form.buffer.law, form.buffer.jump, form.buffer.force
     )  # fmt: skip
-    RATE, DRAG, OPENING = (
-        form.history.rate, form.history.drag, form.history.point + form.history.opening
-    )  # fmt: skip
+    RATE, DRAG, POINT = form.history.rate, form.history.drag, form.history.point
+    OPENING, WHOLE = POINT + form.history.opening, POINT + form.history.whole
 
     @formula
     def row_forces(chunks, state, force, samples, q, ledger, t, end, dt, s):
@@ -63,6 +62,8 @@ def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
                 before = f
                 if softening:
                     h[g, OPENING + c] = found.history.opening
+                    whole = found.history.opening < law.critical_opening
+                    h[g, WHOLE + c] += 1.0 if whole else 0.0
                 if drags:
                     drag = area * found.drag_n
                     ledger[VISCOUS + c] -= 0.5 * dt * now * (h[g, DRAG + c] + drag)

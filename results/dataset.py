@@ -17,7 +17,6 @@ from jointwave.results.labels import label
 #: All terms of an energy ledger, and those of axial motion with joints that do not break.
 ALL_TERMS = (
     "kinetic",
-    "rotation",
     "elastic",
     "viscous",
     "friction",

@@ -60,7 +60,6 @@ GREY, PALE = "#5d6670", "#bbbbbb"  # of marks, and of the level of zero
 #: Colours of the terms of an energy ledger: those of Tol (2021), "muted", and black.
 TERMS = {
     "kinetic": "#332288",
-    "rotation": "#88ccee",
     "elastic": "#cc6677",
     "viscous": "#117733",
     "friction": "#999933",

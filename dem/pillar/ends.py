@@ -79,7 +79,6 @@ def over_face(blocks: BlocksOfPillar, normal: float, shear: float) -> np.ndarray
 
 def arm_of(blocks: BlocksOfPillar, block: int) -> np.ndarray:
     """Return the arm from the centroid of the first or the last block to its end face [d], m."""
-    y, arm = blocks.properties.contact_y, np.zeros(blocks.dim)
-    face = y[0] if block == 0 else y[-1]
-    arm[blocks.along] = face - blocks.centroid[block, blocks.along]
+    half, arm = np.diff(blocks.properties.contact_y) / 2, np.zeros(blocks.dim)
+    arm[blocks.along] = -half[0] if block == 0 else half[-1]
     return arm

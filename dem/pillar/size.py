@@ -9,9 +9,9 @@ from jointwave.cases.run_memory import (
 from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.scene import Scene
 
-#: Bytes per block, while pillars are cut into them; with the model and the history of its joint.
+#: Bytes per block, while pillars are cut into them; with the model and its joint.
 CUT = 400
-AXIAL, SPATIAL = CUT, CUT + 120
+AXIAL, SPATIAL = 500, 2000
 #: Bytes per block for each contact point of joints that open or slide.
 POINT = 60
 CORNERS = 8  # of a block, in snapshots
