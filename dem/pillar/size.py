@@ -22,18 +22,17 @@ def refuse_too_many(scene: Scene) -> None:
     refuse_beyond_memory(scene, {"pillar.block": CUT * scene.block_count})
 
 
-def refuse_large(scene: Scene, time: Clock, points: int | None = None, stages: int = 1) -> None:
+def refuse_large(scene: Scene, time: Clock, points: int | None = None) -> None:
     """Raise SceneError for a run that does not fit in memory.
 
     points : contact points with a history in each joint of blocks in space; None for axial motion.
-    stages : of a step, at each of which the load acts.
     """
     spatial, blocks = points is not None, scene.block_count
     block = SPATIAL + POINT * points if points is not None else AXIAL
     parts = {
         "pillar.block": block * blocks,
         "record.interval": waveform_bytes(scene, spatial),
-        "numerics.dem.step_fraction": load_bytes(scene, stages * (time.steps + time.stride)),
+        "numerics.dem.step_fraction": load_bytes(scene, time.steps + time.stride),
         "record.fields": snapshot_bytes(scene, CORNERS * blocks),
     }
     refuse_beyond_memory(scene, parts)
