@@ -271,7 +271,7 @@ def test_a_result_and_a_link_are_replaced_but_not_what_it_leads_to(scene, tmp_pa
     diary, link = tmp_path / "diary", tmp_path / "dem.nc"
     diary.write_text("my diary")
     link.symlink_to(diary)
-    assert planned(scene, tmp_path)[0].path == link
+    assert planned(scene, tmp_path)[0][0].path == link
     write(link, lambda path: path.write_bytes(b"CDF\2"))
     assert diary.read_text() == "my diary" and not link.is_symlink()
     refuse_foreign(link)
