@@ -18,6 +18,7 @@ def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
     record : the formula that samples a chunk's.
     """
     parts, has_ledger, stressed, drags = form.parts, form.ledger, form.stressed, form.drags
+    fails = form.points > 0
     dashpots, softening, varied, used = (
         parts.dashpots, parts.softening, parts.varied, rows_of(form.parts)
     )  # fmt: skip
@@ -51,30 +52,37 @@ def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
                 if dashpots:
                     now = v[j + k] - v[i + k]
                     rate, h[g, RATE + c] = 1.5 * now - 0.5 * h[g, RATE + c], now
-                if softening:
-                    opening = h[g, OPENING + c]
-                found = traction(
-                    law, parts, (gap, 0.0, 0.0), (0.0, 0.0, 0.0), (rate, 0.0, 0.0), dt,
-                    History(opening, 0.0, 0.0, 0.0, 0.0),
-                )  # fmt: skip
-                f = area * found.n
+                if fails:
+                    if softening:
+                        opening = h[g, OPENING + c]
+                    found = traction(
+                        law, parts, (gap, 0.0, 0.0), (0.0, 0.0, 0.0), (rate, 0.0, 0.0), dt,
+                        History(opening, 0.0, 0.0, 0.0, 0.0),
+                    )  # fmt: skip
+                    stress, drag, stored, spent = found.n, found.drag_n, found.stored, found.spent
+                    if softening:
+                        h[g, OPENING + c] = found.history.opening
+                        whole = found.history.opening < law.critical_opening
+                        h[g, WHOLE + c] += 1.0 if whole else 0.0
+                else:
+                    spring, drag, spent = -law.normal_stiffness * gap, 0.0, 0.0
+                    if dashpots:
+                        drag = -law.normal_viscosity * rate
+                    stress, stored = spring + drag, -0.5 * spring * gap
+                f = area * stress
                 force[i + k] += before - f
                 before = f
-                if softening:
-                    h[g, OPENING + c] = found.history.opening
-                    whole = found.history.opening < law.critical_opening
-                    h[g, WHOLE + c] += 1.0 if whole else 0.0
                 if drags:
-                    drag = area * found.drag_n
+                    drag = area * drag
                     ledger[VISCOUS + c] -= 0.5 * dt * now * (h[g, DRAG + c] + drag)
                     h[g, DRAG + c] = drag
                 if sampled:
                     q[FORCE + c] = f
                     q[JUMP + c] = u[j + k] - u[i + k]
                     if has_ledger:
-                        ledger[ELASTIC + c] += area * found.stored
+                        ledger[ELASTIC + c] += area * stored
                         if softening:
-                            ledger[FRACTURE + c] += area * found.spent
+                            ledger[FRACTURE + c] += area * spent
             force[i + np.uint64(lanes)] += before
             if sampled:
                 record(chunks, samples, q, g, t, s)

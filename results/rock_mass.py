@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.results.dataset import assemble, attributes_of
+from jointwave.results.dataset import ALL_TERMS, assemble, attributes_of
 from jointwave.results.labels import AXES
 from jointwave.results.stress import stress_components
 
@@ -24,9 +24,7 @@ DIMENSIONS: dict[str, tuple[str, ...]] = {
 #: Axes of a joint, the normal first, by the number of dimensions.
 JOINT_AXES = {2: ("n", "s"), 3: ("n", "strike", "dip")}
 #: Terms of the energy ledger.
-TERMS = (
-    "kinetic", "elastic", "viscous", "friction", "fracture", "boundary", "gravity", "work",
-)  # fmt: skip
+TERMS = ALL_TERMS
 
 
 def rock_mass_dataset(
