@@ -12,20 +12,18 @@ import numba
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.errors import SceneError, StoppedError
+from jointwave.cases.errors import StoppedError
 from jointwave.cases.incident import IncidentField
-from jointwave.cases.material.prestress import refuse_beyond_strength
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.body.bounds import highest_speed
 from jointwave.continuum.body.explicit import Samples
 from jointwave.continuum.body.implicit import Implicit
-from jointwave.continuum.body.problem import at_rest, in_time, problem_of
+from jointwave.continuum.body.plan import plan_of
+from jointwave.continuum.body.problem import at_rest, in_time
 from jointwave.continuum.body.rock import Rock
-from jointwave.continuum.body.scene import body_of
-from jointwave.continuum.body.scheme import Choice, choose
+from jointwave.continuum.body.scheme import Choice
 from jointwave.continuum.body.static import Rest
 from jointwave.continuum.body.steps import Leapfrog, Problem
-from jointwave.continuum.plane.validity import applies
 from jointwave.numerics.divergence import ENERGY, Guard, audit, guard, look
 from jointwave.numerics.instability import Divergence, stopped
 from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
@@ -60,13 +58,8 @@ def simulate(
     motion leaves its bounds.
     """
     began = perf_counter()
-    refuse(scene, model)
-    refuse_beyond_strength(scene)
+    found, still, choice, critical = plan_of(scene, model, rock)
     numerics = scene.numerics.continuum
-    found = body_of(scene, model, rock, numerics.scheme == "implicit")
-    still = problem_of(scene, found)
-    critical = still.critical_step() if still.body.mass is not None else 0.0
-    choice = choose(scene, still, critical)
     time = choice.time
     problem, rest = at_rest(scene, in_time(scene, still, time, incident))
     steps = stepper(scene, problem, choice, rest)
@@ -116,18 +109,6 @@ def simulate(
         error.result = result(error.samples)
         raise
     return result(time.samples)
-
-
-def refuse(scene: RockMass, model: str) -> None:
-    """Raise SceneError for what bodies do not have."""
-    if why := applies(scene, model):
-        raise SceneError(scene.where, "model", model, why)
-    for key, value in (
-        ("rock.quality_factor", scene.rock.quality_factor),
-        ("record.fields", scene.record.fields),
-    ):
-        if value is not None:
-            raise SceneError(scene.where, key, value, "is not supported by dolfinx bodies")
 
 
 def stepper(

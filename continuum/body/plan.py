@@ -1,0 +1,50 @@
+"""A run before its first step: the body of a scene, what acts on it, and how it is stepped."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.prestress import refuse_beyond_strength
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.continuum.body.problem import problem_of
+from jointwave.continuum.body.rock import Rock
+from jointwave.continuum.body.scene import SceneBody, body_of
+from jointwave.continuum.body.scheme import Choice, choose
+from jointwave.continuum.body.steps import Problem
+from jointwave.continuum.plane.validity import applies
+
+
+class Plan(NamedTuple):
+    """A run before its first step.
+
+    found : the scene as a body. problem : the body and what acts on it all the time. choice : how
+    it is stepped. critical : the critical step of explicit steps, s; 0 of a consistent mass.
+    """
+
+    found: SceneBody
+    problem: Problem
+    choice: Choice
+    critical: float
+
+
+def plan_of(scene: RockMass, model: str = "jointed", rock: Rock | None = None) -> Plan:
+    """Return the run of a scene; arguments and errors as of `continuum.body.run.simulate`."""
+    refuse(scene, model)
+    refuse_beyond_strength(scene)
+    found = body_of(scene, model, rock, scene.numerics.continuum.scheme == "implicit")
+    problem = problem_of(scene, found)
+    critical = problem.critical_step() if problem.body.mass is not None else 0.0
+    return Plan(found, problem, choose(scene, problem, critical), critical)
+
+
+def refuse(scene: RockMass, model: str) -> None:
+    """Raise SceneError for what bodies do not have."""
+    if why := applies(scene, model):
+        raise SceneError(scene.where, "model", model, why)
+    for key, value in (
+        ("rock.quality_factor", scene.rock.quality_factor),
+        ("record.fields", scene.record.fields),
+    ):
+        if value is not None:
+            raise SceneError(scene.where, key, value, "is not supported by dolfinx bodies")
