@@ -44,8 +44,11 @@ def run(
 
 def prepare(scene: Scene, model: str) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
+    from jointwave.continuum import by_body
     from jointwave.continuum.run import discrete_and_steps
 
+    if by_body(scene):
+        return _planned(scene, model)
     with estimates() as parts:
         discrete, choice, critical = discrete_and_steps(scene, model)
     incident(scene)  # which is not known of all waves in layers
@@ -57,6 +60,24 @@ def prepare(scene: Scene, model: str) -> Prepared:
     }
     time, freedoms, size = choice.time, discrete.body.degrees_of_freedom, sum(parts.values())
     return Prepared(choice.scheme, time.steps, time.dt, critical, freedoms, size, settings)
+
+
+def _planned(scene: Any, model: str) -> Prepared:
+    from jointwave.continuum.body.evaluation import kind_of
+    from jointwave.continuum.body.plan import plan_of
+
+    with estimates() as parts:
+        plan = plan_of(scene, model)
+    incident(scene)  # which is not known of all waves in layers
+    body, choice = plan.found.body, plan.choice
+    settings = {
+        "scheme": choice.scheme,
+        "dim": body.components,
+        "cell": kind_of(body),
+        "order": scene.numerics.continuum.order,
+    }
+    time, freedoms, size = choice.time, body.stiffness.shape[0], sum(parts.values())
+    return Prepared(choice.scheme, time.steps, time.dt, plan.critical, freedoms, size, settings)
 
 
 def libraries() -> dict[str, str]:

@@ -47,9 +47,12 @@ def _blocks(scene: AnyScene, model: Any) -> tuple:
 
 def _elements(scene: AnyScene, model: Any) -> tuple:
     """Return the same of the nodes of deformable rock with their shortest edges."""
+    from jointwave.continuum import by_body
     from jointwave.continuum.build import operators
     from jointwave.continuum.run import discrete_and_steps
 
+    if by_body(scene):
+        return _nodes(scene, model)
     discrete, _, _ = discrete_and_steps(scene, model)
     body, stiffness = discrete.body, abs(operators(discrete)[0])
     mass = body.mass[body.first]
@@ -61,3 +64,22 @@ def _elements(scene: AnyScene, model: Any) -> tuple:
         return float(apart[apart > 0].min())
 
     return square, mass, body.x, size
+
+
+def _nodes(scene: Any, model: Any) -> tuple:
+    from jointwave.continuum.body.compat import cell_corners
+    from jointwave.continuum.body.evaluation import nodes_of_cells
+    from jointwave.continuum.body.plan import plan_of
+
+    problem = plan_of(scene, model).problem
+    body, first = problem.body, slice(None, None, problem.body.components)
+    assert body.mass is not None
+    mass, bound = body.mass[first], abs(problem.stiffness).sum(axis=1)
+    corners, cells = cell_corners(body.mesh), nodes_of_cells(body)
+
+    def size(node: int) -> float:
+        own = corners[(cells == node).any(axis=1)][0]
+        apart = np.linalg.norm(own[:, None] - own, axis=2)
+        return float(apart[apart > 0].min())
+
+    return np.asarray(bound).ravel()[first] / mass, mass, body.x, size

@@ -74,6 +74,8 @@ class Implicit:
         self.now = Moment(still.copy(), still.copy(), still.copy(), copied(forces), np.zeros(4))
         self._factors: tuple[float, np.ndarray, Factors] | None = None
         self._weighs, self._motion = problem.stiffness.diagonal(), np.zeros((3, 1))
+        carried = np.abs(own.points.carried).reshape(len(own.points.weight), -1)
+        self._carried = float((own.points.weight[:, None] * carried).max(initial=0.0))
 
     @property
     def v(self) -> np.ndarray:
@@ -148,8 +150,8 @@ class Implicit:
             inertia = own.mass @ trial.a
             rest = (1 - alpha_f) * forces[0].whole + before - (1 - alpha_m) * inertia
             size = max(forces[0].size[0], now.forces.size[0], np.abs(inertia).max(initial=0.0))
-            digits = LAST_DIGITS * np.abs(self._weighs * trial.u).max(initial=0.0)
-            return rest[free], RESIDUAL * size + digits
+            weighs = np.abs(self._weighs * trial.u).max(initial=0.0) + self._carried
+            return rest[free], RESIDUAL * size + LAST_DIGITS * weighs
 
         def correction(rest: np.ndarray) -> np.ndarray:
             self.counts[0] += 1

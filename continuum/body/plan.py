@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.prestress import refuse_beyond_strength
+from jointwave.cases.run_memory import load_bytes, refuse_beyond_memory, waveform_bytes
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.body.problem import problem_of
 from jointwave.continuum.body.rock import Rock
@@ -31,11 +32,18 @@ class Plan(NamedTuple):
 def plan_of(scene: RockMass, model: str = "jointed", rock: Rock | None = None) -> Plan:
     """Return the run of a scene; arguments and errors as of `continuum.body.run.simulate`."""
     refuse(scene, model)
-    refuse_beyond_strength(scene)
     found = body_of(scene, model, rock, scene.numerics.continuum.scheme == "implicit")
+    if isinstance(found.scene, RockMass):
+        refuse_beyond_strength(found.scene)
     problem = problem_of(scene, found)
     critical = problem.critical_step() if problem.body.mass is not None else 0.0
-    return Plan(found, problem, choose(scene, problem, critical), critical)
+    choice = choose(scene, problem, critical)
+    parts = {
+        "record.interval": waveform_bytes(scene, problem.body.components > 1),
+        "time.duration": load_bytes(scene, choice.time.steps),
+    }
+    refuse_beyond_memory(scene, parts)
+    return Plan(found, problem, choice, critical)
 
 
 def refuse(scene: RockMass, model: str) -> None:

@@ -76,13 +76,14 @@ def in_time(
     return problem._replace(forces=forces, held=held_sides(scene, problem.body, time))
 
 
-def at_rest(scene: RockMass, problem: Problem) -> tuple[Problem, Rest | None]:
-    """Return a problem on sides that bear its weight, and the state at rest under gravity and
-    around what is excavated; None where it starts unstrained."""
+def at_rest(scene: RockMass, problem: Problem) -> tuple[Problem, Rest | None, np.ndarray | None]:
+    """Return a problem on sides that bear its weight; the state at rest under gravity and around
+    what is excavated, None where it starts unstrained; and the forces (N) that begin to act at
+    t = 0, the weight and what bears it, None without."""
     gravity, body = scene.gravity, problem.body
     static, weight = gravity is not None and gravity.static, weight_of(scene, body)
     if weight is None and not scene.excavated:
-        return problem, None
+        return problem, None, None
     hold = holding(problem, bearing_sides(scene, body))
     before, rest = problem, None
     if weight is not None and not static:  # it acts later
@@ -91,5 +92,6 @@ def at_rest(scene: RockMass, problem: Problem) -> tuple[Problem, Rest | None]:
         rest = settled(scene, before, hold if static else None)
     if weight is not None and hold is not None:
         held = rest.u if static and rest is not None else elastic_rest(before, weight, hold)
-        problem = problem._replace(steady=problem.steady - hold @ held)
-    return problem, rest
+        borne = hold @ held
+        problem, weight = problem._replace(steady=problem.steady - borne), weight - borne
+    return problem, rest, None if static else weight

@@ -61,8 +61,8 @@ def simulate(
     found, still, choice, critical = plan_of(scene, model, rock)
     numerics = scene.numerics.continuum
     time = choice.time
-    problem, rest = at_rest(scene, in_time(scene, still, time, incident))
-    steps = stepper(scene, problem, choice, rest)
+    problem, rest, sudden = at_rest(scene, in_time(scene, still, time, incident))
+    steps = stepper(scene, problem, choice, rest, sudden)
     start, about = None, dict[str, Any]()
     if rest is not None:
         start = rest.u
@@ -73,12 +73,14 @@ def simulate(
     compiled = perf_counter()
 
     def result(count: int) -> xr.Dataset:
+        terms, energy = ledger(scene, problem, steps.samples, count)
         return rock_mass_dataset(
             scene,
             f"continuum-{model}",
             time.times[:count],
             quantities(problem, steps.samples, count),
-            ledger(scene, steps.samples, count),
+            energy,
+            terms,
             model=model,
             scheme=choice.scheme,
             scheme_reason=choice.reason,
@@ -112,13 +114,20 @@ def simulate(
 
 
 def stepper(
-    scene: RockMass, problem: Problem, choice: Choice, rest: Rest | None
+    scene: RockMass,
+    problem: Problem,
+    choice: Choice,
+    rest: Rest | None,
+    sudden: np.ndarray | None = None,
 ) -> Leapfrog | Implicit:
-    """Return the steps of a run, from a state at rest if there is one."""
+    """Return the steps of a run, from a state at rest if there is one; sudden : forces (N) that
+    begin to act at t = 0."""
     time, energy = choice.time, scene.record.energy
     steps: Leapfrog | Implicit
     if choice.scheme == "explicit":
         steps = Leapfrog(problem, time.dt, time.samples, energy)
+        if sudden is not None:
+            steps.drop(sudden)
     else:
         rho = scene.numerics.continuum.spectral_radius
         steps = Implicit(problem, time.dt, time.samples, rho, energy)
@@ -152,17 +161,25 @@ def check(
     raise stopped(scene, time, critical if explicit else np.inf, seen)
 
 
-def ledger(scene: RockMass, samples: Samples, count: int) -> np.ndarray | None:
-    """Return the energies of the first samples; None where they are not recorded. What prestressed
-    rock gives off where walls of openings give way counts with what it stores."""
+def ledger(
+    scene: RockMass, problem: Problem, samples: Samples, count: int
+) -> tuple[tuple[str, ...], np.ndarray | None]:
+    """Return the terms that a ledger has, and the energies of the first samples; None where they
+    are not recorded. What prestressed rock gives off where walls of openings give way counts with
+    what it stores."""
+    parts = problem.parts
+    there = {
+        "fracture": parts is not None and parts.softening,
+        "friction": parts is not None and parts.limited,
+        "gravity": scene.gravity is not None,
+    }
+    terms = tuple(one for one in TERMS if there.get(one, True))
     if not samples.energy.size:
-        return None
+        return terms, None
     found = samples.energy[:, :count].copy()
     if scene.excavated and scene.gravity is None:
-        elastic, steady = TERMS.index("elastic"), TERMS.index("gravity")
-        found[elastic] += found[steady]
-        found[steady] = 0.0
-    return found
+        found[TERMS.index("elastic")] += found[TERMS.index("gravity")]
+    return terms, found[[TERMS.index(one) for one in terms]]
 
 
 def quantities(problem: Problem, samples: Samples, count: int) -> dict[str, np.ndarray]:

@@ -238,6 +238,15 @@ class Leapfrog:
         """Begin with velocities half a step before the first, m/s."""
         self.state.v[self.product.place] = self.state.v_before[self.product.place] = v
 
+    def drop(self, force: np.ndarray) -> None:
+        """Begin at rest under forces (N) that act from t = 0 on, in the middle of a step."""
+        mass = self.problem.body.mass
+        assert mass is not None
+        fall = 0.5 * self.dt * force / mass
+        fall[self.problem.fixed] = 0.0
+        self.state.v[self.product.place] = -fall
+        self.state.v_before[self.product.place] = -3 * fall
+
     def _constants(self) -> Constants:
         problem, place, dt = self.problem, self.product.place, self.dt
         body, held, forces = problem.body, problem.held, problem.forces
