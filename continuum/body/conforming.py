@@ -58,13 +58,13 @@ def on_facets(
     """Return `Conforming.on` of cells by facets, int array [n, corners of a facet], that lie on
     facets of the complex, int array [n]; count : of vertices."""
     corners = np.sort(cells[:, facets_of(kind)], axis=2)
-    own, known = (_numbers(np.sort(one, axis=-1), count) for one in (corners, vertices))
+    own, known = (row_numbers(np.sort(one, axis=-1), count) for one in (corners, vertices))
     order = np.argsort(known)
     at = np.minimum(np.searchsorted(known[order], own), len(known) - 1)
     return np.where(known[order][at] == own, facet[order][at], -1)
 
 
-def _numbers(rows: np.ndarray, count: int) -> np.ndarray:
+def row_numbers(rows: np.ndarray, count: int) -> np.ndarray:
     """Return a number for each row [..., n] of vertices below `count`, the same for equal ones."""
     flat = rows.reshape(-1, rows.shape[-1])
     found = flat[:, 0].astype(np.int64)
@@ -76,7 +76,7 @@ def _numbers(rows: np.ndarray, count: int) -> np.ndarray:
 def shared(mesh: Conforming) -> Places:
     """Return the pairs of facets that two cells share."""
     vertices = facet_vertices(mesh)
-    number = _numbers(vertices, len(mesh.x)).ravel()
+    number = row_numbers(vertices, len(mesh.x)).ravel()
     order = np.argsort(number, kind="stable")
     first = np.flatnonzero(np.diff(number[order]) == 0)
     return Places(*np.divmod(np.stack([order[first], order[first + 1]], axis=1), vertices.shape[1]))

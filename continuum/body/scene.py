@@ -24,15 +24,13 @@ from jointwave.continuum.body.boxes import along_edges, box_corners, box_mesh, e
 from jointwave.continuum.body.build import SIMPLEX, build_body
 from jointwave.continuum.body.conforming import Conforming
 from jointwave.continuum.body.domain import marks_of
+from jointwave.continuum.body.given import ENDS, mesh_of_file
 from jointwave.continuum.body.model import Body
 from jointwave.continuum.body.periodic import facing, fitted, matching_facets, matching_vertices
 from jointwave.continuum.body.rock import Material, Rock, rock_of_cells
 from jointwave.continuum.body.simplices import are_simplices, own_cells, simplex_mesh
 from jointwave.continuum.body.size import element_size, elements_along, refuse_large_mesh
 from jointwave.continuum.joints import resolved_joints
-
-#: Sides of a pillar: its ends, and those along it.
-ENDS = ("start", "end", "along")
 
 
 class SceneBody(NamedTuple):
@@ -109,6 +107,8 @@ def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) ->
 def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> SceneBody:
     """Return the body of a pillar: in one dimension if nothing bends or twists it, or in as many as
     it asks for."""
+    if scene.numerics.continuum.mesh is not None:
+        return _pillar_of_file(scene, model, rock, implicit)
     bends = is_spatial(scene) and scene.motion.rotation != "none"
     dim = scene.numerics.continuum.dim or (3 if bends else 1)
     components = 3 if dim == 1 and is_spatial(scene) else dim
@@ -128,6 +128,17 @@ def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> Scen
     body = build_body(mesh, marks, numerics.order, chosen, components, consistent and implicit)
     if body.joints is not None:
         body = body._replace(joints=body.joints._replace(column=number[body.joints.column]))
+    return SceneBody(scene, blocks, [], own, body)
+
+
+def _pillar_of_file(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> SceneBody:
+    """Return the body of a pillar on a mesh of the user's, which is one block with joints in it."""
+    resolved, numerics = resolved_joints(calibrate(scene), model, True), scene.numerics.continuum
+    blocks, mesh, marks = mesh_of_file(scene, resolved.number, numerics.dim)
+    dim, consistent = blocks.body.dim, numerics.mass == "consistent"
+    own = materials.pillar(scene, model, dim, dim)
+    chosen = _chosen(scene, rock, own, blocks.body)
+    body = build_body(mesh, marks, numerics.order, chosen, dim, consistent and implicit)
     return SceneBody(scene, blocks, [], own, body)
 
 

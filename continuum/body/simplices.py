@@ -14,7 +14,7 @@ import numpy as np
 from jointwave.cases.geometry.cell_complex import Complex
 from jointwave.cases.geometry.relations import composed, merged
 from jointwave.continuum.body.conforming import SIMPLICES, Conforming, on_facets
-from jointwave.continuum.mesh.session import gmsh_session
+from jointwave.continuum.body.session import gmsh_session
 
 ALIKE = 1e-8  # of the body: what blocks that are alike may differ by
 LINE, TRIANGLE, TETRAHEDRON = 1, 2, 4  # gmsh's types of elements

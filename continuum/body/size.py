@@ -58,10 +58,15 @@ def refuse_large_mesh(scene: AnyScene, blocks: Blocks, size: float, components: 
     order, dim = scene.numerics.continuum.order, blocks.body.dim
     surface = float(2 * blocks.contacts.area.sum() + blocks.boundary.area.sum()) / 2
     cells = float(blocks.volume.sum()) / size**dim + surface / size ** (dim - 1) + blocks.count
-    nodes, entries = cells * (order + 0.5) ** dim, components * (order + 1) ** dim
+    nodes = cells * (order + 0.5) ** dim
     key = "size" if isinstance(scene, RockMass) else "elements_per_block"
     parts = {
-        f"numerics.continuum.{key}": components * nodes * (FREEDOM + ENTRY * entries),
+        f"numerics.continuum.{key}": body_bytes(nodes, components, order, dim),
         "record.fields": snapshot_bytes(scene, nodes),
     }
     refuse_beyond_memory(scene, parts)
+
+
+def body_bytes(nodes: float, components: int, order: int, dim: int) -> float:
+    """Return the memory that a body takes, bytes."""
+    return components * nodes * (FREEDOM + ENTRY * components * (order + 1) ** dim)

@@ -29,15 +29,17 @@ class Trace(NamedTuple):
 class Reference(NamedTuple):
     """A cell with its element.
 
-    shares : of its corners at the nodes [nodes, corners]. integrals : of the functions of the nodes
-    over each reference facet [facets, nodes]. points : functions of the nodes of a facet at the
+    shares : of its corners at the nodes [nodes, corners]. at : points of a rule on a facet, by
+    shares of its corners [r, c]. functions : of the nodes there, times the weights of the rule, on
+    each reference facet [facets, r, nodes]. points : functions of the nodes of a facet at the
     points of a rule [p, q] that is exact for their products; None where the nodes are the points.
     areas : weights of the points, over the area of the facet [p].
     """
 
     kind: str
     shares: np.ndarray
-    integrals: np.ndarray
+    at: np.ndarray
+    functions: np.ndarray
     points: np.ndarray | None
     areas: np.ndarray | None
 
@@ -47,15 +49,15 @@ def reference_cell(kind: str, element: Any) -> Reference:
     corners = reference(kind, 1)
     shares = corners.tabulate(0, element.points)[0, :, :, 0]
     degree = int(element.highest_degree if hasattr(element, "highest_degree") else element.degree)
-    integrals = []
+    functions = []
     for facet in facets_of(kind):
         at, weight = _rule(kind, 2 * degree)
         values = element.tabulate(0, at @ corners.points[facet])[0, :, :, 0]
-        integrals.append(weight @ values)
-    found = Reference(kind, shares, np.array(integrals), None, None)
+        functions.append(weight[:, None] * values)
+    found = Reference(kind, shares, at, np.array(functions), None, None)
     facet = facets_of(kind)[0].tolist()
     local = _on(found, facet)[0]
-    if (found.integrals[0, local] > ON).all():
+    if (found.functions[0].sum(axis=0)[local] > ON).all():
         return found
     points = element.tabulate(0, at @ corners.points[facet])[0, :, local, 0].T
     return found._replace(points=points, areas=weight / weight.sum())
@@ -77,7 +79,8 @@ def trace(
     nodes, vertices : int arrays [cells, n], of each cell. x : float array [cells, corners, d], of
     its corners, m. of : k facets.
     """
-    own = facets_of(cell.kind)[of.facet]
+    facets = facets_of(cell.kind)
+    own = facets[of.facet]
     order = np.argsort(vertices[of.cell[:, None], own], axis=1)
     rows = np.column_stack([of.facet, np.take_along_axis(own, order, 1)])
     kinds, which = np.unique(rows, axis=0, return_inverse=True)
@@ -86,8 +89,9 @@ def trace(
         some = of.cell[which == k]
         local, shares = _on(cell, corners)
         places = x[some]
-        normal, area = _normals(cell, facet, local, places)
-        weight = cell.integrals[facet, local] * area
+        normal, _ = _normals(cell, facet, cell.shares[local][:, facets[facet]], places)
+        _, area = _normals(cell, facet, cell.at, places)
+        weight = area @ cell.functions[facet][:, local]
         parts.append((nodes[some][:, local], weight, normal, shares @ places[:, corners]))
     back = np.argsort(np.argsort(which, kind="stable"), kind="stable")
     return Trace(*(np.concatenate(one)[back] for one in zip(*parts, strict=True)))
@@ -103,16 +107,17 @@ def _on(cell: Reference, corners: list[int]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _normals(
-    cell: Reference, facet: int, local: np.ndarray, x: np.ndarray
+    cell: Reference, facet: int, at: np.ndarray, x: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the unit normals out of cells with corners x [k, corners, d] at nodes of a facet
-    [k, q, d], and the area of the facet there over that of the reference facet [k, q]."""
+    """Return the unit normals out of cells with corners x [k, corners, d] at points of a facet
+    [k, q, d], and the area of the facet there over that of the reference facet [k, q]; at : shares
+    of the corners of the facet [q, c]."""
     corners, dim = facets_of(cell.kind)[facet], x.shape[2]
     if dim == 1:
-        normal = np.ones((len(x), 1, 1))
+        normal = np.ones((len(x), len(at), 1))
     else:
         flat = reference(FACET[cell.kind], 1)
-        slopes = flat.tabulate(1, cell.shares[local][:, corners] @ flat.points)[1:, :, :, 0]
+        slopes = flat.tabulate(1, at @ flat.points)[1:, :, :, 0]
         along = np.einsum("aqc,kcd->akqd", slopes, x[:, corners])
         if dim == 2:
             normal = np.stack([-along[0, ..., 1], along[0, ..., 0]], axis=-1)

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from jointwave.continuum.body.session import gmsh_session
 from jointwave.continuum.mesh.cells import CORNERS, DIMENSION, oriented
-from jointwave.continuum.mesh.session import gmsh_session
 
 
 class Column(NamedTuple):

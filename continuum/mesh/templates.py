@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.continuum.mesh.session import gmsh_session
+from jointwave.continuum.body.session import gmsh_session
 
 
 class Template(NamedTuple):

@@ -163,13 +163,12 @@ def study(data: bytes, folder: Path) -> str:
 
 def mesh(data: bytes, folder: Path) -> str:
     """A gmsh file of a pillar of three blocks."""
-    from jointwave.continuum.mesh.given import given_mesh
+    from jointwave.continuum.body.scene import body_of
 
     shape = {"pillar.length": 1.5, "pillar.side": 0.4, "pillar.block": 0.5, "soft_layers": []}
     places = {"record.stress": [0.5], "record.velocity": [0.25], "variants": []}
-    one = cases.load_variant(FREE, "", shape | places)
-    path = _written(folder, "pillar.msh", data)
-    return _asked(lambda: given_mesh(path, one, calibrate(one)))
+    file = {"numerics.continuum.mesh": str(_written(folder, "pillar.msh", data))}
+    return _asked(lambda: body_of(cases.load_variant(FREE, "", shape | places | file)))
 
 
 #: What would solve something: a command that gets so far has read all that it was given.

@@ -38,3 +38,18 @@ def made(rock_mass):
         return body_of(rock_mass(*joints, **changes), model, rock)
 
     return build
+
+
+@pytest.fixture
+def column(pillar):
+    """Return a function that gives a scene of three blocks of 0.5 m, 0.4 m wide, on a mesh, with
+    dotted keys changed."""
+
+    def scene(mesh=None, **changes):
+        shape = {"pillar__length": 1.5, "pillar__side": 0.4, "pillar__block": 0.5}
+        places = {"soft_layers": [], "record__stress": [0.5], "record__velocity": [0.25]}
+        if mesh is not None:
+            changes["numerics__continuum__mesh"] = str(mesh)
+        return pillar(**(shape | places | changes))
+
+    return scene

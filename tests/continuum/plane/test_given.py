@@ -10,8 +10,8 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.read import load
 from jointwave.compare.engines import solver
 from jointwave.compare.solvers.incident import incident
+from jointwave.continuum.body.session import gmsh_session
 from jointwave.continuum.build import operators
-from jointwave.continuum.mesh.session import gmsh_session
 from jointwave.continuum.plane.loads import pushes
 from jointwave.continuum.plane.rock import discretise
 from jointwave.continuum.simulate import simulate

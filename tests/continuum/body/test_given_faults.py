@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.calibrate import calibrate
-from jointwave.continuum.mesh.given import given_mesh
+from jointwave.continuum.body.scene import body_of
+from tests.continuum.body.drawing import drawn
 
 
 @pytest.fixture
-def fault(drawn, column):
+def fault(tmp_path, column):
     """Return a function that draws a file and gives the one line that it is refused with."""
 
-    def line(kind, dim=None, changes=None, **options):
-        scene, path = column(3, **(changes or {})), drawn(kind, **options)
+    def line(kind, changes=None, **options):
+        scene = column(drawn(tmp_path / "pillar.msh", kind, **options), **(changes or {}))
         with pytest.raises(SceneError) as error:
-            given_mesh(path, scene, calibrate(scene), dim)
+            body_of(scene)
         text = str(error.value)
         assert "numerics.continuum.mesh = " in text and len(text.splitlines()) == 1
         return text
@@ -23,11 +23,11 @@ def fault(drawn, column):
     return line
 
 
-def test_missing_partners_are_counted_and_placed(drawn, column):
+def test_missing_partners_are_counted_and_placed(tmp_path, column):
     """The last block's lower face is made narrower: facets of both sides lose their partners."""
     import meshio
 
-    path, scene = drawn("quadrilateral", doubled=True), column()
+    path = drawn(tmp_path / "pillar.msh", "quadrilateral", doubled=True)
     file = meshio.gmsh.read(path)
     cells = np.concatenate([block.data for block in file.cells if block.type == "quad"])
     of_last = cells[file.points[cells, 1].mean(axis=1) > 1.0]
@@ -35,31 +35,28 @@ def test_missing_partners_are_counted_and_placed(drawn, column):
     file.points[lower, 0] *= 0.5
     meshio.write(path, file, "gmsh22")
     with pytest.raises(SceneError) as error:
-        given_mesh(path, scene, calibrate(scene))
+        body_of(column(path))
     assert "4 facets of its joints have no coincident partner" in str(error.value)
     assert "the first at (-0.1, 1) m" in str(error.value)
 
 
 @pytest.mark.parametrize("kind", ["quadrilateral", "tetrahedron"])
-def test_pieces_that_no_group_joins_are_refused(kind, drawn, column):
-    path = drawn(kind, doubled=True, names=["joint", "seam"])
-    with pytest.raises(SceneError, match="are in no group 'joint") as error:
-        given_mesh(path, column(), calibrate(column()))
+def test_pieces_that_no_group_joins_are_refused(kind, fault):
+    text = fault(kind, doubled=True, names=["joint", "seam"])
     count = 2 * 2 if kind == "quadrilateral" else 2 * 8
-    assert f"{count} facets coincide with others" in str(error.value)
+    assert f"{count} facets coincide with others and are in no group 'joint" in text
 
 
 MISTAKES = {
     "too short": (dict(length=1.4), ["spans y = 0 to 1.4 m, the pillar 0 to 1.5 m"]),
     "too wide": (dict(side=0.5), ["spans x = -0.25 to 0.25 m, the pillar -0.2 to 0.2 m"]),
     "of second order": (dict(order=2), ["has quad9 cells, must be first-order"]),
-    "of a wrong dimension": (dict(dim=3), ["quadrilateral cells", "dim = 3"]),
+    "of a wrong dimension": (
+        dict(changes=dict(numerics__continuum__dim=3)),
+        ["quadrilateral cells", "dim = 3"],
+    ),
     "consistent mass": (
-        dict(
-            changes=dict(
-                numerics__continuum__mass="consistent", numerics__continuum__cell="simplex"
-            )
-        ),
+        dict(changes=dict(numerics__continuum__mass="consistent")),
         ["quadrilateral cells support numerics.continuum.mass = 'lumped'"],
     ),
 }
@@ -144,21 +141,21 @@ def test_a_bad_file_is_one_line(name, tmp_path, column):
     text = GOOD.replace(old, new, 1) if old else new
     assert text != GOOD
     with pytest.raises(SceneError) as error:
-        read_text(text, tmp_path, column())
+        read_text(text, tmp_path, column)
     message = str(error.value)
     assert words in message
     assert len(message.splitlines()) == 1 and len(message) < len(str(tmp_path)) + 400
 
 
-def read_text(text, tmp_path, scene):
+def read_text(text, tmp_path, column):
     path = tmp_path / "pillar.msh"
     path.write_text(text)
-    return given_mesh(path, scene, calibrate(scene))
+    return body_of(column(path)).body
 
 
 def test_the_good_file_is_good(tmp_path, column, capfd):
-    mesh = read_text(GOOD, tmp_path, column())
-    assert mesh.joints.joint.tolist() == [0] and len(mesh.parts) == 2
+    body = read_text(GOOD, tmp_path, column)
+    assert (body.joints.column == 0).all() and len(body.x) == 2 * 9
     assert capfd.readouterr() == ("", "")
 
 
@@ -166,12 +163,11 @@ def test_a_cell_that_the_file_repeats_for_another_group_counts_once(tmp_path, co
     again = "3 1 2 2 1 3 4\n4 3 2 9 1 3 4 6 5\n5 1 2 3 1 4 3\n"
     text = GOOD.replace("3 1 2 2 1 3 4\n", again).replace("$Elements\n3", "$Elements\n5")
     text = text.replace("$PhysicalNames\n2", '$PhysicalNames\n4\n2 9 "top"\n1 3 "joint too"')
-    mesh = read_text(text, tmp_path, column())
-    assert [len(part.cells) for part in mesh.parts] == [1, 1]
-    assert mesh.joints.joint.tolist() == [0]
+    body = read_text(text, tmp_path, column)
+    assert (body.joints.column == 0).all() and len(body.x) == 2 * 9
 
 
 def test_a_file_that_is_not_there(tmp_path, column):
-    for path, words in ((tmp_path / "gone.msh", "does not exist"), (tmp_path, "is not a file")):
+    for path, words in ((tmp_path / "gone.msh", "no such file"), (tmp_path, "must be a file")):
         with pytest.raises(SceneError, match=words):
-            given_mesh(path, column(), calibrate(column()))
+            body_of(column(path))

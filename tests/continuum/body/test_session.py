@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from jointwave.continuum.mesh.session import gmsh_session
+from jointwave.continuum.body.session import gmsh_session
 
 
 def test_interrupts_and_notation_stay(capfd):
