@@ -62,7 +62,7 @@ def step_means(load: LoadHistory, dt: float, count: int, first: int = 0) -> np.n
     This is the load that makes leapfrog exact for the bar at c dt = d: the momentum that enters
     between two half steps is the true one.
     """
-    edges = dt * (np.arange(count + 1) - 0.5) + first * dt
+    edges = dt * (np.arange(first, first + count + 1) - 0.5)
     return np.diff(load.impulse(edges)) / dt
 
 

@@ -15,7 +15,6 @@ def by_body(scene: Any, comm: Any = None) -> bool:
         isinstance(scene, RockMass)
         and (comm is None or comm.size == 1)
         and scene.rock.quality_factor is None
-        and scene.record.fields is None
     )
 
 

@@ -3,7 +3,6 @@
 import numpy as np
 
 from jointwave.cases.sampling import Clock
-from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.body.model import Body
 from jointwave.continuum.body.scene import SceneBody
 from jointwave.continuum.body.steps import Problem
@@ -19,7 +18,7 @@ def masses(body: Body) -> np.ndarray:
 
 
 def highest_speed(
-    scene: RockMass, found: SceneBody, problem: Problem, time: Clock, u: np.ndarray | None = None
+    found: SceneBody, problem: Problem, time: Clock, u: np.ndarray | None = None
 ) -> float:
     """Return a bound on the speed of any node, m/s; u : displacements at the start, m.
 
@@ -40,22 +39,21 @@ def highest_speed(
         stored = 0.0 if u is None else np.sqrt(2 * abs(problem.steady @ u))
     least = np.sqrt((1 / mass[rock]).max())
     with np.errstate(over="ignore"):
-        pressed = prestressed(scene, found, problem, duration * least)
+        pressed = prestressed(found, problem, duration * least)
         return float(least * speed_that(pushed, shaken, duration * weight, stored, pressed))
 
 
-def prestressed(scene: RockMass, found: SceneBody, problem: Problem, pushing: float) -> float:
+def prestressed(found: SceneBody, problem: Problem, pushing: float) -> float:
     """Return the root of twice the energy (sqrt(J)) that a prestress keeps in rock and joints, and
     that rock gives off by pushing on both sides of joints that open, so long (s/sqrt(kg))."""
-    if scene.prestress is None:
+    stress, joints, law = problem.stress, problem.body.joints, problem.law
+    if stress is None:
         return 0.0
-    stress = scene.prestress.tensor
     softest = min(np.linalg.eigvalsh(one.stiffness).min() for one in found.materials)
     stored = float((stress**2).sum()) / softest * float(found.blocks.volume.sum())
-    size, joints, law = float(np.abs(stress).max()), problem.body.joints, problem.law
     if joints is None or law is None:
         return float(np.sqrt(stored))
-    area = float(joints.weight.sum())
-    softness = max(np.max(1 / law.normal_stiffness), np.max(1 / law.shear_stiffness))
-    stored += 4 * size**2 * area * softness
+    size, area = float(np.abs(stress).max()), float(joints.weight.sum())
+    springs = [k for k in (law.normal_stiffness, law.shear_stiffness) if k is not None]
+    stored += 4 * size**2 * area * max(np.max(1 / k) for k in springs)
     return float(np.sqrt(stored)) + pushing * 4 * size * area

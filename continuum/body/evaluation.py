@@ -70,6 +70,21 @@ def element(kind: str, nodes: int):
     return next(one for one in every if len(one.points) == nodes)
 
 
+def lattice_of(kind: str, nodes: int) -> np.ndarray:
+    """Return the nodes of an element without those of bubbles, int array: a full lattice."""
+    points = element(kind, nodes).points
+    if nodes != WITH_BUBBLES.get(kind):
+        return np.arange(nodes)
+    return np.flatnonzero(np.isclose(2 * points, np.rint(2 * points)).all(axis=1))
+
+
+def places_of_nodes(body: Body) -> np.ndarray:
+    """Return the places of the nodes of each cell [cells, nodes, d], m."""
+    kind, corners = kind_of(body), compat.cell_corners(body.mesh)
+    points = element(kind, compat.cell_nodes(body.space).shape[1]).points
+    return tabulate(kind, corners.shape[1], points)[0] @ corners
+
+
 def tabulate(kind: str, nodes: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return functions [n, nodes] and their gradients [n, nodes, d] at points [n, d] of the
     reference cell."""

@@ -78,9 +78,19 @@ class Implicit:
         self._carried = float((own.points.weight[:, None] * carried).max(initial=0.0))
 
     @property
+    def u(self) -> np.ndarray:
+        """Displacement, m."""
+        return self.now.u
+
+    @property
     def v(self) -> np.ndarray:
         """Velocity, m/s."""
         return self.now.v
+
+    @property
+    def last(self) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement, m, and velocity, m/s, at the last step."""
+        return self.u, self.v
 
     @property
     def parts(self) -> tuple:

@@ -50,9 +50,6 @@ def refuse(scene: RockMass, model: str) -> None:
     """Raise SceneError for what bodies do not have."""
     if why := applies(scene, model):
         raise SceneError(scene.where, "model", model, why)
-    for key, value in (
-        ("rock.quality_factor", scene.rock.quality_factor),
-        ("record.fields", scene.record.fields),
-    ):
-        if value is not None:
-            raise SceneError(scene.where, key, value, "is not supported by dolfinx bodies")
+    if (quality := scene.rock.quality_factor) is not None:
+        allowed = "is not supported by dolfinx bodies"
+        raise SceneError(scene.where, "rock.quality_factor", quality, allowed)

@@ -15,17 +15,16 @@ import xarray as xr
 from jointwave.cases.errors import StoppedError
 from jointwave.cases.incident import IncidentField
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.continuum.body.bounds import highest_speed
 from jointwave.continuum.body.explicit import Samples
 from jointwave.continuum.body.implicit import Implicit
+from jointwave.continuum.body.monitor import Monitor
 from jointwave.continuum.body.plan import plan_of
 from jointwave.continuum.body.problem import at_rest, in_time
 from jointwave.continuum.body.rock import Rock
 from jointwave.continuum.body.scheme import Choice
+from jointwave.continuum.body.snapshots import RockRecorder
 from jointwave.continuum.body.static import Rest
 from jointwave.continuum.body.steps import Leapfrog, Problem
-from jointwave.numerics.divergence import ENERGY, Guard, audit, guard, look
-from jointwave.numerics.instability import Divergence, stopped
 from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
 from jointwave.results.arrays import size_of
 from jointwave.results.rock_mass import TERMS, rock_mass_dataset
@@ -67,14 +66,15 @@ def simulate(
     if rest is not None:
         start = rest.u
         about = {"static_steps": rest.steps, "static_out_of_balance": rest.ratio}
-    monitor = guard(highest_speed(scene, found, problem, time, start))
+    monitor = Monitor(scene, found, steps, choice, critical, start)
+    recorder = None if scene.record.fields is None else RockRecorder(scene, found, steps)
     built = perf_counter()
     steps.take(0, 0, time.stride)
     compiled = perf_counter()
 
     def result(count: int) -> xr.Dataset:
         terms, energy = ledger(scene, problem, steps.samples, count)
-        return rock_mass_dataset(
+        dataset = rock_mass_dataset(
             scene,
             f"continuum-{model}",
             time.times[:count],
@@ -97,16 +97,22 @@ def simulate(
             seconds_stepping=perf_counter() - compiled,
             versions=versions(),
         )
+        return dataset if recorder is None else recorder.add_to(dataset)
 
     def march(first: int, last: int) -> None:
-        steps.take(first * time.stride, last * time.stride, time.stride)
-        check(scene, steps, monitor, choice, critical, first, last)
+        done = first * time.stride
+        if recorder is not None:
+            steps.take(done, done + 1, time.stride)
+            recorder.record_if_due(first)
+            done += 1
+        steps.take(done, last * time.stride, time.stride)
+        monitor.check(first, last)
 
     chunk = FREEDOM_STEPS_AT_ONCE // (problem.body.stiffness.shape[0] * time.stride)
     chunk = min(chunk, time.samples // LEAST_CHUNKS)
-    parts = steps.parts, steps.samples, monitor
+    parts = steps.parts, steps.samples, monitor.guard
     try:
-        run_in_chunks(time.samples, chunk, march, parts, progress, None, keeper)
+        run_in_chunks(time.samples, chunk, march, parts, progress, recorder, keeper)
     except StoppedError as error:
         error.result = result(error.samples)
         raise
@@ -134,31 +140,6 @@ def stepper(
     if rest is not None:
         steps.start(rest.u, rest.history)
     return steps
-
-
-def check(
-    scene: RockMass,
-    steps: Leapfrog | Implicit,
-    monitor: Guard,
-    choice: Choice,
-    critical: float,
-    first: int,
-    last: int,
-) -> None:
-    """Raise StoppedError where a run leaves its bounds in samples first .. last - 1."""
-    explicit, time = choice.scheme == "explicit", choice.time
-    if scene.record.energy and explicit:  # the ledger of implicit steps is not exact
-        audit(monitor, steps.samples.energy, first, last, time.stride)
-    speed = np.abs(steps.v).reshape(-1, steps.problem.body.components).max(axis=1)
-    look(monitor, speed.max(initial=0.0), last * time.stride)
-    step, what, sound = monitor.found.tolist()
-    if step < 0:
-        return
-    fastest = int(np.nan_to_num(speed, nan=np.inf).argmax())
-    place = tuple(steps.problem.body.x[fastest].tolist())
-    key = f"numerics.continuum.{'step_fraction' if explicit else 'steps_per_period'}"
-    seen = Divergence("the continuum", key, step, sound, what == ENERGY, place)
-    raise stopped(scene, time, critical if explicit else np.inf, seen)
 
 
 def ledger(

@@ -224,6 +224,12 @@ class Leapfrog:
         return self.state.v[self.product.place]
 
     @property
+    def last(self) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement, m, and velocity, m/s, at the last step."""
+        before = self.state.v_before[self.product.place]
+        return self.u - self.dt * self.v, (before + self.v) / 2
+
+    @property
     def parts(self) -> tuple:
         """All arrays that change."""
         return (self.state,)

@@ -66,7 +66,6 @@ def test_a_script_gives_the_rock(rock_mass):
     ("key", "tables"),
     [
         ("rock.quality_factor", {"rock": {"quality_factor": 30.0}}),
-        ("record.fields", {"record": {"points": [[2.0, 3.0]], "fields": 1e-4}}),
         ("damping", {"damping": {"local": 0.1}}),
     ],
 )

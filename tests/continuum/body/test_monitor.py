@@ -1,0 +1,109 @@
+"""Runs that stop where blocks move further than contacts of the initial state allow."""
+
+import numpy as np
+import pytest
+
+from jointwave.cases.errors import StoppedError
+from jointwave.cases.read import load_tables
+from jointwave.continuum.body.evaluation import blocks_of_nodes
+from jointwave.continuum.body.monitor import farthest_joint, motion_of_blocks
+from jointwave.continuum.body.run import simulate
+from jointwave.continuum.body.scene import body_of
+
+LOOSE = {"dip": 0.0, "through": [3.0, 2.0, 2.5], "tension": False}
+#: A slab of 4 m x 1 m that nothing holds falls onto another, 10 mm below it, between joints that
+#: let it slip: it overlaps that by 1 % after 20 mm, before 40 mm, 2 % of it.
+SLOT = {
+    "title": "a slab above a slot",
+    "domain": {
+        "size": [12.0, 2.01],
+        "openings": [[[4.0, 1.0], [8.0, 1.0], [8.0, 1.01], [4.0, 1.01]]],
+    },
+    "rock": {"density": 2500.0, "intact_modulus": 2e10, "intact_poisson": 0.0},
+    "joint_sets": [
+        {
+            "name": "cross", "dip": 90.0, "through": [4.0, 0.0], "spacing": 4.0,
+            "normal_stiffness": 1e9, "shear_stiffness": 1.0,
+        }
+    ],
+    "boundaries": dict.fromkeys(("left", "right", "bottom"), "fixed"),
+    "gravity": {"static": False},
+    "time": {"duration": 0.2},
+    "record": {"points": [[6.0, 1.5]], "interval": 1e-3, "fields": 1e-2},
+    "numerics": {"continuum": {"size": 2.0, "order": 1}},
+}  # fmt: skip
+
+
+def falling(rock_mass, dim, **numerics):
+    """Return a block that falls from one that is held."""
+    joint = LOOSE | {"through": LOOSE["through"][:dim]}
+    own = {"continuum": {"size": 3.0, "order": 1, "scheme": "explicit"}, **numerics}
+    record = {"points": [[2.0, 0.5, 0.5][:dim]], "interval": 1e-3}
+    tables = {"gravity": {"static": False}, "boundaries": {"top": "fixed"}, "record": record}
+    return rock_mass(joint, dim=dim, time={"duration": 0.2}, numerics=own, **tables)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_falling_block_stops_the_run(rock_mass, dim):
+    """At 2 % of its size, looked at twenty times; what was recorded until then is there."""
+    with pytest.raises(StoppedError, match=r"numerics\.allow_large_motion = true") as stopped:
+        simulate(falling(rock_mass, dim))
+    words, result = str(stopped.value), stopped.value.result
+    at = float(words.split("by t = ")[1].split(" s")[0])
+    size = {2: 12.0, 3: 60.0}[dim] ** (1 / dim)
+    reached = np.sqrt(2 * 0.02 * size / 9.81)
+    assert reached < at < reached + 0.2 / 20 + 1e-3
+    moved = float(words.split("has moved by ")[1].split(" m")[0])
+    assert moved == pytest.approx(9.81 * at**2 / 2, rel=0.02)
+    assert reached - 0.2 / 20 - 1e-3 < result.time.values[-1] < reached
+
+
+def test_a_scene_may_allow_it(rock_mass):
+    found = simulate(falling(rock_mass, 2, allow_large_motion=True))
+    assert found.displacement.values[0, -1, 1] == pytest.approx(-9.81 * 0.2**2 / 2, rel=0.02)
+
+
+def test_blocks_that_meet_others_than_their_neighbours_stop_the_run():
+    with pytest.raises(StoppedError, match=r"overlaps block [0-9]+, which it did not") as stopped:
+        simulate(load_tables(SLOT))
+    at = float(str(stopped.value).split("by t = ")[1].split(" s")[0])
+    assert np.sqrt(2 * 0.02 / 9.81) < at < np.sqrt(2 * 0.04 / 9.81)
+    result = stopped.value.result
+    assert 0 < result.field_time[-1] <= result.time[-1]
+    assert result.sizes["field_time"] == -(-result.sizes["time"] // 10)
+
+
+@pytest.mark.parametrize("cell", ["triangle", "quadrilateral"])
+def test_blocks_move_as_their_nodes_do(made, cell):
+    """Rigid motions, each of its own."""
+    joints = {"dip": 0.0, "through": [3.0, 1.0]}, {"dip": 90.0, "through": [2.5, 2.0]}
+    found = made(*joints, continuum={"cell": cell})
+    motion = np.random.default_rng(4).uniform(-1.0, 1.0, (found.blocks.count, 3))
+    node = blocks_of_nodes(found.body)
+    arm = found.body.x - found.blocks.centroid[node]
+    u = motion[node, :2] + motion[node, 2:] * arm[:, ::-1] * [-1, 1]
+    np.testing.assert_allclose(motion_of_blocks(found, u.ravel()), motion, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("dim", [1, 2, 3])
+def test_faces_of_a_pillar_may_part_but_not_slip(pillar, dim):
+    """Its second block has moved by 3 mm across, and its third by 1 m along the pillar."""
+    scene = pillar(
+        pillar__length=2.0,
+        rock__intact_modulus=5e10,
+        record={"velocity": [0.0]},
+        numerics__continuum={"dim": dim, "elements_per_block": 2},
+    )
+    found = body_of(scene)
+    body, spacing = found.body, scene.pillar.block
+    u = np.zeros((len(body.x), body.components))
+    block = blocks_of_nodes(body)
+    u[block == 2, min(1, body.components - 1)] = 1.0
+    if dim == 1:
+        assert farthest_joint(found, u.ravel()) is None
+        return
+    u[block == 1, 0] = 3e-3
+    moved = farthest_joint(found, u.ravel())
+    assert moved.by == pytest.approx(3e-3) and moved.size == scene.pillar.side
+    assert (moved.block, moved.other) in ((0, 1), (1, 2))
+    assert moved.place == pytest.approx([spacing * moved.other])
