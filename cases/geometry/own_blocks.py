@@ -66,7 +66,8 @@ def complex_of_file(path: Path, mesh: bool = False) -> tuple[Complex, list[str] 
 
 def _check_whole(given: Given, number: np.ndarray) -> None:
     """Raise MeshError where vertices of a mesh coincide, but for those of its joints."""
-    used = np.unique([v for part in chain.from_iterable(given.blocks) for v in part[0]])
+    loops = chain.from_iterable(chain.from_iterable(given.blocks))
+    used = np.unique(list(chain.from_iterable(loops)))
     times = np.bincount(number[used], minlength=len(number))
     assert given.joints is not None
     times[number[[v for facets in given.joints.values() for facet in facets for v in facet]]] = 0

@@ -8,6 +8,8 @@ import numpy as np
 
 from jointwave.cases.files import read_bytes, read_json, read_text
 from jointwave.cases.gmsh_file import (
+    FROM_GMSH,
+    KINDS,
     MeshError,
     cells_of_type,
     one_line,
@@ -29,8 +31,7 @@ FACES = {
     }.items()
 }
 POLYGONS = ("triangle", "quad", "polygon")
-#: The corners of a quadrilateral, which come in the order of a tensor product.
-AROUND = {"triangle": [0, 1, 2], "quadrilateral": [0, 1, 3, 2]}
+MESHIO = {kind: name for name, kind in KINDS.items()}
 
 Loop = list[int]
 Part = list[Loop]
@@ -80,16 +81,16 @@ def read_blocks(path: Path) -> Given:
 
 
 def read_cells(path: Path) -> Given:
-    """Return the cells of a gmsh file in the plane, as blocks: those of its groups "rock...", all
-    triangles or all quadrilaterals. Raises MeshError."""
+    """Return the cells of a gmsh file as blocks: those of its groups "rock...", all of one kind.
+    Raises MeshError."""
     tagged = read_tagged(path)
-    if tagged.kind not in AROUND:
-        raise MeshError(f"its rock has {tagged.kind} cells, must have two-dimensional ones")
-    cells = tagged.cells[:, AROUND[tagged.kind]].tolist()
+    cells = tagged.cells[:, FROM_GMSH[tagged.kind]]  # which is back to gmsh's order as well
+    parts = _parts(MESHIO[tagged.kind], cells)
     found = {name: one for name, one in tagged.facets.items() if name.startswith(JOINT)}
     joints = {_plain(name): one.tolist() for name, one in found.items()}
+    dim = 2 if MESHIO[tagged.kind] in POLYGONS else 3
     names = [f"cell {k}" for k in range(len(cells))]
-    return Given(tagged.x[:, :2], [[[cell]] for cell in cells], names, joints)
+    return Given(tagged.x[:, :dim], [[part] for part in parts], names, joints)
 
 
 def _plain(name: str) -> str:

@@ -41,8 +41,9 @@ class Domain(Table):
     #: three numbers make the scene one in space, and all its points and directions have three
     size: Annotated[list[Positive], Field(min_length=2, max_length=3)] | None = None
     outline: list[Point] | None = None  #: m, corners of a polygon, instead of size
-    #: a gmsh file (.msh) instead: groups "rock..." of triangles or quadrilaterals, and "joint NAME"
-    #: of the edges of each joint set; its outline and openings are those of the rock
+    #: a gmsh file (.msh) instead: groups "rock..." of cells of one kind, and "joint NAME" of the
+    #: facets of each joint set; its outline and openings are those of the rock. Tetrahedra and
+    #: hexahedra make the scene one in space
     mesh: str | None = None
     #: a file of convex blocks instead: VTU (.vtu) with a cell, gmsh (.msh) with a surface or a
     #: volume, COMPAS (.json) with a mesh or OBJ (.obj) with an object a block; blocks in space make
