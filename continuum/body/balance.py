@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,9 +26,9 @@ class Forces(NamedTuple):
 
     whole : all together. viscous : of dashpots of rock and joints, and mass-proportional damping.
     boundary : of quiet sides. external : with a history. history : of points, after the step.
-    loads, drags : of points' springs and dashpots [points * d], N. jump : m. energies : of all
-    springs, spent by opening, and by friction in the step, J [3]. size : the largest that is summed
-    up [1].
+    closure : of springs in front of dashpots of sides, after it, m [k, d]. loads, drags : of
+    points' springs and dashpots [points * d], N. jump : m. energies : of all springs, spent by
+    opening, and by friction in the step, J [3]. size : the largest that is summed up [1].
     """
 
     whole: np.ndarray
@@ -35,6 +36,7 @@ class Forces(NamedTuple):
     boundary: np.ndarray
     external: np.ndarray
     history: np.ndarray
+    closure: np.ndarray
     loads: np.ndarray
     drags: np.ndarray
     jump: np.ndarray
@@ -48,7 +50,9 @@ class Balance:
     Attributes
     ----------
     stiffness, damping, quiet, mass : [freedoms, freedoms], of rock with mass-proportional damping,
-    and of quiet sides. free : int array, freedoms that are not held. history : of points at first.
+    and of quiet sides. free : int array, freedoms that are not held. history : of points, and
+    closure : of springs in front of dashpots, at first; springs : those, None without, of steps;
+    ends : int array [k, d], the freedoms of quiet sides.
     """
 
     def __init__(self, problem: Problem, at_rest: bool = False) -> None:
@@ -59,6 +63,10 @@ class Balance:
         mass: Any = body.consistent if body.mass is None else diags(body.mass)
         self.mass = csr_matrix(mass)
         self.damping, self.quiet = csr_matrix((n, n)), csr_matrix((n, n))
+        quiet = None if at_rest else problem.quiet
+        self.springs = cache(quiet.springs) if quiet is not None and quiet.springs else None
+        self.ends = np.zeros((0, self.dim), np.int64) if quiet is None else quiet.freedom
+        self.closure = np.zeros(self.ends.shape if self.springs else (0, self.dim))
         if at_rest:
             table = self.points.table.copy()
             table[IN_MOTION[: len(table)]] = 0.0
@@ -78,9 +86,25 @@ class Balance:
         quiet, dim = self.problem.quiet, self.dim
         if quiet is None:
             return csr_matrix((n, n))
-        own = dim * quiet.node[:, None] + np.arange(dim)
+        own = quiet.freedom
         row, column = np.repeat(own, dim, axis=1), np.tile(own, dim)
         return csr_matrix((quiet.viscosity.ravel(), (row.ravel(), column.ravel())), (n, n))
+
+    def of_springs(self, dt: float) -> csr_matrix:
+        """Return how springs in front of dashpots resist what moves in a step of dt (s)
+        [freedoms, freedoms], N/m."""
+        found = np.zeros(self.stiffness.shape[0])
+        if self.springs is not None:
+            own = self.springs(dt)
+            found[self.ends] = own.stiffness * own.gain / dt
+        return csr_matrix(diags(found))
+
+    def acceleration(self, force: np.ndarray, held: np.ndarray) -> np.ndarray:
+        """Return the acceleration of freedoms by forces on them (N); held : that of held ones."""
+        mass = np.asarray(self.mass.sum(axis=1)).ravel()
+        found = held.copy()
+        found[self.free] = force[self.free] / mass[self.free]
+        return found
 
     def forces(
         self,
@@ -91,11 +115,18 @@ class Balance:
         before: np.ndarray,
         external: np.ndarray,
         steady: float = 1.0,
+        closure: np.ndarray | None = None,
     ) -> Forces:
         """Return the forces at displacements u (m) and velocities v (m/s), after moving by `moved`
-        in dt (s) from where the history was `before`; steady : share of the steady forces."""
+        in dt (s) from where the history was `before`; steady : share of the steady forces.
+        closure : of springs in front of dashpots before the step, m; absent, as at rest."""
         elastic, drag = self.stiffness @ u, self.damping @ v
         boundary, jump = self.quiet @ v, self.jumps @ u
+        closure = self.closure if closure is None else closure
+        if self.springs is not None:
+            own = self.springs(dt)
+            closure = own.decay * closure + own.gain * moved[self.ends] / dt
+            boundary[self.ends] += own.stiffness * closure
         loads, drags = np.zeros((2, len(jump)))
         after, found, drive = before.copy(), (0.0, 0.0, 0.0), 0.0
         if self.parts is not None:
@@ -110,7 +141,9 @@ class Balance:
         slid, stored, spent = found
         energies = np.array([0.5 * (u @ elastic) + stored, spent, slid])
         size = np.array([max(sizes)])
-        return Forces(whole, drag, boundary, external, after, loads, drags, jump, energies, size)
+        return Forces(
+            whole, drag, boundary, external, after, closure, loads, drags, jump, energies, size
+        )
 
     def of_joints(
         self, u: np.ndarray, v: np.ndarray, dt: float, r: float, before: np.ndarray

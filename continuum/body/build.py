@@ -28,6 +28,7 @@ from jointwave.continuum.body.traces import Trace, reference_cell, trace
 
 log = logging.getLogger("jointwave")
 SIMPLEX = ("triangle", "tetrahedron")
+LEVEL = 1e-9  # of the pillar: nodes at one height
 
 
 class Elements:
@@ -75,6 +76,15 @@ class Elements:
             self.tied = joined(np.concatenate(sides), len(self.x))
             self.nodes = self.tied[self.nodes]
 
+    def flatten(self) -> None:
+        """Let all nodes at one y of each piece of rock be one."""
+        cell = np.repeat(np.arange(len(self.nodes)), self.nodes.shape[1])
+        piece = joined(np.stack([self.nodes[cell, 0], self.nodes.ravel()], axis=1), len(self.x))
+        level = np.rint((self.x[:, 1] - self.x[:, 1].min()) / np.ptp(self.x[:, 1]) / LEVEL)
+        places = np.column_stack([piece, level])
+        self.tied = np.unique(places, axis=0, return_inverse=True)[1].reshape(-1)
+        self.nodes = self.tied[self.nodes]
+
 
 def build_body(
     mesh: Conforming,
@@ -84,12 +94,14 @@ def build_body(
     components: int | None = None,
     consistent: bool = False,
     across: Sequence[Facing] = (),
+    flat: bool = False,
 ) -> Body:
     """Return the body of a mesh.
 
     rock : function of the dolfinx space, and the block of each of its cells. components : of
     displacements; as many as dimensions where absent. consistent : whether the mass is the
-    consistent one. across : what periodic sides face, with columns of their own.
+    consistent one. across : what periodic sides face, with columns of their own. flat : whether
+    sections across y of each piece of rock move as a whole.
     """
     pairs, size = shared(mesh), components or mesh.x.shape[1]
     column = _marked(marks.column, mesh.on[pairs.cell, pairs.facet]).max(axis=1)
@@ -98,6 +110,8 @@ def build_body(
     block = mesh.block[found.row]
     forms = assembled(rock(found.space, block), mesh.kind, order, consistent)
     found.tie(across)
+    if flat:
+        found.flatten()
     x = found.x
     if found.tied is not None:
         x = x[np.unique(found.tied, return_index=True)[1]]

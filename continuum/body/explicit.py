@@ -30,7 +30,7 @@ class StepFlags(NamedTuple):
 
     product : kind of the stiffness, `continuum.body.product`. law : None without joints. stressed :
     whether these carry anything at u = 0. damped : whether the rock has dashpots. ledger : whether
-    energies are recorded.
+    energies are recorded. sprung : whether springs are in front of dashpots of sides.
     """
 
     dim: int
@@ -39,6 +39,7 @@ class StepFlags(NamedTuple):
     stressed: bool
     damped: bool
     ledger: bool
+    sprung: bool = False
 
 
 class Sparse(NamedTuple):
@@ -51,25 +52,32 @@ class Sparse(NamedTuple):
 
 class Quiet(NamedTuple):
     """Nodes on dashpots: freedom, int array [k, d]; viscosity [k, d, d], N s/m; beta [k, d, d],
-    dt / (2 M (1 + alpha dt / 2)) times it, and solve, the inverse of 1 + beta."""
+    dt / (2 M (1 + alpha dt / 2)) times it, and solve, the inverse of 1 + beta. stiffness (N/m) :
+    of springs in front of dashpots, whose closure becomes decay times it + gain (s) times the
+    velocity in a step: [k, d], [0, d] without (`joints.ends`)."""
 
     freedom: np.ndarray
     viscosity: np.ndarray
     beta: np.ndarray
     solve: np.ndarray
+    stiffness: np.ndarray
+    decay: np.ndarray
+    gain: np.ndarray
 
 
 class Receivers(NamedTuple):
     """How receivers read the state.
 
-    motion, stress : of displacements; lag : s, by which stress follows the rate as well, 0
-    without dashpots in rock. traction : of the forces of points. jump : of their jumps. constant,
-    carried : stresses and tractions at u = 0, Pa.
+    motion, stress : of displacements; viscous : stress of the rate, where rock has dashpots;
+    inertia : stress of the acceleration, with mass-proportional damping, no rows without.
+    traction : of the forces of points. jump : of their jumps. constant, carried : stresses and
+    tractions at u = 0, Pa.
     """
 
     motion: Sparse
     stress: Sparse
-    lag: float
+    viscous: Sparse
+    inertia: Sparse
     traction: Sparse
     jump: Sparse
     constant: np.ndarray
@@ -107,7 +115,8 @@ class State(NamedTuple):
     """The state.
 
     u : displacement, m. v, v_before : velocity half a step before u, and one and a half before,
-    m/s. history : of points, `tractions`. sums : of the ledger, J.
+    m/s. history : of points, `tractions`. sums : of the ledger, J. closure : of springs in front
+    of dashpots [k, d], m.
     """
 
     u: np.ndarray
@@ -115,6 +124,7 @@ class State(NamedTuple):
     v_before: np.ndarray
     history: np.ndarray
     sums: np.ndarray
+    closure: np.ndarray
 
 
 class Work(NamedTuple):
@@ -174,6 +184,23 @@ def read(matrix, x, constant, out, s, share):
 
 
 @formula
+def press(quiet, closure, force):
+    """Subtract the forces of the springs in front of dashpots."""
+    for k in range(closure.shape[0]):
+        for a in range(closure.shape[1]):
+            force[quiet.freedom[k, a]] -= quiet.stiffness[k, a] * closure[k, a]
+
+
+@formula
+def close(quiet, v, closure):
+    """Advance the closure of springs in front of dashpots by a step."""
+    for k in range(closure.shape[0]):
+        for a in range(closure.shape[1]):
+            moved = quiet.gain[k, a] * v[quiet.freedom[k, a]]
+            closure[k, a] = quiet.decay[k, a] * closure[k, a] + moved
+
+
+@formula
 def dot(x, y):
     """Return the product of two vectors, summed in four parts."""
     a, b, c, d, n = 0.0, 0.0, 0.0, 0.0, x.size // 4 * 4
@@ -192,6 +219,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
     """Return the kernel of steps of a body with these effects; absent ones are not compiled."""
     dim, law, damped, ledger = flags.dim, flags.law, flags.damped, flags.ledger
     multiply, damp = product_for(flags.product, dim), product_for(ROWS, dim)
+    sprung = flags.sprung
     jointed = law is not None
     dashpots, rated = (False, False) if law is None else (law.dashpots, law.limited)
     viscous = damped or dashpots
@@ -255,6 +283,8 @@ def leapfrog_for(flags: StepFlags) -> Callable:
                 for b in range(dim):
                     j = q.freedom[k, b]
                     braked += q.viscosity[k, a, b] * 0.5 * (s.v_before[j] + s.v[j])
+                if sprung:
+                    braked += q.stiffness[k, a] * s.closure[k, a]
                 w.braking[k, a] = braked
         for k in range(c.fixed.size):
             s.v[c.fixed[k]] = c.direction[k] * moved / c.dt
@@ -292,7 +322,9 @@ def leapfrog_for(flags: StepFlags) -> Callable:
         read(r.motion, s.u, None, out.displacement, n, 1.0)
         read(r.stress, s.u, r.constant, out.stress, n, 1.0)
         if damped:
-            read(r.stress, w.rate, None, out.stress, n, r.lag)
+            read(r.viscous, w.rate, None, out.stress, n, 1.0)
+        read(r.inertia, s.v, None, out.stress, n, 1.0 / c.dt + 0.5 * c.alpha)
+        read(r.inertia, s.v_before, None, out.stress, n, -1.0 / c.dt + 0.5 * c.alpha)
         if jointed:
             read(r.traction, w.loads, r.carried, out.traction, n, 1.0)
             if dashpots:
@@ -314,6 +346,8 @@ def leapfrog_for(flags: StepFlags) -> Callable:
                 w.force[i] += c.steady[i]
             for k in range(c.driven.size):
                 w.force[c.driven[k]] += drive[n - first, k]
+            if sprung:
+                press(c.quiet, s.closure, w.force)
             move(c, s, w, moves[n - first])
             if ledger:
                 work(c, s, w, s.v_before, drive[n - first])
@@ -334,6 +368,8 @@ def leapfrog_for(flags: StepFlags) -> Callable:
                 work(c, s, w, s.v, drive[n - first])
             for i in range(s.u.size):
                 s.u[i] += c.dt * s.v[i]
+            if sprung:
+                close(c.quiet, s.v, s.closure)
         restore_denormals(setting)
 
     return steps

@@ -12,7 +12,7 @@ G. M. Hulbert, J. Appl. Mech. 60, 1993, 371-375):
 A step that does not converge is taken in halves.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -65,7 +65,7 @@ class Implicit:
     def __init__(
         self, problem: Problem, dt: float, samples: int, rho: float, energy: bool = True
     ) -> None:
-        self.problem, self.dt, self.scheme = problem, dt, scheme(rho)
+        self.problem, self.dt, self.rho, self.scheme = problem, dt, rho, scheme(rho)
         self.balance, self.counts = Balance(problem), np.zeros(3, np.int64)
         self.samples = samples_for(problem.readings, samples, energy)
         n = problem.body.stiffness.shape[0]
@@ -74,8 +74,9 @@ class Implicit:
         self.now = Moment(still.copy(), still.copy(), still.copy(), copied(forces), np.zeros(4))
         self._factors: tuple[float, np.ndarray, Factors] | None = None
         self._weighs, self._motion = problem.stiffness.diagonal(), np.zeros((3, 1))
-        carried = np.abs(own.points.carried).reshape(len(own.points.weight), -1)
-        self._carried = float((own.points.weight[:, None] * carried).max(initial=0.0))
+        weight, carried = own.points.weight, np.abs(own.points.carried)
+        each = np.repeat(weight, own.dim)[: carried.size]  # nothing without a prestress
+        self._carried = float((each * carried).max(initial=0.0))
 
     @property
     def u(self) -> np.ndarray:
@@ -97,6 +98,13 @@ class Implicit:
         """All arrays that change."""
         return self.now, self.counts
 
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """What a result says of the steps."""
+        names = "newton_iterations", "factorisations", "halved_steps"
+        counts = dict(zip(names, self.counts.tolist(), strict=True))
+        return {"spectral_radius": self.rho, **counts}
+
     def start(self, u: np.ndarray, history: np.ndarray) -> None:
         """Begin at rest at displacements u (m) and with the history of points there."""
         self.now.u[:] = u
@@ -117,8 +125,8 @@ class Implicit:
         """Balance the forces of the first moment by its acceleration."""
         now, own = self.now, self.balance
         self._hold(now, 0, 0.0)
-        history = now.forces.history.copy()
-        forces = own.forces(now.u, now.v, 0 * now.u, self.dt, history, self._external(0, 0.0))
+        history, external = now.forces.history, self._external(0, 0.0)
+        forces = own.forces(now.u, now.v, 0 * now.u, self.dt, history, external)
         rest = (forces.whole - own.mass @ now.a)[own.free]
         now.a[own.free] += Factors(own.mass[own.free][:, own.free]).solve(rest)
         fill(now.forces, forces)
@@ -154,9 +162,8 @@ class Implicit:
             trial.a[free] = (moved - drift[free]) / (beta * dt**2)
             trial.u[free] = now.u[free] + moved
             trial.v[free] = now.v[free] + dt * ((1 - gamma) * now.a + gamma * trial.a)[free]
-            forces[0] = own.forces(
-                trial.u, trial.v, trial.u - now.u, dt, now.forces.history, external
-            )
+            given = now.forces.history, external, 1.0, now.forces.closure
+            forces[0] = own.forces(trial.u, trial.v, trial.u - now.u, dt, *given)
             inertia = own.mass @ trial.a
             rest = (1 - alpha_f) * forces[0].whole + before - (1 - alpha_m) * inertia
             size = max(forces[0].size[0], now.forces.size[0], np.abs(inertia).max(initial=0.0))
@@ -184,7 +191,7 @@ class Implicit:
         alpha_m, alpha_f, beta, _ = self.scheme
         own = self.balance
         inertia = (1 - alpha_m) / (beta * dt**2) * own.mass
-        forces = own.stiffness + r * (own.damping + own.quiet)
+        forces = own.stiffness + r * (own.damping + own.quiet) + own.of_springs(dt)
         found = own.with_joints(inertia + (1 - alpha_f) * forces, tangents, 1 - alpha_f)
         self._factors = dt, tangents, found
         self.counts[1] += 1
@@ -224,7 +231,12 @@ class Implicit:
         forces = now.forces
         out.velocity[:, s] = read.motion @ now.v
         out.displacement[:, s] = read.motion @ now.u
-        out.stress[:, s] = read.stress @ (now.u + read.lag * now.v) + read.constant
+        out.stress[:, s] = read.stress @ now.u + read.constant
+        if read.viscous is not None:
+            out.stress[:, s] += read.viscous @ now.v
+        if read.inertia is not None:
+            balancing = self.balance.acceleration(forces.whole, now.a)
+            out.stress[:, s] += read.inertia @ (balancing + self.problem.alpha * now.v)
         out.traction[:, s] = read.traction @ (forces.loads + forces.drags) + read.carried
         out.jump[:, s] = read.jump @ forces.jump
         if out.energy.size:

@@ -12,6 +12,7 @@ from jointwave.cases.loads import step_means, velocity_of
 from jointwave.cases.material.quiet_sides import base_traction
 from jointwave.cases.partition.parts import BESIDE, loaded_lines
 from jointwave.cases.partition.shape import shape_of
+from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad
@@ -30,12 +31,19 @@ class Push(NamedTuple):
     history: LoadHistory
 
 
-def weight_of(scene: RockMass, body: Body) -> np.ndarray | None:
+def pull_of(scene: AnyScene, body: Body) -> np.ndarray:
+    """Return the acceleration of gravity of every freedom, m/s2; a pillar's y runs along it."""
+    assert scene.gravity is not None
+    pull = np.array(scene.gravity.direction, dtype=float) * scene.gravity.acceleration
+    own = pull[1:2] if body.components == 1 else pull[: body.components]
+    return np.tile(own, body.stiffness.shape[0] // body.components)
+
+
+def weight_of(scene: AnyScene, body: Body) -> np.ndarray | None:
     """Return the weight on every freedom, N; None without gravity."""
     if scene.gravity is None:
         return None
-    pull = np.array(scene.gravity.direction, dtype=float) * scene.gravity.acceleration
-    every = np.tile(pull, body.stiffness.shape[0] // body.components)
+    every = pull_of(scene, body)
     return body.mass * every if body.mass is not None else body.consistent @ every
 
 

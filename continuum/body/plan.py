@@ -7,13 +7,14 @@ from typing import NamedTuple
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.prestress import refuse_beyond_strength
 from jointwave.cases.run_memory import load_bytes, refuse_beyond_memory, waveform_bytes
+from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.body.problem import problem_of
 from jointwave.continuum.body.rock import Rock
 from jointwave.continuum.body.scene import SceneBody, body_of
 from jointwave.continuum.body.scheme import Choice, choose
 from jointwave.continuum.body.steps import Problem
-from jointwave.continuum.plane.validity import applies
+from jointwave.continuum.body.validity import refuse
 
 
 class Plan(NamedTuple):
@@ -29,10 +30,16 @@ class Plan(NamedTuple):
     critical: float
 
 
-def plan_of(scene: RockMass, model: str = "jointed", rock: Rock | None = None) -> Plan:
+def plan_of(
+    scene: AnyScene, model: str = "jointed", rock: Rock | None = None, dim: int | None = None
+) -> Plan:
     """Return the run of a scene; arguments and errors as of `continuum.body.run.simulate`."""
-    refuse(scene, model)
-    found = body_of(scene, model, rock, scene.numerics.continuum.scheme == "implicit")
+    refuse(scene, model, dim)
+    refuse_missing(scene)
+    numerics = scene.numerics.continuum
+    consistent = getattr(numerics, "mass", None) == "consistent" and numerics.scheme == "auto"
+    implicit = numerics.scheme == "implicit" or consistent
+    found = body_of(scene, model, rock, implicit, dim)
     if isinstance(found.scene, RockMass):
         refuse_beyond_strength(found.scene)
     problem = problem_of(scene, found)
@@ -46,10 +53,8 @@ def plan_of(scene: RockMass, model: str = "jointed", rock: Rock | None = None) -
     return Plan(found, problem, choice, critical)
 
 
-def refuse(scene: RockMass, model: str) -> None:
+def refuse_missing(scene: AnyScene) -> None:
     """Raise SceneError for what bodies do not have."""
-    if why := applies(scene, model):
-        raise SceneError(scene.where, "model", model, why)
     if (quality := scene.rock.quality_factor) is not None:
         allowed = "is not supported by dolfinx bodies"
         raise SceneError(scene.where, "rock.quality_factor", quality, allowed)

@@ -1,4 +1,4 @@
-"""From a scene of a rock mass to a body and what acts on it."""
+"""From a scene to a body and what acts on it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,11 @@ from jointwave.cases.material.rock_mass import set_time_constants
 from jointwave.cases.material.strength import strength_of
 from jointwave.cases.partition.periodic import of_all
 from jointwave.cases.sampling import Clock
+from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.body import pillar
+from jointwave.continuum.body.ends import bearing_ends
 from jointwave.continuum.body.loads import loads_of, released, weight_of
 from jointwave.continuum.body.receivers import readings_of
 from jointwave.continuum.body.scene import SceneBody
@@ -42,8 +46,10 @@ def law_of(found: SceneBody) -> Law | None:
     return own if own.maximum_closure is None else own._replace(rock_compliance=0.0)
 
 
-def problem_of(scene: RockMass, found: SceneBody) -> Problem:
-    """Return the body of a rock mass and what acts on it all the time."""
+def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
+    """Return the body of a scene and what acts on it all the time."""
+    if isinstance(scene, Scene):
+        return pillar.problem_of(scene, found)
     body, own = found.body, law_of(found)
     stress = None if scene.prestress is None else scene.prestress.tensor
     region = found.blocks.body.region[body.block]
@@ -68,15 +74,17 @@ def problem_of(scene: RockMass, found: SceneBody) -> Problem:
 
 
 def in_time(
-    scene: RockMass, problem: Problem, time: Clock, incident: IncidentField | None
+    scene: AnyScene, problem: Problem, time: Clock, incident: IncidentField | None
 ) -> Problem:
     """Return a problem with forces and motion that have a history, for the steps of a clock;
     incident : of the waves, in intact rock where absent."""
+    if isinstance(scene, Scene):
+        return pillar.in_time(scene, problem, time)
     forces = loads_of(scene, problem.body, time.dt, incident)
     return problem._replace(forces=forces, held=held_sides(scene, problem.body, time))
 
 
-def at_rest(scene: RockMass, problem: Problem) -> tuple[Problem, Rest | None, np.ndarray | None]:
+def at_rest(scene: AnyScene, problem: Problem) -> tuple[Problem, Rest | None, np.ndarray | None]:
     """Return a problem on sides that bear its weight; the state at rest under gravity and around
     what is excavated, None where it starts unstrained; and the forces (N) that begin to act at
     t = 0, the weight and what bears it, None without."""
@@ -84,7 +92,8 @@ def at_rest(scene: RockMass, problem: Problem) -> tuple[Problem, Rest | None, np
     static, weight = gravity is not None and gravity.static, weight_of(scene, body)
     if weight is None and not scene.excavated:
         return problem, None, None
-    hold = holding(problem, bearing_sides(scene, body))
+    bears = bearing_ends(scene, body) if isinstance(scene, Scene) else bearing_sides(scene, body)
+    hold = holding(problem, bears)
     before, rest = problem, None
     if weight is not None and not static:  # it acts later
         before = problem._replace(steady=problem.steady - weight)

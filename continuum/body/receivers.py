@@ -46,7 +46,6 @@ def readings_of(
     """
     at, dim = places_in(body, points), body.components
     share = shares_of_pieces(at.point, pieces_of(body)[at.cell])
-    motion = np.einsum("nk,ac->nakc", share[:, None] * at.basis, np.eye(dim))
     pairs = stress_components(dim).values()
     constant = np.zeros((len(points), len(pairs)))
     read, carried = _joints(body, joints), np.zeros(0)
@@ -57,15 +56,22 @@ def readings_of(
         if stress is not None:
             frame = body.joints.frame
             carried = np.einsum("qac,cd,qd->qa", frame, stress, frame[:, 0]).ravel()
+    recovered = _recovered(body, moduli, points, at, share)
     return Readings(
-        motion=matrix_of(body, at.point, at.cell, motion, len(points)),
-        stress=_recovered(body, moduli, points, at, share),
+        motion=motion_at(body, at, share, len(points)),
+        stress=recovered,
         constant=constant.ravel(),
         traction=csr_matrix(kron(read @ _per_area(body.joints), identity(dim))),
         carried=kron(read, identity(dim)) @ carried,
         jump=csr_matrix(kron(read, identity(dim))),
-        lag=lag,
+        viscous=csr_matrix(lag * recovered) if lag else None,
     )
+
+
+def motion_at(body: Body, at: Places, share: np.ndarray, count: int) -> csr_matrix:
+    """Return the motion of so many points [count d, freedoms]; share : of each cell."""
+    weights = np.einsum("nk,ac->nakc", share[:, None] * at.basis, np.eye(body.components))
+    return matrix_of(body, at.point, at.cell, weights, count)
 
 
 def pieces_of(body: Body) -> np.ndarray:

@@ -148,7 +148,9 @@ def pillar(scene: Scene, model: str, components: int, dim: int) -> list[Material
     p, relaxes, found = calibrate(scene), mechanisms_of(scene, model), []
 
     def add(density: float, modulus: float, poisson: float, eta: float) -> None:
-        if dim == 3:
+        if scene.motion.rotation == "none" and dim > 1:
+            C = plane_sections(modulus, poisson, dim)
+        elif dim == 3:
             speeds = speeds_from_modulus(modulus, poisson, density)
             C = stiffness(ElasticRock(density, *speeds), [], 3)
         else:
@@ -176,6 +178,13 @@ def plane_stress(modulus: float, poisson: float) -> np.ndarray:
     """Return the stiffness of a sheet that widens freely across its plane."""
     within = np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
     return modulus / (1 - poisson**2) * within
+
+
+def plane_sections(modulus: float, poisson: float, dim: int) -> np.ndarray:
+    """Return the stiffness of rock in plane sections that widen freely: E along every axis, and G
+    in shear."""
+    shear = shear_modulus(modulus, poisson)
+    return np.diag([modulus] * dim + [shear] * (dim * (dim - 1) // 2))
 
 
 def bar(modulus: float, poisson: float, components: int) -> np.ndarray:

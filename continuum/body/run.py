@@ -1,4 +1,4 @@
-"""From a scene of a rock mass to its result by the dolfinx body."""
+"""From a scene to its result by the dolfinx body."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ import xarray as xr
 
 from jointwave.cases.errors import StoppedError
 from jointwave.cases.incident import IncidentField
-from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.continuum.body.explicit import Samples
+from jointwave.cases.scene_type import AnyScene
+from jointwave.continuum.body.evaluation import kind_of
 from jointwave.continuum.body.implicit import Implicit
 from jointwave.continuum.body.monitor import Monitor
 from jointwave.continuum.body.plan import plan_of
@@ -25,30 +25,33 @@ from jointwave.continuum.body.scheme import Choice
 from jointwave.continuum.body.snapshots import RockRecorder
 from jointwave.continuum.body.static import Rest
 from jointwave.continuum.body.steps import Leapfrog, Problem
+from jointwave.continuum.body.waveforms import recorded
 from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
 from jointwave.results.arrays import size_of
-from jointwave.results.rock_mass import TERMS, rock_mass_dataset
 
 FREEDOM_STEPS_AT_ONCE = 10_000_000  # some 0.1 s: often enough for a progress bar
 LEAST_CHUNKS = 20  # however short the run
 
 
 def simulate(
-    scene: RockMass,
+    scene: AnyScene,
     model: str = "jointed",
     rock: Rock | None = None,
+    dim: int | None = None,
     progress: Callable[[float], None] | None = None,
     keeper: Checkpointer | None = None,
     incident: IncidentField | None = None,
 ) -> xr.Dataset:
-    """Simulate a rock mass as deformable rock.
+    """Simulate a scene as deformable rock.
 
     Parameters
     ----------
-    model : "jointed", every joint an interface, or "equivalent", joints with a spacing in an
-        effective medium.
+    model : "jointed", every joint an interface, or "equivalent", joints with a spacing, and a
+        pillar's, in an effective medium.
     rock : function of the scene and a dolfinx space that returns the rock as UFL forms, in place of
         the scene's own.
+    dim : of a pillar's mesh: 1, the bar; 2, plane stress; 3, the square column; absent: as the
+        scene asks for.
     progress : called with the finished fraction.
     keeper : of checkpoints, `numerics.time_loop`.
     incident : of the waves, as if the rock had no sides; absent: in rock without joints.
@@ -57,45 +60,45 @@ def simulate(
     motion leaves its bounds.
     """
     began = perf_counter()
-    found, still, choice, critical = plan_of(scene, model, rock)
-    numerics = scene.numerics.continuum
+    found, still, choice, critical = plan_of(scene, model, rock, dim)
     time = choice.time
     problem, rest, sudden = at_rest(scene, in_time(scene, still, time, incident))
     steps = stepper(scene, problem, choice, rest, sudden)
-    start, about = None, dict[str, Any]()
+    u, about = None, dict[str, Any]()
     if rest is not None:
-        start = rest.u
+        u = rest.u
         about = {"static_steps": rest.steps, "static_out_of_balance": rest.ratio}
-    monitor = Monitor(scene, found, steps, choice, critical, start)
+    monitor = Monitor(scene, found, steps, choice, critical, u)
     recorder = None if scene.record.fields is None else RockRecorder(scene, found, steps)
     built = perf_counter()
     steps.take(0, 0, time.stride)
     compiled = perf_counter()
 
     def result(count: int) -> xr.Dataset:
-        terms, energy = ledger(scene, problem, steps.samples, count)
-        dataset = rock_mass_dataset(
+        dataset = recorded(
             scene,
-            f"continuum-{model}",
+            problem,
+            steps.samples,
             time.times[:count],
-            quantities(problem, steps.samples, count),
-            energy,
-            terms,
-            model=model,
-            scheme=choice.scheme,
-            scheme_reason=choice.reason,
-            dim=problem.body.components,
-            dt=time.dt,
-            critical_dt=critical,
-            steps=time.steps,
-            order=numerics.order,
-            degrees_of_freedom=len(problem.body.stiffness.indptr) - 1,
-            bytes=size_of(*steps.parts),
-            **about,
-            seconds_setup=built - began,
-            seconds_compile=compiled - built,
-            seconds_stepping=perf_counter() - compiled,
-            versions=versions(),
+            {
+                "model": model,
+                "scheme": choice.scheme,
+                "scheme_reason": choice.reason,
+                "dim": problem.body.x.shape[1],
+                "cell": kind_of(problem.body),
+                "order": scene.numerics.continuum.order,
+                "dt": time.dt,
+                "critical_dt": critical,
+                "steps": time.steps,
+                "degrees_of_freedom": len(problem.body.stiffness.indptr) - 1,
+                "bytes": size_of(*steps.parts),
+                **about,
+                **steps.attributes,
+                "seconds_setup": built - began,
+                "seconds_compile": compiled - built,
+                "seconds_stepping": perf_counter() - compiled,
+                "versions": versions(),
+            },
         )
         return dataset if recorder is None else recorder.add_to(dataset)
 
@@ -120,7 +123,7 @@ def simulate(
 
 
 def stepper(
-    scene: RockMass,
+    scene: AnyScene,
     problem: Problem,
     choice: Choice,
     rest: Rest | None,
@@ -140,52 +143,6 @@ def stepper(
     if rest is not None:
         steps.start(rest.u, rest.history)
     return steps
-
-
-def ledger(
-    scene: RockMass, problem: Problem, samples: Samples, count: int
-) -> tuple[tuple[str, ...], np.ndarray | None]:
-    """Return the terms that a ledger has, and the energies of the first samples; None where they
-    are not recorded. What prestressed rock gives off where walls of openings give way counts with
-    what it stores."""
-    parts = problem.parts
-    there = {
-        "fracture": parts is not None and parts.softening,
-        "friction": parts is not None and parts.limited,
-        "gravity": scene.gravity is not None,
-    }
-    terms = tuple(one for one in TERMS if there.get(one, True))
-    if not samples.energy.size:
-        return terms, None
-    found = samples.energy[:, :count].copy()
-    if scene.excavated and scene.gravity is None:
-        found[TERMS.index("elastic")] += found[TERMS.index("gravity")]
-    return terms, found[[TERMS.index(one) for one in terms]]
-
-
-def quantities(problem: Problem, samples: Samples, count: int) -> dict[str, np.ndarray]:
-    """Return what was recorded in the first samples by name, as `rock_mass_dataset` takes it.
-
-    Motion counts from the state at the start. Without joints nothing is known of them.
-    """
-    dim = problem.body.components
-
-    def vectors(rows: np.ndarray, size: int) -> np.ndarray:
-        return rows[:, :count].reshape(-1, size, count).swapaxes(1, 2)
-
-    def since(rows: np.ndarray) -> np.ndarray:
-        return vectors(rows - rows[:, :1], dim)
-
-    found = {
-        "velocity": vectors(samples.velocity, dim),
-        "displacement": since(samples.displacement),
-        "stress": vectors(samples.stress, dim * (dim + 1) // 2),
-    }
-    if len(samples.jump):
-        jump = since(samples.jump)
-        slip = jump[..., 1] if dim == 2 else jump[..., 1:]
-        found |= {"traction": vectors(samples.traction, dim), "gap": jump[..., 0], "slip": slip}
-    return found
 
 
 def versions() -> str:

@@ -30,33 +30,40 @@ from jointwave.continuum.body.periodic import facing, fitted, matching_facets, m
 from jointwave.continuum.body.rock import Material, Rock, rock_of_cells
 from jointwave.continuum.body.simplices import are_simplices, own_cells, simplex_mesh
 from jointwave.continuum.body.size import element_size, elements_along, refuse_large_mesh
+from jointwave.continuum.body.validity import dimension_of
 from jointwave.continuum.joints import resolved_joints
 
 
 class SceneBody(NamedTuple):
     """A scene as a body: its resolved joint sets, blocks, contacts across periodic sides, the rock
-    of each region of `blocks.body`, and its body."""
+    of each region of `blocks.body`, its body, and the model of its joints."""
 
     scene: AnyScene
     blocks: Blocks
     across: list[Across]
     materials: list[Material]
     body: Body
+    model: str = "jointed"
 
 
 def body_of(
-    scene: AnyScene, model: str = "jointed", rock: Rock | None = None, implicit: bool = False
+    scene: AnyScene,
+    model: str = "jointed",
+    rock: Rock | None = None,
+    implicit: bool = False,
+    dim: int | None = None,
 ) -> SceneBody:
     """Return the body of a scene; model : "jointed", or "equivalent" where sets of joints that have
     a spacing, and a pillar's, are an effective medium.
 
     rock : of the scene, of a function of its own. implicit : whether steps need no diagonal mass.
+    dim : of a pillar's mesh, in place of the scene's.
 
     Raises SceneError where the scene cannot be cut or meshed as it asks for.
     """
     try:
         if isinstance(scene, Scene):
-            return _pillar(scene, model, rock, implicit)
+            return _pillar(scene, model, rock, implicit, dimension_of(scene, dim))
         return _rock_mass(scene, model, rock, implicit)
     except ImportError as error:  # gmsh, or a compiler
         raise SceneError(scene.where, "numerics.continuum", None, str(error)) from None
@@ -81,7 +88,7 @@ def _rock_mass(scene: RockMass, model: str, rock: Rock | None, implicit: bool) -
     chosen = _chosen(scene, rock, own, blocks.body)
     whole = implicit and numerics.order == 2 and mesh.kind in SIMPLEX
     body = build_body(mesh, marks, numerics.order, chosen, dim, whole, faces)
-    return SceneBody(resolved, blocks, across, own, body)
+    return SceneBody(resolved, blocks, across, own, body, model)
 
 
 def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) -> Conforming:
@@ -104,13 +111,10 @@ def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) ->
     return simplex_mesh(body, size, alike)
 
 
-def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> SceneBody:
-    """Return the body of a pillar: in one dimension if nothing bends or twists it, or in as many as
-    it asks for."""
+def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool, dim: int) -> SceneBody:
+    """Return the body of a pillar in so many dimensions."""
     if scene.numerics.continuum.mesh is not None:
-        return _pillar_of_file(scene, model, rock, implicit)
-    bends = is_spatial(scene) and scene.motion.rotation != "none"
-    dim = scene.numerics.continuum.dim or (3 if bends else 1)
+        return _pillar_of_file(scene, model, rock, implicit, dim)
     components = 3 if dim == 1 and is_spatial(scene) else dim
     p, numerics, layers = calibrate(scene), scene.numerics.continuum, materials.layers_of(scene)
     blocks, along = blocks_of_pillar(scene, dim, layers), dim // 2
@@ -125,21 +129,26 @@ def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> Scen
     own = materials.pillar(scene, model, components, dim)
     chosen, consistent = _chosen(scene, rock, own, blocks.body), numerics.mass == "consistent"
     marks = marks_of(blocks, joint, ENDS)
-    body = build_body(mesh, marks, numerics.order, chosen, components, consistent and implicit)
+    flat = scene.motion.rotation == "none" and dim > 1
+    consistent &= implicit
+    body = build_body(mesh, marks, numerics.order, chosen, components, consistent, flat=flat)
     if body.joints is not None:
         body = body._replace(joints=body.joints._replace(column=number[body.joints.column]))
-    return SceneBody(scene, blocks, [], own, body)
+    return SceneBody(scene, blocks, [], own, body, model)
 
 
-def _pillar_of_file(scene: Scene, model: str, rock: Rock | None, implicit: bool) -> SceneBody:
+def _pillar_of_file(
+    scene: Scene, model: str, rock: Rock | None, implicit: bool, dim: int
+) -> SceneBody:
     """Return the body of a pillar on a mesh of the user's, which is one block with joints in it."""
     resolved, numerics = resolved_joints(calibrate(scene), model, True), scene.numerics.continuum
-    blocks, mesh, marks = mesh_of_file(scene, resolved.number, numerics.dim)
-    dim, consistent = blocks.body.dim, numerics.mass == "consistent"
+    blocks, mesh, marks = mesh_of_file(scene, resolved.number, dim)
+    consistent = numerics.mass == "consistent" and implicit
     own = materials.pillar(scene, model, dim, dim)
     chosen = _chosen(scene, rock, own, blocks.body)
-    body = build_body(mesh, marks, numerics.order, chosen, dim, consistent and implicit)
-    return SceneBody(scene, blocks, [], own, body)
+    flat = scene.motion.rotation == "none"
+    body = build_body(mesh, marks, numerics.order, chosen, dim, consistent, flat=flat)
+    return SceneBody(scene, blocks, [], own, body, model)
 
 
 def _mesh_of_pillar(scene: Scene, blocks: Blocks, each: np.ndarray, components: int) -> Conforming:

@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.sampling import MOST_STEPS, Clock, clock, sample_times
-from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.body.size import resolved_period
 from jointwave.continuum.body.steps import Problem
 
@@ -29,24 +29,26 @@ class Choice(NamedTuple):
     reason: str
 
 
-def choose(scene: RockMass, problem: Problem, critical: float) -> Choice:
+def choose(scene: AnyScene, problem: Problem, critical: float) -> Choice:
     """Return the scheme of a scene; critical : the critical step of explicit steps, s.
 
     Raises SceneError for a step that cannot be taken.
     """
     given = scene.numerics.continuum.scheme
+    if given == "auto" and problem.body.mass is None:
+        return Choice("implicit", _implicit(scene), "a consistent mass is not diagonal")
     if given == "auto":
         return _cheaper(scene, problem, critical)
     steps = _explicit if given == "explicit" else _implicit
     return Choice(given, steps(scene, critical), f"numerics.continuum.scheme = '{given}'")
 
 
-def _explicit(scene: RockMass, critical: float) -> Clock:
+def _explicit(scene: AnyScene, critical: float) -> Clock:
     numerics = scene.numerics.continuum
     return clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "continuum")
 
 
-def _implicit(scene: RockMass, critical: float = 0.0) -> Clock:
+def _implicit(scene: AnyScene, critical: float = 0.0) -> Clock:
     many = scene.numerics.continuum.steps_per_period
     stride = max(1, ceil(scene.interval * many / resolved_period(scene) * (1 - 1e-12)))
     time = Clock(scene.interval / stride, stride, len(sample_times(scene)))
@@ -56,7 +58,7 @@ def _implicit(scene: RockMass, critical: float = 0.0) -> Clock:
     return time
 
 
-def _cheaper(scene: RockMass, problem: Problem, critical: float) -> Choice:
+def _cheaper(scene: AnyScene, problem: Problem, critical: float) -> Choice:
     """Return the faster scheme, by operation counts."""
     implicit = _implicit(scene)
     many = scene.time.duration / (critical * scene.numerics.continuum.step_fraction)

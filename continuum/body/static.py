@@ -19,7 +19,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.body.balance import LAST_DIGITS, Balance, Outcome, newton
 from jointwave.continuum.body.steps import Problem
 
@@ -65,7 +65,7 @@ def elastic_rest(problem: Problem, weight: np.ndarray, hold: csr_matrix | None) 
     return u
 
 
-def settled(scene: RockMass, problem: Problem, hold: csr_matrix | None = None) -> Rest:
+def settled(scene: AnyScene, problem: Problem, hold: csr_matrix | None = None) -> Rest:
     """Return the state at rest under the steady forces of a problem, on springs `holding`; raises
     SceneError where there is none."""
     own, done, part, steps, still = _Static(problem, hold), 0.0, 1.0, 0, False
@@ -85,7 +85,7 @@ def settled(scene: RockMass, problem: Problem, hold: csr_matrix | None = None) -
     return Rest(own.u, own.history, steps, outcome.errors[-1] / (own.size or 1.0))
 
 
-def _creep(scene: RockMass, own: _Static, done: float) -> tuple[Outcome, int]:
+def _creep(scene: AnyScene, own: _Static, done: float) -> tuple[Outcome, int]:
     """Let the rock creep to rest under all of its forces; return the last step, which found it
     there, and the corrections made.
 
@@ -115,7 +115,7 @@ def _creep(scene: RockMass, own: _Static, done: float) -> tuple[Outcome, int]:
     raise _refusal(scene, "has not come to rest under", why)
 
 
-def _refusal(scene: RockMass, what: str, why: str) -> SceneError:
+def _refusal(scene: AnyScene, what: str, why: str) -> SceneError:
     """Return the refusal of a scene: `what` of its weight or excavation, and why."""
     key, of, remedy = "gravity", "the weight", "static = false starts without it"
     if scene.excavated and (scene.gravity is None or not scene.gravity.static):

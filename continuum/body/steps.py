@@ -32,11 +32,30 @@ from jointwave.results.rock_mass import TERMS
 BUFFER = 500_000  # numbers: forces with a history that are in memory at a time
 
 
+class Springs(NamedTuple):
+    """Springs in front of the dashpots of nodes [k, d], `joints.ends`: stiffness, N/m; decay and
+    gain (s), by which their closure advances in a step; critical : what of the stiffness counts at
+    the critical step, N/m."""
+
+    stiffness: np.ndarray
+    decay: np.ndarray
+    gain: np.ndarray
+    critical: np.ndarray
+
+
 class Dashpots(NamedTuple):
-    """Nodes on dashpots: node, int array [k]; viscosity, float array [k, d, d], N s/m."""
+    """Nodes on dashpots: node, int array [k]; viscosity, float array [k, d, d], N s/m; springs :
+    those in front of them, of the time step; None without."""
 
     node: np.ndarray
     viscosity: np.ndarray
+    springs: Callable[[float], Springs] | None = None
+
+    @property
+    def freedom(self) -> np.ndarray:
+        """Freedoms of the nodes [k, d]."""
+        dim = self.viscosity.shape[1]
+        return dim * self.node[:, None] + np.arange(dim)
 
 
 class Held(NamedTuple):
@@ -67,8 +86,8 @@ class Forces(Protocol):
 class Readings(NamedTuple):
     """How receivers read a body: motion [m d, freedoms]; stress [rows, freedoms], Pa, compression
     positive, and what is at u = 0 [rows]; traction [joints d, points d] of forces, Pa/N, and what
-    is at u = 0 [joints d]; jump [joints d, points d]. lag : time constant of rock's dashpots, by
-    which the rate counts among strains, s."""
+    is at u = 0 [joints d]; jump [joints d, points d]. viscous : stress of the rate by rock's
+    dashpots; inertia : of the acceleration (with mass-proportional damping); None without."""
 
     motion: csr_matrix
     stress: csr_matrix
@@ -76,7 +95,8 @@ class Readings(NamedTuple):
     traction: csr_matrix
     carried: np.ndarray
     jump: csr_matrix
-    lag: float = 0.0
+    viscous: csr_matrix | None = None
+    inertia: csr_matrix | None = None
 
 
 class Problem(NamedTuple):
@@ -122,10 +142,16 @@ class Problem(NamedTuple):
 
     @property
     def stiffness(self) -> csr_matrix:
-        """The stiffness of rock and joints, closed as far as is in reach, N/m."""
-        if self.law is None or self.body.joints is None:
-            return self.body.stiffness
-        return csr_matrix(self.body.stiffness + self.of_joints(*self.stiffest))
+        """The stiffness of rock and joints, closed as far as is in reach, N/m, and of springs of
+        sides."""
+        found = self.body.stiffness
+        if self.law is not None and self.body.joints is not None:
+            found = csr_matrix(found + self.of_joints(*self.stiffest))
+        if self.quiet is not None and self.quiet.springs is not None:
+            of_sides = np.zeros(found.shape[0])
+            of_sides[self.quiet.freedom] = self.quiet.springs(0.0).critical
+            found = csr_matrix(found + diags(of_sides))
+        return found
 
     @property
     def viscosity(self) -> csr_matrix | None:
@@ -186,7 +212,9 @@ class Leapfrog:
         self.constants = self._constants()
         parts, damped = problem.parts, body.damping is not None
         stressed = self.constants.points.carried.size > 0
-        self.flags = StepFlags(body.components, self.product.kind, parts, stressed, damped, energy)
+        springs = self.constants.quiet.stiffness
+        kind, sprung = self.product.kind, len(springs) > 0
+        self.flags = StepFlags(body.components, kind, parts, stressed, damped, energy, sprung)
         n, jumps = self.product.size, self.constants.jumps.start.size - 1
         dashpots, limited = (parts.dashpots, parts.limited) if parts else (False, False)
         viscous = n if damped or dashpots else 0
@@ -197,7 +225,8 @@ class Leapfrog:
         history = np.zeros((0, 0))
         if parts is not None:
             history = history_at_rest(self.constants.points, parts, body.components)
-        self.state = State(zeros(n), zeros(n), zeros(n), history, np.zeros(4))
+        motion = zeros(n), zeros(n), zeros(n)
+        self.state = State(*motion, history, np.zeros(4), np.zeros_like(springs))
 
     def take(self, first: int, last: int, stride: int) -> None:
         """Take the steps first .. last - 1, with a sample at each that `stride` divides."""
@@ -233,6 +262,11 @@ class Leapfrog:
     def parts(self) -> tuple:
         """All arrays that change."""
         return (self.state,)
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """What a result says of the steps."""
+        return {}
 
     def start(self, u: np.ndarray, history: np.ndarray | None = None) -> None:
         """Begin at rest at displacements u (m), with a history of points."""
@@ -288,13 +322,15 @@ class Leapfrog:
 
     def _quiet(self, inverse: np.ndarray) -> Quiet:
         dim = self.problem.body.components
-        node, viscosity = self.problem.quiet or (np.zeros(0, np.int64), np.zeros((0, dim, dim)))
-        own = dim * node[:, None] + np.arange(dim)
+        quiet = self.problem.quiet or Dashpots(np.zeros(0, np.int64), np.zeros((0, dim, dim)))
+        own, springs = quiet.freedom, 3 * (np.zeros((0, dim)),)
+        if quiet.springs is not None:
+            springs = quiet.springs(self.dt)[:3]
         moves = ~np.isin(own, self.problem.fixed)
-        viscosity = viscosity * (moves[:, :, None] & moves[:, None, :])
+        viscosity = quiet.viscosity * (moves[:, :, None] & moves[:, None, :])
         freedom = self.product.place[own]
         beta = inverse[freedom][:, :, None] * viscosity / 2
-        return Quiet(freedom, viscosity, beta, np.linalg.inv(np.eye(dim) + beta))
+        return Quiet(freedom, viscosity, beta, np.linalg.inv(np.eye(dim) + beta), *springs)
 
 
 def product_for_steps(body: Body) -> Product:
@@ -307,10 +343,12 @@ def product_for_steps(body: Body) -> Product:
 
 def receivers(readings: Readings, place: np.ndarray) -> Receivers:
     """Return readings as kernels take them."""
+    none = csr_matrix((0, readings.stress.shape[1]))
     return Receivers(
         motion=sparse(readings.motion, place),
         stress=sparse(readings.stress, place),
-        lag=readings.lag,
+        viscous=sparse(none if readings.viscous is None else readings.viscous, place),
+        inertia=sparse(none if readings.inertia is None else readings.inertia, place),
         traction=sparse(readings.traction),
         jump=sparse(readings.jump),
         constant=readings.constant,
@@ -320,9 +358,6 @@ def receivers(readings: Readings, place: np.ndarray) -> Receivers:
 
 def samples_for(readings: Readings, samples: int, energy: bool) -> Samples:
     """Return empty samples."""
-    motion, stress, jump = (
-        one.shape[0] for one in (readings.motion, readings.stress, readings.jump)
-    )
-    terms = (len(TERMS), samples if energy else 0)
-    shapes = (motion, samples), (motion, samples), (stress, samples), (jump, samples)
-    return Samples(*map(np.zeros, (*shapes, (jump, samples), terms)))
+    read = readings.motion, readings.motion, readings.stress, readings.traction, readings.jump
+    shapes = [(one.shape[0], samples) for one in read]
+    return Samples(*map(np.zeros, [*shapes, (len(TERMS), samples if energy else 0)]))
