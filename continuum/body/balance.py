@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix, diags
 
+from jointwave.continuum.body.memory import memory_of
 from jointwave.continuum.body.steps import Problem
 from jointwave.continuum.body.tractions import forces_for, history_at_rest, tangents_for
 from jointwave.continuum.parallel.petsc import PETSc
@@ -21,22 +22,31 @@ LARGE = 20_000
 LAST_DIGITS = 8 * float(np.finfo(float).eps)
 
 
+class Past(NamedTuple):
+    """What forces depend on beside the motion. history : of points, `tractions`. elongation : of
+    the rock's mechanisms [l, n], m. closure : of springs in front of dashpots of sides [k, d], m.
+    """
+
+    history: np.ndarray
+    elongation: np.ndarray
+    closure: np.ndarray
+
+
 class Forces(NamedTuple):
     """The forces of a state [freedoms], N.
 
-    whole : all together. viscous : of dashpots of rock and joints, and mass-proportional damping.
-    boundary : of quiet sides. external : with a history. history : of points, after the step.
-    closure : of springs in front of dashpots of sides, after it, m [k, d]. loads, drags : of
-    points' springs and dashpots [points * d], N. jump : m. energies : of all springs, spent by
-    opening, and by friction in the step, J [3]. size : the largest that is summed up [1].
+    whole : all together. viscous : of dashpots of rock and joints, mass-proportional damping, and
+    of rock with a quality factor. boundary : of quiet sides. external : with a history. past :
+    after the step. loads, drags : of points' springs and dashpots [points * d], N. jump : m.
+    energies : of joints' springs, spent by opening, and by friction in the step, J [3]. size : the
+    largest that is summed up [1].
     """
 
     whole: np.ndarray
     viscous: np.ndarray
     boundary: np.ndarray
     external: np.ndarray
-    history: np.ndarray
-    closure: np.ndarray
+    past: Past
     loads: np.ndarray
     drags: np.ndarray
     jump: np.ndarray
@@ -50,9 +60,8 @@ class Balance:
     Attributes
     ----------
     stiffness, damping, quiet, mass : [freedoms, freedoms], of rock with mass-proportional damping,
-    and of quiet sides. free : int array, freedoms that are not held. history : of points, and
-    closure : of springs in front of dashpots, at first; springs : those, None without, of steps;
-    ends : int array [k, d], the freedoms of quiet sides.
+    and of quiet sides. free : int array, freedoms that are not held. past : at first. springs : in
+    front of dashpots, None without, of steps; ends : int array [k, d], the freedoms of quiet sides.
     """
 
     def __init__(self, problem: Problem, at_rest: bool = False) -> None:
@@ -60,14 +69,18 @@ class Balance:
         n, self.dim = body.stiffness.shape[0], body.components
         self.free = np.setdiff1d(np.arange(n), problem.fixed)
         self.stiffness, self.points = body.stiffness, problem.points()
+        self.mechanisms = problem.mechanisms
         mass: Any = body.consistent if body.mass is None else diags(body.mass)
         self.mass = csr_matrix(mass)
         self.damping, self.quiet = csr_matrix((n, n)), csr_matrix((n, n))
         quiet = None if at_rest else problem.quiet
         self.springs = cache(quiet.springs) if quiet is not None and quiet.springs else None
         self.ends = np.zeros((0, self.dim), np.int64) if quiet is None else quiet.freedom
-        self.closure = np.zeros(self.ends.shape if self.springs else (0, self.dim))
+        closure = np.zeros(self.ends.shape if self.springs else (0, self.dim))
         if at_rest:
+            if self.mechanisms is not None:
+                self.stiffness = csr_matrix(self.mechanisms.relaxed * self.stiffness)
+                self.mechanisms = None
             table = self.points.table.copy()
             table[IN_MOTION[: len(table)]] = 0.0
             self.points = self.points._replace(table=table)
@@ -77,9 +90,11 @@ class Balance:
                 self.damping = csr_matrix(self.damping + body.damping)
             self.quiet = self._quiet(n)
         self.jumps = csr_matrix((0, n)) if body.joints is None else body.joints.matrix
-        self.history = np.zeros((0, 0))
+        many = 0 if self.mechanisms is None else len(self.mechanisms.share)
+        history = np.zeros((0, 0))
         if self.parts is not None:
-            self.history = history_at_rest(self.points, self.parts, self.dim)
+            history = history_at_rest(self.points, self.parts, self.dim)
+        self.past = Past(history, np.zeros((many, n)), closure)
         self.steady = np.zeros(n) if problem.steady is None else problem.steady
 
     def _quiet(self, n: int) -> csr_matrix:
@@ -112,38 +127,54 @@ class Balance:
         v: np.ndarray,
         moved: np.ndarray,
         dt: float,
-        before: np.ndarray,
+        before: Past,
         external: np.ndarray,
         steady: float = 1.0,
-        closure: np.ndarray | None = None,
     ) -> Forces:
         """Return the forces at displacements u (m) and velocities v (m/s), after moving by `moved`
-        in dt (s) from where the history was `before`; steady : share of the steady forces.
-        closure : of springs in front of dashpots before the step, m; absent, as at rest."""
-        elastic, drag = self.stiffness @ u, self.damping @ v
+        in dt (s) from a state with that past; steady : share of the steady forces."""
+        elongation = self._elongation(moved, dt, before.elongation)
+        elastic, drag = self.stiffness @ self.strained(u, elongation), self.damping @ v
         boundary, jump = self.quiet @ v, self.jumps @ u
-        closure = self.closure if closure is None else closure
+        closure = before.closure
         if self.springs is not None:
             own = self.springs(dt)
             closure = own.decay * closure + own.gain * moved[self.ends] / dt
             boundary[self.ends] += own.stiffness * closure
         loads, drags = np.zeros((2, len(jump)))
-        after, found, drive = before.copy(), (0.0, 0.0, 0.0), 0.0
+        after, found, drive = before.history.copy(), (0.0, 0.0, 0.0), 0.0
         if self.parts is not None:
             kernel = forces_for(self.parts, self.dim, self.points.carried.size > 0)
             rate, slips = self.jumps @ v, self.jumps @ moved
-            given = jump, slips, rate, before, after, loads, drags
+            given = jump, slips, rate, before.history, after, loads, drags
             found = kernel(self.points, dt, *given)
             drag = drag - self.jumps.T @ drags
             drive = self.jumps.T @ loads
         whole = steady * self.steady + external - elastic - drag - boundary + drive
         sizes = [np.abs(one).max(initial=0.0) for one in (elastic, drag, self.steady, external)]
         slid, stored, spent = found
-        energies = np.array([0.5 * (u @ elastic) + stored, spent, slid])
-        size = np.array([max(sizes)])
-        return Forces(
-            whole, drag, boundary, external, after, closure, loads, drags, jump, energies, size
-        )
+        energies, size = np.array([stored, spent, slid]), np.array([max(sizes)])
+        if self.mechanisms is not None:
+            drag = drag + elastic
+        past, own = Past(after, elongation, closure), (loads, drags, jump, energies, size)
+        return Forces(whole, drag, boundary, external, past, *own)
+
+    def _elongation(self, moved: np.ndarray, dt: float, before: np.ndarray) -> np.ndarray:
+        """Return the elongations of mechanisms after moving in dt (s)."""
+        if self.mechanisms is None:
+            return before
+        memory = memory_of(self.mechanisms, dt)
+        return memory.decay[:, None] * before + memory.gain[:, None] / dt * moved
+
+    def strained(self, u: np.ndarray, elongation: np.ndarray) -> np.ndarray:
+        """Return the displacement by which elastic rock would have the same stress, m."""
+        if self.mechanisms is None:
+            return u
+        return self.mechanisms.relaxed * u + self.mechanisms.share @ elongation
+
+    def stored(self, u: np.ndarray, past: Past, dt: float) -> float:
+        """Return the energy of the rock's springs in steps dt (s), J."""
+        return memory_of(self.mechanisms, dt).energy(self.stiffness, u, past.elongation)
 
     def of_joints(
         self, u: np.ndarray, v: np.ndarray, dt: float, r: float, before: np.ndarray

@@ -50,6 +50,7 @@ def prestressed(found: SceneBody, problem: Problem, pushing: float) -> float:
     if stress is None:
         return 0.0
     softest = min(np.linalg.eigvalsh(one.stiffness).min() for one in found.materials)
+    softest *= 1.0 if problem.mechanisms is None else problem.mechanisms.relaxed
     stored = float((stress**2).sum()) / softest * float(found.blocks.volume.sum())
     if joints is None or law is None:
         return float(np.sqrt(stored))

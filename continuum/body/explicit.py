@@ -5,7 +5,8 @@ joints see the rate extrapolated to the whole step, 1.5 v[n-1/2] - 0.5 v[n-3/2];
 mass-proportional damping see the mean velocity of the step, solved node by node. The kinetic energy
 of a whole step is v[n-1/2] M v[n+1/2] / 2: with the springs' it equals
 (v M v + u[n] K u[n+1]) / 2, which leapfrog conserves exactly, and forces work half a step before
-and half a step after.
+and half a step after. All work of rock with a quality factor is summed up as viscous; samples take
+what its springs store out of it.
 """
 
 from collections.abc import Callable
@@ -14,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from jointwave.continuum.body.memory import Memory, relax, strain
 from jointwave.continuum.body.product import ROWS, Table, product_for
 from jointwave.continuum.body.tractions import Points, tractions_for
 from jointwave.joints.formula import formula
@@ -29,8 +31,9 @@ class StepFlags(NamedTuple):
     """Which effects a body has: constants of the compiled kernel.
 
     product : kind of the stiffness, `continuum.body.product`. law : None without joints. stressed :
-    whether these carry anything at u = 0. damped : whether the rock has dashpots. ledger : whether
-    energies are recorded. sprung : whether springs are in front of dashpots of sides.
+    whether these carry anything at u = 0. damped : whether the rock has dashpots. relaxing :
+    whether it has a quality factor. ledger : whether energies are recorded. sprung : whether
+    springs are in front of dashpots of sides.
     """
 
     dim: int
@@ -38,6 +41,7 @@ class StepFlags(NamedTuple):
     law: LawFlags | None
     stressed: bool
     damped: bool
+    relaxing: bool
     ledger: bool
     sprung: bool = False
 
@@ -89,9 +93,10 @@ class Constants(NamedTuple):
 
     dt : s. mass : float array [n], kg. inverse : dt / (M (1 + alpha dt / 2)), s/kg; 0 of padding.
     keep : (1 - alpha dt / 2) / (1 + alpha dt / 2). alpha : of mass-proportional damping, 1/s.
-    stiffness, damping : `product.Table`. jumps : B; points : `tractions.Points`. steady : float
-    array [n], N. driven : int array [k], freedoms of forces with a history. fixed : int array [f],
-    freedoms whose motion is given: direction [f] times what moves in a step.
+    memory : of the rock. stiffness, damping : `product.Table`. jumps : B; points :
+    `tractions.Points`. steady : float array [n], N. driven : int array [k], freedoms of forces with
+    a history. fixed : int array [f], freedoms whose motion is given: direction [f] times what moves
+    in a step.
     """
 
     dt: float
@@ -99,6 +104,7 @@ class Constants(NamedTuple):
     inverse: np.ndarray
     keep: float
     alpha: float
+    memory: Memory
     stiffness: Table
     damping: Table
     jumps: Sparse
@@ -115,25 +121,28 @@ class State(NamedTuple):
     """The state.
 
     u : displacement, m. v, v_before : velocity half a step before u, and one and a half before,
-    m/s. history : of points, `tractions`. sums : of the ledger, J. closure : of springs in front
-    of dashpots [k, d], m.
+    m/s. elongation : of mechanisms [l, n], m. history : of points, `tractions`. sums : of the
+    ledger, J. closure : of springs in front of dashpots [k, d], m.
     """
 
     u: np.ndarray
     v: np.ndarray
     v_before: np.ndarray
+    elongation: np.ndarray
     history: np.ndarray
     sums: np.ndarray
     closure: np.ndarray
 
 
 class Work(NamedTuple):
-    """Vectors that a step fills: force, rate, drag [n]; of points [points * d]; [0] if absent.
-    braking : of quiet nodes [k, d], N."""
+    """Vectors that a step fills: force, rate, drag, and of rock with a quality factor strained, m,
+    and rock, N [n]; of points [points * d]; [0] if absent. braking : of quiet nodes [k, d], N."""
 
     force: np.ndarray
     rate: np.ndarray
     drag: np.ndarray
+    strained: np.ndarray
+    rock: np.ndarray
     jump: np.ndarray
     moved: np.ndarray
     jump_rate: np.ndarray
@@ -218,6 +227,7 @@ def dot(x, y):
 def leapfrog_for(flags: StepFlags) -> Callable:
     """Return the kernel of steps of a body with these effects; absent ones are not compiled."""
     dim, law, damped, ledger = flags.dim, flags.law, flags.damped, flags.ledger
+    relaxing = flags.relaxing
     multiply, damp = product_for(flags.product, dim), product_for(ROWS, dim)
     sprung = flags.sprung
     jointed = law is not None
@@ -228,13 +238,35 @@ def leapfrog_for(flags: StepFlags) -> Callable:
         tractions = tractions_for(law, dim, flags.stressed)
 
     @formula
+    def relaxing_rock(c, s, w, sampled):
+        """Set the force of rock with a quality factor; return the energy of its springs, J, where
+        sampled."""
+        m, found = c.memory, 0.0
+        if ledger and sampled:
+            multiply(c.stiffness, s.u, w.force)
+            found -= 0.5 * m.relaxed * dot(s.u, w.force)
+            for k in range(m.share.size):
+                multiply(c.stiffness, s.elongation[k], w.force)
+                found -= 0.5 * m.spring[k] * dot(s.elongation[k], w.force)
+        strain(m, s.u, s.elongation, w.strained)
+        multiply(c.stiffness, w.strained, w.rock)
+        for i in range(w.force.size):
+            w.force[i] = w.rock[i]
+        return found
+
+    @formula
     def forces(c, s, w, sampled):
         """Set the forces of rock and joints at a whole step, and drags apart; return the energies
-        of springs and opening, J, that of rock where sampled. Friction's work enters the ledger."""
-        multiply(c.stiffness, s.u, w.force)
+        of springs, opening, and springs whose work is summed up as viscous, J, those of rock where
+        sampled. Friction's work enters the ledger."""
         elastic, spent = 0.0, 0.0
-        if ledger and sampled:
-            elastic = -0.5 * dot(s.u, w.force)
+        if relaxing:
+            elastic = relaxing_rock(c, s, w, sampled)
+        else:
+            multiply(c.stiffness, s.u, w.force)
+            if ledger and sampled:
+                elastic = -0.5 * dot(s.u, w.force)
+        kept = elastic if relaxing else 0.0
         if viscous:
             for i in range(s.u.size):
                 w.rate[i], w.drag[i] = 1.5 * s.v[i] - 0.5 * s.v_before[i], 0.0
@@ -259,7 +291,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
         if viscous:
             for i in range(s.u.size):
                 w.force[i] += w.drag[i]
-        return elastic, spent
+        return elastic, spent, kept
 
     @formula
     def move(c, s, w, moved):
@@ -295,6 +327,8 @@ def leapfrog_for(flags: StepFlags) -> Callable:
         half = 0.5 * c.dt
         if viscous:
             s.sums[VISCOUS] -= half * dot(w.drag, way)
+        if relaxing:
+            s.sums[VISCOUS] -= half * dot(w.rock, way)
         if c.alpha > 0.0:
             braked = 0.0
             for i in range(way.size):
@@ -320,7 +354,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
         read(r.motion, s.v, None, out.velocity, n, 0.5)
         read(r.motion, s.v_before, None, out.velocity, n, 0.5)
         read(r.motion, s.u, None, out.displacement, n, 1.0)
-        read(r.stress, s.u, r.constant, out.stress, n, 1.0)
+        read(r.stress, w.strained if relaxing else s.u, r.constant, out.stress, n, 1.0)
         if damped:
             read(r.viscous, w.rate, None, out.stress, n, 1.0)
         read(r.inertia, s.v, None, out.stress, n, 1.0 / c.dt + 0.5 * c.alpha)
@@ -341,7 +375,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
         setting = flush_denormals()
         first, last, stride = span
         for n in range(first, last):
-            elastic, spent = forces(c, s, w, n % stride == 0)
+            elastic, spent, kept = forces(c, s, w, n % stride == 0)
             for i in range(c.steady.size):
                 w.force[i] += c.steady[i]
             for k in range(c.driven.size):
@@ -359,7 +393,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
                         kinetic += 0.5 * c.mass[i] * s.v_before[i] * s.v[i]
                     fallen = dot(c.steady, s.u)
                     found = (
-                        kinetic, elastic, s.sums[VISCOUS], s.sums[FRICTION], spent,
+                        kinetic, elastic, s.sums[VISCOUS] - kept, s.sums[FRICTION], spent,
                         s.sums[BOUNDARY], -fallen, s.sums[WORK],
                     )  # fmt: skip
                     for term in range(len(found)):
@@ -370,6 +404,8 @@ def leapfrog_for(flags: StepFlags) -> Callable:
                 s.u[i] += c.dt * s.v[i]
             if sprung:
                 close(c.quiet, s.v, s.closure)
+            if relaxing:
+                relax(c.memory, s.v, s.elongation)
         restore_denormals(setting)
 
     return steps

@@ -19,6 +19,7 @@ import numpy as np
 from jointwave.cases.errors import StoppedError
 from jointwave.continuum.body.balance import LAST_DIGITS, Balance, Factors, Forces, newton
 from jointwave.continuum.body.explicit import BOUNDARY, FRICTION, VISCOUS, WORK
+from jointwave.continuum.body.memory import memory_of
 from jointwave.continuum.body.steps import Held, Problem, samples_for
 from jointwave.results.arrays import copied, fill
 
@@ -70,7 +71,7 @@ class Implicit:
         self.samples = samples_for(problem.readings, samples, energy)
         n = problem.body.stiffness.shape[0]
         still, own = np.zeros(n), self.balance
-        forces = own.forces(still, still, still, dt, own.history, still)
+        forces = own.forces(still, still, still, dt, own.past, still)
         self.now = Moment(still.copy(), still.copy(), still.copy(), copied(forces), np.zeros(4))
         self._factors: tuple[float, np.ndarray, Factors] | None = None
         self._weighs, self._motion = problem.stiffness.diagonal(), np.zeros((3, 1))
@@ -94,6 +95,11 @@ class Implicit:
         return self.u, self.v
 
     @property
+    def strained(self) -> np.ndarray:
+        """Displacement by which elastic rock would have the same stress at the last step, m."""
+        return self.balance.strained(self.now.u, self.now.forces.past.elongation)
+
+    @property
     def parts(self) -> tuple:
         """All arrays that change."""
         return self.now, self.counts
@@ -107,8 +113,11 @@ class Implicit:
 
     def start(self, u: np.ndarray, history: np.ndarray) -> None:
         """Begin at rest at displacements u (m) and with the history of points there."""
-        self.now.u[:] = u
-        self.now.forces.history[:] = history
+        now, own = self.now, self.balance
+        now.u[:] = u
+        now.forces.past.history[:] = history
+        if own.mechanisms is not None:
+            now.sums[VISCOUS] = own.stored(u, own.past, self.dt)
 
     def take(self, first: int, last: int, stride: int) -> None:
         """Go to the steps first .. last - 1, with a sample at each that `stride` divides."""
@@ -125,8 +134,8 @@ class Implicit:
         """Balance the forces of the first moment by its acceleration."""
         now, own = self.now, self.balance
         self._hold(now, 0, 0.0)
-        history, external = now.forces.history, self._external(0, 0.0)
-        forces = own.forces(now.u, now.v, 0 * now.u, self.dt, history, external)
+        past, external = copied(now.forces.past), self._external(0, 0.0)
+        forces = own.forces(now.u, now.v, 0 * now.u, self.dt, past, external)
         rest = (forces.whole - own.mass @ now.a)[own.free]
         now.a[own.free] += Factors(own.mass[own.free][:, own.free]).solve(rest)
         fill(now.forces, forces)
@@ -162,8 +171,7 @@ class Implicit:
             trial.a[free] = (moved - drift[free]) / (beta * dt**2)
             trial.u[free] = now.u[free] + moved
             trial.v[free] = now.v[free] + dt * ((1 - gamma) * now.a + gamma * trial.a)[free]
-            given = now.forces.history, external, 1.0, now.forces.closure
-            forces[0] = own.forces(trial.u, trial.v, trial.u - now.u, dt, *given)
+            forces[0] = own.forces(trial.u, trial.v, trial.u - now.u, dt, now.forces.past, external)
             inertia = own.mass @ trial.a
             rest = (1 - alpha_f) * forces[0].whole + before - (1 - alpha_m) * inertia
             size = max(forces[0].size[0], now.forces.size[0], np.abs(inertia).max(initial=0.0))
@@ -172,7 +180,7 @@ class Implicit:
 
         def correction(rest: np.ndarray) -> np.ndarray:
             self.counts[0] += 1
-            history = now.forces.history
+            history = now.forces.past.history
             tangents = own.of_joints(trial.u, trial.v, dt, r, history)
             return self._factored(dt, r, tangents).solve(rest)
 
@@ -191,7 +199,8 @@ class Implicit:
         alpha_m, alpha_f, beta, _ = self.scheme
         own = self.balance
         inertia = (1 - alpha_m) / (beta * dt**2) * own.mass
-        forces = own.stiffness + r * (own.damping + own.quiet) + own.of_springs(dt)
+        rock = memory_of(own.mechanisms, dt).tangent(dt) * own.stiffness
+        forces = rock + r * (own.damping + own.quiet) + own.of_springs(dt)
         found = own.with_joints(inertia + (1 - alpha_f) * forces, tangents, 1 - alpha_f)
         self._factors = dt, tangents, found
         self.counts[1] += 1
@@ -231,7 +240,7 @@ class Implicit:
         forces = now.forces
         out.velocity[:, s] = read.motion @ now.v
         out.displacement[:, s] = read.motion @ now.u
-        out.stress[:, s] = read.stress @ now.u + read.constant
+        out.stress[:, s] = read.stress @ self.strained + read.constant
         if read.viscous is not None:
             out.stress[:, s] += read.viscous @ now.v
         if read.inertia is not None:
@@ -241,10 +250,13 @@ class Implicit:
         out.jump[:, s] = read.jump @ forces.jump
         if out.energy.size:
             viscous, friction, boundary, work = now.sums
-            elastic, spent, _ = forces.energies
+            joints, spent, _ = forces.energies
+            rock = self.balance.stored(now.u, forces.past, self.dt)
+            if self.balance.mechanisms is not None:
+                viscous -= rock
             kinetic = 0.5 * (now.v @ (self.balance.mass @ now.v))
             fallen = self.balance.steady @ now.u
-            terms = kinetic, elastic, viscous, friction, spent, boundary, -fallen, work
+            terms = kinetic, rock + joints, viscous, friction, spent, boundary, -fallen, work
             out.energy[:, s] = terms
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.body.ends import directions, fixed_ends, load_on, quiet_ends
@@ -39,6 +40,7 @@ def problem_of(scene: Scene, found: SceneBody) -> Problem:
         stiffest=None if law is None else stiffest(law, scene),
         stress=stress,
         alpha=p.mass_damping or 0.0,
+        mechanisms=mechanisms_of(scene, found.model),
         steady=weight_of(scene, body),
         quiet=quiet_ends(scene, body, found.model),
         held=fixed_ends(scene, body),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from jointwave.cases.errors import SceneError
 from jointwave.cases.material.prestress import refuse_beyond_strength
 from jointwave.cases.run_memory import load_bytes, refuse_beyond_memory, waveform_bytes
 from jointwave.cases.scene_type import AnyScene
@@ -35,7 +34,6 @@ def plan_of(
 ) -> Plan:
     """Return the run of a scene; arguments and errors as of `continuum.body.run.simulate`."""
     refuse(scene, model, dim)
-    refuse_missing(scene)
     numerics = scene.numerics.continuum
     consistent = getattr(numerics, "mass", None) == "consistent" and numerics.scheme == "auto"
     implicit = numerics.scheme == "implicit" or consistent
@@ -51,10 +49,3 @@ def plan_of(
     }
     refuse_beyond_memory(scene, parts)
     return Plan(found, problem, choice, critical)
-
-
-def refuse_missing(scene: AnyScene) -> None:
-    """Raise SceneError for what bodies do not have."""
-    if (quality := scene.rock.quality_factor) is not None:
-        allowed = "is not supported by dolfinx bodies"
-        raise SceneError(scene.where, "rock.quality_factor", quality, allowed)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from jointwave.cases.incident import IncidentField
+from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.material.rock_mass import set_time_constants
 from jointwave.cases.material.strength import strength_of
 from jointwave.cases.partition.periodic import of_all
@@ -67,6 +68,7 @@ def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
         stiffest=None if own is None else stiffest(own, scene),
         stress=stress,
         alpha=scene.damping.alpha or 0.0,
+        mechanisms=mechanisms_of(scene, found.model),
         steady=np.sum(steady, axis=0) if steady else None,
         quiet=quiet_sides(scene, body),
         held=held_sides(scene, body),

@@ -113,7 +113,7 @@ class RockRecorder(SnapshotRecorder):
         body = self.found.body
         node = self.node if body.tied is None else body.tied[self.node]
         moved, moving = (one.reshape(-1, body.components)[node] for one in (u, v))
-        return moved, moving, self.stress.of(u, v)
+        return moved, moving, self.stress.of(self.steps.strained, v)
 
     def add_to(self, result: xr.Dataset) -> xr.Dataset:
         """Return the run's result with its snapshots; in a rock mass displacement counts from the

@@ -82,7 +82,7 @@ def settled(scene: AnyScene, problem: Problem, hold: csr_matrix | None = None) -
         else:
             outcome, corrections = _creep(scene, own, done)
             steps, still = steps + corrections, True
-    return Rest(own.u, own.history, steps, outcome.errors[-1] / (own.size or 1.0))
+    return Rest(own.u, own.past.history, steps, outcome.errors[-1] / (own.size or 1.0))
 
 
 def _creep(scene: AnyScene, own: _Static, done: float) -> tuple[Outcome, int]:
@@ -126,7 +126,7 @@ def _refusal(scene: AnyScene, what: str, why: str) -> SceneError:
 class _Static:
     """The forces of a problem at rest, without what absorbs and without loads.
 
-    u, history : the last state in balance. size : the largest force that is summed up, N.
+    u, past : the last state in balance. size : the largest force that is summed up, N.
     stiffest : the largest stiffness over mass, 1/s2. allowed : what may be left, N. moved : of the
     last step under a drag, m/s2.
     """
@@ -136,7 +136,7 @@ class _Static:
         own, dim = self.balance, problem.body.components
         k, m = own.stiffness.diagonal(), own.mass.diagonal()
         self.stiffest, self.size, self.allowed = float((k[m > 0] / m[m > 0]).max()), 0.0, 0.0
-        self.u, self.history = np.zeros_like(k), own.history
+        self.u, self.past = np.zeros_like(k), own.past
         self.matrix, self.carries = own.stiffness, k
         if hold is not None:
             self.matrix, self.carries = csr_matrix(self.matrix + hold), k + hold.diagonal()
@@ -148,13 +148,13 @@ class _Static:
         """Try to balance a share of the steady forces against a drag (1/s2) on what moves from the
         state before; what comes of it is kept where that succeeds."""
         own, free, still = self.balance, self.balance.free, np.zeros_like(self.u)
-        trial, after = self.u.copy(), self.history
+        trial, after = self.u.copy(), self.past
 
         def residual(u: np.ndarray) -> tuple[np.ndarray, float]:
             nonlocal after
             trial[free] = u
-            found = own.forces(trial, still, trial - self.u, 1.0, self.history, still, share)
-            self.size, after, force = float(found.size[0]), found.history, found.whole
+            found = own.forces(trial, still, trial - self.u, 1.0, self.past, still, share)
+            self.size, after, force = float(found.size[0]), found.past, found.whole
             if self.hold is not None:
                 force = force - self.hold @ trial
             borne = drag * (own.mass @ (trial - self.u))
@@ -166,13 +166,13 @@ class _Static:
         def correction(rest: np.ndarray) -> np.ndarray:
             tangents = own.sticking()  # rock at rest on joints without friction could be anywhere
             if trial.any():
-                tangents = own.of_joints(trial, still, 1.0, 0.0, self.history)
+                tangents = own.of_joints(trial, still, 1.0, 0.0, self.past.history)
             return own.with_joints(self.matrix + drag * own.mass, tangents).solve(rest)
 
         outcome = newton(residual, correction, self.u[free])
         if outcome.converged:
             self.moved = drag * (trial - self.u)
-            self.u, self.history = trial, after
+            self.u, self.past = trial, after
         return outcome
 
     def fastest(self) -> str:

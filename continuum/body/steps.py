@@ -8,9 +8,11 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
+from jointwave.cases.material.constant_q import Mechanisms
 from jointwave.continuum.body.critical import critical_step
 from jointwave.continuum.body.evaluation import blocks_of_nodes
 from jointwave.continuum.body.explicit import (
+    VISCOUS,
     Constants,
     Quiet,
     Receivers,
@@ -21,6 +23,7 @@ from jointwave.continuum.body.explicit import (
     Work,
     leapfrog_for,
 )
+from jointwave.continuum.body.memory import memory_of
 from jointwave.continuum.body.model import Body
 from jointwave.continuum.body.product import ROWS, Product, Table, product_of, table_of
 from jointwave.continuum.body.tractions import Points, history_at_rest
@@ -104,8 +107,9 @@ class Problem(NamedTuple):
 
     law : of its joints, by columns; stiffest : the largest K_n and K_s of each column in reach,
     Pa/m, a number or an array. stress : float array [d, d], Pa, compression positive, that rock
-    and joints bear at u = 0. alpha : of mass-proportional damping, 1/s. steady : float array
-    [freedoms], N. Absent parts are None.
+    and joints bear at u = 0. alpha : of mass-proportional damping, 1/s. mechanisms : of the
+    relaxation of rock, whose stiffness is then the unrelaxed one. steady : float array [freedoms],
+    N. Absent parts are None.
     """
 
     body: Body
@@ -114,6 +118,7 @@ class Problem(NamedTuple):
     stiffest: Any = None
     stress: np.ndarray | None = None
     alpha: float = 0.0
+    mechanisms: Mechanisms | None = None
     steady: np.ndarray | None = None
     quiet: Dashpots | None = None
     forces: Forces | None = None
@@ -211,22 +216,24 @@ class Leapfrog:
         self.samples = samples_for(problem.readings, samples, energy)
         self.constants = self._constants()
         parts, damped = problem.parts, body.damping is not None
-        stressed = self.constants.points.carried.size > 0
-        springs = self.constants.quiet.stiffness
-        kind, sprung = self.product.kind, len(springs) > 0
-        self.flags = StepFlags(body.components, kind, parts, stressed, damped, energy, sprung)
+        stressed, many = self.constants.points.carried.size > 0, self.constants.memory.share.size
+        springs, kind = self.constants.quiet.stiffness, self.product.kind
+        rock = damped, many > 0, energy, len(springs) > 0
+        self.flags = StepFlags(body.components, kind, parts, stressed, *rock)
         n, jumps = self.product.size, self.constants.jumps.start.size - 1
         dashpots, limited = (parts.dashpots, parts.limited) if parts else (False, False)
         viscous = n if damped or dashpots else 0
-        sizes = n, viscous, viscous, jumps, jumps * limited, jumps * dashpots, jumps
+        relaxing = n if many else 0
+        of_rock = n, viscous, viscous, relaxing, relaxing
+        sizes = *of_rock, jumps, jumps * limited, jumps * dashpots, jumps
         vectors = [zeros(size) for size in (*sizes, jumps * dashpots)]
         braking = np.zeros(self.constants.quiet.freedom.shape)
         self.work = Work(*vectors, braking)  # type: ignore[call-arg]
         history = np.zeros((0, 0))
         if parts is not None:
             history = history_at_rest(self.constants.points, parts, body.components)
-        motion = zeros(n), zeros(n), zeros(n)
-        self.state = State(*motion, history, np.zeros(4), np.zeros_like(springs))
+        motion, elongation = (zeros(n), zeros(n), zeros(n)), zeros((many, n))
+        self.state = State(*motion, elongation, history, np.zeros(4), np.zeros_like(springs))
 
     def take(self, first: int, last: int, stride: int) -> None:
         """Take the steps first .. last - 1, with a sample at each that `stride` divides."""
@@ -259,6 +266,11 @@ class Leapfrog:
         return self.u - self.dt * self.v, (before + self.v) / 2
 
     @property
+    def strained(self) -> np.ndarray:
+        """Displacement by which elastic rock would have the same stress at the last step, m."""
+        return self.work.strained[self.product.place] if self.flags.relaxing else self.last[0]
+
+    @property
     def parts(self) -> tuple:
         """All arrays that change."""
         return (self.state,)
@@ -271,6 +283,9 @@ class Leapfrog:
     def start(self, u: np.ndarray, history: np.ndarray | None = None) -> None:
         """Begin at rest at displacements u (m), with a history of points."""
         self.state.u[self.product.place] = u
+        if self.flags.relaxing:
+            stored = self.constants.memory.relaxed * (u @ (self.problem.body.stiffness @ u)) / 2
+            self.state.sums[VISCOUS] = stored
         if history is not None:
             self.state.history[:] = history
 
@@ -303,6 +318,7 @@ class Leapfrog:
             inverse=inverse,
             keep=(1 - problem.alpha * dt / 2) / braked,
             alpha=problem.alpha,
+            memory=memory_of(problem.mechanisms, dt),
             stiffness=self.product.table,
             damping=damping,
             jumps=sparse(nothing if body.joints is None else body.joints.matrix, place),

@@ -1,0 +1,72 @@
+"""What rock of a constant quality factor remembers of its motion (`cases.material.constant_q`).
+
+Of each relaxation mechanism the spring that is in series with a dashpot has an elongation e_l, a
+vector of freedoms with e_l' = v - omega_l e_l. Over a step of constant velocity that is exactly
+decay e_l + gain v. The force of the rock is K (relaxed u + sum_l share_l e_l), with K of the
+unrelaxed moduli. In slow motion all e_l are zero.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from jointwave.cases.material.constant_q import Mechanisms
+from jointwave.joints.formula import formula
+
+
+class Memory(NamedTuple):
+    """Mechanisms in steps of one length; without a quality factor there is none of them.
+
+    relaxed : share of K that always resists. share : of each mechanism. spring : the share by which
+    the energy of its spring counts, so that what dashpots take in a step is never negative: omega_l
+    dt share_l of the energy of the mean elongation. decay, gain (s) : of elongations in a step.
+    """
+
+    relaxed: float
+    share: np.ndarray
+    spring: np.ndarray
+    decay: np.ndarray
+    gain: np.ndarray
+
+    def tangent(self, dt: float) -> float:
+        """Return the share of K that resists a displacement within a step (s)."""
+        return self.relaxed + float(self.share @ self.gain) / dt
+
+    def energy(self, stiffness: csr_matrix, u: np.ndarray, elongation: np.ndarray) -> float:
+        """Return the energy of all springs, J; stiffness : K, N/m."""
+        of_mechanisms = np.einsum("ln,ln->l", elongation, (stiffness @ elongation.T).T)
+        return float(self.relaxed * (u @ (stiffness @ u)) + self.spring @ of_mechanisms) / 2
+
+
+def memory_of(mechanisms: Mechanisms | None, dt: float) -> Memory:
+    """Return mechanisms in steps dt (s).
+
+    The work of a spring's force over a step is share_l dt / gain_l (e' - decay_l e) K (e + e') / 2:
+    the change of an energy, with spring_l = share_l x / 2 coth(x / 2) and x = omega_l dt, and a
+    loss.
+    """
+    if mechanisms is None:
+        return Memory(1.0, *np.zeros((4, 0)))
+    x = mechanisms.frequency * dt
+    spring = mechanisms.share * x / 2 / np.tanh(x / 2)
+    gain = -np.expm1(-x) / mechanisms.frequency
+    return Memory(mechanisms.relaxed, mechanisms.share, spring, np.exp(-x), gain)
+
+
+@formula
+def strain(memory, u, elongation, strained):
+    """Set the displacement by which elastic rock would have the same stress."""
+    for i in range(u.size):
+        strained[i] = memory.relaxed * u[i]
+    for k in range(memory.share.size):
+        for i in range(u.size):
+            strained[i] += memory.share[k] * elongation[k, i]
+
+
+@formula
+def relax(memory, v, elongation):
+    """Advance the elongations by a step at velocities v."""
+    for k in range(memory.share.size):
+        for i in range(v.size):
+            elongation[k, i] = memory.decay[k] * elongation[k, i] + memory.gain[k] * v[i]
