@@ -110,7 +110,8 @@ def load_bytes(scene: AnyScene, steps: float) -> float:
     return steps * sum(TABLE_OF_STEP if table else LOAD_OF_STEP for table in tables)
 
 
-def snapshot_bytes(scene: AnyScene, nodes: float) -> float:
-    """Return the memory of snapshots of this many nodes (bytes)."""
-    fields = scene.record.fields
-    return 0.0 if fields is None else (scene.time.duration / fields + 1) * nodes * 7 * 8 * COPIES
+def snapshot_bytes(scene: AnyScene, nodes: float, values: float = 7) -> float:
+    """Return the memory of snapshots of this many nodes, with so many values of each (bytes)."""
+    if (fields := scene.record.fields) is None:
+        return 0.0
+    return (scene.time.duration / fields + 1) * nodes * values * 8 * COPIES

@@ -7,6 +7,7 @@ import xarray as xr
 
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.effective_medium import tensor
+from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.body import compat
@@ -88,7 +89,7 @@ def prestress_of(scene: AnyScene) -> np.ndarray:
 
 
 class RockRecorder(SnapshotRecorder):
-    """The rock at every snapshot of a scene; raises SceneError for too many.
+    """The rock at every snapshot of a scene; raises SceneError for too many, or too large ones.
 
     steps : which have taken that of a sample last when it is recorded.
     """
@@ -104,8 +105,10 @@ class RockRecorder(SnapshotRecorder):
         self.cells = number.reshape(-1, len(own))[:, parts].reshape(-1, parts.shape[1])
         self.parts = len(parts)
         self.stress = StressOfCells(found, parts, points)
-        values = len(self.cells) * len(self.stress.constant)
-        super().__init__(scene, max(len(self.node), values // 3), self.frame)
+        count, values = len(self.node), len(self.cells) * len(self.stress.constant)
+        size = snapshot_bytes(scene, count, 6 + values / count)
+        refuse_beyond_memory(scene, {"record.fields": size})
+        super().__init__(scene, max(count, values // 3), self.frame)
 
     def frame(self, sample: int) -> Frame:
         """Return displacement and velocity of the nodes, and stress of the cells."""
