@@ -193,12 +193,17 @@ def _marked(marks: np.ndarray, facet: np.ndarray) -> np.ndarray:
 def assembled(forms: Forms, kind: str, order: int, consistent: bool) -> list[Any]:
     """Return the matrices of mass, stiffness and damping (None without), assembled by dolfinx."""
     at_nodes = {} if consistent else nodal_rule(kind, order)
-    rock = {} if (kind, order) == ("hexahedron", 1) or kind in SIMPLEX else nodal_rule(kind, order)
-    rules = at_nodes, rock, rock
+    rules = at_nodes, rock_rule(kind, order), rock_rule(kind, order)
     return [
-        None if form is None else matrix(_by_rule(form, rule))
+        None if form is None else matrix(by_rule(form, rule))
         for form, rule in zip(forms, rules, strict=True)
     ]
+
+
+def rock_rule(kind: str, order: int) -> dict[str, Any]:
+    """Return the metadata of UFL's measure for stiffness and damping."""
+    exact = kind in SIMPLEX or (kind, order) == ("hexahedron", 1)
+    return {} if exact else nodal_rule(kind, order)
 
 
 def nodal_rule(kind: str, order: int) -> dict[str, Any]:
@@ -209,7 +214,7 @@ def nodal_rule(kind: str, order: int) -> dict[str, Any]:
     return {"quadrature_rule": "vertex", "quadrature_degree": 1} if order == 1 else {}
 
 
-def _by_rule(form: ufl.Form, rule: dict[str, Any]) -> ufl.Form:
+def by_rule(form: ufl.Form, rule: dict[str, Any]) -> ufl.Form:
     """Return a form with this metadata in its integrals that state no rule of quadrature."""
     return ufl.Form([
         one.reconstruct(metadata={**rule, **one.metadata()}) for one in form.integrals()
