@@ -27,6 +27,7 @@ from jointwave.continuum.body.periodic import Facing
 from jointwave.continuum.body.traces import Trace, reference_cell, trace
 
 log = logging.getLogger("jointwave")
+ROUND_OFF = 1e-14  # of entries, relative
 SIMPLEX = ("triangle", "tetrahedron")
 LEVEL = 1e-9  # of the pillar: nodes at one height
 
@@ -195,9 +196,20 @@ def assembled(forms: Forms, kind: str, order: int, consistent: bool) -> list[Any
     at_nodes = {} if consistent else nodal_rule(kind, order)
     rules = at_nodes, rock_rule(kind, order), rock_rule(kind, order)
     return [
-        None if form is None else matrix(by_rule(form, rule))
+        None if form is None else without_round_off(matrix(by_rule(form, rule)))
         for form, rule in zip(forms, rules, strict=True)
     ]
+
+
+def without_round_off(matrix: csr_matrix) -> csr_matrix:
+    """Return a symmetric positive semidefinite matrix without entries that are only round-off.
+
+    No entry exceeds the geometric mean of its two diagonal ones; against that they are measured.
+    """
+    scale, entries = np.sqrt(np.abs(matrix.diagonal())), matrix.tocoo()
+    real = np.abs(entries.data) > ROUND_OFF * scale[entries.row] * scale[entries.col]
+    places = entries.row[real], entries.col[real]
+    return csr_matrix((entries.data[real], places), matrix.shape)
 
 
 def rock_rule(kind: str, order: int) -> dict[str, Any]:

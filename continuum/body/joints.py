@@ -7,6 +7,8 @@ from jointwave.cases.geometry.measure import frames
 from jointwave.continuum.body.model import JumpOperator
 from jointwave.continuum.body.traces import Reference, Trace
 
+ROUND_OFF = 1e-14  # of entries, which are of the order of 1
+
 
 def jump_operator(
     one: Trace,
@@ -35,8 +37,11 @@ def jump_operator(
     frame, each = frames_of(normal[open_], components), np.arange(len(open_) + 1)
     size = len(open_) * components
     turned = bsr_matrix((frame, each[:-1], each), shape=(size, size))
+    matrix = csr_matrix(turned @ kron(jump[open_], identity(components), format="csr"))
+    matrix.data[np.abs(matrix.data) < ROUND_OFF] = 0.0
+    matrix.eliminate_zeros()
     return JumpOperator(
-        matrix=csr_matrix(turned @ kron(jump[open_], identity(components), format="csr")),
+        matrix=matrix,
         weight=weight.ravel()[open_],
         column=np.repeat(column, points)[open_],
         frame=frame,

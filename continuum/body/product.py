@@ -14,7 +14,7 @@ from scipy.sparse import bsr_matrix, csr_matrix
 
 from jointwave.joints.formula import formula
 
-LANES = 16  # blocks whose freedoms lie side by side
+LANES = 32  # blocks whose freedoms lie side by side
 LEAST_BLOCKS = 12  # that share a matrix with profit
 SAME = 1e-12  # of the largest entry: by how much the matrices of equal blocks may differ
 CACHE = 8 << 20  # bytes of a matrix from which on memory decides
@@ -197,10 +197,21 @@ def shared_for(dim: int) -> Callable[..., None]:
             for i in range(m):
                 for c in range(LANES):
                     own[c] = 0.0
-                for k in range(start[i], start[i + 1]):
-                    a, lanes = value[k], tile[np.int64(column[k]) * LANES :]
+                k, end = start[i], start[i + 1]
+                while k + 4 <= end:  # sums are loaded and stored once for four entries
+                    a, b, d, e = value[k], value[k + 1], value[k + 2], value[k + 3]
+                    p = tile[np.int64(column[k]) * LANES :]
+                    q = tile[np.int64(column[k + 1]) * LANES :]
+                    r = tile[np.int64(column[k + 2]) * LANES :]
+                    s = tile[np.int64(column[k + 3]) * LANES :]
                     for c in range(LANES):
-                        own[c] -= a * lanes[c]
+                        own[c] -= (a * p[c] + b * q[c]) + (d * r[c] + e * s[c])
+                    k += 4
+                while k < end:
+                    a, p = value[k], tile[np.int64(column[k]) * LANES :]
+                    for c in range(LANES):
+                        own[c] -= a * p[c]
+                    k += 1
                 at = first + i * LANES
                 for c in range(LANES):
                     product[at + c] = own[c]
