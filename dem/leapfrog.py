@@ -20,6 +20,7 @@ from jointwave.dem.model import KernelFlags, Model, Samples, State
 from jointwave.dem.motion import AFTER, SUMMED
 from jointwave.dem.rotation import free_motion
 from jointwave.numerics.atomic import give_way, peek, post
+from jointwave.numerics.borrowed import borrowed
 from jointwave.numerics.cache_lines import zeros
 from jointwave.numerics.denormals import flush_denormals, restore_denormals
 from jointwave.numerics.jit import jitted
@@ -193,7 +194,9 @@ def loop_for(form: KernelFlags) -> Callable:
         last, stride, depth.
         """
         setting = flush_denormals()
-        force, buffer, ledgers, progress = work
+        chunks, blocks, state = borrowed(chunks), borrowed(blocks), borrowed(state)
+        samples, drive, walls = borrowed(samples), borrowed(drive), borrowed(walls)
+        force, buffer, ledgers, progress = borrowed(work)
         thread, first, last, stride, depth = span
         tiles, threads, ledger = chunks.tiles.shape[1] - 1, progress.size - 1, None
         diagonals = tiles + depth - 1

@@ -291,7 +291,7 @@ def instructions():
             compiled = numba.njit(error_model="numpy", **options)(kernel.__wrapped__)
             compiled.compile(types)
             texts[key] = compiled.inspect_llvm(types)
-        found = re.findall(rf"(%\.?\w+)[.\w]* = {kind} ", texts[key])
+        found = re.findall(rf"(?m)^ +(?:(%\.?\w+)[.\w]* = )?{kind} ", texts[key])
         return len(set(found))
 
     return count

@@ -70,6 +70,12 @@ def test_absent_effects_leave_no_instruction(counted):
     assert min(slips) > 0
 
 
+def test_steps_count_no_references_to_arrays(counted):
+    """Which blocks that slip in space, and have every kind of array, would do by the hundred."""
+    sides = {"boundaries": {"top": "quiet"}, "record": {"points": [[0.5] * 3], "energy": True}}
+    assert counted(lattice(3, SLIP, **sides), r"(?:tail )?call void @NRT_incref\(\S+") == [0]
+
+
 SLIP = {"friction_angle": 20.0}
 ADDED = {
     "dashpots": ("fmul", {"joints": {"damping_ratio": 0.02}}),
