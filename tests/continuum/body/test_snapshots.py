@@ -25,6 +25,7 @@ DEEP = GIVEN | {"zz": 4e6, "yz": 2e5, "xz": -1e5}
 CASES = [(2, FLAT, order, "quad", order**2) for order in (1, 3)]
 CASES += [(2, STEEP, 1, "triangle", 1), (2, STEEP, 2, "triangle", 4)]
 CASES += [(3, FLAT, 2, "hexahedron", 8), (3, SLANTED, 1, "tetra", 1), (3, SLANTED, 2, "tetra", 8)]
+BESIDE = [0.0, 0.25, 2.0]  # m along a pillar: ends, and the middle of a block
 PUSH = {"kind": "pressure", "side": "top", "shape": "sine", "period": 1e-3, "amplitude": 1e6}
 
 
@@ -163,3 +164,54 @@ def test_an_interrupted_run_has_all_snapshots(rock_mass, keeper_at, scheme):
     found = simulate(scene, keeper=keeper)
     for name in ("field_time", "field_displacement", "field_velocity", "field_stress"):
         np.testing.assert_array_equal(found[name], whole[name], err_msg=name)
+
+
+def short(pillar, dim=1, **changes):
+    """Return four blocks of rock, keys changed."""
+    keys = {
+        "pillar__length": 2.0,
+        "rock__intact_modulus": 8.64e10,
+        "load": {"shape": "sine", "amplitude": 1e6, "period": 2e-3, "cycles": 1},
+        "ends__end": "free",
+        "time__duration": 4e-3,
+        "record": {"velocity": BESIDE, "interval": 2e-5, "fields": 4e-4},
+        "numerics__continuum__dim": dim,
+    }
+    return pillar(**keys | changes)
+
+
+@pytest.mark.parametrize("quantity", ["displacement", "velocity"])
+def test_snapshots_of_the_bar_are_what_receivers_record(pillar, quantity):
+    """At nodes that are receivers: both ends, and the middle of the first block."""
+    result = simulate(short(pillar))
+    found, recorded = snapshots_of(result), result[quantity].values[:, ::20, 0]
+    np.testing.assert_array_equal(found.time, result.time.values[::20])
+    for y, waveform in zip(BESIDE, recorded, strict=True):
+        node = int(np.argmin(np.abs(found.points[:, 1] - y)))
+        assert found.points[node, 1] == pytest.approx(y, abs=1e-12)
+        scale = np.abs(recorded).max()
+        np.testing.assert_allclose(
+            getattr(found, quantity)[:, node, 1], waveform, rtol=0, atol=1e-13 * scale
+        )
+
+
+@pytest.mark.parametrize("dim", [1, 3])
+def test_a_joint_without_tension_opens_between_its_own_nodes(pillar, dim):
+    """Facing nodes lie at one place, and part once tension comes."""
+    scene = short(pillar, dim, joints__tension=False)
+    found = snapshots_of(simulate(scene))
+    nodes = np.unique(found.cells[found.block == 2]), np.unique(found.cells[found.block == 3])
+    facing = [n[np.isclose(found.points[n, 1], 1.5)] for n in nodes]
+    left, right = (n[np.lexsort(found.points[n][:, [0, 2]].round(9).T)] for n in facing)
+    np.testing.assert_allclose(found.points[left], found.points[right], atol=1e-12)
+    gap = found.displacement[:, right, 1] - found.displacement[:, left, 1]
+    assert gap.max() > 0.1 * np.abs(found.displacement).max()
+
+
+def test_stress_of_a_slow_push_is_the_load(pillar):
+    """Two widths and more from a fixed end, which only there keeps the rock from widening."""
+    changes = {"load": {"shape": "step", "amplitude": 1e6}, "ends__end": "fixed"}
+    changes |= {"joints__damping_ratio": 0.5, "time__duration": 0.05}
+    scene = short(pillar, 2, **changes)
+    found = snapshots_of(simulate(scene))
+    assert found.stress[-1, found.block < 2] == pytest.approx(1e6, rel=1e-5)
