@@ -16,7 +16,7 @@ from jointwave.continuum.body.implicit import Implicit
 from jointwave.continuum.body.scene import SceneBody
 from jointwave.continuum.body.scheme import Choice
 from jointwave.continuum.body.steps import Leapfrog
-from jointwave.numerics.divergence import ENERGY, audit, guard, look
+from jointwave.numerics.divergence import ENERGY, SPEED, audit, guard
 from jointwave.numerics.instability import Divergence, stopped
 from jointwave.numerics.small_motion import (
     LARGEST,
@@ -58,8 +58,10 @@ class Monitor:
         if self.scene.record.energy and self.explicit:  # the ledger of implicit steps is not exact
             audit(self.guard, steps.samples.energy, first, last, stride)
         speed = np.abs(steps.v).reshape(-1, self.found.body.components).max(axis=1)
-        look(self.guard, speed.max(initial=0.0), last * stride)
-        if self.guard.found[0] >= 0:
+        found, (limit,) = self.guard.found, self.guard.limit.view(np.float64)
+        if found[0] < 0 and not speed.max(initial=0.0) <= limit:
+            found[:] = last * stride, SPEED, first * stride - 1
+        if found[0] >= 0:
             raise self._diverged(speed)
         if matters(self.scene):
             t = last * stride * self.time.dt

@@ -7,6 +7,7 @@ from jointwave.cases.errors import StoppedError
 from jointwave.cases.read import load_tables
 from jointwave.continuum.body.evaluation import blocks_of_nodes
 from jointwave.continuum.body.monitor import farthest_joint, motion_of_blocks
+from jointwave.continuum.body.plan import plan_of
 from jointwave.continuum.body.run import simulate
 from jointwave.continuum.body.scene import body_of
 
@@ -71,6 +72,25 @@ def test_blocks_that_meet_others_than_their_neighbours_stop_the_run():
     result = stopped.value.result
     assert 0 < result.field_time[-1] <= result.time[-1]
     assert result.sizes["field_time"] == -(-result.sizes["time"] // 10)
+
+
+def test_nothing_beyond_the_bounds_is_kept_where_no_ledger_is(rock_mass):
+    """Above the critical step motion grows by a third in every step, of hundreds between looks."""
+    push = {"kind": "pressure", "side": "top", "shape": "sine", "period": 1e-3, "amplitude": 1e6}
+    joint, own = {"dip": 0.0, "through": [3.0, 2.0]}, {"scheme": "explicit", "step_fraction": 1.01}
+
+    def scene(interval, steps):
+        record = {"points": [[2.0, 1.5]], "interval": interval, "energy": False}
+        continuum = own | {"allow_unstable": True}
+        time = {"duration": interval * steps}
+        return rock_mass(joint, continuum=continuum, loads=[push], record=record, time=time)
+
+    critical = plan_of(scene(1e-3, 10)).critical
+    with pytest.raises(StoppedError, match=r"times the critical step") as stopped:
+        simulate(scene(1.01 * critical, 4000))
+    result = stopped.value.result
+    assert result.attrs["steps"] == 4000 and 0 < result.sizes["time"] < 1000
+    assert np.abs(result.velocity).max() < 1e6
 
 
 @pytest.mark.parametrize("cell", ["triangle", "quadrilateral"])
