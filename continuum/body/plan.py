@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from typing import NamedTuple
 
 from jointwave.cases.material.prestress import refuse_beyond_strength
@@ -10,10 +11,13 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.body.problem import problem_of
 from jointwave.continuum.body.rock import Rock
+from jointwave.continuum.body.scaling import scaled_mass
 from jointwave.continuum.body.scene import SceneBody, body_of
 from jointwave.continuum.body.scheme import Choice, choose
 from jointwave.continuum.body.steps import Problem
 from jointwave.continuum.body.validity import refuse
+
+log = logging.getLogger("jointwave")
 
 
 class Plan(NamedTuple):
@@ -41,8 +45,16 @@ def plan_of(
     if isinstance(found.scene, RockMass):
         refuse_beyond_strength(found.scene)
     problem = problem_of(scene, found)
+    scaled, plain = None if implicit else scaled_mass(problem), (found, problem)
+    if scaled is not None:
+        found = found._replace(body=found.body._replace(mass=scaled.mass))
+        problem = problem_of(scene, found)
     critical = problem.critical_step() if problem.body.mass is not None else 0.0
     choice = choose(scene, problem, critical)
+    if scaled is not None and choice.scheme == "explicit":
+        log.warning(scaled.gained(critical))
+    elif scaled is not None:
+        found, problem = plain
     parts = {
         "record.interval": waveform_bytes(scene, problem.body.components > 1),
         "time.duration": load_bytes(scene, choice.time.steps),
