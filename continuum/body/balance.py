@@ -156,8 +156,8 @@ class Balance:
         energies, size = np.array([stored, spent, slid]), np.array([max(sizes)])
         if self.mechanisms is not None:
             drag = drag + elastic
-        past, own = Past(after, elongation, closure), (loads, drags, jump, energies, size)
-        return Forces(whole, drag, boundary, external, past, *own)
+        past, joints = Past(after, elongation, closure), (loads, drags, jump)
+        return Forces(whole, drag, boundary, external, past, *joints, energies, size)
 
     def _elongation(self, moved: np.ndarray, dt: float, before: np.ndarray) -> np.ndarray:
         """Return the elongations of mechanisms after moving in dt (s)."""
