@@ -27,10 +27,10 @@ ROCK = {
 def given(tmp_path, column):
     """Return a function that draws a file and gives the body of the pillar of it."""
 
-    def read(kind, *args, order=1, model="jointed", changes=None, **options):
+    def read(kind, *args, order=1, model="jointed", **options):
         path = drawn(tmp_path / "pillar.msh", kind, *args, **options)
-        keys = {"numerics__continuum__order": order, **ROCK, **(changes or {})}
-        return body_of(column(path, **keys), model).body
+        scene = column(path, numerics__continuum__order=order, **ROCK)
+        return body_of(scene, model, dim=DIMENSION[kind]).body
 
     return read
 
@@ -195,7 +195,7 @@ def test_a_joint_may_end_inside_the_rock(tmp_path, column):
     is the first."""
     path = tmp_path / "notch.msh"
     path.write_text(NOTCH)
-    body = body_of(column(path, numerics__continuum__order=1, **ROCK)).body
+    body = body_of(column(path, numerics__continuum__order=1, **ROCK), dim=2).body
     assert len(body.x) == 10
     for place, nodes in (((0.2, 0.75), 2), ((0.0, 0.75), 1)):
         assert np.isclose(body.x, place).all(axis=1).sum() == nodes

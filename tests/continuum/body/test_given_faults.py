@@ -5,7 +5,7 @@ import pytest
 
 from jointwave.cases.errors import SceneError
 from jointwave.continuum.body.scene import body_of
-from tests.continuum.body.drawing import drawn
+from tests.continuum.body.drawing import DIMENSION, drawn
 
 
 @pytest.fixture
@@ -13,7 +13,8 @@ def fault(tmp_path, column):
     """Return a function that draws a file and gives the one line that it is refused with."""
 
     def line(kind, changes=None, **options):
-        scene = column(drawn(tmp_path / "pillar.msh", kind, **options), **(changes or {}))
+        keys = {"numerics__continuum__dim": DIMENSION[kind], **(changes or {})}
+        scene = column(drawn(tmp_path / "pillar.msh", kind, **options), **keys)
         with pytest.raises(SceneError) as error:
             body_of(scene)
         text = str(error.value)
@@ -35,7 +36,7 @@ def test_missing_partners_are_counted_and_placed(tmp_path, column):
     file.points[lower, 0] *= 0.5
     meshio.write(path, file, "gmsh22")
     with pytest.raises(SceneError) as error:
-        body_of(column(path))
+        body_of(column(path), dim=2)
     assert "4 facets of its joints have no coincident partner" in str(error.value)
     assert "the first at (-0.1, 1) m" in str(error.value)
 
@@ -150,7 +151,7 @@ def test_a_bad_file_is_one_line(name, tmp_path, column):
 def read_text(text, tmp_path, column):
     path = tmp_path / "pillar.msh"
     path.write_text(text)
-    return body_of(column(path)).body
+    return body_of(column(path), dim=2).body
 
 
 def test_the_good_file_is_good(tmp_path, column, capfd):
