@@ -5,6 +5,7 @@ import pytest
 from scipy.linalg import eigvalsh
 
 from jointwave.continuum.body.compat import cell_nodes
+from jointwave.continuum.body.run import simulate
 from jointwave.continuum.body.scene import body_of
 from tests.continuum.body.bodies import STIFFNESS, pushed, springs
 from tests.continuum.body.drawing import DIMENSION, drawn
@@ -92,6 +93,39 @@ def test_the_body_is_that_of_built_blocks(kind, doubled, given, column):
 def _modes(body):
     scale = 1 / np.sqrt(body.mass)
     return eigvalsh((body.stiffness + springs(body)).toarray() * np.outer(scale, scale))
+
+
+BLOW = {
+    2: {"load__direction": [0.6, 0.8, 0.0], "load__at": [0.1, 0.0]},
+    3: {"load__direction": [0.48, 0.6, -0.64], "load__at": [0.1, -0.05]},
+}
+ACTING = {
+    "joints": {
+        **ROCK["joints"],
+        "friction_angle": 20.0,
+        "cohesion": 1e4,
+        "tension": False,
+        "damping_ratio": 0.02,
+    },
+    "ends": {"start": "quiet", "end": "matched"},
+    "time__duration": 2e-3,
+    "record__interval": 5e-5,
+}
+
+
+@pytest.mark.parametrize("kind", ["quadrilateral", "hexahedron"])
+def test_a_pillar_of_a_file_moves_as_the_built_one(kind, tmp_path, column):
+    """With every joint sliding and opening, in other numbers of nodes."""
+    dim = DIMENSION[kind]
+    keys = ROCK | ACTING | BLOW[dim] | {"numerics__continuum__order": 2}
+    given = column(drawn(tmp_path / "pillar.msh", kind, doubled=True), **keys)
+    many = {"elements_per_block": 2, "elements_across": 2}
+    keys |= {f"numerics__continuum__{key}": value for key, value in many.items()}
+    found, built = (simulate(scene, dim=dim) for scene in (given, column(**keys)))
+    assert found.attrs["dt"] == built.attrs["dt"]
+    for name in ("velocity", "displacement", "stress", "energy"):
+        peak = np.abs(built[name]).max()
+        assert peak > 0 and np.abs(found[name] - built[name]).max() < 1e-10 * peak, name
 
 
 @pytest.mark.parametrize("version", [2.2, 4.1])
