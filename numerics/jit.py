@@ -10,6 +10,7 @@ from threading import Timer
 from typing import Any
 
 import numba
+import numpy as np
 
 from jointwave.numerics.cache import cache_directory, make, mark_used
 
@@ -28,15 +29,28 @@ def jitted(function: Callable) -> Callable:
     """
     numba.config.CACHE_DIR = str(DIRECTORY)
     kernel = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    known = set()
 
     @wraps(function)
     def call(*arguments: Any) -> Any:
-        types = tuple(map(numba.typeof, arguments))
-        if types not in kernel.overloads:
-            compile_for(kernel, types)
+        kinds = kind(arguments)
+        if kinds not in known:  # numba's types of all arrays of a model take longer than a step
+            types = tuple(map(numba.typeof, arguments))
+            if types not in kernel.overloads:
+                compile_for(kernel, types)
+            known.add(kinds)
         return kernel(*arguments)
 
     return call
+
+
+def kind(value: Any) -> Any:
+    """Return what decides numba's type of an argument."""
+    if isinstance(value, np.ndarray):
+        return value.dtype, value.ndim, value.flags.num
+    if isinstance(value, tuple):
+        return (type(value), *map(kind, value))
+    return type(value)
 
 
 def compile_for(kernel: Any, types: tuple) -> None:
