@@ -108,15 +108,15 @@ def quiet_ends(scene: Scene, body: Body, model: str) -> Dashpots | None:
 
 def half_springs(p: JointedRock, sprung: bool, components: int, dt: float) -> list[HalfSpring]:
     """Return what absorbs each component per unit area, by half a joint or a dashpot alone."""
-    across, along = p.shear_impedance, p.impedance
-    normal, shear = p.regular_own_stiffness, p.regular_own_shear_stiffness
-    z, k = [along], [normal]
-    if components > 1:
-        z, k = [across, along, across][:components], [shear, normal, shear][:components]
-    if not (sprung and isfinite(normal)):
+    along = [1] if components == 1 else [0, 1, 0][:components]
+    z = [(p.shear_impedance, p.impedance)[k] for k in along]
+    if not (sprung and isfinite(p.regular_own_stiffness)):
         return [HalfSpring(0.0, one, 0.0, 0.0, 0.0) for one in z]
-    eta = p.time_constant or 0.0
-    return [half_spring(2 * one, eta, other, dt) for one, other in zip(k, z, strict=True)]
+    stiffness, eta = (
+        (p.regular_own_shear_stiffness, p.regular_own_stiffness),
+        p.time_constant or 0.0,
+    )
+    return [half_spring(2 * stiffness[k], eta, one, dt) for k, one in zip(along, z, strict=True)]
 
 
 def fixed_ends(scene: Scene, body: Body, time: Clock | None = None) -> Held | None:
