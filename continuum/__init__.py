@@ -2,20 +2,15 @@
 
 from typing import Any
 
-from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.continuum.body.validity import applies
 from jointwave.continuum.simulate import simulate as by_tables
-from jointwave.continuum.validity import applies
 
 __all__ = ["applies", "simulate"]
 
 
 def by_body(scene: Any, comm: Any = None) -> bool:
     """Return whether the dolfinx body runs a scene."""
-    return (
-        isinstance(scene, RockMass)
-        and (comm is None or comm.size == 1)
-        and scene.rock.quality_factor is None
-    )
+    return comm is None or comm.size == 1
 
 
 def simulate(scene: Any, model: str = "jointed", dim: int | None = None, **about: Any) -> Any:
@@ -23,5 +18,5 @@ def simulate(scene: Any, model: str = "jointed", dim: int | None = None, **about
     if by_body(scene, about.get("comm")):
         from jointwave.continuum.body.run import simulate as by_dolfinx
 
-        return by_dolfinx(scene, model, **{k: v for k, v in about.items() if k != "comm"})
+        return by_dolfinx(scene, model, dim=dim, **{k: v for k, v in about.items() if k != "comm"})
     return by_tables(scene, model, dim, **about)

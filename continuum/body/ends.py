@@ -86,9 +86,10 @@ def quiet_ends(scene: Scene, body: Body, model: str) -> Dashpots | None:
         kind = getattr(scene.ends, place)
         if kind in ("quiet", "matched"):
             facets = facets_on(body, [place])
-            node.append(facets.node)
-            area.append(facets.weight)
-            every += len(facets.node) * [(own, kind == "matched" and model == "jointed")]
+            own_nodes, which = np.unique(facets.node, return_inverse=True)
+            node.append(own_nodes)
+            area.append(np.bincount(which.reshape(-1), facets.weight))
+            every += len(own_nodes) * [(own, kind == "matched" and model == "jointed")]
     if not node:
         return None
     weight = np.concatenate(area)[:, None]
