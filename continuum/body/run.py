@@ -27,7 +27,6 @@ from jointwave.continuum.body.static import Rest
 from jointwave.continuum.body.steps import Leapfrog, Problem
 from jointwave.continuum.body.waveforms import recorded
 from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
-from jointwave.results.arrays import size_of
 
 FREEDOM_STEPS_AT_ONCE = 10_000_000  # some 0.1 s: often enough for a progress bar
 LEAST_CHUNKS = 20  # however short the run
@@ -91,7 +90,7 @@ def simulate(
                 "critical_dt": critical,
                 "steps": time.steps,
                 "degrees_of_freedom": len(problem.body.stiffness.indptr) - 1,
-                "bytes": size_of(*steps.parts),
+                "bytes": steps.bytes,
                 **about,
                 **steps.attributes,
                 "seconds_setup": built - began,
@@ -111,7 +110,8 @@ def simulate(
         steps.take(done, last * time.stride, time.stride)
         monitor.check(first, last)
 
-    chunk = FREEDOM_STEPS_AT_ONCE // (problem.body.stiffness.shape[0] * time.stride)
+    work = steps.work_of_a_step * problem.body.stiffness.shape[0] * time.stride
+    chunk = FREEDOM_STEPS_AT_ONCE // work
     chunk = min(chunk, time.samples // LEAST_CHUNKS)
     parts = steps.parts, steps.samples, monitor.guard
     try:

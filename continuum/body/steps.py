@@ -30,6 +30,7 @@ from jointwave.continuum.body.tractions import Points, history_at_rest
 from jointwave.joints.law import Law, LawFlags, parts_of
 from jointwave.joints.law import table_of as law_table
 from jointwave.numerics.cache_lines import zeros
+from jointwave.results.arrays import size_of
 from jointwave.results.rock_mass import TERMS
 
 BUFFER = 500_000  # numbers: forces with a history that are in memory at a time
@@ -210,6 +211,8 @@ class Leapfrog:
     state : `explicit.State`, in the places of `product`. samples : what is recorded. dt : s.
     """
 
+    work_of_a_step = 1
+
     def __init__(self, problem: Problem, dt: float, samples: int, energy: bool = True) -> None:
         self.problem, self.dt, body = problem, dt, problem.body
         self.product = product_for_steps(body)
@@ -279,6 +282,11 @@ class Leapfrog:
     def attributes(self) -> dict[str, Any]:
         """What a result says of the steps."""
         return {}
+
+    @property
+    def bytes(self) -> int:
+        """The size of constants and state."""
+        return size_of(self.constants, self.state, self.work)
 
     def start(self, u: np.ndarray, history: np.ndarray | None = None) -> None:
         """Begin at rest at displacements u (m), with a history of points."""
