@@ -18,6 +18,7 @@ from jointwave.joints.law import IN_MOTION
 MOST_ITERATIONS = 12
 #: Unknowns from which MUMPS outweighs what it costs to call; PETSc's own factors are quicker below.
 LARGE = 20_000
+SHARED = ("mumps", "superlu_dist")  # that factorise a matrix of several processes
 #: Of a displacement: what its last digits weigh cannot be balanced.
 LAST_DIGITS = 8 * float(np.finfo(float).eps)
 
@@ -204,30 +205,47 @@ class Balance:
             count = len(tangents)
             middle = bsr_matrix((tangents, np.arange(count), np.arange(count + 1)))
             matrix = matrix + share * (self.jumps.T @ middle @ self.jumps)
-        return Factors(csr_matrix(matrix)[self.free][:, self.free])
+        return Factors(csr_matrix(matrix)[self.free][:, self.free], self.problem.comm)
 
 
 class Factors:
-    """The LU factors of a matrix [n, n], by PETSc."""
+    """The LU factors of a matrix [n, n], by PETSc; comm : mpi4py's, of processes that share them,
+    each of which has the whole matrix and gets the whole solution, the same on all."""
 
-    def __init__(self, matrix: csr_matrix) -> None:
-        matrix = csr_matrix(matrix)
-        pattern = matrix.indptr.astype(PETSc.IntType), matrix.indices.astype(PETSc.IntType)
-        own = PETSc.Mat().createAIJ(matrix.shape, csr=(*pattern, matrix.data), comm=PETSc.COMM_SELF)
-        self._solver = PETSc.KSP().create(PETSc.COMM_SELF)
+    def __init__(self, matrix: csr_matrix, comm: Any = None) -> None:
+        if comm is not None and hasattr(PETSc, "garbage_cleanup"):
+            PETSc.garbage_cleanup(comm)  # earlier factors: what is shared goes when all agree
+        matrix, n, self._comm = csr_matrix(matrix), matrix.shape[0], comm
+        rank, size = (0, 1) if comm is None else (comm.rank, comm.size)
+        self._rows = slice(n * rank // size, n * (rank + 1) // size)
+        own, on = matrix[self._rows], PETSc.COMM_SELF if comm is None else comm
+        pattern = own.indptr.astype(PETSc.IntType), own.indices.astype(PETSc.IntType)
+        sizes = own.shape[0], n
+        given = PETSc.Mat().createAIJ((sizes, sizes), csr=(*pattern, own.data), comm=on)
+        self._solver = PETSc.KSP().create(on)
         self._solver.setType("preonly")
         conditioner = self._solver.getPC()
         conditioner.setType("lu")
-        large = matrix.shape[0] > LARGE and PETSc.Sys.hasExternalPackage("mumps")
-        conditioner.setFactorSolverType("mumps" if large else "petsc")
-        self._solver.setOperators(own)
-        self._x, self._b = own.createVecs()
+        conditioner.setFactorSolverType(_package(n, size))
+        self._solver.setOperators(given)
+        self._x, self._b = given.createVecs()
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x of A x = right, [n]."""
-        self._b.array[:] = right
+        self._b.array[:] = right[self._rows]
         self._solver.solve(self._b, self._x)
-        return np.real(self._x.array).copy()
+        found = np.real(self._x.array).copy()
+        return found if self._comm is None else np.concatenate(self._comm.allgather(found))
+
+
+def _package(unknowns: int, processes: int) -> str:
+    """Return what factorises a matrix of so many unknowns; of several processes only some do."""
+    there = [one for one in SHARED if PETSc.Sys.hasExternalPackage(one)]
+    if processes > 1:
+        if not there:
+            raise ImportError(f"implicit steps on several processes need PETSc with {SHARED[0]}")
+        return there[0]
+    return "mumps" if unknowns > LARGE and "mumps" in there else "petsc"
 
 
 class Outcome(NamedTuple):

@@ -1,6 +1,7 @@
 """What differs between dolfinx 0.5 and 0.11, told apart by what they offer."""
 
 import inspect
+import os
 from typing import Any
 
 import basix
@@ -84,6 +85,34 @@ def _space(domain: Any, family: str, order: int, size: int) -> Any:
     if hasattr(fem, "functionspace"):
         return compiled(lambda: fem.functionspace(domain, (family, order, (size,))))
     return compiled(lambda: fem.VectorFunctionSpace(domain, (family, order), dim=size))
+
+
+def neighbours(domain: Any) -> np.ndarray:
+    """Return the pairs of cells of a mesh that share a facet, int array [2, n]."""
+    topology, dim = domain.topology, domain.topology.dim
+    topology.create_entities(dim - 1)
+    topology.create_connectivity(dim - 1, dim)
+    links = topology.connectivity(dim - 1, dim)
+    first = links.offsets[:-1][np.diff(links.offsets) == 2]
+    return np.stack([links.array[first], links.array[first + 1]])
+
+
+def parts_of_graph(start: np.ndarray, column: np.ndarray, parts: int) -> np.ndarray:
+    """Return the part, 0 .. parts - 1, of each vertex of a graph, int array; parts have about as
+    many vertices and few edges between them. start, column : of its edges, each both ways, CSR."""
+    graph, none = dolfinx.graph, np.zeros(0, np.int32)
+    os.environ.setdefault("SCOTCH_PTHREAD_NUMBER", "1")  # its threads' race decides the parts
+    made = graph.adjacencylist if hasattr(graph, "adjacencylist") else graph.create_adjacencylist
+    edges = made(column.astype(np.int64), start.astype(np.int32))
+    given, divide = (
+        (MPI.COMM_SELF, parts, getattr(edges, "_cpp_object", edges)),
+        graph.partitioner(),
+    )
+    try:
+        found = divide(*given, False)
+    except TypeError:  # newer: with weights of vertices and edges
+        found = divide(*given, none, none, False)
+    return np.array(found.array)
 
 
 def cell_nodes(space: Any) -> np.ndarray:

@@ -45,6 +45,8 @@ def nodes_of_cells(body: Body) -> np.ndarray:
 
 def blocks_of_nodes(body: Body) -> np.ndarray:
     """Return the block of each node, int array; of nodes that several share one of them."""
+    if body.space is None:
+        return body.block
     found = np.zeros(len(body.x), dtype=np.int64)
     found[nodes_of_cells(body)] = body.block[:, None]
     return found

@@ -91,7 +91,8 @@ class Receivers(NamedTuple):
 class Constants(NamedTuple):
     """The constants of steps; what is absent is empty.
 
-    dt : s. mass : float array [n], kg. inverse : dt / (M (1 + alpha dt / 2)), s/kg; 0 of padding.
+    dt : s. mass : float array [n], kg, of the freedoms that steps move, which are the first of
+    all vectors. inverse : dt / (M (1 + alpha dt / 2)), s/kg; 0 of padding.
     keep : (1 - alpha dt / 2) / (1 + alpha dt / 2). alpha : of mass-proportional damping, 1/s.
     memory : of the rock. stiffness, damping : `product.Table`. jumps : B; points :
     `tractions.Points`. steady : float array [n], N. driven : int array [k], freedoms of forces with
@@ -211,7 +212,7 @@ def close(quiet, v, closure):
 
 @formula
 def dot(x, y):
-    """Return the product of two vectors, summed in four parts."""
+    """Return the product of two vectors, as far as the first goes, summed in four parts."""
     a, b, c, d, n = 0.0, 0.0, 0.0, 0.0, x.size // 4 * 4
     for i in range(0, n, 4):
         a += x[i] * y[i]
@@ -244,10 +245,10 @@ def leapfrog_for(flags: StepFlags) -> Callable:
         m, found = c.memory, 0.0
         if ledger and sampled:
             multiply(c.stiffness, s.u, w.force)
-            found -= 0.5 * m.relaxed * dot(s.u, w.force)
+            found -= 0.5 * m.relaxed * dot(w.force[: c.mass.size], s.u)
             for k in range(m.share.size):
                 multiply(c.stiffness, s.elongation[k], w.force)
-                found -= 0.5 * m.spring[k] * dot(s.elongation[k], w.force)
+                found -= 0.5 * m.spring[k] * dot(w.force[: c.mass.size], s.elongation[k])
         strain(m, s.u, s.elongation, w.strained)
         multiply(c.stiffness, w.strained, w.rock)
         for i in range(w.force.size):
@@ -265,7 +266,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
         else:
             multiply(c.stiffness, s.u, w.force)
             if ledger and sampled:
-                elastic = -0.5 * dot(s.u, w.force)
+                elastic = -0.5 * dot(w.force[: c.mass.size], s.u)
         kept = elastic if relaxing else 0.0
         if viscous:
             for i in range(s.u.size):
@@ -296,7 +297,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
     @formula
     def move(c, s, w, moved):
         """Advance the velocities by a step; moved : of fixed freedoms in it, m."""
-        for i in range(s.v.size):
+        for i in range(c.mass.size):
             s.v_before[i] = s.v[i]
             s.v[i] = c.keep * s.v[i] + c.inverse[i] * w.force[i]
         q, now = c.quiet, np.empty(dim)
@@ -326,12 +327,12 @@ def leapfrog_for(flags: StepFlags) -> Callable:
         """Enter the work of the forces over half a step of the velocities `way`."""
         half = 0.5 * c.dt
         if viscous:
-            s.sums[VISCOUS] -= half * dot(w.drag, way)
+            s.sums[VISCOUS] -= half * dot(w.drag[: c.mass.size], way)
         if relaxing:
-            s.sums[VISCOUS] -= half * dot(w.rock, way)
+            s.sums[VISCOUS] -= half * dot(w.rock[: c.mass.size], way)
         if c.alpha > 0.0:
             braked = 0.0
-            for i in range(way.size):
+            for i in range(c.mass.size):
                 braked += c.mass[i] * (s.v_before[i] + s.v[i]) * way[i]
             s.sums[VISCOUS] += half * 0.5 * c.alpha * braked
         absorbed, done = 0.0, 0.0
@@ -389,7 +390,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
                 record(c, s, w, out, n // stride)
                 if ledger:
                     kinetic = 0.0
-                    for i in range(s.v.size):
+                    for i in range(c.mass.size):
                         kinetic += 0.5 * c.mass[i] * s.v_before[i] * s.v[i]
                     fallen = dot(c.steady, s.u)
                     found = (
@@ -400,12 +401,12 @@ def leapfrog_for(flags: StepFlags) -> Callable:
                         out.energy[term, n // stride] = found[term]
             if ledger:
                 work(c, s, w, s.v, drive[n - first])
-            for i in range(s.u.size):
+            for i in range(c.mass.size):
                 s.u[i] += c.dt * s.v[i]
             if sprung:
                 close(c.quiet, s.v, s.closure)
             if relaxing:
-                relax(c.memory, s.v, s.elongation)
+                relax(c.memory, s.v[: c.mass.size], s.elongation)
         restore_denormals(setting)
 
     return steps

@@ -7,6 +7,7 @@ from jointwave.continuum.parallel import petsc as _  # noqa: F401  before dolfin
 root = logging.getLogger()
 handlers, level = list(root.handlers), root.level
 import dolfinx.fem.petsc  # noqa: E402
+import dolfinx.graph  # noqa: E402
 import dolfinx.jit  # noqa: E402
 from mpi4py import MPI  # noqa: E402
 

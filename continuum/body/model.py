@@ -70,6 +70,10 @@ class Body(NamedTuple):
     [freedoms], the diagonal, kg; None where there is the consistent one, [freedoms, freedoms], kg.
     stiffness : N/m, and damping, N s/m (None without) : [freedoms, freedoms]. joints : None where
     none is resolved. sides : by name.
+
+    A process's share of a body (`continuum.body.processes`) has the rows of its freedoms, which are
+    the first, and columns of those of others that these need; `block` is of its nodes, and there is
+    no mesh and no space.
     """
 
     mesh: Any

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from jointwave.cases.material.prestress import refuse_beyond_strength
 from jointwave.cases.run_memory import load_bytes, refuse_beyond_memory, waveform_bytes
@@ -34,7 +34,11 @@ class Plan(NamedTuple):
 
 
 def plan_of(
-    scene: AnyScene, model: str = "jointed", rock: Rock | None = None, dim: int | None = None
+    scene: AnyScene,
+    model: str = "jointed",
+    rock: Rock | None = None,
+    dim: int | None = None,
+    comm: Any = None,
 ) -> Plan:
     """Return the run of a scene; arguments and errors as of `continuum.body.run.simulate`."""
     refuse(scene, model, dim)
@@ -50,6 +54,8 @@ def plan_of(
         found = found._replace(body=found.body._replace(mass=scaled.mass))
         problem = problem_of(scene, found)
     critical = problem.critical_step() if problem.body.mass is not None else 0.0
+    if comm is not None:
+        critical = comm.bcast(critical)
     choice = choose(scene, problem, critical)
     if scaled is not None and choice.scheme == "explicit":
         log.warning(scaled.gained(critical))
@@ -60,4 +66,4 @@ def plan_of(
         "time.duration": load_bytes(scene, choice.time.steps),
     }
     refuse_beyond_memory(scene, parts)
-    return Plan(found, problem, choice, critical)
+    return Plan(found, problem._replace(comm=comm), choice, critical)

@@ -35,7 +35,7 @@ class Table(NamedTuple):
 
 class Product(NamedTuple):
     """kind : ROWS, HALF or SHARED. table : as its formula takes it. place : int array [freedoms],
-    where each freedom of the body is in vectors of `size`; others there are padding."""
+    where each freedom of the body is in vectors; others of the first `size` there are padding."""
 
     kind: str
     table: Table
@@ -53,7 +53,8 @@ def table_of(matrix: csr_matrix, dim: int) -> Table:
 def product_of(matrix: csr_matrix, dim: int, block: np.ndarray, x: np.ndarray) -> Product:
     """Return the product with a matrix [freedoms, freedoms], whose place and size all vectors take.
 
-    block : int array [nodes], of each. x : float array [nodes, d], m.
+    block : int array [nodes], of each. x : float array [nodes, d], m. Columns beyond the rows are
+    freedoms of other processes: they follow in vectors.
     """
     shared = shared_by_blocks(matrix, dim, block, x)
     if shared is not None:
@@ -84,6 +85,8 @@ def shared_by_blocks(
     own = csr_matrix(matrix[freedoms][:, freedoms])
     own.sum_duplicates()
     m = dim * nodes[0]
+    if own.nnz < matrix.nnz:  # of blocks that other processes have a part of
+        return None
     if np.diff(own.indptr).reshape(count, m).ptp(axis=0).any():
         return None
     column = own.indices.reshape(count, -1) - m * np.arange(count)[:, None]
@@ -192,7 +195,7 @@ def shared_for(dim: int) -> Callable[..., None]:
     def shared(table, x, product):
         start, column, value = table.start, table.column, table.value
         own, m = np.empty(LANES), start.size - 1
-        for first in range(0, product.size, m * LANES):
+        for first in range(0, product.size - m * LANES + 1, m * LANES):
             tile = x[first : first + m * LANES]
             for i in range(m):
                 for c in range(LANES):

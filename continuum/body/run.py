@@ -20,6 +20,7 @@ from jointwave.continuum.body.implicit import Implicit
 from jointwave.continuum.body.monitor import Monitor
 from jointwave.continuum.body.plan import plan_of
 from jointwave.continuum.body.problem import at_rest, in_time
+from jointwave.continuum.body.processes import SharedLeapfrog
 from jointwave.continuum.body.rock import Rock
 from jointwave.continuum.body.scheme import Choice
 from jointwave.continuum.body.snapshots import RockRecorder
@@ -40,6 +41,7 @@ def simulate(
     progress: Callable[[float], None] | None = None,
     keeper: Checkpointer | None = None,
     incident: IncidentField | None = None,
+    comm: Any = None,
 ) -> xr.Dataset:
     """Simulate a scene as deformable rock.
 
@@ -54,12 +56,14 @@ def simulate(
     progress : called with the finished fraction.
     keeper : of checkpoints, `numerics.time_loop`.
     incident : of the waves, as if the rock had no sides; absent: in rock without joints.
+    comm : mpi4py's communicator of processes that share the run: all call this alike, and all get
+        the whole result. keeper, progress : of each.
 
     Raises SceneError for what cannot be simulated; StoppedError, with the result so far, when the
     motion leaves its bounds.
     """
-    began = perf_counter()
-    found, still, choice, critical = plan_of(scene, model, rock, dim)
+    began, comm = perf_counter(), comm if comm is not None and comm.size > 1 else None
+    found, still, choice, critical = plan_of(scene, model, rock, dim, comm)
     time = choice.time
     problem, rest, sudden = at_rest(scene, in_time(scene, still, time, incident))
     steps = stepper(scene, problem, choice, rest, sudden)
@@ -90,7 +94,8 @@ def simulate(
                 "critical_dt": critical,
                 "steps": time.steps,
                 "degrees_of_freedom": len(problem.body.stiffness.indptr) - 1,
-                "bytes": steps.bytes,
+                "bytes": steps.bytes if comm is None else comm.allreduce(steps.bytes),
+                "processes": 1 if comm is None else comm.size,
                 **about,
                 **steps.attributes,
                 "seconds_setup": built - began,
@@ -134,7 +139,8 @@ def stepper(
     time, energy = choice.time, scene.record.energy
     steps: Leapfrog | Implicit
     if choice.scheme == "explicit":
-        steps = Leapfrog(problem, time.dt, time.samples, energy)
+        of = Leapfrog if problem.comm is None else SharedLeapfrog
+        steps = of(problem, time.dt, time.samples, energy)
         if sudden is not None:
             steps.drop(sudden)
     else:

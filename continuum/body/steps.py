@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -110,7 +110,8 @@ class Problem(NamedTuple):
     Pa/m, a number or an array. stress : float array [d, d], Pa, compression positive, that rock
     and joints bear at u = 0. alpha : of mass-proportional damping, 1/s. mechanisms : of the
     relaxation of rock, whose stiffness is then the unrelaxed one. steady : float array [freedoms],
-    N. Absent parts are None.
+    N. comm : mpi4py's, of processes that share the run. counted : points whose energies a process
+    counts, the first ones; None of all. Absent parts are None.
     """
 
     body: Body
@@ -124,6 +125,8 @@ class Problem(NamedTuple):
     quiet: Dashpots | None = None
     forces: Forces | None = None
     held: Held | None = None
+    comm: Any = None
+    counted: int | None = None
 
     @property
     def parts(self) -> LawFlags | None:
@@ -178,7 +181,7 @@ class Problem(NamedTuple):
         joints = self.body.joints
         if self.law is None or joints is None:
             none = np.zeros(0)
-            return Points(none, none.astype(np.int64), np.zeros((0, 0)), none)
+            return Points(none, none.astype(np.int64), np.zeros((0, 0)), none, 0)
         table = law_table(self.law)
         column = joints.column if table.shape[1] > 1 else np.zeros(len(joints.weight), np.int64)
         carried = self.carried()
@@ -187,6 +190,7 @@ class Problem(NamedTuple):
             column.astype(np.int64),
             table,
             np.zeros(0) if carried is None else carried,
+            len(joints.weight) if self.counted is None else self.counted,
         )
 
     def carried(self) -> np.ndarray | None:
@@ -209,13 +213,15 @@ class Leapfrog:
     Attributes
     ----------
     state : `explicit.State`, in the places of `product`. samples : what is recorded. dt : s.
+    halo : freedoms of other processes, which follow in vectors.
     """
 
     work_of_a_step = 1
 
     def __init__(self, problem: Problem, dt: float, samples: int, energy: bool = True) -> None:
         self.problem, self.dt, body = problem, dt, problem.body
-        self.product = product_for_steps(body)
+        self.product, (rows, columns) = product_for_steps(body), body.stiffness.shape
+        self.halo = columns - rows
         self.samples = samples_for(problem.readings, samples, energy)
         self.constants = self._constants()
         parts, damped = problem.parts, body.damping is not None
@@ -223,7 +229,7 @@ class Leapfrog:
         springs, kind = self.constants.quiet.stiffness, self.product.kind
         rock = damped, many > 0, energy, len(springs) > 0
         self.flags = StepFlags(body.components, kind, parts, stressed, *rock)
-        n, jumps = self.product.size, self.constants.jumps.start.size - 1
+        n, jumps = self.product.size + self.halo, self.constants.jumps.start.size - 1
         dashpots, limited = (parts.dashpots, parts.limited) if parts else (False, False)
         viscous = n if damped or dashpots else 0
         relaxing = n if many else 0
@@ -240,7 +246,17 @@ class Leapfrog:
 
     def take(self, first: int, last: int, stride: int) -> None:
         """Take the steps first .. last - 1, with a sample at each that `stride` divides."""
-        kernel, (forces, held) = leapfrog_for(self.flags), self.problem[-2:]
+        kernel = leapfrog_for(self.flags)
+        for begin, drive, moved in self._driven(self.problem, first, last):
+            span = begin, begin + len(moved), stride
+            kernel(self.constants, self.state, self.work, self.samples, drive, moved, span)
+
+    def _driven(
+        self, problem: Problem, first: int, last: int
+    ) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
+        """Yield the first of some steps, and the forces and the motion in each that have a history,
+        until all are through."""
+        forces, held = problem.forces, problem.held
         size = max(1, BUFFER // max(1, self.constants.driven.size))
         for begin in range(first, max(last, first + 1), size):
             end = min(begin + size, last)
@@ -249,29 +265,36 @@ class Leapfrog:
                 drive = np.ascontiguousarray(forces.at(begin, end))
             if held is not None and held.moved is not None:
                 moved = np.ascontiguousarray(held.moved(np.arange(begin, end)))
-            span = begin, end, stride
-            kernel(self.constants, self.state, self.work, self.samples, drive, moved, span)
+            yield begin, drive, moved
+
+    def whole(self, vector: np.ndarray) -> np.ndarray:
+        """Return the values of the body's freedoms in a vector."""
+        return vector[self.product.place]
+
+    def place(self, values: np.ndarray, vector: np.ndarray) -> None:
+        """Put values of the body's freedoms into a vector."""
+        vector[self.product.place] = values
 
     @property
     def u(self) -> np.ndarray:
         """Displacement of the body's freedoms, m."""
-        return self.state.u[self.product.place]
+        return self.whole(self.state.u)
 
     @property
     def v(self) -> np.ndarray:
         """Velocity of the body's freedoms half a step before, m/s."""
-        return self.state.v[self.product.place]
+        return self.whole(self.state.v)
 
     @property
     def last(self) -> tuple[np.ndarray, np.ndarray]:
         """Displacement, m, and velocity, m/s, at the last step."""
-        before = self.state.v_before[self.product.place]
+        before = self.whole(self.state.v_before)
         return self.u - self.dt * self.v, (before + self.v) / 2
 
     @property
     def strained(self) -> np.ndarray:
         """Displacement by which elastic rock would have the same stress at the last step, m."""
-        return self.work.strained[self.product.place] if self.flags.relaxing else self.last[0]
+        return self.whole(self.work.strained) if self.flags.relaxing else self.last[0]
 
     @property
     def parts(self) -> tuple:
@@ -290,7 +313,7 @@ class Leapfrog:
 
     def start(self, u: np.ndarray, history: np.ndarray | None = None) -> None:
         """Begin at rest at displacements u (m), with a history of points."""
-        self.state.u[self.product.place] = u
+        self.place(u, self.state.u)
         if self.flags.relaxing:
             stored = self.constants.memory.relaxed * (u @ (self.problem.body.stiffness @ u)) / 2
             self.state.sums[VISCOUS] = stored
@@ -299,7 +322,8 @@ class Leapfrog:
 
     def throw(self, v: np.ndarray) -> None:
         """Begin with velocities half a step before the first, m/s."""
-        self.state.v[self.product.place] = self.state.v_before[self.product.place] = v
+        self.place(v, self.state.v)
+        self.place(v, self.state.v_before)
 
     def drop(self, force: np.ndarray) -> None:
         """Begin at rest under forces (N) that act from t = 0 on, in the middle of a step."""
@@ -307,8 +331,8 @@ class Leapfrog:
         assert mass is not None
         fall = 0.5 * self.dt * force / mass
         fall[self.problem.fixed] = 0.0
-        self.state.v[self.product.place] = -fall
-        self.state.v_before[self.product.place] = -3 * fall
+        self.place(-fall, self.state.v)
+        self.place(-3 * fall, self.state.v_before)
 
     def _constants(self) -> Constants:
         problem, place, dt = self.problem, self.product.place, self.dt
@@ -329,7 +353,7 @@ class Leapfrog:
             memory=memory_of(problem.mechanisms, dt),
             stiffness=self.product.table,
             damping=damping,
-            jumps=sparse(nothing if body.joints is None else body.joints.matrix, place),
+            jumps=sparse(nothing if body.joints is None else body.joints.matrix, self.columns),
             points=problem.points(),
             steady=np.zeros(0) if problem.steady is None else self._placed(problem.steady),
             driven=none if forces is None else place[forces.freedom],
@@ -338,6 +362,11 @@ class Leapfrog:
             direction=np.zeros(0) if held is None else held.direction,
             receivers=receivers(problem.readings, place),
         )
+
+    @property
+    def columns(self) -> np.ndarray:
+        """The place of each column of the body's matrices."""
+        return np.append(self.product.place, self.product.size + np.arange(self.halo))
 
     def _placed(self, values: np.ndarray) -> np.ndarray:
         found = zeros(self.product.size)

@@ -27,13 +27,15 @@ class Points(NamedTuple):
 
     weight : float array [points], m^(d-1). column : int array [points], of the law's table.
     table : `joints.law.table_of`. carried : float array [points * d], tractions (Pa) that points
-    and the rock between them carry at u = 0; [0] without a prestress.
+    and the rock between them carry at u = 0; [0] without a prestress. counted : points whose
+    energies count, the first ones; other processes count those of the others.
     """
 
     weight: np.ndarray
     column: np.ndarray
     table: np.ndarray
     carried: np.ndarray
+    counted: int
 
 
 @formula
@@ -103,11 +105,12 @@ def tractions_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
         history, step, now = History(0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
         for q in range(points.weight.size):
             law, w = law_of(points.table, points.column[q]), points.weight[q]
+            counted = w if q < points.counted else 0.0
             n, x, z = components(dim, jump, q)
             p_n, p_x, p_z = 0.0, 0.0, 0.0
             if stressed:
                 p_n, p_x, p_z = components(dim, points.carried, q)
-                stored += w * (p_n * n + p_x * x + p_z * z)
+                stored += counted * (p_n * n + p_x * x + p_z * z)
                 n, x, z = strained(law, (n, x, z), (p_n, p_x, p_z))
             if limited:
                 step = components(dim, moved, q)
@@ -127,9 +130,9 @@ def tractions_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
                 n, x, z = n - found.drag_n, x - found.drag_x, z - found.drag_z
                 put(dim, drag, q, w * found.drag_n, w * found.drag_x, w * found.drag_z)
             put(dim, force, q, w * n, w * x, w * z)
-            slid += w * found.slid
-            stored += w * found.stored
-            spent += w * found.spent
+            slid += counted * found.slid
+            stored += counted * found.stored
+            spent += counted * found.spent
         return slid, stored, spent
 
     return tractions
