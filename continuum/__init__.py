@@ -4,7 +4,17 @@ from typing import Any
 
 from jointwave.continuum.body.validity import applies
 
-__all__ = ["applies", "simulate"]
+#: What describes rock of a script; dolfinx is imported when it is first asked for.
+ROCK = ("Forms", "anisotropic", "elastic", "isotropic")
+__all__ = ["applies", "simulate", *ROCK]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in ROCK:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from jointwave.continuum.body import rock
+
+    return getattr(rock, name)
 
 
 def by_body(scene: Any) -> bool:

@@ -2,6 +2,7 @@
 
 import inspect
 import os
+from collections.abc import Callable
 from typing import Any
 
 import basix
@@ -79,6 +80,20 @@ def cell_constants(domain: Any, values: np.ndarray) -> Any:
     found = fem.Function(_space(domain, "DG", 0, values.shape[1]), dtype=np.float64)
     found.x.array[:] = values.ravel()
     return found
+
+
+def constant(domain: Any, shape: tuple[int, ...], value: float = 0.0) -> Any:
+    """Return a constant of UFL on a mesh, whose `value` can be changed."""
+    return fem.Constant(domain, np.full(shape, value))
+
+
+def cell_sums(domain: Any, form: ufl.Form) -> Callable[[], np.ndarray]:
+    """Return a function that integrates a form without arguments over each cell, float array
+    [cells], with the constants that it has then."""
+    one = ufl.TestFunction(_space(domain, "DG", 0, 1))[0]
+    each = [part.reconstruct(integrand=part.integrand() * one) for part in form.integrals()]
+    made = compiled(lambda: fem.form(ufl.Form(each), dtype=np.float64))
+    return lambda: np.array(fem.assemble_vector(made).array)
 
 
 def _space(domain: Any, family: str, order: int, size: int) -> Any:

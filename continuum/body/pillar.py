@@ -73,8 +73,7 @@ def readings_of(scene: Scene, found: SceneBody) -> Readings:
     """Return how a pillar's receivers read its body: motion, then rotation; stress over sections,
     that of rock by itself and that of joints among tractions."""
     body, area = found.body, scene.pillar.area / extent_of(scene, found.body)
-    which = found.blocks.body.region[body.block]
-    force = sections(body, found.materials, which, scene.record.stress)
+    force = sections(body, found.materials, found.of_cell, scene.record.stress)
     constant = np.zeros(force.elastic.shape[0])
     if scene.prestress is not None:
         constant[:: body.components] = scene.prestress.normal

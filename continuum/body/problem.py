@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from jointwave.cases.incident import IncidentField
@@ -16,9 +18,16 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.body import pillar
 from jointwave.continuum.body.ends import bearing_ends
 from jointwave.continuum.body.loads import loads_of, released, weight_of
+from jointwave.continuum.body.model import Facets
+from jointwave.continuum.body.own_rock import impedances_along
 from jointwave.continuum.body.receivers import readings_of
 from jointwave.continuum.body.scene import SceneBody
-from jointwave.continuum.body.sides import bearing_sides, held_sides, quiet_sides
+from jointwave.continuum.body.sides import (
+    bearing_sides,
+    cells_behind,
+    held_sides,
+    quiet_sides,
+)
 from jointwave.continuum.body.static import Rest, elastic_rest, holding, settled
 from jointwave.continuum.body.steps import Problem
 from jointwave.joints.law import Law, law, stiffest
@@ -53,13 +62,14 @@ def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
         return pillar.problem_of(scene, found)
     body, own = found.body, law_of(found)
     stress = None if scene.prestress is None else scene.prestress.tensor
-    region = found.blocks.body.region[body.block]
-    moduli, dim = np.array([one.stiffness for one in found.materials])[region], body.components
+    moduli, lag = (
+        np.array([getattr(one, name) for one in found.materials])[found.of_cell]
+        for name in ("stiffness", "time_constant")
+    )
     points, joints = (
-        np.array(places, dtype=float).reshape(-1, dim)
+        np.array(places, dtype=float).reshape(-1, body.components)
         for places in (scene.record.points, scene.record.joints)
     )
-    lag = found.materials[-1].time_constant
     steady = [one for one in (weight_of(scene, body), released(scene, body)) if one is not None]
     return Problem(
         body,
@@ -70,9 +80,22 @@ def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
         alpha=scene.damping.alpha or 0.0,
         mechanisms=mechanisms_of(scene, found.model),
         steady=np.sum(steady, axis=0) if steady else None,
-        quiet=quiet_sides(scene, body),
+        quiet=quiet_sides(scene, body, own_impedances(found)),
         held=held_sides(scene, body),
     )
+
+
+def own_impedances(found: SceneBody) -> Callable[[Facets], np.ndarray] | None:
+    """Return the function that gives the impedances of facets, tensors [n, d, d], Pa s/m, of rock
+    of a script; None of the scene's own."""
+    if not found.scripted:
+        return None
+
+    def impedances(facets: Facets) -> np.ndarray:
+        which = found.of_cell[cells_behind(found.body, facets)]
+        return impedances_along([found.materials[k] for k in which], facets.normal)
+
+    return impedances
 
 
 def in_time(

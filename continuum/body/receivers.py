@@ -37,12 +37,12 @@ def readings_of(
     points: np.ndarray,
     joints: np.ndarray,
     stress: np.ndarray | None = None,
-    lag: float = 0.0,
+    lag: np.ndarray | None = None,
 ) -> Readings:
     """Return how receivers at points [m, d] and on joints near places [r, d] read a body.
 
     moduli : of each cell in Voigt's form [cells, n, n], Pa. stress : [d, d], Pa, compression
-    positive, at u = 0. lag : time constant of the rock's dashpots, s.
+    positive, at u = 0. lag : time constant of the rock's dashpots in each cell [cells], s.
     """
     at, dim = places_in(body, points), body.components
     share = shares_of_pieces(at.point, pieces_of(body)[at.cell])
@@ -56,15 +56,15 @@ def readings_of(
         if stress is not None:
             frame = body.joints.frame
             carried = np.einsum("qac,cd,qd->qa", frame, stress, frame[:, 0]).ravel()
-    recovered = _recovered(body, moduli, points, at, share)
+    viscous = None if lag is None or not lag.any() else lag[:, None, None] * moduli
     return Readings(
         motion=motion_at(body, at, share, len(points)),
-        stress=recovered,
+        stress=_recovered(body, moduli, points, at, share),
         constant=constant.ravel(),
         traction=csr_matrix(kron(read @ _per_area(body.joints), identity(dim))),
         carried=kron(read, identity(dim)) @ carried,
         jump=csr_matrix(kron(read, identity(dim))),
-        viscous=csr_matrix(lag * recovered) if lag else None,
+        viscous=None if viscous is None else _recovered(body, viscous, points, at, share),
     )
 
 

@@ -26,8 +26,9 @@ from jointwave.continuum.body.conforming import Conforming
 from jointwave.continuum.body.domain import marks_of
 from jointwave.continuum.body.given import ENDS, mesh_of_file
 from jointwave.continuum.body.model import Body
+from jointwave.continuum.body.own_rock import ChosenRock
 from jointwave.continuum.body.periodic import facing, fitted, matching_facets, matching_vertices
-from jointwave.continuum.body.rock import Material, Rock, rock_of_cells
+from jointwave.continuum.body.rock import Material, Rock
 from jointwave.continuum.body.simplices import are_simplices, own_cells, simplex_mesh
 from jointwave.continuum.body.size import element_size, elements_along, refuse_large_mesh
 from jointwave.continuum.body.validity import dimension_of
@@ -35,13 +36,16 @@ from jointwave.continuum.joints import resolved_joints
 
 
 class SceneBody(NamedTuple):
-    """A scene as a body: its resolved joint sets, blocks, contacts across periodic sides, the rock
-    of each region of `blocks.body`, its body, and the model of its joints."""
+    """A scene as a body: its resolved joint sets, blocks, contacts across periodic sides, its
+    materials, which of them each cell has, int array [cells], whether a script gave its rock, its
+    body, and the model of its joints."""
 
     scene: AnyScene
     blocks: Blocks
     across: list[Across]
     materials: list[Material]
+    of_cell: np.ndarray
+    scripted: bool
     body: Body
     model: str = "jointed"
 
@@ -85,10 +89,10 @@ def _rock_mass(scene: RockMass, model: str, rock: Rock | None, implicit: bool) -
     except GeometryError as error:
         raise SceneError(scene.where, error.key, None, str(error)) from None
     own = materials.rock_mass(scene, smeared, model)
-    chosen = _chosen(scene, rock, own, blocks.body)
+    chosen = ChosenRock(scene, rock, own, blocks.body.region)
     whole = implicit and numerics.order == 2 and mesh.kind in SIMPLEX
     body = build_body(mesh, marks, numerics.order, chosen, dim, whole, faces)
-    return SceneBody(resolved, blocks, across, own, body, model)
+    return SceneBody(resolved, blocks, across, *chosen.found, body, model)
 
 
 def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) -> Conforming:
@@ -127,14 +131,17 @@ def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool, dim: in
     joint = np.isin(number, resolved_joints(p, model, components > 1, tuple(layers)).number)
     mesh = _mesh_of_pillar(scene, blocks, np.append(elements_along(scene, model), ones), components)
     own = materials.pillar(scene, model, components, dim)
-    chosen, consistent = _chosen(scene, rock, own, blocks.body), numerics.mass == "consistent"
+    chosen, consistent = (
+        ChosenRock(scene, rock, own, blocks.body.region),
+        numerics.mass == "consistent",
+    )
     marks = marks_of(blocks, joint, ENDS)
     flat = scene.motion.rotation == "none" and dim > 1
     consistent &= implicit
     body = build_body(mesh, marks, numerics.order, chosen, components, consistent, flat=flat)
     if body.joints is not None:
         body = body._replace(joints=body.joints._replace(column=number[body.joints.column]))
-    return SceneBody(scene, blocks, [], own, body, model)
+    return SceneBody(scene, blocks, [], *chosen.found, body, model)
 
 
 def _pillar_of_file(
@@ -145,10 +152,10 @@ def _pillar_of_file(
     blocks, mesh, marks = mesh_of_file(scene, resolved.number, dim)
     consistent = numerics.mass == "consistent" and implicit
     own = materials.pillar(scene, model, dim, dim)
-    chosen = _chosen(scene, rock, own, blocks.body)
+    chosen = ChosenRock(scene, rock, own, blocks.body.region)
     flat = scene.motion.rotation == "none"
     body = build_body(mesh, marks, numerics.order, chosen, dim, consistent, flat=flat)
-    return SceneBody(scene, blocks, [], own, body, model)
+    return SceneBody(scene, blocks, [], *chosen.found, body, model)
 
 
 def _mesh_of_pillar(scene: Scene, blocks: Blocks, each: np.ndarray, components: int) -> Conforming:
@@ -181,10 +188,3 @@ def _along(body: Complex, corners: np.ndarray, many: np.ndarray, across: int) ->
     arms = body.vertices[corners[:, 1 << np.arange(body.dim)]] - body.vertices[corners[:, :1]]
     lengthwise = np.abs(arms).argmax(axis=2) == body.dim // 2
     return np.where(lengthwise, many[:, None], across)
-
-
-def _chosen(scene: AnyScene, rock: Rock | None, own: list[Material], body: Complex):
-    """Return the rock of a script, or that of the scene, as a function of a space and blocks."""
-    if rock is not None:
-        return lambda space, block: rock(scene, space)
-    return lambda space, block: rock_of_cells(space, own, body.region[block])

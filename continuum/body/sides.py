@@ -5,6 +5,8 @@ Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969) at the nodes, of the effective med
 sets that have a spacing.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.sparse import csr_matrix
 
@@ -44,13 +46,18 @@ def facets_on(body: Body, names: list[str]) -> Facets:
     )
 
 
-def inside(body: Body, facets: Facets) -> np.ndarray:
-    """Return places just inside the rock of the nodes of facets [n, d], m."""
-    centre = compat.cell_corners(body.mesh).mean(axis=1)
+def cells_behind(body: Body, facets: Facets) -> np.ndarray:
+    """Return a cell at each node of facets, int array [n]."""
     nodes = nodes_of_cells(body)
     of_node = np.empty(len(body.x), np.int64)
     of_node[nodes] = np.arange(len(nodes))[:, None]
-    return facets.place + INSIDE * (centre[of_node[facets.node]] - facets.place)
+    return of_node[facets.node]
+
+
+def inside(body: Body, facets: Facets) -> np.ndarray:
+    """Return places just inside the rock of the nodes of facets [n, d], m."""
+    centre = compat.cell_corners(body.mesh).mean(axis=1)
+    return facets.place + INSIDE * (centre[cells_behind(body, facets)] - facets.place)
 
 
 def impedances_of(scene: RockMass, body: Body, facets: Facets) -> np.ndarray:
@@ -66,12 +73,18 @@ def along_and_across(normal: np.ndarray, values: np.ndarray) -> np.ndarray:
     return values[:, 0, None, None] * along + values[:, 1, None, None] * across
 
 
-def quiet_sides(scene: RockMass, body: Body) -> Dashpots | None:
-    """Return the dashpots of the quiet sides; None without any."""
+def quiet_sides(
+    scene: RockMass, body: Body, impedances: Callable[[Facets], np.ndarray] | None = None
+) -> Dashpots | None:
+    """Return the dashpots of the quiet sides, None without any; impedances : of rock that is not
+    the scene's, tensors [n, d, d], Pa s/m."""
     facets = facets_on(body, scene.boundaries.sides("quiet"))
     if not len(facets.node):
         return None
-    tensors = along_and_across(facets.normal, impedances_of(scene, body, facets))
+    if impedances is None:
+        tensors = along_and_across(facets.normal, impedances_of(scene, body, facets))
+    else:
+        tensors = impedances(facets)
     node, group = np.unique(facets.node, return_inverse=True)
     viscosity = np.zeros((len(node), body.components, body.components))
     np.add.at(viscosity, group, facets.weight[:, None, None] * tensors)

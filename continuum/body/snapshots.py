@@ -49,9 +49,8 @@ class StressOfCells:
         each = np.repeat(corners, len(parts), axis=0)
         shape = len(corners), len(parts), *2 * (corners.shape[2],)
         self.inverse = np.linalg.inv(jacobians(kind, each, at)).reshape(shape)
-        region = found.blocks.body.region[body.block]
-        self.moduli = -moduli_of(found)[region]
-        lag = np.array([one.time_constant for one in found.materials])[region]
+        self.moduli = -moduli_of(found)[found.of_cell]
+        lag = np.array([one.time_constant for one in found.materials])[found.of_cell]
         self.lag = lag[:, None, None] if lag.any() else None
         self.constant = prestress_of(found.scene)
 
