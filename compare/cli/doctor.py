@@ -21,15 +21,16 @@ from jointwave.compare.solvers.continuum import INSTALL
 from jointwave.numerics import jit
 
 #: The self-checks: pairs of an engine and its exact solution, with the library that each needs.
-PAIRS = {"dem ~ lattice": "numba", "continuum-jointed ~ jointed-bar": "basix"}
+PAIRS = {"dem ~ lattice": "numba", "continuum-jointed ~ jointed-bar": "dolfinx"}
 LIBRARIES = "numpy", "scipy", "numba", "pandas", "xarray", "matplotlib", "obspy"
+COMPILER = "C compiler"
 #: The parts that are looked for, and how to get each.
 PARTS = {name: f"pip install {name}" for name in LIBRARIES} | {
-    "basix": f"for the continuum: {INSTALL}",
+    "dolfinx": f"for the continuum: {INSTALL}",
+    COMPILER: "for dolfinx's forms: apt install gcc python3-dev, or conda install c-compiler",
     "gmsh": f"for triangles and tetrahedra: {GMSH}",
     "mpi4py.MPI": "for mpiexec: comes with dolfinx; or pip install mpi4py",
     "petsc4py.PETSc": "for implicit steps and static states: comes with dolfinx",
-    "dolfinx": "to compare with plain dolfinx: apt install python3-dolfinx",
     "pyvista": "for jointwave view: pip install 'jointwave[view]'",
     "imageio_ffmpeg": "for jointwave animate: pip install imageio-ffmpeg",
     "mpiexec": "apt install openmpi-bin; as root set OMPI_ALLOW_RUN_AS_ROOT=1 and "
@@ -41,6 +42,18 @@ from contextlib import suppress
 with suppress(ImportError): import dolfinx_solver
 import {0}
 print({1}.__version__)
+"""
+#: Compiles a module as dolfinx compiles its forms, and prints the compiler.
+COMPILE = """
+import os, shlex, subprocess, sysconfig, tempfile
+import cffi
+source = cffi.FFI()
+source.cdef("int one(void);")
+source.set_source("one", "int one(void) { return 1; }")
+with tempfile.TemporaryDirectory() as folder:
+    source.compile(tmpdir=folder)
+command = shlex.split(os.environ.get("CC") or sysconfig.get_config_var("CC"))[0]
+print(subprocess.check_output([command, "--version"], text=True).splitlines()[0])
 """
 SEEN = "from mpi4py.MPI import COMM_WORLD as c; c.rank or print(c.size, 'processes in one job')"
 
@@ -65,7 +78,8 @@ def examine() -> Facts:
 
 def look(part: str) -> Facts:
     """Return whether a part is found, missing or broken, and what to do about it."""
-    program = SEEN if part == "mpiexec" else IMPORT.format(part, part.partition(".")[0])
+    special = {"mpiexec": SEEN, COMPILER: COMPILE}
+    program = special.get(part) or IMPORT.format(part, part.partition(".")[0])
     launcher = ["mpiexec", "-n", str(min(2, os.cpu_count() or 1))] if part == "mpiexec" else []
     facts = {"part": part, "state": "broken", "hint": PARTS[part]}
     command = [*launcher, sys.executable, "-c", program]

@@ -21,7 +21,7 @@ INSTALL = 'pip install "jointwave[continuum]" (Linux, Python 3.12), or dolfinx b
 
 
 def applies(scene: Scene, model: str) -> Answer:
-    """Return whether basix is there and the model holds for the scene."""
+    """Return whether dolfinx is there and the model holds for the scene."""
     try:
         from jointwave.continuum import applies as reason_against
     except ImportError as error:
@@ -81,10 +81,10 @@ def _planned(scene: Any, model: str) -> Prepared:
 
 
 def libraries() -> dict[str, str]:
-    """Return the version of basix."""
-    from jointwave.continuum.space import basix_versions
+    """Return the version of dolfinx."""
+    from jointwave.continuum.body.fenicsx import dolfinx
 
-    return {"basix": basix_versions.VERSION}
+    return {"dolfinx": dolfinx.__version__}
 
 
 def _of(model: str, **about: Any) -> Solver:

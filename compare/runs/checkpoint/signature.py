@@ -37,7 +37,7 @@ def signature(scene: AnyScene, name: str, processes: int) -> Signature:
         "engine": name,
         PROCESSES: str(processes),
         "program": program(),
-        "version of numpy, numba or basix": json.dumps(found | solver(name).libraries()),
+        "version of numpy, numba or dolfinx": json.dumps(found | solver(name).libraries()),
     }
 
 

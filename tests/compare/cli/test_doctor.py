@@ -50,26 +50,36 @@ def test_what_breaks_is_a_line_and_fails_the_check_that_needs_it_alone(broken, j
     the blocks are right."""
     broken("obspy", "raise RuntimeError('first line\\nsecond line')")
     broken("gmsh", "import os; os.abort()")
-    broken("basix", "raise ImportError('libbasix.so: cannot open shared object file')")
+    broken("dolfinx", "raise ImportError('libdolfinx.so: cannot open shared object file')")
     facts = json.loads(jointwave("doctor", "--json", code=1).out)
     blocks, rock = facts["self_check"]
     assert not facts["well"] and blocks["holds"] and not rock["holds"]
-    assert rock["misfit"] is None and "libbasix.so" in rock["reason"]
+    assert rock["misfit"] is None and "libdolfinx.so" in rock["reason"]
     lines = {part["part"]: part for part in facts["parts"]}
-    assert {lines[name]["state"] for name in ("obspy", "gmsh", "basix")} == {"broken"}
-    assert "exit code -6" in lines["gmsh"]["found"] and "apt" in lines["basix"]["hint"]
+    assert {lines[name]["state"] for name in ("obspy", "gmsh", "dolfinx")} == {"broken"}
+    assert "exit code -6" in lines["gmsh"]["found"] and "apt" in lines["dolfinx"]["hint"]
     assert lines["numpy"]["state"] == "found"
 
 
 def test_rigid_blocks_alone_are_well(monkeypatch):
     """Without FEniCSx the table says how to get it, and its engine is not checked."""
-    monkeypatch.setattr(doctor, "PARTS", {"numba": "", "no_basix_here": "pip install it"})
-    monkeypatch.setattr(doctor, "PAIRS", {BLOCKS: "numba", ROCK: "no_basix_here"})
+    monkeypatch.setattr(doctor, "PARTS", {"numba": "", "no_dolfinx_here": "pip install it"})
+    monkeypatch.setattr(doctor, "PAIRS", {BLOCKS: "numba", ROCK: "no_dolfinx_here"})
     found = doctor.examine()
     (one,), missing = found["self_check"], found["parts"][1]
     assert one["pair"] == BLOCKS and one["holds"] and found["well"]
     assert (missing["state"], missing["hint"]) == ("missing", "pip install it")
-    assert missing["found"] == "No module named 'no_basix_here'"
+    assert missing["found"] == "No module named 'no_dolfinx_here'"
+
+
+def test_a_compiler_is_named_and_one_that_fails_too(monkeypatch):
+    """dolfinx needs it with Python's headers: a module is compiled as forms are."""
+    found = look("C compiler")
+    assert found["state"] == "found" and "cc" in found["found"].lower()
+    monkeypatch.setenv("CC", "no-compiler-here")
+    part = look("C compiler")
+    assert part["state"] == "broken" and "no-compiler-here" in part["found"]
+    assert "gcc" in part["hint"]
 
 
 def test_no_launcher_and_one_that_starts_nothing(tmp_path, monkeypatch):
@@ -84,7 +94,7 @@ def test_no_launcher_and_one_that_starts_nothing(tmp_path, monkeypatch):
 
 def test_it_is_shown_in_words(capsys):
     """Every part with its hint, and the verdict with its numbers or its reason."""
-    part = {"part": "basix", "state": "broken", "found": "it broke", "hint": "apt install it"}
+    part = {"part": "dolfinx", "state": "broken", "found": "it broke", "hint": "apt install it"}
     wrong = check(ROCK, part)
     assert isnan(wrong["misfit"]) and not wrong["holds"]
     right = {"pair": "a ~ b", "misfit": 1e-3, "bound": 2e-3, "reason": "", "holds": True}
@@ -93,4 +103,4 @@ def test_it_is_shown_in_words(capsys):
     assert "it broke" in said and "apt install it" in said
     lines = [" ".join(line.split()) for line in said.splitlines()]
     assert "a ~ b 0.001 0.002 yes" in lines and "well: no" in lines
-    assert f"{ROCK} – 0.0003 basix: it broke no" in lines
+    assert f"{ROCK} – 0.0003 dolfinx: it broke no" in lines
