@@ -163,7 +163,11 @@ def _mesh_of_pillar(scene: Scene, blocks: Blocks, each: np.ndarray, components: 
     body, numerics, many = blocks.body, scene.numerics.continuum, each[blocks.body.region]
     across, faces = numerics.elements_across, body.dim - 1
     cells = float(many.sum()) * across**faces
-    refuse_large_mesh(scene, blocks, (blocks.volume.sum() / cells) ** (1 / body.dim), components)
+    counts = {"elements_per_block": float(many.mean()), "elements_across": float(across**faces)}
+    most = max(counts, key=lambda name: counts[name])
+    key = f"numerics.continuum.{most}" if counts[most] > 1 else "pillar.block"
+    size = (blocks.volume.sum() / cells) ** (1 / body.dim)
+    refuse_large_mesh(scene, blocks, size, components, key)
     if numerics.cell == "simplex" and faces:
         _refuse_order(scene)
         longest = blocks.volume / scene.pillar.side**faces / many

@@ -53,15 +53,21 @@ def resolved_period(scene: AnyScene) -> float:
     return shortest_period(scene.pulses) or scene.time.duration / 10
 
 
-def refuse_large_mesh(scene: AnyScene, blocks: Blocks, size: float, components: int) -> None:
-    """Raise SceneError where elements of this size (m) would not fit in memory."""
+def refuse_large_mesh(
+    scene: AnyScene,
+    blocks: Blocks,
+    size: float,
+    components: int,
+    key: str = "numerics.continuum.size",
+) -> None:
+    """Raise SceneError where elements of this size (m), which a key decides, would not fit in
+    memory."""
     order, dim = scene.numerics.continuum.order, blocks.body.dim
     surface = float(2 * blocks.contacts.area.sum() + blocks.boundary.area.sum()) / 2
     cells = float(blocks.volume.sum()) / size**dim + surface / size ** (dim - 1) + blocks.count
     nodes = cells * (order + 0.5) ** dim
-    key = "size" if isinstance(scene, RockMass) else "elements_per_block"
     parts = {
-        f"numerics.continuum.{key}": body_bytes(nodes, components, order, dim),
+        key: body_bytes(nodes, components, order, dim),
         "record.fields": snapshot_bytes(scene, nodes),
     }
     refuse_beyond_memory(scene, parts)
