@@ -12,14 +12,19 @@ from jointwave.continuum.body.model import Body
 from jointwave.continuum.body.product import LANES, SHARED
 from jointwave.continuum.body.steps import product_for_steps
 
+SAME = 1e-9  # of the domain: by how much places of a node on two processes may differ
+
 
 def ranks_of_nodes(body: Body, comm: Any) -> np.ndarray:
     """Return the process of each node, int array [nodes], the same on all processes of mpi4py's
     communicator: the lowest of those that its cells are given to.
 
-    Raises SceneError where a process would have none.
+    Raises SceneError where a process would have none, or has another mesh.
     """
-    found = None
+    found, x = None, comm.bcast(body.x)
+    same = x.shape == body.x.shape and np.allclose(x, body.x, 0.0, SAME * np.ptp(x))
+    if not all(comm.allgather(same)):
+        raise SceneError("mpiexec", "-n", comm.size, "has meshed the scene in different ways")
     if comm.rank == 0:
         found = np.full(len(body.x), comm.size)
         nodes, rank = nodes_of_cells(body), ranks_of_cells(body, comm.size)

@@ -2,10 +2,71 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 
 import pytest
+
+#: Runs commands in turn in the same processes; after each, the first says how it has ended.
+IN_TURN = """
+import json, sys
+from mpi4py import MPI
+from jointwave.compare.cli import program
+
+ours = sys.stdout, sys.stderr
+for arguments in json.loads(sys.argv[1]):
+    sys.stdout, sys.stderr = ours
+    sys.argv = ["jointwave", *arguments]
+    try:
+        program.main()
+    except SystemExit as end:
+        code = end.code
+    MPI.COMM_WORLD.Barrier()
+    if MPI.COMM_WORLD.rank == 0:
+        for stream in ours:
+            print("ended", code, file=stream, flush=True)
+"""
+
+
+@pytest.fixture(scope="session")
+def under_mpi(mpiexec):
+    """Return a function that runs Python with these arguments in `count` processes.
+
+    It gives back the finished process, having checked its exit status.
+    """
+    launcher, environment = mpiexec
+
+    def run(count, *arguments, code=0):
+        command = [*launcher, "-n", str(count), sys.executable, *map(str, arguments)]
+        done = subprocess.run(
+            command, capture_output=True, text=True, env=environment, timeout=1800
+        )
+        assert done.returncode == code, done.stderr
+        return done
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def in_turn(under_mpi, without_warnings):
+    """Return a function that runs commands one after the other in the same `count` processes.
+
+    It gives for each its exit code, its output and the lines of its errors.
+    """
+
+    def run(count, *commands):
+        asked = json.dumps([[*map(str, arguments)] for arguments in commands])
+        done = under_mpi(count, "-c", IN_TURN, asked)
+        assert "Traceback" not in done.stderr
+        *out, rest = re.split(r"^ended (\d+)\n", done.stdout, flags=re.MULTILINE)
+        *said, _ = re.split(r"^ended \d+\n", done.stderr, flags=re.MULTILINE)
+        assert len(said) == len(commands) and rest == ""
+        lines = map(without_warnings, said)
+        return list(zip(map(int, out[1::2]), out[::2], lines, strict=True))
+
+    return run
+
 
 SCENE = ("guo-li-2002/fig-03", "--variant", "")
 CONTINUUM = ("--engine", "continuum", "--model", "jointed")
@@ -45,7 +106,7 @@ MISTAKES = {
             *("--set", "record.stress=[0.5]"),
         ),
         2,
-        "jointwave: mpiexec: -n = 3: must be at most 2, the cells of the mesh",
+        "jointwave: mpiexec: -n = 3: is too many for a mesh of so few cells: 2",
     ),
     "a folder that cannot be": (("run", *SCENE, *SHORT), 2, "Not a directory"),
 }
@@ -108,8 +169,7 @@ import sys
 from mpi4py import MPI
 from jointwave.compare.cli import program
 from jointwave.compare.runs import processes
-from jointwave.continuum import build
-from jointwave.continuum.parallel import body
+from jointwave.continuum.body import pillar, processes as shared
 
 def broken(*arguments, **named):
     raise {error}
@@ -125,8 +185,8 @@ program.main()
 @pytest.mark.parametrize(
     ("rank", "function", "error", "code", "words"),
     [
-        (0, "body.restrict", "MemoryError('of one')", 2, ["not enough memory: of one"]),
-        (1, "build.weight_of", "KeyError('bug')", 1, ["internal error, KeyError", "'bug'"]),
+        (0, "shared.share_of", "MemoryError('of one')", 2, ["not enough memory: of one"]),
+        (1, "pillar.weight_of", "KeyError('bug')", 1, ["internal error, KeyError", "'bug'"]),
     ],
 )
 def test_a_process_that_fails_alone_ends_all(
