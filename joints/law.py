@@ -8,6 +8,8 @@ Per unit area: traction in Pa, compression positive; gap in m, positive when ope
 penetration is negative. The shear traction acts on the right block.
 """
 
+from collections.abc import Callable
+from functools import cache
 from typing import Any, NamedTuple, overload
 
 import numpy as np
@@ -20,7 +22,7 @@ from jointwave.joints.energy import elastic_energy, fracture_energy_spent, frict
 from jointwave.joints.formula import formula
 from jointwave.joints.normal import spring_traction
 from jointwave.joints.shear import UNLIMITED, cohesion_left, shear_return
-from jointwave.joints.slide import trial
+from jointwave.joints.slide import trial_for
 
 
 class Law(NamedTuple):
@@ -276,36 +278,49 @@ def law_at(table, j, n):
     )  # fmt: skip
 
 
-@formula
-def traction(law, parts, jump, step, rate, dt, history):
-    """Return the `Traction` of one point: the whole law.
+def traction_for(parts: LawFlags) -> Callable:
+    """Return the formula `traction` for a law with these parts: shear and paths that it lacks are
+    not compiled."""
+    return _traction(parts.shear, parts.path)
 
-    jump : gap and slip (n, x, z) at the end of the step, m. step : their increments over the step,
-    m. rate : what dashpots see of their rates, m/s. dt : s. history : before the step.
-    """
-    gap, opening, whole_x, whole_z, _, t_n, tau, path = trial(law, parts, jump, rate, dt, history)
-    t_x, t_z, drag_x, drag_z, slid, slipped = 0.0, 0.0, 0.0, 0.0, 0.0, False
-    x, z = whole_x, whole_z
-    if parts.dilation:
-        up = lift(law, path) - lift(law, history.path)
-        slid = -lift_work(law, parts, gap - step[0], gap - up, opening, up)
-        gap = gap - up
-    if parts.shear:
-        old_x, old_z = x - step[1], z - step[2]
-        t_x, t_z, x, z, slipped = shear_return(
-            law, parts, x, z, old_x, old_z, rate[1], rate[2], tau, dt
+
+@cache
+def _traction(shear: bool, path: bool) -> Callable:
+    trial = trial_for(shear, path)
+
+    @formula
+    def traction(law, parts, jump, step, rate, dt, history):
+        """Return the `Traction` of one point: the whole law.
+
+        jump : gap and slip (n, x, z) at the end of the step, m. step : their increments over the
+        step, m. rate : what dashpots see of their rates, m/s. dt : s. history : before the step.
+        """
+        found = trial(law, parts, jump, rate, dt, history)
+        gap, opening, whole_x, whole_z, _, t_n, tau, way = found
+        t_x, t_z, drag_x, drag_z, slid, slipped = 0.0, 0.0, 0.0, 0.0, 0.0, False
+        x, z, cohesion = whole_x, whole_z, history.cohesion
+        if path and parts.dilation:
+            up = lift(law, way) - lift(law, history.path)
+            slid = -lift_work(law, parts, gap - step[0], gap - up, opening, up)
+            gap = gap - up
+        if shear and parts.shear:
+            old_x, old_z = x - step[1], z - step[2]
+            t_x, t_z, x, z, slipped = shear_return(
+                law, parts, x, z, old_x, old_z, rate[1], rate[2], tau, dt
+            )
+            drag_x, drag_z = t_x + law.shear_stiffness * x, t_z + law.shear_stiffness * z
+            rubbed = friction_work(law, old_x, old_z, x, z, step[1], step[2])
+            slid = slid + (rubbed if slipped else 0.0)
+            cohesion = cohesion_left(law, parts, cohesion, slipped)
+        spring = spring_traction(law, parts, gap, opening)
+        stored = elastic_energy(law, parts, gap, opening, x, z)
+        spent = fracture_energy_spent(law, opening) if parts.softening else 0.0
+        after = History(
+            opening, history.slide_x + (whole_x - x), history.slide_z + (whole_z - z), cohesion, way
         )
-        drag_x, drag_z = t_x + law.shear_stiffness * x, t_z + law.shear_stiffness * z
-        rubbed = friction_work(law, old_x, old_z, x, z, step[1], step[2])
-        slid = slid + (rubbed if slipped else 0.0)
-    spring = spring_traction(law, parts, gap, opening)
-    stored = elastic_energy(law, parts, gap, opening, x, z)
-    spent = fracture_energy_spent(law, opening) if parts.softening else 0.0
-    after = History(
-        opening,
-        history.slide_x + (whole_x - x),
-        history.slide_z + (whole_z - z),
-        cohesion_left(law, parts, history.cohesion, slipped),
-        path,
-    )
-    return Traction(t_n, t_x, t_z, t_n - spring, drag_x, drag_z, after, stored, spent, slid)
+        return Traction(t_n, t_x, t_z, t_n - spring, drag_x, drag_z, after, stored, spent, slid)
+
+    return traction
+
+
+traction = _traction(shear=True, path=True)

@@ -10,6 +10,8 @@ compression neither wear nor age: their slip does not count in the path S. `join
 the slip under rate-dependent friction.
 """
 
+from collections.abc import Callable
+from functools import cache
 from typing import NamedTuple
 
 from jointwave.joints.dilation import lift, lift_rate
@@ -42,28 +44,6 @@ class Trial(NamedTuple):
 
 
 @formula
-def trial(law, parts, jump, rate, dt, history):
-    """Return the `Trial` of a step, for the arguments of `joints.law.traction`."""
-    gap, opening, path = jump[0], history.opening, history.path
-    if parts.dilation:
-        gap = gap - lift(law, path)
-    if parts.softening:
-        opening = gap if gap > opening else opening
-    t_n = normal_traction(law, parts, gap, rate[0], opening)
-    x, z, still, tau = 0.0, 0.0, 0.0, 0.0
-    if parts.shear:
-        x = jump[1] - history.slide_x
-        if not parts.planar:
-            z = jump[2] - history.slide_z
-        still = shear_strength(law, parts, t_n, gap, opening, history.cohesion, path)
-        t_n, tau, path = after_slide(
-            law, parts, t_n, still, gap, rate[0], opening, history.cohesion, path,
-            x, z, rate[1], rate[2], dt,
-        )  # fmt: skip
-    return Trial(gap, opening, x, z, still, t_n, tau, path)
-
-
-@formula
 def after_slide(
     law, parts, t_n, tau, gap, gap_rate, opening, cohesion, path, ex, ez, rate_x, rate_z, dt
 ):
@@ -72,8 +52,6 @@ def after_slide(
     t_n, tau, path : at its beginning, but for the gap, that is the gap (m) of its end less the
     lift at its beginning. opening, cohesion : as for `shear_strength`; the rest for `shear_return`.
     """
-    if not parts.path:
-        return t_n, tau, path
     t_x, t_z = shear_traction(law, parts, ex, ez, rate_x, rate_z)
     size, a = size_of(parts, t_x, t_z), resistance(law, parts, dt)
     pressed = t_n > 0.0 and gap <= 0.0
@@ -132,3 +110,37 @@ def resistance_to_slide(law, parts, t_n, gap, gap_rate, opening, path, dt):
 def pressing(law, parts, gap, gap_rate, opening, dt):
     """Return the normal traction added per dilation in a step, Pa/m; gap : minus the dilation."""
     return -normal_tangent(law, parts, gap, gap_rate, opening, 1.0 / dt)
+
+
+@cache
+def trial_for(shear: bool, path: bool) -> Callable:
+    """Return the formula `trial` of joints that may have shear, and a path: what they cannot have
+    is not compiled."""
+
+    @formula
+    def trial(law, parts, jump, rate, dt, history):
+        """Return the `Trial` of a step, for the arguments of `joints.law.traction`."""
+        gap, opening, way = jump[0], history.opening, history.path
+        if path and parts.dilation:
+            gap = gap - lift(law, way)
+        if parts.softening:
+            opening = gap if gap > opening else opening
+        t_n = normal_traction(law, parts, gap, rate[0], opening)
+        x, z, still, tau = 0.0, 0.0, 0.0, 0.0
+        if shear and parts.shear:
+            x = jump[1] - history.slide_x
+            if not parts.planar:
+                z = jump[2] - history.slide_z
+            still = shear_strength(law, parts, t_n, gap, opening, history.cohesion, way)
+            tau = still
+        if path and parts.path:
+            t_n, tau, way = after_slide(
+                law, parts, t_n, still, gap, rate[0], opening, history.cohesion, way,
+                x, z, rate[1], rate[2], dt,
+            )  # fmt: skip
+        return Trial(gap, opening, x, z, still, t_n, tau, way)
+
+    return trial
+
+
+trial = trial_for(shear=True, path=True)
