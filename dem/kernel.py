@@ -59,7 +59,7 @@ def step_for(form: KernelFlags) -> Callable:
     dashpots, varied, rated, drags = form.parts.dashpots, form.parts.varied, form.rated, form.drags
     matched = form.matched
     remembers, recorded, used = form.history.size > 0, form.recorded, rows_of(form.parts)
-    stages, composed, row = form.stages, form.stages > 1, form.in_row and form.dim == 1
+    stages, composed, row = form.stages, form.stages > 1, form.dim == 1
     relative, onto_blocks, move = relative_for(form), onto_blocks_for(form), motion_for(form)
     forces = point_forces_for(form) if form.points else face_forces_for(form)
     finite, motions, FRAME = form.finite, form.motions, form.table.frame
@@ -134,27 +134,12 @@ def step_for(form: KernelFlags) -> Callable:
             if finite and share == 0:
                 samples.displacement[row, freedoms, s] = state.turn[blocks.places[0, r]]
 
-    row_forces = row_forces_for(form, record_contacts)
-
     @formula
-    def step(chunks, blocks, state, force, drive, walls, samples, q, ledger, t, n, s):
-        """Advance tile t by a step, or by a stage of a composed one.
-
-        chunks, blocks, state, samples : `ChunkTable`, `BlockTable`, `State`, `Samples`. force :
-        of all blocks, zero. drive, walls : forces on held blocks and motion of walls. q : a buffer.
-        ledger : of this step. n : of the step in `drive` and `walls`, or the stage in `drive`. s :
-        of the sample; negative where none is taken.
-        """
-        tiles, dt, last, sampled = chunks.tiles, blocks.dt, blocks.inertia.size, s >= 0
+    def joint_forces(chunks, state, force, walls, samples, q, ledger, t, end, dt, n, s):
+        """Add the forces of the tile's contacts up to chunk `end` to their blocks."""
+        last, sampled = force.size, s >= 0
         still, weighed = last - freedoms, 1.0 if sampled else 0.0
-        end = tiles[CHUNK, t + 1]
-        if composed and n % stages == 0 and not sampled:
-            end = tiles[CHUNK, t]  # the kick is zero
-        if row:
-            row_forces(chunks, state, force, samples, q, ledger, t, end, dt, s)
-        for g in range(tiles[CHUNK, t], end):
-            if row and chunks.row_from[g] >= 0:
-                continue
+        for g in range(chunks.tiles[CHUNK, t], end):
             k, at, row_from = chunks.table[g], chunks.pair[g], chunks.row_from[g]
             lanes = chunks.contacts - g * L
             lanes = lanes if lanes < L else L
@@ -180,6 +165,23 @@ def step_for(form: KernelFlags) -> Callable:
                 account_walls(q, at, lanes, still, walls, n, ledger, dt)
             if sampled:
                 record_contacts(chunks, samples, q, g, t, s)
+
+    act = row_forces_for(form, record_contacts) if row else joint_forces
+
+    @formula
+    def step(chunks, blocks, state, force, drive, walls, samples, q, ledger, t, n, s):
+        """Advance tile t by a step, or by a stage of a composed one.
+
+        chunks, blocks, state, samples : `ChunkTable`, `BlockTable`, `State`, `Samples`. force :
+        of all blocks, zero. drive, walls : forces on held blocks and motion of walls. q : a buffer.
+        ledger : of this step. n : of the step in `drive` and `walls`, or the stage in `drive`. s :
+        of the sample; negative where none is taken.
+        """
+        tiles, dt, sampled = chunks.tiles, blocks.dt, s >= 0
+        end = tiles[CHUNK, t + 1]
+        if composed and n % stages == 0 and not sampled:
+            end = tiles[CHUNK, t]  # the kick is zero
+        act(chunks, state, force, walls, samples, q, ledger, t, end, dt, n, s)
         if sampled:
             record_blocks(chunks, blocks, state, samples, t, s, 0)
             if matched:

@@ -1,4 +1,4 @@
-"""Relative motion of blocks at their contacts, and its adjoint: forces of contacts on blocks."""
+"""Relative motion of blocks at contacts in the plane and in space; its adjoint, their forces."""
 
 from collections.abc import Callable
 
@@ -65,9 +65,7 @@ def relative_for(form: KernelFlags) -> Callable:
             return
         for c in range(L):
             r = GATHERED + c
-            if dim == 1:
-                q[to + c] = q[r]
-            elif dim == 2:
+            if dim == 2:
                 n_x, n_y, x, y = k[FRAME + c], k[FRAME + L + c], q[r], q[r + L]
                 i, j = q[r + 2 * L], q[r + 3 * L]
                 x -= j * k[ARM_J + L + c] - i * k[ARM_I + L + c]
@@ -108,9 +106,7 @@ def onto_blocks_for(form: KernelFlags) -> Callable:
         """Put the force on j, and the moments about the centroids of j and of i, into rows."""
         for c in range(L):
             f_n, j, i = q[FORCE + c], ON_J + c, ON_I + c
-            if dim == 1:
-                q[j] = f_n
-            elif dim == 2:
+            if dim == 2:
                 n_x, n_y, f_t = k[FRAME + c], k[FRAME + L + c], q[FORCE + L + c]
                 x, y, m = n_x * f_n - n_y * f_t, n_y * f_n + n_x * f_t, -q[SPREAD + c]
                 q[j], q[j + L] = x, y

@@ -1,5 +1,5 @@
-"""Forces of a chunk's contacts in their frames: point by point where joints can fail, of the face
-as a whole where they always hold."""
+"""Forces of a chunk's contacts in their frames, in the plane and in space: point by point where
+joints can fail, of the face as a whole where they always hold."""
 
 from collections.abc import Callable
 
@@ -8,7 +8,7 @@ from jointwave.dem.model import KernelFlags
 from jointwave.dem.motion import ELASTIC, FRACTURE, FRICTION
 from jointwave.dem.rotation import three
 from jointwave.joints.formula import formula
-from jointwave.joints.law import History, law_at, law_of, traction
+from jointwave.joints.law import History, law_at, law_of, traction_for
 
 
 @formula
@@ -24,6 +24,7 @@ def point_forces_for(form: KernelFlags) -> Callable:
     )  # fmt: skip
     dashpots, varied, has_ledger, finite = parts.dashpots, parts.varied, form.ledger, form.finite
     softening, residual, path_dependent = parts.softening, parts.residual, parts.path
+    traction = traction_for(parts)
     rated, drags, past, rows = form.rated, form.drags, form.history, form.buffer
     LAW, JUMP, RATE, NOW, FORCE, DRAG = (
         rows.law, rows.jump, rows.rate, rows.now, rows.force, rows.drag
@@ -38,21 +39,17 @@ def point_forces_for(form: KernelFlags) -> Callable:
     @formula
     def at_point(q, row, c, e_1, e_2):
         """Return gap and slip, or their rates, at a point of the face, of those at its centre."""
-        gap, x, z = q[row + c], 0.0, 0.0
+        gap, x, z = three(q, row + c, L)
         if dim == 2:
-            return gap - e_1 * q[row + 2 * L + c], q[row + L + c], 0.0
-        if dim == 3:
-            x, z = q[row + L + c], q[row + 2 * L + c]
-            if finite:
-                further, other = three(q, row + 3 * L + c, L), three(q, row + 6 * L + c, L)
-                gap = gap + (e_1 * further[0] + e_2 * other[0])
-                x, z = (
-                    x + (e_1 * further[1] + e_2 * other[1]),
-                    z + (e_1 * further[2] + e_2 * other[2]),
-                )
-            elif turns:
-                p_n, p_1, p_2 = q[row + 3 * L + c], q[row + 4 * L + c], q[row + 5 * L + c]
-                gap, x, z = gap + (p_1 * e_2 - p_2 * e_1), x - p_n * e_2, z + p_n * e_1
+            return gap - e_1 * z, x, 0.0
+        if finite:
+            further, other = three(q, row + 3 * L + c, L), three(q, row + 6 * L + c, L)
+            gap = gap + (e_1 * further[0] + e_2 * other[0])
+            x = x + (e_1 * further[1] + e_2 * other[1])
+            z = z + (e_1 * further[2] + e_2 * other[2])
+        elif turns:
+            p_n, p_1, p_2 = three(q, row + 3 * L + c, L)
+            gap, x, z = gap + (p_1 * e_2 - p_2 * e_1), x - p_n * e_2, z + p_n * e_1
         return gap, x, z
 
     @formula
@@ -65,9 +62,7 @@ def point_forces_for(form: KernelFlags) -> Callable:
     @formula
     def history_at(h, before, c):
         """Return the history of a point; 0 for what it does not have."""
-        opening, slide_x, slide_z, cohesion, path = 0.0, 0.0, 0.0, 0.0, 0.0
-        if dim > 1:
-            slide_x = h[before + c]
+        opening, slide_x, slide_z, cohesion, path = 0.0, h[before + c], 0.0, 0.0, 0.0
         if dim > 2:
             slide_z = h[before + L + c]
         if softening:
@@ -81,8 +76,7 @@ def point_forces_for(form: KernelFlags) -> Callable:
     @formula
     def remember(h, before, c, after):
         """Replace the history of a point."""
-        if dim > 1:
-            h[before + c] = after.slide_x
+        h[before + c] = after.slide_x
         if dim > 2:
             h[before + L + c] = after.slide_z
         if softening:
@@ -96,8 +90,7 @@ def point_forces_for(form: KernelFlags) -> Callable:
     def add_force(q, row, c, e_1, e_2, f_n, f_x, f_z):
         """Add the force at a point, and its first moments about the centre of the face, to rows."""
         add(q, row + c, f_n)
-        if dim > 1:
-            add(q, row + L + c, f_x)
+        add(q, row + L + c, f_x)
         if dim > 2:
             add(q, row + 2 * L + c, f_z)
         if turns:
@@ -114,8 +107,7 @@ def point_forces_for(form: KernelFlags) -> Callable:
     def add_drag(q, c, e_1, e_2, f_n, f_x, f_z):
         """Add the dashpots' force at a point, and its moment about the centre of the face."""
         add(q, DRAG + c, f_n)
-        if dim > 1:
-            add(q, DRAG + L + c, f_x)
+        add(q, DRAG + L + c, f_x)
         if dim == 2:
             add(q, DRAG + 2 * L + c, -e_1 * f_n)
         if dim > 2:
@@ -139,18 +131,14 @@ def point_forces_for(form: KernelFlags) -> Callable:
             own, before = POINT + p * dim * L, PAST + p * past_rows
             for c in range(L):
                 law = law_at(q, LAW + c, L) if varied else common
-                e_1, e_2, area = 0.0, 0.0, k[own + (dim - 1) * L + c]
-                if dim > 1:
-                    e_1 = k[own + c]
+                e_1, e_2, area = k[own + c], 0.0, k[own + (dim - 1) * L + c]
                 if dim > 2:
                     e_2 = k[own + L + c]
                 gap, x, z = at_point(q, JUMP, c, e_1, e_2)
                 if finite:
                     area = area_within(k, c, area, e_1 - x, e_2 - z, gap)
                 if stressed:
-                    gap = gap + k[START + c]
-                    if dim > 1:
-                        x = x + k[START + L + c]
+                    gap, x = gap + k[START + c], x + k[START + L + c]
                     if dim > 2:
                         z = z + k[START + 2 * L + c]
                 rate, moved = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
