@@ -50,8 +50,8 @@ def simulate(
     model : "jointed", every joint an interface, or "equivalent", joints with a spacing, and a
         pillar's, in an effective medium.
     rock : function of the scene and a dolfinx space that returns the rock as UFL forms, in place of
-        the scene's own; with unrelaxed moduli where the scene has a quality factor. Waves, compliant
-        bases and absorbing ends of a pillar, which are of the scene's own rock, are refused.
+        the scene's own; with unrelaxed moduli where the scene has a quality factor. Waves,
+        compliant bases and absorbing ends of a pillar are of the scene's rock, and refused then.
     dim : of a pillar's mesh: 1, the bar; 2, plane stress; 3, the square column; absent: as the
         scene asks for.
     progress : called with the finished fraction.
