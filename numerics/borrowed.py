@@ -11,19 +11,25 @@ from numba.extending import intrinsic, overload
 
 
 def borrowed(values: Any) -> Any:
-    """Return an argument of a kernel, an array or a tuple of some, as a kernel should take it."""
+    """Return an argument of a kernel, an array or a tuple of such, as a kernel should take it."""
     return values
+
+
+def places_of(kind: Any) -> list[list[int]]:
+    """Return where a value of numba's type keeps what counts references, for each of its arrays."""
+    if isinstance(kind, types.Array):
+        return [[0]]
+    parts = kind.types if isinstance(kind, types.BaseTuple) else ()
+    return [[k, *place] for k, part in enumerate(parts) for place in places_of(part)]
 
 
 @intrinsic
 def _borrowed(typing, values):
-    within = isinstance(values, types.BaseTuple)
-    kinds = enumerate(values.types if within else [values])
-    places = [[k, 0] if within else [0] for k, kind in kinds if isinstance(kind, types.Array)]
+    places = places_of(values)
 
     def generate(context, builder, signature, arguments):
         found = arguments[0]
-        for place in places:  # of what counts an array's references
+        for place in places:
             nothing = builder.extract_value(found, place).type(None)
             found = builder.insert_value(found, nothing, place)
         return found

@@ -16,10 +16,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from jointwave.continuum.body.memory import Memory, relax, strain
-from jointwave.continuum.body.product import ROWS, Table, product_for
+from jointwave.continuum.body.product import Table, product_for
 from jointwave.continuum.body.tractions import Points, tractions_for
 from jointwave.joints.formula import formula
 from jointwave.joints.law import LawFlags
+from jointwave.numerics.borrowed import borrowed
 from jointwave.numerics.denormals import flush_denormals, restore_denormals
 from jointwave.numerics.jit import jitted
 
@@ -33,7 +34,7 @@ class StepFlags(NamedTuple):
     product : kind of the stiffness, `continuum.body.product`. law : None without joints. stressed :
     whether these carry anything at u = 0. damped : whether the rock has dashpots. relaxing :
     whether it has a quality factor. ledger : whether energies are recorded. sprung : whether
-    springs are in front of dashpots of sides.
+    springs are in front of dashpots of sides. width : entries in a row of the jump operator.
     """
 
     dim: int
@@ -44,12 +45,21 @@ class StepFlags(NamedTuple):
     relaxing: bool
     ledger: bool
     sprung: bool = False
+    width: int = 0
 
 
 class Sparse(NamedTuple):
     """A matrix, CSR. start, column : int arrays. value : float array."""
 
     start: np.ndarray
+    column: np.ndarray
+    value: np.ndarray
+
+
+class Jumps(NamedTuple):
+    """The jump operator: column, int array, and value, float array [rows, width]; rows that have
+    fewer entries end with zeros."""
+
     column: np.ndarray
     value: np.ndarray
 
@@ -108,7 +118,7 @@ class Constants(NamedTuple):
     memory: Memory
     stiffness: Table
     damping: Table
-    jumps: Sparse
+    jumps: Jumps
     points: Points
     steady: np.ndarray
     driven: np.ndarray
@@ -165,25 +175,6 @@ class Samples(NamedTuple):
 
 
 @formula
-def times(matrix, x, product):
-    """Set the product of a matrix and a vector."""
-    for i in range(matrix.start.size - 1):
-        a = 0.0
-        for k in range(matrix.start[i], matrix.start[i + 1]):
-            a += matrix.value[k] * x[matrix.column[k]]
-        product[i] = a
-
-
-@formula
-def add_transposed(matrix, x, product):
-    """Add the product of a transposed matrix and a vector."""
-    for i in range(matrix.start.size - 1):
-        a = x[i]
-        for k in range(matrix.start[i], matrix.start[i + 1]):
-            product[matrix.column[k]] += matrix.value[k] * a
-
-
-@formula
 def read(matrix, x, constant, out, s, share):
     """Add a share of the product of a matrix and a vector, and a constant, to sample s."""
     for i in range(matrix.start.size - 1):
@@ -229,7 +220,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
     """Return the kernel of steps of a body with these effects; absent ones are not compiled."""
     dim, law, damped, ledger = flags.dim, flags.law, flags.damped, flags.ledger
     relaxing = flags.relaxing
-    multiply, damp = product_for(flags.product, dim), product_for(ROWS, dim)
+    multiply, width = product_for(flags.product, dim), flags.width
     sprung = flags.sprung
     jointed = law is not None
     dashpots, rated = (False, False) if law is None else (law.dashpots, law.limited)
@@ -237,6 +228,22 @@ def leapfrog_for(flags: StepFlags) -> Callable:
     tractions: Any = None
     if law is not None:
         tractions = tractions_for(law, dim, flags.stressed)
+
+    @formula
+    def times(jumps, x, product):
+        """Set the jumps of a vector."""
+        for i in range(product.size):
+            a = 0.0
+            for k in range(width):
+                a += jumps.value[i, k] * x[jumps.column[i, k]]
+            product[i] = a
+
+    @formula
+    def add_transposed(jumps, x, force):
+        """Add forces that do as much work as x does with the jumps."""
+        for i in range(x.size):
+            for k in range(width):
+                force[jumps.column[i, k]] += jumps.value[i, k] * x[i]
 
     @formula
     def relaxing_rock(c, s, w, sampled):
@@ -272,7 +279,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
             for i in range(s.u.size):
                 w.rate[i], w.drag[i] = 1.5 * s.v[i] - 0.5 * s.v_before[i], 0.0
             if damped:
-                damp(c.damping, w.rate, w.drag)
+                multiply(c.damping, w.rate, w.drag)
         if jointed:
             times(c.jumps, s.u, w.jump)
             if rated:
@@ -374,6 +381,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
         m, motion of fixed freedoms in each step. span : first, last, stride.
         """
         setting = flush_denormals()
+        c, s, w, out, drive = borrowed((c, s, w, out, drive))
         first, last, stride = span
         for n in range(first, last):
             elastic, spent, kept = forces(c, s, w, n % stride == 0)

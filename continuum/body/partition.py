@@ -10,7 +10,7 @@ from jointwave.continuum.body import compat
 from jointwave.continuum.body.evaluation import nodes_of_cells
 from jointwave.continuum.body.model import Body
 from jointwave.continuum.body.product import LANES, SHARED
-from jointwave.continuum.body.steps import product_for_steps
+from jointwave.continuum.body.steps import products_for_steps
 
 SAME = 1e-9  # of the domain: by how much places of a node on two processes may differ
 
@@ -42,7 +42,7 @@ def ranks_of_cells(body: Body, size: int) -> np.ndarray:
     Where the blocks share one matrix and each process gets many, none is divided.
     """
     unit = np.arange(len(body.block))
-    if body.block.max() + 1 >= LANES * size and product_for_steps(body).kind == SHARED:
+    if body.block.max() + 1 >= LANES * size and products_for_steps(body)[0].kind == SHARED:
         unit = body.block
     first, second = unit[adjacent_cells(body)]
     count, apart = unit.max() + 1, first != second

@@ -14,6 +14,7 @@ from jointwave.continuum.body.evaluation import blocks_of_nodes
 from jointwave.continuum.body.explicit import (
     VISCOUS,
     Constants,
+    Jumps,
     Quiet,
     Receivers,
     Samples,
@@ -207,6 +208,17 @@ def sparse(matrix: csr_matrix, place: np.ndarray | None = None) -> Sparse:
     return Sparse(matrix.indptr.astype(np.int64), column.astype(np.int64), matrix.data)
 
 
+def alike(matrix: csr_matrix, place: np.ndarray) -> Jumps:
+    """Return a jump operator as kernels take it: all rows with as many entries as the longest."""
+    count, rows = np.diff(matrix.indptr), matrix.shape[0]
+    row = np.repeat(np.arange(rows), count)
+    at = row, np.arange(matrix.nnz) - matrix.indptr[row]
+    column, value = np.zeros((2, rows, count.max(initial=0)))
+    column = column.astype(np.int64)
+    column[at], value[at] = place[matrix.indices], matrix.data
+    return Jumps(column, value)
+
+
 class Leapfrog:
     """Explicit steps of a problem.
 
@@ -220,16 +232,19 @@ class Leapfrog:
 
     def __init__(self, problem: Problem, dt: float, samples: int, energy: bool = True) -> None:
         self.problem, self.dt, body = problem, dt, problem.body
-        self.product, (rows, columns) = product_for_steps(body), body.stiffness.shape
+        (self.product, self._damping), (rows, columns) = (
+            products_for_steps(body),
+            body.stiffness.shape,
+        )
         self.halo = columns - rows
         self.samples = samples_for(problem.readings, samples, energy)
         self.constants = self._constants()
         parts, damped = problem.parts, body.damping is not None
         stressed, many = self.constants.points.carried.size > 0, self.constants.memory.share.size
         springs, kind = self.constants.quiet.stiffness, self.product.kind
-        rock = damped, many > 0, energy, len(springs) > 0
+        rock = damped, many > 0, energy, len(springs) > 0, self.constants.jumps.column.shape[1]
         self.flags = StepFlags(body.components, kind, parts, stressed, *rock)
-        n, jumps = self.product.size + self.halo, self.constants.jumps.start.size - 1
+        n, jumps = self.product.size + self.halo, len(self.constants.jumps.column)
         dashpots, limited = (parts.dashpots, parts.limited) if parts else (False, False)
         viscous = n if damped or dashpots else 0
         relaxing = n if many else 0
@@ -340,10 +355,7 @@ class Leapfrog:
         assert body.mass is not None
         braked = 1 + problem.alpha * dt / 2
         inverse = self._placed(dt / (body.mass * braked))
-        none, nothing = np.zeros(0, np.int64), csr_matrix((0, body.mass.size))
-        damping = Table(none, none.astype(np.uint32), np.zeros(0))
-        if body.damping is not None:
-            damping = table_of(body.damping, body.components)
+        nothing = csr_matrix((0, body.mass.size))
         return Constants(
             dt=dt,
             mass=self._placed(body.mass),
@@ -352,11 +364,11 @@ class Leapfrog:
             alpha=problem.alpha,
             memory=memory_of(problem.mechanisms, dt),
             stiffness=self.product.table,
-            damping=damping,
-            jumps=sparse(nothing if body.joints is None else body.joints.matrix, self.columns),
+            damping=self._damping,
+            jumps=alike(nothing if body.joints is None else body.joints.matrix, self.columns),
             points=problem.points(),
             steady=np.zeros(0) if problem.steady is None else self._placed(problem.steady),
-            driven=none if forces is None else place[forces.freedom],
+            driven=np.zeros(0, np.int64) if forces is None else place[forces.freedom],
             quiet=self._quiet(inverse),
             fixed=place[problem.fixed],
             direction=np.zeros(0) if held is None else held.direction,
@@ -386,12 +398,19 @@ class Leapfrog:
         return Quiet(freedom, viscosity, beta, np.linalg.inv(np.eye(dim) + beta), *springs)
 
 
-def product_for_steps(body: Body) -> Product:
-    """Return the product with the stiffness; by rows where a damping is multiplied, too."""
+def products_for_steps(body: Body) -> tuple[Product, Table]:
+    """Return the products with the stiffness and with the damping, of one kind; the latter is empty
+    without damping."""
+    dim, of_nodes = body.components, (blocks_of_nodes(body), body.x)
+    own = product_of(body.stiffness, dim, *of_nodes)
     if body.damping is None:
-        return product_of(body.stiffness, body.components, blocks_of_nodes(body), body.x)
+        return own, Table(np.zeros(0, np.int64), np.zeros(0, np.uint32), np.zeros(0))
+    other = product_of(body.damping, dim, *of_nodes)
+    if other.kind == own.kind:  # vectors are then in the same places
+        return own, other.table
     n = body.stiffness.shape[0]
-    return Product(ROWS, table_of(body.stiffness, body.components), np.arange(n), n)
+    rows = Product(ROWS, table_of(body.stiffness, dim), np.arange(n), n)
+    return rows, table_of(body.damping, dim)
 
 
 def receivers(readings: Readings, place: np.ndarray) -> Receivers:

@@ -13,7 +13,7 @@ from rock import BLOCKS, CUT, assert_same, engine_of, scene_of
 from timing import Timed, side_by_side
 
 from jointwave.continuum.body.product import product_for
-from jointwave.continuum.body.steps import product_for_steps
+from jointwave.continuum.body.steps import products_for_steps
 
 STEPS = 200  # of the motion that all must share, and of one call of the engine
 SAME = 1e-10  # of its largest displacement
@@ -38,7 +38,7 @@ def against_others(case: str) -> None:
 
 def products(body) -> tuple[Timed, Timed]:
     """Return K u of the engine and of scipy."""
-    product, matrix = product_for_steps(body), body.stiffness
+    product, matrix = products_for_steps(body)[0], body.stiffness
     multiply = product_for(product.kind, body.components)
     times = numba.njit(lambda table, x, y: multiply(table, x, y))
     x, y, u = np.zeros(product.size), np.zeros(product.size), np.sin(np.arange(matrix.shape[0]))
