@@ -1,29 +1,22 @@
-"""Deformable rock by dolfinx's elements, with the joints as cohesive interfaces."""
+"""Deformable rock as a dolfinx model, with the joints as cohesive interfaces."""
 
-from typing import Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-from jointwave.continuum.body.validity import applies
+from jointwave.continuum.validity import applies
 
-#: What describes rock of a script; dolfinx is imported when it is first asked for.
-ROCK = ("Forms", "anisotropic", "elastic", "isotropic")
-__all__ = ["applies", "simulate", *ROCK]
+if TYPE_CHECKING:
+    from jointwave.continuum.run import simulate
+    from jointwave.continuum.space.rock import Forms, anisotropic, elastic, isotropic
+
+#: What needs dolfinx, which is imported when it is first asked for, and where it is.
+MODULES = dict.fromkeys(("Forms", "anisotropic", "elastic", "isotropic"), "space.rock")
+MODULES |= {"simulate": "run"}
+__all__ = ["Forms", "anisotropic", "applies", "elastic", "isotropic", "simulate"]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in ROCK:
+    """Return a function that needs dolfinx."""
+    if name not in MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from jointwave.continuum.body import rock
-
-    return getattr(rock, name)
-
-
-def by_body(scene: Any) -> bool:
-    """Return whether the dolfinx body runs a scene."""
-    return True
-
-
-def simulate(scene: Any, model: str = "jointed", dim: int | None = None, **about: Any) -> Any:
-    """Simulate a scene as deformable rock, as `continuum.body.run.simulate` does."""
-    from jointwave.continuum.body.run import simulate as by_dolfinx
-
-    return by_dolfinx(scene, model, dim=dim, **about)
+    return getattr(import_module(f"{__name__}.{MODULES[name]}"), name)

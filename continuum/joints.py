@@ -1,19 +1,13 @@
-"""The joints that a model resolves, and their law at every quadrature point."""
+"""The joints of a pillar that a model resolves, and their law."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_matrix, vstack
 
 from jointwave.cases.material.calibrate import Properties
-from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.scene import Scene
-from jointwave.continuum.model import Interfaces
-from jointwave.continuum.space.interface import Jumps
-from jointwave.continuum.space.stencils import stencils
-from jointwave.joints.law import Law, law, parts_of, stiffest, table_of
+from jointwave.joints.law import Law, law
 from jointwave.joints.shear import UNLIMITED
 
 #: Over an ordinary joint: the stiffness of one that differs from it in strength alone, where the
@@ -84,24 +78,4 @@ def joint_law(p: Properties, joints: Resolved, joint: np.ndarray, shears: bool) 
         p.tension[joint],
         shear_stiffness=joints.shear_stiffness[joint] if shears else None,
         **p.strengths(shears, joint),
-    )
-
-
-def interfaces(
-    jumps: Jumps, law: Law, prestress: np.ndarray | None, scene: Scene | RockMass
-) -> Interfaces:
-    """Return the joints of a model; prestress : [directions, q], Pa."""
-    jump = csr_matrix(vstack(jumps.matrices))
-    if law.maximum_closure is not None:
-        law = law._replace(rock_compliance=0.0)
-    return Interfaces(
-        jump=jump,
-        stencils=stencils(jump),
-        directions=len(jumps.matrices),
-        area=jumps.weight,
-        law=law,
-        table=table_of(law),
-        parts=parts_of(law)._replace(planar=len(jumps.matrices) == 2),
-        prestress=prestress,
-        stiffest=stiffest(law, scene),
     )

@@ -1,12 +1,22 @@
-"""The divergence monitor: how fast rock can become at most, and whether a run exceeds that.
+"""The monitor of a run, which stops it where speeds, energy or motion exceed their bounds."""
 
-No node can be faster than all forces together can make it, and no energy come from nowhere."""
+from __future__ import annotations
 
 import numpy as np
 
-from jointwave.continuum.plane.discrete import blocks_of, motion_of_blocks, prestressed
-from jointwave.continuum.run import Run
-from jointwave.numerics.divergence import ENERGY, EVERY, audit, guard, look, speed_that
+from jointwave.cases.errors import StoppedError
+from jointwave.cases.partition.blocks import plane_partition
+from jointwave.cases.partition.periodic import of_all
+from jointwave.cases.partition.shape import shape_of
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.bounds import highest_speed
+from jointwave.continuum.scene import SceneBody
+from jointwave.continuum.scheme import Choice
+from jointwave.continuum.space.evaluation import nodes_of_cells, places_of_nodes
+from jointwave.continuum.stepping.implicit import Implicit
+from jointwave.continuum.stepping.steps import Leapfrog
+from jointwave.numerics.divergence import ENERGY, SPEED, audit, guard
 from jointwave.numerics.instability import Divergence, stopped
 from jointwave.numerics.small_motion import (
     LARGEST,
@@ -19,151 +29,108 @@ from jointwave.numerics.small_motion import (
 
 
 class Monitor:
-    """Stops a run that exceeds its bounds; the kernel of leapfrog checks speeds by itself.
+    """Stops a run that exceeds its bounds.
 
-    Attributes
-    ----------
-    guard : `numerics.divergence.Guard`. energy : the whole ledger [term, sample], J; None when not
-    kept.
-    parts : arrays that change with the run.
+    guard : `numerics.divergence.Guard`, which changes with the run.
     """
 
-    def __init__(self, run: Run) -> None:
-        self.run, self.time, self.communicator = run, run.choice.time, run.communicator
-        self.explicit, energy = run.choice.scheme == "explicit", run.samples.energy
-        self.guard, self.energy = guard(highest_speed(run)), energy
-        self.parts: tuple = (self.guard,)
-        if energy is not None and self.communicator.size > 1:
-            self.energy = np.zeros_like(energy)
-            self.parts = self.guard, self.energy
-
-    def look(self, n: int) -> bool:
-        """Check the speeds after n steps, and return whether the run diverges."""
-        look(self.guard, np.abs(self.run.state.v).max(initial=0.0), n)
-        return self.communicator.any(bool(self.guard.found[0] >= 0))
-
-    def finds(self, n: int) -> bool:
-        """Check implicit steps periodically, after step n, and return whether the run diverges.
-
-        Their ledger is not exact, so that its imbalance is not an error.
-        """
-        return self.look(n) if n % EVERY == 0 else False
-
-    def audit(self, first: int, last: int) -> None:
-        """Look for energy from nowhere in samples first .. last - 1 of the ledger."""
-        if self.energy is None or first == last:
-            return
-        if self.energy is not self.run.samples.energy:
-            own = self.run.samples.energy[:, first:last]
-            self.energy[:, first:last] = self.communicator.sum(own)
-        audit(self.guard, self.energy, first, last, self.time.stride)
+    def __init__(
+        self,
+        scene: AnyScene,
+        found: SceneBody,
+        steps: Leapfrog | Implicit,
+        choice: Choice,
+        critical: float,
+        start: np.ndarray | None = None,
+    ) -> None:
+        """critical : step, s. start : displacements at the start, m; None where at rest."""
+        self.scene, self.found, self.steps, self.time = scene, found, steps, choice.time
+        self.explicit, self.critical = choice.scheme == "explicit", critical
+        self.guard = guard(highest_speed(found, steps.problem, choice.time, start))
+        self.partition = None
+        if matters(scene) and not isinstance(scene, Scene) and scene.domain.dimension == 2:
+            names = tuple(one.name for one in scene.joint_sets)
+            self.partition = plane_partition(found.blocks, shape_of(scene.domain).sides, names)
 
     def check(self, first: int, last: int) -> None:
-        """Raise StoppedError where the run is lost when samples first .. last - 1 are taken, with
-        what all processes saw."""
-        n = (last - 1) * self.time.stride + 1
-        if self.explicit:
-            self.audit(first, last)
-        if not self.look(n):
-            self.check_small_motion(first, n)
-            return
-        step, what, sound = self.guard.found.tolist() if self.guard.found[0] >= 0 else (n, 0, n)
-        key = "step_fraction" if self.explicit else "steps_per_period"
-        seen = Divergence(
-            "the continuum",
-            f"numerics.continuum.{key}",
-            int(-self.communicator.largest(-step)),
-            int(-self.communicator.largest(-sound)),
-            bool(self.communicator.any(what == ENERGY)),
-            self.fastest(),
+        """Raise StoppedError where a run leaves its bounds in samples first .. last - 1."""
+        steps, stride = self.steps, self.time.stride
+        if self.scene.record.energy and self.explicit:  # the ledger of implicit steps is not exact
+            audit(self.guard, steps.samples.energy, first, last, stride)
+        speed = np.abs(steps.v).reshape(-1, self.found.body.components).max(axis=1)
+        found, (limit,) = self.guard.found, self.guard.limit.view(np.float64)
+        if found[0] < 0 and not speed.max(initial=0.0) <= limit:
+            found[:] = last * stride, SPEED, first * stride - 1
+        if found[0] >= 0:
+            raise self._diverged(speed)
+        if matters(self.scene):
+            t = last * stride * self.time.dt
+            refuse_large_motion(self.scene, "the continuum", self._moved(), t, first)
+
+    def _diverged(self, speed: np.ndarray) -> StoppedError:
+        """Return the error of a run with these speeds of its nodes, m/s."""
+        step, what, sound = self.guard.found.tolist()
+        place = self.found.body.x[int(np.nan_to_num(speed, nan=np.inf).argmax())]
+        at = (
+            float(place[len(place) // 2])
+            if isinstance(self.scene, Scene)
+            else tuple(place.tolist())
         )
-        critical = self.run.critical if self.explicit else np.inf
-        raise stopped(self.run.scene, self.time, critical, seen)
+        key = f"numerics.continuum.{'step_fraction' if self.explicit else 'steps_per_period'}"
+        seen = Divergence("the continuum", key, step, sound, what == ENERGY, at)
+        critical = self.critical if self.explicit else np.inf
+        return stopped(self.scene, self.time, critical, seen)
 
-    def check_small_motion(self, first: int, n: int) -> None:
-        """Raise StoppedError where blocks have moved further than small motion allows at step n,
-        and samples up to `first` were taken at the look before."""
-        run = self.run
-        if not matters(run.scene):
-            return
-        found = farthest_joint(run)
-        share = -1.0 if found is None else found.by / found.size
-        found = self.communicator.of_largest(share, found)
-        beyond = found is not None and found.by > LARGEST * found.size
-        if run.scene.kind == "rock mass" and not beyond:
-            moved = motion_of_blocks(run.discrete, run.state.u)
-            found = overlapping(run.discrete.partition, moved) or found
-        refuse_large_motion(run.scene, "the continuum", found, n * self.time.dt, first)
-
-    def fastest(self) -> float:
-        """Return where along the pillar (m) the fastest node is."""
-        body = self.run.discrete.body
-        freedoms = body.freedom(np.arange(len(body.x))[:, None], np.arange(body.section.components))
-        speed = np.nan_to_num(np.abs(self.run.state.v[freedoms]).max(axis=1), nan=np.inf)
-        node = int(speed.argmax())
-        return self.communicator.of_largest(float(speed[node]), float(body.y[node]))
+    def _moved(self) -> Moved | None:
+        """Return the joint that has moved furthest over the size of its smaller block, or blocks
+        that overlap without a contact; None without joints."""
+        u = self.steps.u
+        found = farthest_joint(self.found, u)
+        if self.partition is None or (found is not None and found.by > LARGEST * found.size):
+            return found
+        return overlapping(self.partition, motion_of_blocks(self.found, u)) or found
 
 
-def farthest_joint(run: Run) -> Moved | None:
-    """Return where a joint of this process has moved furthest over the size of its smaller block;
-    along the axis of a pillar faces may part by any distance. None without such a joint."""
-    across, jump = run.discrete.jumps, run.state.jump
-    if across is None or not across.joint.size:
+def farthest_joint(found: SceneBody, u: np.ndarray) -> Moved | None:
+    """Return where a joint has moved furthest over the size of its smaller block, under
+    displacements u [freedoms] (m); along the axis of a pillar faces may part by any distance. None
+    without such a joint."""
+    body, scene, joints = found.body, found.scene, found.body.joints
+    if joints is None or not joints.weight.size:
         return None
-    if run.scene.kind == "rock mass":
-        pairs = blocks_of(run.discrete)[across.joint]
-        by = np.linalg.norm(jump, axis=0)
-        size = np.sqrt(run.discrete.partition.area[pairs].min(axis=1))
-    elif run.discrete.body.section.components == 1:
-        return None
+    jump = (joints.matrix @ u).reshape(-1, body.components)
+    if isinstance(scene, Scene):
+        if body.components == 1:
+            return None
+        pairs, jump = joints.column[:, None] + np.arange(2), jump[:, 1:]
+        size = np.full(len(jump), scene.pillar.side)
+        places = joints.place[:, [body.x.shape[1] // 2]]
     else:
-        pairs = across.joint[:, None] + np.arange(2)
-        by = np.linalg.norm(jump[1:], axis=0)
-        size = np.full(by.size, run.discrete.properties.side)
+        pairs = of_all(found.blocks, found.across, "blocks")[joints.column]
+        size = found.blocks.volume[pairs].min(axis=1) ** (1 / body.components)
+        places = joints.place
+    by = np.linalg.norm(jump, axis=1)
     k = farthest(by, size)
     i, j = pairs[k].tolist()
-    x = across.x[k] if run.scene.kind == "rock mass" else across.x[k, 1:2]
-    return Moved(i, j, float(by[k]), float(size[k]), tuple(x.tolist()))
+    return Moved(i, j, float(by[k]), float(size[k]), tuple(places[k].tolist()))
 
 
-def highest_speed(run: Run) -> float:
-    """Return a bound on the speed of any node, m/s.
-
-    Where forces F put energy in, d sqrt(2 E) / dt is at most |F| in the norm of 1 / m, and m v^2 of
-    any node at most 2 E. Of a node that several processes share, the shares of F^2 / m add up to no
-    less than the whole: (a + b)^2 / (m + n) <= a^2 / m + b^2 / n.
-    """
-    model, time, communicator = run.model, run.choice.time, run.communicator
-    mass, loaded, fixed = model.rock.mass, model.ends.loaded, model.ends.fixed
-    rock = mass > 0
-    least = np.sqrt(communicator.largest(1 / mass[rock].min()))
-    duration, stored, weight = time.dt * (time.steps + time.stride), 0.0, 0.0
-    pushed = shaken = 0.0
-    if loaded is not None:
-        drive = communicator.sum((loaded.share**2 / mass[loaded.freedom]).sum())
-        pushed = (model.dt * np.abs(loaded.pressure) * np.sqrt(drive)).sum()
-    if model.ends.driven is not None:
-        pushed += model.ends.driven.impulse(mass, time.steps)
-    if fixed is not None and fixed.step is not None:
-        speed = np.diff(fixed.step, prepend=0.0, append=0.0) / model.dt
-        shaken = np.abs(speed).sum() * np.sqrt(communicator.sum(mass[rock].sum()))
-    if model.weight is not None:
-        weight = np.sqrt(communicator.sum((model.weight[rock] ** 2 / mass[rock]).sum()))
-        stored = np.sqrt(2 * abs(communicator.sum(model.weight @ run.state.u)))
-    with np.errstate(over="ignore"):
-        pressed = _prestressed(run, duration * least)
-        return least * speed_that(pushed, shaken, duration * weight, stored, pressed)
+def motion_of_blocks(found: SceneBody, u: np.ndarray) -> np.ndarray:
+    """Return displacement (m) and rotation of each block in the plane [n, 3], those of a rigid
+    block that are nearest to the displacements u [freedoms] of its nodes."""
+    body, count = found.body, found.blocks.count
+    nodes, block = nodes_of_cells(body), found.body.block
+    block = np.repeat(block, nodes.shape[1])
+    arm = places_of_nodes(body).reshape(-1, 2) - found.blocks.centroid[block]
+    moved = u.reshape(-1, 2)[nodes.ravel()]
+    middle, mean = (_means(block, one, count) for one in (arm, moved))
+    arm, moved = arm - middle[block], moved - mean[block]
+    twist = arm[:, 0] * moved[:, 1] - arm[:, 1] * moved[:, 0]
+    turn = np.bincount(block, twist, count) / np.bincount(block, (arm**2).sum(axis=1), count)
+    return np.column_stack([mean + turn[:, None] * middle[:, ::-1] * [1, -1], turn])
 
 
-def _prestressed(run: Run, pushing: float) -> float:
-    """Return the root of twice the energy (sqrt(J)) that a prestress keeps in rock and joints, and
-    that rock gives off by pushing on both sides of a joint that opens, so long (s/sqrt(kg))."""
-    if run.scene.prestress is None:
-        return 0.0
-    memory = run.model.rock.memory
-    relaxed = 1.0 if memory is None else memory.relaxed
-    if run.scene.kind == "rock mass":
-        return prestressed(run.scene, run.discrete, pushing, relaxed)
-    p, prestress = run.discrete.properties, abs(run.scene.prestress.normal)
-    softness = p.block_count * p.spacing / p.modulus / relaxed + np.abs(p.excess_compliance).sum()
-    return prestress * np.sqrt(p.area * softness) + pushing * 2 * prestress * p.area
+def _means(group: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
+    """Return the means of values [n, d] of each group [count, d]."""
+    sums = [np.bincount(group, one, count) for one in values.T]
+    return np.stack(sums, axis=1) / np.bincount(group, minlength=count)[:, None]

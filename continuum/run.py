@@ -1,77 +1,158 @@
-"""A run of a scene before its first step."""
+"""From a scene to its result by the dolfinx body."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+import json
+from collections.abc import Callable
+from time import perf_counter
+from typing import Any
 
+import dolfinx
+import numba
+import numpy as np
+import xarray as xr
+
+from jointwave.cases.errors import StoppedError
 from jointwave.cases.incident import IncidentField
-from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.scene import Scene
-from jointwave.continuum.build import build_model, critical_step_of, discretise
-from jointwave.continuum.model import Model
-from jointwave.continuum.parallel.serial import Serial
-from jointwave.continuum.plane import run as rock_mass
-from jointwave.continuum.scheme import Choice, choose
-from jointwave.continuum.size import refuse_large_run
-from jointwave.continuum.state import Samples, State, empty_samples, state_at_rest
+from jointwave.cases.scene_type import AnyScene
+from jointwave.continuum.monitor import Monitor
+from jointwave.continuum.plan import plan_of
+from jointwave.continuum.problem import at_rest, in_time
+from jointwave.continuum.processes.leapfrog import SharedLeapfrog
+from jointwave.continuum.receivers.snapshots import RockRecorder
+from jointwave.continuum.receivers.waveforms import recorded
+from jointwave.continuum.scheme import Choice
+from jointwave.continuum.space.evaluation import kind_of
+from jointwave.continuum.space.rock import Rock
+from jointwave.continuum.stepping.implicit import Implicit
+from jointwave.continuum.stepping.static import Rest
+from jointwave.continuum.stepping.steps import Leapfrog, Problem
+from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
+
+FREEDOM_STEPS_AT_ONCE = 10_000_000  # some 0.1 s: often enough for a progress bar
+LEAST_CHUNKS = 20  # however short the run
 
 
-class Run(NamedTuple):
-    """A run of a pillar or a rock mass.
-
-    scene, rock : of it, "jointed" or "equivalent". discrete : the scene in space, `continuum.build`
-    or `continuum.plane.rock`. model, state, samples : what the run consists of. choice : how it is
-    stepped. critical : the critical step of explicit steps, s. sudden : what begins to act at
-    t = 0, the weight and what bears it, N [freedoms]; None without.
-    """
-
-    scene: Any
-    rock: str
-    discrete: Any
-    model: Model
-    state: State
-    samples: Samples
-    choice: Choice
-    critical: float
-    sudden: Any = None
-
-    @property
-    def communicator(self) -> Serial:
-        """The processes that share the run."""
-        return self.discrete.body.communicator
-
-
-def run_of(
-    scene: Scene | RockMass,
-    rock: str,
+def simulate(
+    scene: AnyScene,
+    model: str = "jointed",
+    rock: Rock | None = None,
     dim: int | None = None,
-    comm=None,
+    progress: Callable[[float], None] | None = None,
+    keeper: Checkpointer | None = None,
     incident: IncidentField | None = None,
-) -> Run:
-    """Return the run of a scene, at rest; comm : mpi4py's communicator of those who share it;
-    incident : of the waves of a rock mass, None: in intact rock."""
-    discrete, choice, critical = discrete_and_steps(scene, rock, dim, comm)
-    if isinstance(scene, Scene):
-        model = build_model(scene, discrete, rock, choice.time)
-    else:
-        model = rock_mass.build_model(scene, discrete, choice.time, incident)
-    state = state_at_rest(model, scene.record.energy)
-    samples = empty_samples(model, state, choice.time.samples)
-    return Run(scene, rock, discrete, model, state, samples, choice, critical)
+    comm: Any = None,
+) -> xr.Dataset:
+    """Simulate a scene as deformable rock.
 
+    Parameters
+    ----------
+    model : "jointed", every joint an interface, or "equivalent", joints with a spacing, and a
+        pillar's, in an effective medium.
+    rock : function of the scene and a dolfinx space that returns the rock as UFL forms, in place of
+        the scene's own; with unrelaxed moduli where the scene has a quality factor. Waves,
+        compliant bases and absorbing ends of a pillar are of the scene's rock, and refused then.
+    dim : of a pillar's mesh: 1, the bar; 2, plane stress; 3, the square column; absent: as the
+        scene asks for.
+    progress : called with the finished fraction.
+    keeper : of checkpoints, `numerics.time_loop`.
+    incident : of the waves, as if the rock had no sides; absent: in rock without joints.
+    comm : mpi4py's communicator of processes that share the run: all call this alike, and all get
+        the whole result. keeper, progress : of each.
 
-def discrete_and_steps(
-    scene: Scene | RockMass, rock: str, dim: int | None = None, comm=None
-) -> tuple[Any, Choice, float]:
-    """Return a scene in space, how it is stepped, and the critical step of explicit steps (s).
-
-    Raises SceneError for a run that cannot be or would not fit in memory.
+    Raises SceneError for what cannot be simulated; StoppedError, with the result so far, when the
+    motion leaves its bounds.
     """
-    comm = comm if comm is not None and comm.size > 1 else None
-    if not isinstance(scene, Scene):
-        return rock_mass.discrete_and_steps(scene, rock, comm)
-    discrete = discretise(scene, rock, dim, comm)
-    critical = critical_step_of(scene, discrete, rock)
-    choice = choose(scene, discrete, critical)
-    refuse_large_run(scene, discrete.kinematics, choice.time)
-    return discrete, choice, critical
+    began, comm = perf_counter(), comm if comm is not None and comm.size > 1 else None
+    found, still, choice, critical = plan_of(scene, model, rock, dim, comm)
+    time = choice.time
+    problem, rest, sudden = at_rest(scene, in_time(scene, still, time, incident))
+    steps = stepper(scene, problem, choice, rest, sudden)
+    u, about = None, dict[str, Any]()
+    if rest is not None:
+        u = rest.u
+        about = {"static_steps": rest.steps, "static_out_of_balance": rest.ratio}
+    monitor = Monitor(scene, found, steps, choice, critical, u)
+    recorder = None if scene.record.fields is None else RockRecorder(scene, found, steps)
+    built = perf_counter()
+    steps.take(0, 0, time.stride)
+    compiled = perf_counter()
+
+    def result(count: int) -> xr.Dataset:
+        dataset = recorded(
+            scene,
+            problem,
+            steps.samples,
+            time.times[:count],
+            {
+                "model": model,
+                "scheme": choice.scheme,
+                "scheme_reason": choice.reason,
+                "dim": problem.body.x.shape[1],
+                "cell": kind_of(problem.body),
+                "order": scene.numerics.continuum.order,
+                "dt": time.dt,
+                "critical_dt": critical,
+                "steps": time.steps,
+                "degrees_of_freedom": len(problem.body.stiffness.indptr) - 1,
+                "bytes": steps.bytes if comm is None else comm.allreduce(steps.bytes),
+                "processes": 1 if comm is None else comm.size,
+                **about,
+                **steps.attributes,
+                "seconds_setup": built - began,
+                "seconds_compile": compiled - built,
+                "seconds_stepping": perf_counter() - compiled,
+                "versions": versions(),
+            },
+        )
+        return dataset if recorder is None else recorder.add_to(dataset)
+
+    def march(first: int, last: int) -> None:
+        done = first * time.stride
+        if recorder is not None:
+            steps.take(done, done + 1, time.stride)
+            recorder.record_if_due(first)
+            done += 1
+        steps.take(done, last * time.stride, time.stride)
+        monitor.check(first, last)
+
+    work = steps.work_of_a_step * problem.body.stiffness.shape[0] * time.stride
+    chunk = FREEDOM_STEPS_AT_ONCE // work
+    chunk = min(chunk, time.samples // LEAST_CHUNKS)
+    parts = steps.parts, steps.samples, monitor.guard
+    try:
+        run_in_chunks(time.samples, chunk, march, parts, progress, recorder, keeper)
+    except StoppedError as error:
+        error.result = result(error.samples)
+        raise
+    return result(time.samples)
+
+
+def stepper(
+    scene: AnyScene,
+    problem: Problem,
+    choice: Choice,
+    rest: Rest | None,
+    sudden: np.ndarray | None = None,
+) -> Leapfrog | Implicit:
+    """Return the steps of a run, from a state at rest if there is one; sudden : forces (N) that
+    begin to act at t = 0."""
+    time, energy = choice.time, scene.record.energy
+    steps: Leapfrog | Implicit
+    if choice.scheme == "explicit":
+        of = Leapfrog if problem.comm is None else SharedLeapfrog
+        steps = of(problem, time.dt, time.samples, energy)
+        if sudden is not None:
+            steps.drop(sudden)
+    else:
+        rho = scene.numerics.continuum.spectral_radius
+        steps = Implicit(problem, time.dt, time.samples, rho, energy)
+    if rest is not None:
+        steps.start(rest.u, rest.history)
+    return steps
+
+
+def versions() -> str:
+    """Return the versions of the libraries of a run, as JSON."""
+    own = {one.__name__: one.__version__ for one in (np, numba, dolfinx)}
+    return json.dumps(own)

@@ -1,7 +1,5 @@
 """Explicit or implicit steps: which a scene asks for, or which cost less, and why."""
 
-from __future__ import annotations
-
 from math import ceil
 from typing import NamedTuple
 
@@ -11,20 +9,15 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.sampling import MOST_STEPS, Clock, clock, sample_times
-from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.scene import Scene
-from jointwave.continuum.build import Discrete, operators
-from jointwave.continuum.plane.discrete import PlaneDiscrete
-from jointwave.continuum.size import resolved_period
+from jointwave.cases.scene_type import AnyScene
+from jointwave.continuum.mesh.size import resolved_period
+from jointwave.continuum.stepping.steps import Problem
 
-#: How many explicit steps one implicit step must replace before its cost is looked into: it solves
-#: an equation with several times the entries of the stiffness, and is not vectorised over blocks.
-STEPS_PER_IMPLICIT = 20
-
-#: Entries that a step takes in a second: of the block operators, and of triangular factors.
-OPERATOR_RATE, FACTOR_RATE = 3e9, 3e8
+STEPS_PER_IMPLICIT = 20  # explicit steps that one implicit step must replace to be looked into
+#: Entries that a step takes in a second: of products, and of triangular factors.
+PRODUCT_RATE, FACTOR_RATE = 1e9, 3e8
 #: Operations a second of a factorisation, and what an implicit step costs besides, s.
-FACTORISATION_RATE, OVERHEAD = 1e9, 5e-4
+FACTORISATION_RATE, OVERHEAD = 1e9, 1e-3
 ITERATIONS = 3  # of Newton's method where joints open, slide or break
 
 
@@ -36,95 +29,65 @@ class Choice(NamedTuple):
     reason: str
 
 
-def choose(scene: Scene | RockMass, discrete: Discrete | PlaneDiscrete, critical: float) -> Choice:
+def choose(scene: AnyScene, problem: Problem, critical: float) -> Choice:
     """Return the scheme of a scene; critical : the critical step of explicit steps, s.
 
     Raises SceneError for a step that cannot be taken.
     """
+    given = scene.numerics.continuum.scheme
+    if given == "auto" and problem.body.mass is None:
+        return Choice("implicit", _implicit(scene), "a consistent mass is not diagonal")
+    if given == "auto":
+        return _cheaper(scene, problem, critical)
+    steps = _explicit if given == "explicit" else _implicit
+    return Choice(given, steps(scene, critical), f"numerics.continuum.scheme = '{given}'")
+
+
+def _explicit(scene: AnyScene, critical: float) -> Clock:
     numerics = scene.numerics.continuum
-    if numerics.scheme == "explicit":
-        return _explicit(scene, critical, "numerics.continuum.scheme = 'explicit'")
-    if numerics.scheme == "implicit":
-        return _implicit(scene, "numerics.continuum.scheme = 'implicit'")
-    if getattr(numerics, "mass", None) == "consistent":
-        return _implicit(scene, "a consistent mass is not diagonal")
-    return _cheaper(scene, discrete, critical)
+    return clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "continuum")
 
 
-def _explicit(scene: Scene | RockMass, critical: float, reason: str) -> Choice:
-    numerics = scene.numerics.continuum
-    fraction, allowed = numerics.step_fraction, numerics.allow_unstable
-    return Choice("explicit", clock(scene, critical, fraction, allowed, "continuum"), reason)
-
-
-def _implicit(scene: Scene | RockMass, reason: str) -> Choice:
-    wanted = resolved_period(scene) / scene.numerics.continuum.steps_per_period
-    stride = max(1, ceil(scene.interval / wanted * (1 - 1e-12)))
+def _implicit(scene: AnyScene, critical: float = 0.0) -> Clock:
+    many = scene.numerics.continuum.steps_per_period
+    stride = max(1, ceil(scene.interval * many / resolved_period(scene) * (1 - 1e-12)))
     time = Clock(scene.interval / stride, stride, len(sample_times(scene)))
     if time.steps > MOST_STEPS:
         key = "numerics.continuum.steps_per_period"
-        value = scene.numerics.continuum.steps_per_period
-        raise SceneError(scene.where, key, value, f"gives {time.steps:.3g} steps")
-    return Choice("implicit", time, reason)
+        raise SceneError(scene.where, key, many, f"gives {time.steps:.3g} steps")
+    return time
 
 
-def _cheaper(
-    scene: Scene | RockMass, discrete: Discrete | PlaneDiscrete, critical: float
-) -> Choice:
+def _cheaper(scene: AnyScene, problem: Problem, critical: float) -> Choice:
     """Return the faster scheme, by operation counts."""
-    implicit = _implicit(scene, "")
+    implicit = _implicit(scene)
     many = scene.time.duration / (critical * scene.numerics.continuum.step_fraction)
-    few = implicit.time.steps
+    few = implicit.steps
     if many < STEPS_PER_IMPLICIT * few:
         few_more = f"{STEPS_PER_IMPLICIT} x {few:,} implicit ones"
         reason = f"{many:,.0f} explicit steps are fewer than {few_more}"
-        return _explicit(scene, critical, reason)
-    explicit_cost, implicit_cost = _costs(discrete, many, few)
-    costs = f"{many:,.0f} explicit steps, some {explicit_cost:.2g} s, against {few:,} implicit ones"
-    reason = f"{costs}, some {implicit_cost:.2g} s"
-    if explicit_cost <= implicit_cost:
-        return _explicit(scene, critical, reason)
-    return implicit._replace(reason=reason)
-
-
-def _costs(discrete: Discrete | PlaneDiscrete, many: float, few: int) -> tuple[float, float]:
-    """Return guesses of the seconds that so many explicit and so few implicit steps take.
-
-    They are those of one process, so that any number of them comes to the same choice.
-    """
-    communicator, found = discrete.body.communicator, (0.0, 0.0)
-    stiffness, viscosity = operators(discrete)
-    none = csr_matrix(stiffness.shape)
-    shares = stiffness, none if viscosity is None else viscosity
-    bends = communicator.any(_bends(discrete))
-    stiffness, viscosity = (communicator.assembled(share) for share in shares)
-    if stiffness is not None and viscosity is not None:
-        entries = stiffness.nnz + viscosity.nnz + 10 * stiffness.shape[0]
-        found = many * entries / OPERATOR_RATE, _implicit_seconds(stiffness, bends, few)
-    return communicator.same(found)
-
-
-def _bends(discrete: Discrete | PlaneDiscrete) -> bool:
-    """Return whether joints open, slide, break or close nonlinearly."""
-    law = None if discrete.joints is None else discrete.joints.law
-    return law is not None and any(
-        value is not None and not name.endswith(("stiffness", "viscosity"))
-        for name, value in law._asdict().items()
+        return Choice("explicit", _explicit(scene, critical), reason)
+    stiffness, bends = problem.stiffness, problem.parts is not None and any(problem.parts[1:3])
+    bends = bends or (problem.parts is not None and problem.parts.slip)
+    cheap = many * (stiffness.nnz + 10 * stiffness.shape[0]) / PRODUCT_RATE
+    costly = _implicit_seconds(stiffness, bends, few)
+    reason = (
+        f"{many:,.0f} explicit steps, some {cheap:.2g} s, against {few:,} implicit ones, some "
+        f"{costly:.2g} s"
     )
+    if cheap <= costly:
+        return Choice("explicit", _explicit(scene, critical), reason)
+    return Choice("implicit", implicit, reason)
 
 
 def _implicit_seconds(stiffness: csr_matrix, bends: bool, steps: int) -> float:
-    entries = factor_entries(stiffness)
+    """Return a guess of the seconds of implicit steps, whose triangular factors fill the envelope
+    of a narrow numbering."""
+    order = reverse_cuthill_mckee(stiffness, symmetric_mode=True)
+    narrow = stiffness[order][:, order].tocoo()
+    reach = np.zeros(stiffness.shape[0], dtype=np.int64)
+    np.maximum.at(reach, narrow.row, narrow.row - narrow.col)
+    entries = float(2 * reach.sum() + reach.size)
     solve = entries / FACTOR_RATE + OVERHEAD
     factorise = entries**2 / max(stiffness.shape[0], 1) / FACTORISATION_RATE
     return steps * ITERATIONS * (solve + factorise) if bends else steps * solve + factorise
-
-
-def factor_entries(matrix: csr_matrix) -> int:
-    """Return how many entries triangular factors have within the envelope of a narrow numbering,
-    which for a row of blocks is close to the fewest."""
-    order = reverse_cuthill_mckee(matrix, symmetric_mode=True)
-    narrow = matrix[order][:, order].tocoo()
-    reach = np.zeros(matrix.shape[0], dtype=np.int64)
-    np.maximum.at(reach, narrow.row, narrow.row - narrow.col)
-    return int(2 * reach.sum() + reach.size)

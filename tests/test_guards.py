@@ -6,7 +6,6 @@ import pytest
 from jointwave import continuum, dem
 from jointwave.cases.errors import StoppedError
 from jointwave.compare.engines import solver
-from jointwave.continuum.run import discrete_and_steps
 from jointwave.numerics.divergence import EVERY
 
 ABOVE = 1.001  # of the critical step: (x + sqrt(x^2 - 1))^2 = 1.09 times as large in every step
@@ -42,9 +41,7 @@ def forced(request, pillar):
 
 
 def critical_of(scene, engine):
-    if engine == "continuum":
-        return discrete_and_steps(scene, "jointed")[2]
-    return solver("dem").prepare(scene).critical
+    return solver("dem" if engine == "dem" else "continuum-jointed").prepare(scene).critical
 
 
 def test_what_is_sound_is_kept_and_nothing_else(forced):

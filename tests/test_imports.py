@@ -20,11 +20,7 @@ PRIVATE = ("numba.core", "numba._", "numba.np", "llvmlite")
 #: may only shrink.
 COMPILER_INSIDE = {
     "numerics/denormals.py",
-    "numerics/arguments.py",
-    "numerics/pointers.py",
     "numerics/atomic.py",
-    "continuum/space/simd.py",
-    "continuum/parallel/exchange.py",
 }
 #: Settings that a library documents as such.
 SETTINGS = {"numba.config.CACHE_DIR"}
@@ -32,12 +28,6 @@ MOST_ARGUMENTS = 12
 #: Kernels of the present engines. This list may only shrink.
 LONG_KERNELS = {
     ("joints/slide.py", "after_slide"),
-    ("continuum/explicit/leapfrog.py", "add_work"),
-    ("continuum/explicit/leapfrog.py", "steps"),
-    ("continuum/implicit/record.py", "take"),
-    ("continuum/implicit/balance.py", "trial"),
-    ("continuum/space/tractions.py", "joint_loads"),
-    ("continuum/space/tractions.py", "joint_tangents"),
 }
 
 

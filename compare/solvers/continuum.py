@@ -44,27 +44,8 @@ def run(
 
 def prepare(scene: Scene, model: str) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
-    from jointwave.continuum import by_body
-    from jointwave.continuum.run import discrete_and_steps
-
-    if by_body(scene):
-        return _planned(scene, model)
-    with estimates() as parts:
-        discrete, choice, critical = discrete_and_steps(scene, model)
-    incident(scene)  # which is not known of all waves in layers
-    settings = {
-        "scheme": choice.scheme,
-        "dim": discrete.kinematics.dim,
-        "cell": discrete.body.mesh.cell,
-        "order": scene.numerics.continuum.order,
-    }
-    time, freedoms, size = choice.time, discrete.body.degrees_of_freedom, sum(parts.values())
-    return Prepared(choice.scheme, time.steps, time.dt, critical, freedoms, size, settings)
-
-
-def _planned(scene: Any, model: str) -> Prepared:
-    from jointwave.continuum.body.evaluation import kind_of
-    from jointwave.continuum.body.plan import plan_of
+    from jointwave.continuum.plan import plan_of
+    from jointwave.continuum.space.evaluation import kind_of
 
     with estimates() as parts:
         plan = plan_of(scene, model)
@@ -82,7 +63,7 @@ def _planned(scene: Any, model: str) -> Prepared:
 
 def libraries() -> dict[str, str]:
     """Return the version of dolfinx."""
-    from jointwave.continuum.body.fenicsx import dolfinx
+    from jointwave.continuum.space.fenicsx import dolfinx
 
     return {"dolfinx": dolfinx.__version__}
 

@@ -47,29 +47,9 @@ def _blocks(scene: AnyScene, model: Any) -> tuple:
 
 def _elements(scene: AnyScene, model: Any) -> tuple:
     """Return the same of the nodes of deformable rock with their shortest edges."""
-    from jointwave.continuum import by_body
-    from jointwave.continuum.build import operators
-    from jointwave.continuum.run import discrete_and_steps
-
-    if by_body(scene):
-        return _nodes(scene, model)
-    discrete, _, _ = discrete_and_steps(scene, model)
-    body, stiffness = discrete.body, abs(operators(discrete)[0])
-    mass = body.mass[body.first]
-    square = np.asarray(stiffness.sum(axis=1)).ravel()[body.first] / mass
-
-    def size(node: int) -> float:
-        corners = body.corners[(body.cells == node).any(axis=1)][0]
-        apart = np.linalg.norm(corners[:, None] - corners, axis=2)
-        return float(apart[apart > 0].min())
-
-    return square, mass, body.x, size
-
-
-def _nodes(scene: Any, model: Any) -> tuple:
-    from jointwave.continuum.body.compat import cell_corners
-    from jointwave.continuum.body.evaluation import nodes_of_cells
-    from jointwave.continuum.body.plan import plan_of
+    from jointwave.continuum.plan import plan_of
+    from jointwave.continuum.space.compat import cell_corners
+    from jointwave.continuum.space.evaluation import nodes_of_cells
 
     problem = plan_of(scene, model).problem
     body, first = problem.body, slice(None, None, problem.body.components)

@@ -1,47 +1,76 @@
-"""A user's own gmsh file as a mesh: any shape of joints inside the pillar of the scene.
+"""A user's own gmsh file as the mesh of a pillar: joints of any shape within it.
 
-The physical groups of the file identify its parts: groups whose names start with "rock" contain the
-cells, groups whose names start with "joint" the facets of joints. At a joint the vertices may exist
-twice, with the facets of either side tagged, or once: then the rock is cut there. The end faces are
-the groups "start" and "end", or else the facets at y = 0 and y = length.
+Groups whose names start with "rock" hold the cells, groups whose names start with "joint" the
+facets of joints. At a joint the file may have vertices once, or twice with the facets of either
+side tagged. The end faces are the groups "start" and "end", or else the facets at y = 0 and y =
+length.
 """
-
-from pathlib import Path
 
 import numpy as np
 
 from jointwave.cases.errors import SceneError
+from jointwave.cases.geometry.blocks import Blocks, blocks_of
+from jointwave.cases.geometry.cell_complex import box
+from jointwave.cases.geometry.relations import joined, merged
 from jointwave.cases.gmsh_file import MeshError, Tagged, read_tagged
-from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.run_memory import refuse_beyond_memory
 from jointwave.cases.schema.scene import Scene
-from jointwave.continuum.mesh import facets
-from jointwave.continuum.mesh.cells import DIMENSION, FACETS, jacobians, oriented
-from jointwave.continuum.mesh.cut import pieces, split
-from jointwave.continuum.mesh.description import Mesh, Part, Side
-from jointwave.continuum.mesh.facets import Facets
-from jointwave.continuum.mesh.paired import paired_joints, place
+from jointwave.continuum.mesh.conforming import (
+    BOXES,
+    SIMPLICES,
+    Conforming,
+    facets_of,
+    shared,
+)
+from jointwave.continuum.mesh.domain import Marks
+from jointwave.continuum.mesh.given_facets import (
+    PLACE,
+    check_joints,
+    ends,
+    grouped,
+    halves,
+    nearest_joints,
+    place,
+)
+from jointwave.continuum.mesh.size import body_bytes
 
-PLACE = 1e-6  #: of the pillar's length and side: tolerance of the file's dimensions
+APART = 1e-4  # of the shortest distance in a cell: vertices of two sides of a joint that are one
+DIMENSION = {kind: dim for kinds in (BOXES, SIMPLICES) for dim, kind in kinds.items()}
+ENDS = ("start", "end", "along")  #: sides of a pillar: its ends, and those along it
+KEY = "numerics.continuum.mesh"  #: the key of the scene
 
 
-def given_mesh(path: str | Path, scene: Scene, p: Properties, dim: int | None = None) -> Mesh:
-    """Return the mesh of a gmsh file, in two or three dimensions unless `dim` is given.
+def mesh_of_file(
+    scene: Scene, resolved: np.ndarray, dim: int | None = None
+) -> tuple[Blocks, Conforming, Marks]:
+    """Return the pillar of `numerics.continuum.mesh` as one block, its mesh, and the marks of its
+    facets: of `Conforming.on` joints come first, by their number in the pillar.
 
-    The law of a joint facet is that of the pillar's joint nearest in y: nearest to the facet itself
-    if it lies across the pillar, nearest to the group's mean for all other facets of a group.
-    Raises SceneError if the mesh does not fit the scene.
+    resolved : which joints are, int array. dim : that the mesh must have; None for any.
+
+    The law of a facet is that of the pillar's joint nearest in y: nearest to the facet itself if it
+    lies across the pillar, nearest to the group's mean for all other facets of a group. Raises
+    SceneError where the file does not fit the scene.
     """
-    key, given = "numerics.continuum.mesh", scene.numerics.continuum.mesh or str(path)
+    numerics, p = scene.numerics.continuum, calibrate(scene)
+    path = numerics.mesh_path
+    assert path is not None
     try:
         tagged = read_tagged(path)
         _check_kind(scene, tagged.kind, dim)
-        return _mesh(tagged, p)
+        _refuse_large(scene, tagged)
+        mesh = _mesh(tagged, p)
     except MeshError as error:
-        raise SceneError(scene.where, key, given, str(error)) from None
+        raise SceneError(scene.where, KEY, numerics.mesh, str(error)) from None
+    joint = np.arange(p.block_count - 1)
+    none = np.full(len(joint), -1)
+    column = np.append(np.where(np.isin(joint, resolved), joint, -1), [-1, -1, -1])
+    return _whole(scene, mesh.x.shape[1]), mesh, Marks(column, np.append(none, [0, 1, 2]), ENDS)
 
 
 def _check_kind(scene: Scene, kind: str, dim: int | None) -> None:
-    numerics, simplices = scene.numerics.continuum, kind in ("triangle", "tetrahedron")
+    numerics, simplices = scene.numerics.continuum, kind in SIMPLICES.values()
     if dim is not None and DIMENSION[kind] != dim:
         raise MeshError(f"its rock has {kind} cells, which do not fit dim = {dim}")
     if simplices and numerics.order > 2:
@@ -50,30 +79,52 @@ def _check_kind(scene: Scene, kind: str, dim: int | None) -> None:
         raise MeshError(f"its {kind} cells support numerics.continuum.mass = 'lumped' only")
 
 
-def _mesh(tagged: Tagged, p: Properties) -> Mesh:
+def _refuse_large(scene: Scene, tagged: Tagged) -> None:
+    """Raise SceneError where the body of a mesh would not fit in memory."""
+    order, dim = scene.numerics.continuum.order, DIMENSION[tagged.kind]
+    share = 1.0 if tagged.kind in BOXES.values() else {2: 0.5, 3: 0.2}[dim]
+    nodes = share * len(tagged.cells) * (order + 0.5) ** dim
+    refuse_beyond_memory(scene, {KEY: body_bytes(nodes, dim, order, dim)})
+
+
+def _whole(scene: Scene, dim: int) -> Blocks:
+    """Return a pillar as one block."""
+    low, high = np.full((2, dim), scene.pillar.side / 2) * [[-1], [1]]
+    low[1], high[1] = 0.0, scene.pillar.length
+    body = box(low, high)
+    body.region[:] = 0
+    return blocks_of(body, PLACE * scene.pillar.side, in_rows=False)
+
+
+def _mesh(tagged: Tagged, p: Properties) -> Conforming:
     kind, dim = tagged.kind, DIMENSION[tagged.kind]
     used, cells = np.unique(tagged.cells, return_inverse=True)
     x, cells = tagged.x[used], cells.reshape(tagged.cells.shape)
     _check_extent(x, p, dim)
     x = x[:, :dim]
-    cells = oriented(kind, x, cells)
-    _check_cells(kind, x, cells)
-    names = sorted(tagged.facets)
-    group = _group_of_facets(kind, used[cells], [tagged.facets[name] for name in names])
-    is_joint = np.array([False, *(name.startswith("joint") for name in names)])
-    x, cells = split(kind, x, cells, is_joint[group])
-    piece = pieces(cells)
-    order = _along_pillar(x, cells, piece)
-    cells, piece, group = cells[order], piece[order], group[order]
-    whole = Part(x, cells, np.zeros(len(cells), dtype=np.int64), np.zeros((1, dim)))
-    alone = facets.outer(kind, cells)
-    outer, group = facets.on_copies(kind, whole, *alone), group[alone]
-    joints = paired_joints(outer, np.where(is_joint[group], group, 0), p)
-    return Mesh(kind, _parts(whole, piece), (), joints, _ends(outer, group, names, p))
+    cells = _oriented(kind, x, cells)
+    one = merged(x, APART * _shortest(x[cells]))
+    index, names = np.full(len(tagged.x), len(x)), sorted(tagged.facets)
+    index[used] = np.arange(len(x))
+    group = grouped(kind, cells, [index[tagged.facets[name]] for name in names], len(x) + 1)
+    of_joints = np.array([*(name.startswith("joint") for name in names), False])
+    found = halves(kind, x, cells, one, group, of_joints)
+    check_joints(found, of_joints, p)
+    on = np.where(found.joint >= 0, nearest_joints(found, p), -1)
+    on[(found.facing == 1) & (found.joint < 0)] = p.block_count + 1
+    for k, side in enumerate(ends(found, names, p)):
+        on[side] = p.block_count - 1 + k
+    at_joint = np.zeros(len(x), bool)  # rock may touch other rock in a vertex that it has twice
+    at_joint[one[cells[:, facets_of(kind)][found.joint >= 0]]] = True
+    vertex = np.where(at_joint[one], one, np.arange(len(x)))
+    used, cells = np.unique(vertex[cells], return_inverse=True)
+    block = np.zeros(len(on), np.int64)
+    mesh = Conforming(kind, x[used], cells.reshape(len(on), -1), block, on)
+    return _along(mesh, found.joint >= 0)
 
 
 def _check_extent(x: np.ndarray, p: Properties, dim: int) -> None:
-    half, length = p.side / 2, p.spacing * p.block_count
+    half, length = p.side / 2, float(p.contact_y[-1])
     wanted = {"x": (-half, half), "y": (0, length), "z": (-half, half) if dim == 3 else (0, 0)}
     for (axis, (low, high)), values in zip(wanted.items(), x.T, strict=True):
         exact = PLACE * (length if axis == "y" else p.side)
@@ -84,55 +135,44 @@ def _check_extent(x: np.ndarray, p: Properties, dim: int) -> None:
             )
 
 
-def _check_cells(kind: str, x: np.ndarray, cells: np.ndarray) -> None:
-    bad = (jacobians(kind, x, cells) <= 0).any(axis=1)
+def _oriented(kind: str, x: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Return cells with positive Jacobians: mirrored ones are turned. Raises MeshError."""
+    corner = np.arange(cells.shape[1])
+    if kind in SIMPLICES.values():
+        turned = np.append(corner[:-2], corner[:-3:-1])
+    else:  # the first two axes exchanged
+        turned = corner & ~3 | (corner & 1) << 1 | (corner & 2) >> 1
+    mirrored = (_jacobians(kind, x[cells]) < 0).all(axis=1)
+    cells = np.where(mirrored[:, None], cells[:, turned], cells)
+    bad = (_jacobians(kind, x[cells]) <= 0).any(axis=1)
     if bad.any():
-        first = x[cells[bad.argmax()]].mean(axis=0)
-        raise MeshError(
-            f"{bad.sum()} of its cells are flat or inside out, the first at {place(first)}"
-        )
-    if np.bincount(facets.facet_numbers(kind, cells)).max() > 2:
-        raise MeshError("some of its cells overlap: more than two share one facet")
+        at = place(x[cells[bad.argmax()]].mean(axis=0))
+        raise MeshError(f"{bad.sum()} of its cells are flat or inside out, the first at {at}")
+    return cells
 
 
-def _group_of_facets(kind: str, cells: np.ndarray, groups: list[np.ndarray]) -> np.ndarray:
-    """Return the group of each facet of each cell [cells, facets]: 0 none, k the k-th."""
-    table = FACETS[kind]
-    rows = [cells[:, table].reshape(-1, table.shape[1]), *groups]
-    number = facets.row_numbers(np.sort(np.concatenate(rows), axis=1))
-    of_cells, of_groups = np.split(number, [cells.shape[0] * len(table)])
-    lost = ~np.isin(of_groups, of_cells)
-    if lost.any():
-        raise MeshError(f"{lost.sum()} facets of its groups belong to no rock cell")
-    group = np.zeros(number.max() + 1, dtype=np.int64)
-    group[of_groups] = np.repeat(1 + np.arange(len(groups)), [len(rows) for rows in groups])
-    return group[of_cells].reshape(len(cells), len(table))
+def _jacobians(kind: str, x: np.ndarray) -> np.ndarray:
+    """Return the determinants of the Jacobians at the corners [c, n] of cells, m^d; of a simplex
+    one. x : of their corners [c, corners, d], m."""
+    if kind in SIMPLICES.values():
+        return np.linalg.det(x[:, 1:] - x[:, :1])[:, None]
+    corner, bit = np.arange(x.shape[1])[:, None], 1 << np.arange(x.shape[2])
+    return np.linalg.det(x[:, corner | bit] - x[:, corner & ~bit])
 
 
-def _along_pillar(x: np.ndarray, cells: np.ndarray, piece: np.ndarray) -> np.ndarray:
-    """Return the order of cells by piece, with pieces sorted by their start along y, int array."""
+def _shortest(x: np.ndarray) -> float:
+    """Return the shortest distance between two corners of a cell, m; x : [c, corners, d], m."""
+    i, j = np.triu_indices(x.shape[1], 1)
+    return float(np.linalg.norm(x[:, i] - x[:, j], axis=2).min())
+
+
+def _along(mesh: Conforming, is_joint: np.ndarray) -> Conforming:
+    """Return a mesh with its cells in order along the pillar, piece by piece of rock: the first of
+    two beside a joint is the one towards y = 0."""
+    pairs, y = shared(mesh), mesh.x[mesh.cells, 1]
+    uncut = ~is_joint[pairs.cell, pairs.facet].any(axis=1)
+    piece = joined(pairs.cell[uncut], len(y))
     begin = np.full(piece.max() + 1, np.inf)
-    np.minimum.at(begin, piece, x[cells, 1].min(axis=1))
-    return np.lexsort((piece, begin[piece]))
-
-
-def _parts(whole: Part, piece: np.ndarray) -> tuple[Part, ...]:
-    """Return the pieces of the whole mesh, whose cells are sorted by piece."""
-    parts = []
-    for cells in np.split(whole.cells, np.flatnonzero(np.diff(piece)) + 1):
-        used, number = np.unique(cells, return_inverse=True)
-        material = np.zeros(len(cells), dtype=np.int64)
-        parts.append(Part(whole.x[used], number.reshape(cells.shape), material, whole.shifts))
-    return tuple(parts)
-
-
-def _ends(outer: Facets, group: np.ndarray, names: list[str], p: Properties) -> dict[str, Side]:
-    """Return the facets of the end faces, from the groups or else by their position."""
-    length, sides = p.spacing * p.block_count, {}
-    for name, y in (("start", 0.0), ("end", length)):
-        face = facets.lies_at(outer, y, PLACE * length)
-        chosen = group == 1 + names.index(name) if name in names else face
-        if not chosen.any() or (chosen & ~face).any():
-            raise MeshError(f"the facets of its {name} face must lie at y = {y:g} m")
-        sides[name] = outer.side(chosen)
-    return sides
+    np.minimum.at(begin, piece, y.min(axis=1))
+    order = np.lexsort((y.mean(axis=1), piece, begin[piece]))
+    return mesh._replace(cells=mesh.cells[order], on=mesh.on[order])

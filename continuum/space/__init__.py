@@ -1,1 +1,1 @@
-"""The rock in space: elements, the jump across joints, and what receivers read of them."""
+"""dolfinx spaces on open meshes, rock as UFL forms, and the jump operator of joints."""

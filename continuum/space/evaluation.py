@@ -1,116 +1,155 @@
-"""Position of a point of the pillar in the mesh, and the elements' functions there."""
+"""The motion of a body and its gradient at points: rows of matrices on its freedoms."""
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from jointwave.continuum.space import basix_versions
-from jointwave.continuum.space.body import Body
+from jointwave.continuum.space import compat
+from jointwave.continuum.space.bubbles import bubble_element
+from jointwave.continuum.space.model import Body
 
-INSIDE = 1e-7  # how far outside the reference cell a point on its face may come out
+INSIDE = 1e-7  # of the reference cell: how far outside it a point on its face may come out
 CLOSE = 1e-12  # of the reference cell: when Newton's iteration has found a point
 ROUNDS = 20
 NOTHING = 1e-11  # a basis function that is zero but for round-off
+HIGHEST = 4  # order of elements
+WITH_BUBBLES = {"triangle": 7, "tetrahedron": 15}  # nodes of elements of order 2
+#: Kinds of cells by their dimension and corners.
+KINDS = {
+    (1, 2): "interval", (2, 3): "triangle", (2, 4): "quadrilateral", (3, 4): "tetrahedron",
+    (3, 8): "hexahedron",
+}  # fmt: skip
 
 
 class Places(NamedTuple):
-    """Points in cells.
+    """Points in cells; a point on several cells is in each.
 
-    cell : int array [n]. basis : float array [n, nodes per cell], what is zero but for round-off
-    is zero. gradient : float array [n, nodes per cell, dim], 1/m.
+    point, cell : int arrays [n]. local : in the reference cell [n, d]. basis : float array [n,
+    nodes of a cell]. gradient : [n, nodes, d], 1/m.
     """
 
+    point: np.ndarray
     cell: np.ndarray
+    local: np.ndarray
     basis: np.ndarray
     gradient: np.ndarray
 
 
-def places_in(body: Body, cell: np.ndarray, x: np.ndarray) -> Places:
-    """Return points x [n, dim] (m) of the cells [n] that hold them."""
-    return at_reference(body, cell, reference_points(body.mesh.cell, body.corners[cell], x))
+def nodes_of_cells(body: Body) -> np.ndarray:
+    """Return the nodes of the body in each cell, int array [cells, nodes of a cell]."""
+    nodes = compat.cell_nodes(body.space)
+    return nodes if body.tied is None else body.tied[nodes]
 
 
-def at_reference(body: Body, cell: np.ndarray, at: np.ndarray) -> Places:
-    """Return points that are given in reference coordinates [n, dim] of the cells [n]."""
-    basis, gradient = basix_versions.tabulate(body.mesh.cell, body.order, at)
-    inverse = np.linalg.inv(jacobians(body.mesh.cell, body.corners[cell], at))
+def blocks_of_nodes(body: Body) -> np.ndarray:
+    """Return the block of each node, int array; of nodes that several share one of them."""
+    if body.space is None:
+        return body.block
+    found = np.zeros(len(body.x), dtype=np.int64)
+    found[nodes_of_cells(body)] = body.block[:, None]
+    return found
+
+
+def kind_of(body: Body) -> str:
+    """Return the kind of a body's cells."""
+    return KINDS[body.x.shape[1], compat.cell_corners(body.mesh).shape[1]]
+
+
+def order_of(body: Body) -> int:
+    """Return the order of a body's elements."""
+    kind, nodes = kind_of(body), nodes_of_cells(body).shape[1]
+    return 2 if nodes == WITH_BUBBLES.get(kind) else int(element(kind, nodes).degree)
+
+
+@cache
+def element(kind: str, nodes: int):
+    """Return the element of a cell with so many nodes; `points` are their places."""
+    if nodes == WITH_BUBBLES.get(kind):
+        return bubble_element(kind)
+    every = (compat.reference(kind, order) for order in range(1, HIGHEST + 1))
+    return next(one for one in every if len(one.points) == nodes)
+
+
+def lattice_of(kind: str, nodes: int) -> np.ndarray:
+    """Return the nodes of an element without those of bubbles, int array: a full lattice."""
+    points = element(kind, nodes).points
+    if nodes != WITH_BUBBLES.get(kind):
+        return np.arange(nodes)
+    return np.flatnonzero(np.isclose(2 * points, np.rint(2 * points)).all(axis=1))
+
+
+def places_of_nodes(body: Body) -> np.ndarray:
+    """Return the places of the nodes of each cell [cells, nodes, d], m."""
+    kind, corners = kind_of(body), compat.cell_corners(body.mesh)
+    points = element(kind, compat.cell_nodes(body.space).shape[1]).points
+    return tabulate(kind, corners.shape[1], points)[0] @ corners
+
+
+def tabulate(kind: str, nodes: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return functions [n, nodes] and their gradients [n, nodes, d] at points [n, d] of the
+    reference cell."""
+    if not len(at):  # an assertion of basix stops the process
+        return np.zeros((0, nodes)), np.zeros((0, nodes, at.shape[1]))
+    table = element(kind, nodes).tabulate(1, at)[..., 0]
+    return table[0], np.moveaxis(table[1:], 0, 2)
+
+
+def at_reference(body: Body, point: np.ndarray, cell: np.ndarray, at: np.ndarray) -> Places:
+    """Return points that are given in reference coordinates [n, d] of cells [n]."""
+    kind, corners = kind_of(body), compat.cell_corners(body.mesh)[cell]
+    basis, gradient = tabulate(kind, nodes_of_cells(body).shape[1], at)
+    inverse = np.linalg.inv(jacobians(kind, corners, at))
     basis = np.where(np.abs(basis) > NOTHING, basis, 0.0)
-    return Places(cell, basis, np.einsum("nkd,nde->nke", gradient, inverse))
+    return Places(point, cell, at, basis, gradient @ inverse)
 
 
-def quadrature_in(
-    body: Body, cells: np.ndarray, degree: int, lobatto: bool = False
-) -> tuple[Places, np.ndarray, np.ndarray]:
-    """Return the quadrature points of cells, where they are [n, dim] (m), and volumes [n] (m3)."""
-    at, weight = basix_versions.quadrature(body.mesh.cell, degree, lobatto)
-    cell, at = np.repeat(cells, len(at)), np.tile(at, (cells.size, 1))
-    corners = body.corners[cell]
-    x = np.einsum("nv,nvd->nd", basix_versions.tabulate(body.mesh.cell, 1, at)[0], corners)
-    size = np.abs(np.linalg.det(jacobians(body.mesh.cell, corners, at)))
-    return at_reference(body, cell, at), x, body.section.extent * size * np.tile(weight, cells.size)
-
-
-def jacobians(cell: str, corners: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Return dx/dX [n, dim, dim] of cells with these corners [n, corners, dim] at points [n, dim]
-    of the reference cell."""
-    _, gradient = basix_versions.tabulate(cell, 1, at)
+def jacobians(kind: str, corners: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Return dx/dX [n, d, d] of cells with these corners [n, corners, d] at points [n, d]."""
+    gradient = tabulate(kind, corners.shape[1], at)[1]
     return np.einsum("nvd,nve->nde", corners, gradient)
 
 
-def reference_points(cell: str, corners: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Return reference coordinates [n, dim] of points x in cells; Newton, one step where affine."""
+def reference_points(kind: str, corners: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Return reference coordinates [n, d] of points [n, d] in cells; Newton, one step where
+    affine."""
     at = np.full_like(x, 0.3)
     for _ in range(ROUNDS):
-        basis, _ = basix_versions.tabulate(cell, 1, at)
-        missing = x - np.einsum("nv,nvd->nd", basis, corners)
-        step = np.linalg.solve(jacobians(cell, corners, at), missing[..., None])[..., 0]
+        missing = x - np.einsum("nv,nvd->nd", tabulate(kind, corners.shape[1], at)[0], corners)
+        step = np.linalg.solve(jacobians(kind, corners, at), missing[..., None])[..., 0]
         at = at + step
         if np.abs(step).max(initial=0.0) < CLOSE:
             break
     return at
 
 
-def cells_at(body: Body, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return (point, cell) int arrays of every cell that each point x [n, dim] is in or on."""
-    low, high = body.corners.min(axis=1), body.corners.max(axis=1)
-    slack = INSIDE * (high - low).max()
-    none = np.empty(0, dtype=np.int64)
-    points, cells = [none], [none]
-    for i, place in enumerate(x):
-        near = np.flatnonzero(((low - slack <= place) & (place <= high + slack)).all(axis=1))
-        at = reference_points(body.mesh.cell, body.corners[near], np.tile(place, (near.size, 1)))
-        here = near[_is_inside(body.mesh.cell, at)]
-        points.append(np.full(here.size, i))
-        cells.append(here)
-    return np.concatenate(points), np.concatenate(cells)
-
-
-def _is_inside(cell: str, at: np.ndarray) -> np.ndarray:
+def places_in(body: Body, x: np.ndarray) -> Places:
+    """Return points [m, d], m, in all cells that they are in or on."""
+    corners, kind = compat.cell_corners(body.mesh), kind_of(body)
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    slack = INSIDE * float((high - low).max(initial=0.0))
+    near = [np.flatnonzero(((low - slack <= one) & (one <= high + slack)).all(axis=1)) for one in x]
+    cell = np.concatenate([np.zeros(0, np.int64), *near])
+    point = np.repeat(np.arange(len(x)), [len(one) for one in near])
+    at = reference_points(kind, corners[cell], x[point])
     inside = (at >= -INSIDE).all(axis=1)
-    if cell in ("triangle", "tetrahedron"):
-        return inside & (at.sum(axis=1) <= 1 + INSIDE)
-    return inside & (at <= 1 + INSIDE).all(axis=1)
+    if kind in ("triangle", "tetrahedron"):
+        inside &= at.sum(axis=1) <= 1 + INSIDE
+    else:
+        inside &= (at <= 1 + INSIDE).all(axis=1)
+    return at_reference(body, point[inside], cell[inside], at[inside])
 
 
-def matrix_of(body: Body, rows: np.ndarray, cell: np.ndarray, weights: np.ndarray, count: int):
-    """Return the matrix [directions * count, freedoms] of weights [directions, n, nodes per cell,
-    components] in rows [n] of each direction.
-
-    What falls on one place is added up; cells without nodes here have none.
-    """
-    node = np.broadcast_to(body.cells[cell][:, :, None], weights.shape)
-    component = np.broadcast_to(np.arange(weights.shape[3]), weights.shape)
-    row = rows[:, None, None] + count * np.arange(len(weights))[:, None, None, None]
-    row, there = np.broadcast_to(row, weights.shape), (weights != 0.0) & (node >= 0)
-    column, shape = (
-        body.freedom(node[there], component[there]),
-        (len(weights) * count, body.mass.size),
-    )
-    return csr_matrix((weights[there], (row[there], column)), shape)
-
-
-def on_freedoms(body: Body, cell: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Return sums of weights [directions, n, nodes per cell, components] on every freedom
-    [directions, freedoms]."""
-    return matrix_of(body, np.zeros(cell.size, dtype=np.int64), cell, weights, 1).toarray()
+def matrix_of(body: Body, row: np.ndarray, cell: np.ndarray, weights: np.ndarray, count: int):
+    """Return the matrix [count * r, freedoms] of weights [n, r, nodes of a cell, d]: r rows for
+    each number of `row` [n], one after the other; what falls on one place adds up."""
+    r, dim = weights.shape[1], weights.shape[3]
+    node = nodes_of_cells(body)[cell]
+    column = dim * node[:, None, :, None] + np.arange(dim)
+    rows = r * row[:, None, None, None] + np.arange(r)[:, None, None]
+    column, rows = (np.broadcast_to(one, weights.shape).ravel() for one in (column, rows))
+    shape = count * r, body.stiffness.shape[0]
+    found = csr_matrix((weights.ravel(), (rows, column)), shape)
+    found.eliminate_zeros()
+    return found

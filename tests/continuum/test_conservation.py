@@ -1,83 +1,74 @@
-"""A free pillar keeps its momentum and angular momentum, and a mirrored one moves mirrored."""
+"""Momentum of free bodies, drag on rock that drifts, and weight on joints of friction alone."""
 
 import numpy as np
 import pytest
 
-from jointwave.cases.loads import load_history
+from jointwave.continuum.run import simulate
+from jointwave.continuum.stepping.steps import Leapfrog
+from tests.continuum.stacked import Force, stack
+from tests.continuum.test_explicit import joined, problem
 
 JOINTS = {
-    "elastic": {},
-    "slip": {"joints": {"friction_angle": 20.0, "cohesion": 1e4}},
-    "no tension": {"joints": {"tension": False}},
+    "slip": {"friction": np.array([0.3, 0.2]), "cohesion": np.array([0.01, 0.02])},
+    "no tension": {"tension": np.zeros(2, bool)},
 }
-WAYS = {2: ([0.6, 0.8, 0.0], [0.1, 0.0]), 3: ([0.48, 0.6, -0.64], [0.1, -0.05])}
+WAYS = {2: [0.6, -0.8], 3: [0.48, -0.64, -0.6]}
 
 
-def blow(dim: int, shape: str = "step", **changes) -> dict:
-    """Return an oblique eccentric load, in the plane or in space."""
-    way, at = WAYS[dim]
-    period = {"period": 1e-3} if shape == "sine" else {}
-    return {"shape": shape, "amplitude": 1e5, "direction": way, "at": at, **period, **changes}
+@pytest.mark.parametrize(("dim", "joints"), [*((2, kind) for kind in JOINTS), (3, "slip")])
+def test_momenta_are_the_impulse_of_the_load(dim, joints):
+    """Of an eccentric blow, whatever the joints do: their tractions act at one place on both sides.
+    The lever of a node is its unloaded place."""
+    body = stack(dim, 3, 2, 1, order=1)
+    corner = np.flatnonzero((body.x == body.x.max(axis=0)).all(axis=1))
+    freedom = dim * corner[0] + np.arange(dim)
+    own = problem(body, joined(2, **JOINTS[joints]))
+    dt = 0.3 * own.critical_step()
+    push = Force(freedom, np.array(WAYS[dim]), lambda t: 0.2 * np.sin(t), dt)
+    steps = Leapfrog(own._replace(forces=push), dt, 1, energy=False)
+    steps.take(0, 200, 1000)
+    impulse = dt * push.at(0, 200).sum(axis=0)
+    momentum = (body.mass * steps.v).reshape(-1, dim)
+    arms, force = np.zeros((len(body.x), 3)), np.zeros((len(body.x), 3))
+    arms[:, :dim], force[:, :dim] = body.x, momentum
+    blow = np.append(impulse, np.zeros(3 - dim))
+    turn = np.cross(arms[corner[0]], blow)
+    np.testing.assert_allclose(force.sum(axis=0), blow, atol=1e-11 * np.abs(blow).max())
+    found = np.cross(arms, force).sum(axis=0)
+    np.testing.assert_allclose(found, turn, atol=1e-11 * np.abs(turn).max())
+    if joints == "slip":
+        assert steps.state.sums[1] > 0
 
 
-def momenta(run) -> tuple[np.ndarray, np.ndarray]:
-    """Return momentum (N s) and angular momentum about the centre of the start face (N m s).
-
-    Of small displacements: the lever of a node is its unloaded place.
-    """
-    body, dim = run.discrete.body, run.discrete.body.dim
-    push, arms = np.zeros((len(body.x), 3)), np.zeros((len(body.x), 3))
-    arms[:, :dim] = body.x
-    for c in range(dim):
-        freedom = body.freedom(np.arange(len(body.x)), c)
-        push[:, c] = body.mass[freedom] * run.state.v[freedom]
-    return push.sum(axis=0), np.cross(arms, push).sum(axis=0)
-
-
-@pytest.mark.parametrize(
-    ("dim", "cell", "joints"),
-    [(2, "hexahedron", kind) for kind in JOINTS]
-    + [(3, "hexahedron", kind) for kind in JOINTS]
-    + [(2, "simplex", "slip"), (3, "simplex", "slip")],
-)
-def test_momenta_are_the_impulse_of_the_load(plain, dim, cell, joints, short, ready):
-    """Of a step load up to half a step before the last, whatever the joints do: their tractions
-    act at one place on both sides. To 1e-11 of the largest."""
-    scene = short(load=blow(dim), numerics__continuum__cell=cell, **JOINTS[joints])
-    run = ready(scene, "jointed", dim, samples=101).take(0, 100)
-    impulse = 0.25 * load_history(scene).impulse(run.time.dt * 99.5)
-    push, at = impulse * np.array(scene.load.direction), scene.load.at
-    linear, angular = momenta(run)
-    turn = np.cross([at[0], 0.0, at[1]], push)
-    assert np.abs(linear - push).max() < 1e-11 * np.abs(push).max()
-    assert np.abs(angular - turn).max() < 1e-11 * np.abs(turn).max()
+def test_drag_on_rock_that_drifts_strains_nothing():
+    """v shrinks by (1 - a) / (1 + a), a = alpha dt / 2, at every step."""
+    body, alpha = stack(2, 3, 2, 1, order=1), 0.5
+    own = problem(body, joined(2), alpha=alpha)
+    dt = 0.3 * own.critical_step()
+    steps = Leapfrog(own, dt, 1, energy=False)
+    drift = np.tile([0.3, -0.7], len(body.x))
+    steps.throw(drift)
+    steps.take(0, 51, 1000)
+    a = alpha * dt / 2
+    shrinks = ((1 - a) / (1 + a)) ** 51
+    assert shrinks < 0.3
+    np.testing.assert_allclose(steps.v, drift * shrinks, rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("mirror", [0, 2], ids=["x", "z"])
-@pytest.mark.parametrize("joints", JOINTS)
-def test_mirrored_blow_gives_the_mirrored_motion(plain, joints, mirror, short, ready):
-    """x to -x: the displacement along x and the turns about y and z change their signs; z alike."""
-    way, at = (np.array(values) for values in WAYS[3])
-    other_way, other_at = way.copy(), at.copy()
-    other_way[mirror] *= -1
-    other_at[mirror // 2] *= -1
-    mirrored = {"direction": other_way.tolist(), "at": other_at.tolist()}
-    one, other = (
-        ready(short(load=blow(3, "sine", **changes), **JOINTS[joints]), "jointed", 3, samples=101)
-        .to_the_end()
-        .waves
-        for changes in ({}, mirrored)
-    )
-    signs = np.ones(3)
-    signs[mirror] = -1
-    alike(other["stress"], one["stress"])
-    alike(other["shear"], one["shear"] * signs[[0, 2]])
-    alike(other["velocity"], one["velocity"] * signs)
-    alike(other["rotation"], -one["rotation"] * signs)
-
-
-def alike(found: np.ndarray, expected: np.ndarray) -> None:
-    """Assert that waves are the same but for round-off, and that there are any."""
-    peak = np.abs(expected).max()
-    assert peak > 0
-    assert np.abs(found - expected).max() < 1e-10 * peak
+@pytest.mark.parametrize("tension", [True, False])
+def test_joints_of_friction_alone_stand_under_weight_on_a_slope(pillar, tension):
+    """Nothing presses them before the weight is on. At 10 degrees the only joint holds, and carries
+    the weight above it: along the joint g sin, across it g cos."""
+    slope = np.pi / 18
+    scene = pillar(
+        pillar__length=1.0, soft_layers=[], load={"shape": "step", "amplitude": 0.0},
+        gravity={"direction": [np.sin(slope), np.cos(slope), 0.0]}, ends__end="fixed",
+        joints={"friction_angle": 30.0, "tension": tension}, time__duration=2e-4,
+        record={"stress": [0.5], "velocity": [0.0], "interval": 1e-4},
+        numerics__continuum={"scheme": "implicit", "steps_per_period": 10},
+    )  # fmt: skip
+    result = simulate(scene, dim=2)
+    stress, shear = (result[name].values[0].ravel() for name in ("stress", "shear"))
+    weight = 2400.0 * 9.81 * 0.5
+    assert stress == pytest.approx(weight * np.cos(slope), rel=1e-8)
+    assert np.abs(shear).max() == pytest.approx(weight * np.sin(slope), rel=1e-8)

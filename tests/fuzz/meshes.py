@@ -7,7 +7,7 @@ from pathlib import Path
 def meshes() -> list[bytes]:
     """Return a pillar of three blocks of 0.4 x 0.5 m, in the plane and in space, versions 2.2 and
     4.1, text and binary."""
-    from jointwave.continuum.body.session import gmsh_session
+    from jointwave.continuum.mesh.session import gmsh_session
 
     found = []
     for dim in (2, 3):

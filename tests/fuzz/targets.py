@@ -96,7 +96,7 @@ def _examine(one: Scene | RockMass) -> None:
     calibrate(one)
     step_means(load_history(one), one.interval, 4)
     answers = {name: applies(name, one) for name in names()}
-    _refuse_large_rock(one, [n for n in answers if n.startswith("continuum") and answers[n]])
+    _elements(one, [n for n in answers if n.startswith("continuum") and answers[n]])
     steps = _steps(one)
     if steps * one.pillar.block_count <= TINY and (
         active_effects(one) == PLAIN and one.numerics.dem.scheme == "leapfrog" and one.record.energy
@@ -119,15 +119,12 @@ def _steps(one: Scene) -> int:
     return solver("dem").prepare(one).steps
 
 
-def _refuse_large_rock(one: Scene, models: list[str]) -> None:
-    from jointwave.continuum.build import elements_for
-    from jointwave.continuum.size import refuse_large_mesh
-    from jointwave.continuum.space.kinematics import kinematics
+def _elements(one: Scene, models: list[str]) -> None:
+    """Ask how many elements a block would have."""
+    from jointwave.continuum.mesh.size import elements_along
 
-    p, numerics = calibrate(one), one.numerics.continuum
     for name in models:
-        elements = elements_for(one, p, name.removeprefix("continuum-"))
-        refuse_large_mesh(one, kinematics(one), numerics.elements_per_block or elements)
+        elements_along(one, name.removeprefix("continuum-"))
 
 
 def load(data: bytes, folder: Path) -> str:
@@ -163,7 +160,7 @@ def study(data: bytes, folder: Path) -> str:
 
 def mesh(data: bytes, folder: Path) -> str:
     """A gmsh file of a pillar of three blocks."""
-    from jointwave.continuum.body.scene import body_of
+    from jointwave.continuum.scene import body_of
 
     shape = {"pillar.length": 1.5, "pillar.side": 0.4, "pillar.block": 0.5, "soft_layers": []}
     places = {"record.stress": [0.5], "record.velocity": [0.25], "variants": []}

@@ -16,7 +16,7 @@ from jointwave.cases.schema.pulse import shortest_period
 from jointwave.compare.engines import ENGINES, applies, solve, solvers
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.scenes import find
-from jointwave.continuum.build import elements_for
+from jointwave.continuum.mesh.size import elements_along
 
 SHORT = "hard/short-pillar"
 JOINT = 8.748e9  # Pa/m, K'_n of an ordinary joint of the short pillar
@@ -166,8 +166,7 @@ class HardRun:
         """The travel time of a wave through an element of the rock, s."""
         p, jointed = self.properties, self.engine.model == "jointed"
         modulus = p.intact_modulus if jointed else p.modulus
-        count = self.scene.numerics.continuum.elements_per_block
-        count = count or elements_for(self.scene, p, str(self.engine.model))
+        count = elements_along(self.scene, str(self.engine.model))[0]
         return p.spacing / count / sqrt((modulus or p.modulus) / p.density)
 
     def allowed(self):

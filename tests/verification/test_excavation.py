@@ -10,9 +10,9 @@ import pytest
 
 from closed_forms.kirsch import Kirsch
 from jointwave.cases.read import load
-from jointwave.continuum.body.session import gmsh_session
 from jointwave.continuum.explicit.march import readings
 from jointwave.continuum.implicit.static import settle_static
+from jointwave.continuum.mesh.session import gmsh_session
 from jointwave.continuum.plane.sides import outward
 from jointwave.continuum.run import run_of
 from jointwave.continuum.space import basix_versions

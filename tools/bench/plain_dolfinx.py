@@ -11,12 +11,12 @@ import numpy as np
 import ufl
 from dolfinx import fem
 
-from jointwave.continuum.body.build import by_rule, rock_rule
-from jointwave.continuum.body.compiling import compiled
-from jointwave.continuum.body.evaluation import kind_of
-from jointwave.continuum.body.plan import Plan
-from jointwave.continuum.body.rock import rock_of_cells
-from jointwave.continuum.body.steps import Problem
+from jointwave.continuum.plan import Plan
+from jointwave.continuum.space.build import by_rule, rock_rule
+from jointwave.continuum.space.compiling import compiled
+from jointwave.continuum.space.evaluation import kind_of
+from jointwave.continuum.space.rock import rock_of_cells
+from jointwave.continuum.stepping.steps import Problem
 
 
 class Steps:

@@ -13,7 +13,7 @@ from rock import scene_of
 from timing import in_words
 
 from jointwave.continuum import simulate
-from jointwave.continuum.body.plan import plan_of
+from jointwave.continuum.plan import plan_of
 
 ROUNDS = 5
 #: Steps of a whole run, some seconds; size of the elements, m.

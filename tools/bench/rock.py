@@ -9,9 +9,9 @@ from rows import ELASTIC, lattice
 from jointwave import cases
 from jointwave.cases.read import load
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.continuum.body.plan import Plan, plan_of
-from jointwave.continuum.body.problem import in_time
-from jointwave.continuum.body.steps import Leapfrog, Problem
+from jointwave.continuum.plan import Plan, plan_of
+from jointwave.continuum.problem import in_time
+from jointwave.continuum.stepping.steps import Leapfrog, Problem
 
 LOAD = {"kind": "pressure", "side": "top", "shape": "sine", "period": 2e-3, "amplitude": 1e6}
 SCENE = Path(cases.__file__).parent / "rock-mass" / "random-network.toml"

@@ -169,7 +169,8 @@ import sys
 from mpi4py import MPI
 from jointwave.compare.cli import program
 from jointwave.compare.runs import processes
-from jointwave.continuum.body import pillar, processes as shared
+from jointwave.continuum import pillar
+from jointwave.continuum.processes import leapfrog as shared
 
 def broken(*arguments, **named):
     raise {error}

@@ -5,8 +5,6 @@ from typing import Any
 import pytest
 
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.continuum.plane.discrete import PlaneDiscrete
-from jointwave.continuum.plane.rock import discretise
 
 QUIET = dict.fromkeys(("left", "right", "bottom", "top"), "quiet")
 
@@ -30,16 +28,6 @@ def rock_mass():
         return RockMass(**{**table, **tables})
 
     return scene
-
-
-@pytest.fixture
-def meshed(rock_mass):
-    """Return a function that gives a scene in space, all of its keys as for `rock_mass`."""
-
-    def build(*joints, model="jointed", **changes) -> PlaneDiscrete:
-        return discretise(rock_mass(joints, **changes), model)
-
-    return build
 
 
 @pytest.fixture

@@ -1,0 +1,60 @@
+"""How fast rock can become at most: no node can be faster than all forces together make it."""
+
+import numpy as np
+
+from jointwave.cases.sampling import Clock
+from jointwave.continuum.scene import SceneBody
+from jointwave.continuum.space.model import Body
+from jointwave.continuum.stepping.steps import Problem
+from jointwave.numerics.divergence import speed_that
+
+
+def masses(body: Body) -> np.ndarray:
+    """Return the diagonal of the mass [freedoms], kg."""
+    if body.mass is not None:
+        return body.mass
+    assert body.consistent is not None
+    return np.asarray(body.consistent.diagonal())
+
+
+def highest_speed(
+    found: SceneBody, problem: Problem, time: Clock, u: np.ndarray | None = None
+) -> float:
+    """Return a bound on the speed of any node, m/s; u : displacements at the start, m.
+
+    Where forces F put energy in, d sqrt(2 E) / dt is at most |F| in the norm of 1 / m, and m v^2 of
+    any node at most 2 E.
+    """
+    body, duration = problem.body, time.dt * (time.steps + time.stride)
+    mass = masses(body)
+    rock, pushed, shaken, weight, stored = mass > 0, 0.0, 0.0, 0.0, 0.0
+    if problem.forces is not None:
+        pushed = problem.forces.impulse(mass, time.steps, time.stride)
+    if problem.held is not None and problem.held.moved is not None:
+        moved = problem.held.moved(np.arange(time.steps + 1)) / time.dt
+        speed = np.diff(moved, prepend=0.0, append=0.0)
+        shaken = np.abs(speed).sum() * np.sqrt(mass.sum())
+    if problem.steady is not None:
+        weight = np.sqrt((problem.steady[rock] ** 2 / mass[rock]).sum())
+        stored = 0.0 if u is None else np.sqrt(2 * abs(problem.steady @ u))
+    least = np.sqrt((1 / mass[rock]).max())
+    with np.errstate(over="ignore"):
+        pressed = prestressed(found, problem, duration * least)
+        return float(least * speed_that(pushed, shaken, duration * weight, stored, pressed))
+
+
+def prestressed(found: SceneBody, problem: Problem, pushing: float) -> float:
+    """Return the root of twice the energy (sqrt(J)) that a prestress keeps in rock and joints, and
+    that rock gives off by pushing on both sides of joints that open, so long (s/sqrt(kg))."""
+    stress, joints, law = problem.stress, problem.body.joints, problem.law
+    if stress is None:
+        return 0.0
+    softest = min(np.linalg.eigvalsh(one.stiffness).min() for one in found.materials)
+    softest *= 1.0 if problem.mechanisms is None else problem.mechanisms.relaxed
+    stored = float((stress**2).sum()) / softest * float(found.blocks.volume.sum())
+    if joints is None or law is None:
+        return float(np.sqrt(stored))
+    size, area = float(np.abs(stress).max()), float(joints.weight.sum())
+    springs = [k for k in (law.normal_stiffness, law.shear_stiffness) if k is not None]
+    stored += 4 * size**2 * area * max(np.max(1 / k) for k in springs)
+    return float(np.sqrt(stored)) + pushing * 4 * size * area

@@ -1,1 +1,0 @@
-"""Leapfrog steps, compiled, and their critical step."""

@@ -1,1 +1,0 @@
-"""Implicit steps: generalised alpha in time, Newton's method, static states."""

@@ -1,0 +1,1 @@
+"""What acts on a body: forces, absorbing and held sides."""

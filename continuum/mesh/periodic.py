@@ -1,0 +1,126 @@
+"""Facets of a mesh at periodic sides, and those that they face across the domain."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from jointwave.cases.geometry.cell_complex import NO_SET, Complex, GeometryError
+from jointwave.cases.geometry.measure import facet_moments
+from jointwave.cases.partition.periodic import Across
+from jointwave.continuum.mesh.conforming import Conforming, Places, facets_of
+
+SAME = 1e-7  # of the domain: places on the two sides are one within it
+
+
+class Facing(NamedTuple):
+    """Facets of cells at the far one of two periodic sides and those at the near one.
+
+    pairs : far, near. column : int array [n], of the law. joint : bool array [n], whether a joint
+    lies there. vertices : int array [v], of the mesh, with those at the near
+    side replaced by the far ones that they face.
+    """
+
+    pairs: Places
+    column: np.ndarray
+    joint: np.ndarray
+    vertices: np.ndarray
+
+
+def facing(mesh: Conforming, body: Complex, across: Across, first: int) -> Facing:
+    """Return the facets of a mesh that face each other across periodic sides; first : column of the
+    first contact across them.
+
+    Raises GeometryError where the mesh of one side does not fit that of the other.
+    """
+    cell, facet = np.nonzero(np.append(~body.inner, False)[mesh.on])
+    corners = mesh.cells[cell[:, None], facets_of(mesh.kind)[facet]]
+    middle = mesh.x[corners].mean(axis=1)
+    far, near, partner = _matched(body, across, middle, np.ones(len(middle), bool))
+    if len(far) != len(near) or (partner < 0).any():
+        at = middle[far[np.argmin(partner)]]
+        cause = "is periodic, but the faces of blocks there differ from those that they face"
+        raise GeometryError(at, cause, "boundaries")
+    near = near[partner]
+    at_far, at_near = (np.unique(corners[one]) for one in (far, near))
+    _, match = cKDTree(mesh.x[at_far]).query(mesh.x[at_near] + across.shift)
+    vertices = np.arange(len(mesh.x))
+    vertices[at_near] = at_far[match]
+    pairs = Places(*(np.stack([one[far], one[near]], axis=1) for one in (cell, facet)))
+    contact = _contacts(mesh.block[pairs.cell], middle[far], across)
+    return Facing(pairs, first + contact, across.contacts.joint_set[contact] != NO_SET, vertices)
+
+
+def _contacts(blocks: np.ndarray, middle: np.ndarray, across: Across) -> np.ndarray:
+    """Return the contact between blocks [n, 2] at places [n, d] of the far side."""
+    known = across.contacts
+    apart = np.abs(blocks[:, None] - known.blocks).sum(axis=2) > 0
+    away = np.linalg.norm(middle[:, None] - known.centroid, axis=2)
+    return np.where(apart, np.inf, away).argmin(axis=1)
+
+
+def matching_facets(body: Complex, across: Across) -> np.ndarray:
+    """Return the facets of a complex at the far side and those that they face, int array [n, 2];
+    those that face parts of several are left out."""
+    far, near, alike = _matched(body, across, facet_moments(body).centroid, ~body.inner)
+    return np.stack([far[alike >= 0], near[alike[alike >= 0]]], axis=1)
+
+
+def matching_vertices(body: Complex, across: Sequence[Across]) -> np.ndarray:
+    """Return the vertex that each counts as: at near sides the one at the far side that it faces,
+    int array [v]."""
+    found = np.arange(len(body.vertices))
+    for one in across:
+        far, near, alike = _matched(body, one, body.vertices, np.ones(len(found), bool))
+        found[near[alike[alike >= 0]]] = found[far[alike >= 0]]
+    return found
+
+
+def fitted(body: Complex, across: Sequence[Across]) -> Complex:
+    """Return a complex in the plane whose edges at periodic sides end at the same places on both,
+    each split where the other side has a vertex; in space the complex as it is."""
+    for one in across if body.dim == 2 else ():
+        axis = int(np.flatnonzero(one.shift)[0])
+        ends = body.vertices[:, axis].max(), body.vertices[:, axis].min()
+        tolerance = SAME * float(np.ptp(body.vertices, axis=0).max())
+        for k, shift in ((0, one.shift), (1, -one.shift)):
+            x = body.vertices
+            own, other = (np.abs(x[:, axis] - ends[end]) < tolerance for end in (k, 1 - k))
+            body = _split(body, own, x[other] + shift, tolerance)
+    return body
+
+
+def _split(body: Complex, own: np.ndarray, places: np.ndarray, tolerance: float) -> Complex:
+    """Return a complex in the plane with the edges between some vertices (bool array [v]) split at
+    those places [n, 2], m, that lie within them."""
+    ends = body.bounds[0][:, 1].reshape(-1, 2)
+    pieces, of, x = [], [], [*body.vertices]
+    for facet, (a, b) in enumerate(ends.tolist()):
+        chain, along = [a, b], body.vertices[b] - body.vertices[a]
+        if own[a] and own[b]:
+            length = float(np.linalg.norm(along))
+            s = np.sort((places - body.vertices[a]) @ along / length)
+            inside = s[(s > tolerance) & (s < length - tolerance)]
+            chain[1:1] = range(len(x), len(x) + len(inside))
+            x += [body.vertices[a] + along * (one / length) for one in inside]
+        pieces += list(pairwise(chain))
+        of += [facet] * (len(chain) - 1)
+    bounds = np.stack([np.repeat(np.arange(len(of)), 2), np.ravel(pieces)], axis=1)
+    facets = {key: getattr(body, key)[of] for key in ("sides", "plane", "joint_set", "side")}
+    return replace(body, vertices=np.array(x), bounds=(bounds,), **facets)
+
+
+def _matched(
+    body: Complex, across: Across, x: np.ndarray, chosen: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return those of some places x [n, d] that are at the far side, those at the near side, and
+    for each far one the number of the near one that it faces, or -1."""
+    axis = int(np.flatnonzero(across.shift)[0])
+    tolerance = SAME * float(np.ptp(body.vertices, axis=0).max())
+    ends = body.vertices[:, axis].max(), body.vertices[:, axis].min()
+    far, near = (np.flatnonzero(chosen & (np.abs(x[:, axis] - end) < tolerance)) for end in ends)
+    distance, partner = cKDTree(x[near] + across.shift).query(x[far])
+    return far, near, np.where(distance < tolerance, partner, -1)

@@ -1,0 +1,219 @@
+"""Blocks of any shape in triangles or tetrahedra, by gmsh.
+
+In the plane blocks that are alike are drawn once, and their mesh is moved to each of them:
+neighbours fit each other since edges are divided by their length. In space vertices, edges, faces
+and cells of the complex are gmsh's points, lines, surfaces and volumes.
+"""
+
+from collections import defaultdict
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from jointwave.cases.geometry.cell_complex import Complex
+from jointwave.cases.geometry.relations import composed, merged
+from jointwave.continuum.mesh.conforming import SIMPLICES, Conforming, on_facets
+from jointwave.continuum.mesh.session import gmsh_session
+
+ALIKE = 1e-8  # of the body: what blocks that are alike may differ by
+LINE, TRIANGLE, TETRAHEDRON = 1, 2, 4  # gmsh's types of elements
+KINDS = {1: LINE, 2: TRIANGLE, 3: TETRAHEDRON}
+
+
+class Alike(NamedTuple):
+    """Blocks that are alike, each with its first vertex and its facets, in one order: int arrays
+    cells [n], first [n] and facets [n, k]."""
+
+    cells: np.ndarray
+    first: np.ndarray
+    facets: np.ndarray
+
+
+def simplex_mesh(
+    body: Complex, size: float, alike: Sequence[tuple[np.ndarray, np.ndarray]] = ()
+) -> Conforming:
+    """Return the mesh of a complex in the plane or in space, of simplices of about this size, m.
+
+    alike : pairs of faces in space that are divided alike, int array [n, 2], the first of them
+    moved by a shift [3], m, from the second.
+
+    Raises ImportError, with the way to install it, where gmsh is not there.
+    """
+    tolerance = ALIKE * float(np.ptp(body.vertices, axis=0).max())
+    groups = _alike(body, tolerance)
+    with gmsh_session() as gmsh:
+        for name in ("Geometry.AutoCoherence", "Mesh.MeshSizeExtendFromBoundary"):
+            gmsh.option.setNumber(name, 0)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+        drawing = _Drawing(gmsh.model, body, size, tolerance)
+        tags = [drawing.block(one.facets[0].tolist()) for one in groups]
+        gmsh.model.geo.synchronize()
+        for pairs, shift in alike if body.dim == 3 else ():
+            drawing.repeat(pairs, shift)
+        gmsh.model.mesh.generate(body.dim)
+        found = [_read(gmsh.model.mesh, body.dim, *one) for one in tags]
+    return _placed(body, groups, found, tolerance)
+
+
+def _alike(body: Complex, tolerance: float) -> list[Alike]:
+    """Return the blocks in groups that are equal but for a shift; in space each alone."""
+    half = body.halves()
+    groups: dict[Any, list] = defaultdict(list)
+    pairs = np.stack([half.cell, half.facet], axis=1)
+    pairs = pairs[np.lexsort(pairs.T[::-1])]
+    middles = body.means(body.corners_of_facets(), len(body.sides))
+    corners = body.corners(half)
+    starts = (np.searchsorted(one[:, 0], np.arange(body.count + 1)) for one in (pairs, corners))
+    facet_at, vertex_at = starts
+    for cell in range(body.count):
+        facets = pairs[facet_at[cell] : facet_at[cell + 1], 1]
+        vertices = corners[vertex_at[cell] : vertex_at[cell + 1], 1]
+        first, key = _first(body.vertices, vertices, tolerance)
+        away = _steps(middles[facets] - body.vertices[first], tolerance)
+        order = np.lexsort(away.T)
+        alike = (key, away[order].tobytes()) if body.dim == 2 else cell
+        groups[alike].append((cell, first, facets[order]))
+    return [Alike(*map(np.array, zip(*one, strict=True))) for one in groups.values()]
+
+
+def _first(x: np.ndarray, vertices: np.ndarray, tolerance: float) -> tuple[int, bytes]:
+    """Return one of some vertices that equal shapes have in common, and a key of the shape."""
+    order = np.lexsort(_steps(x[vertices] - x[vertices].min(axis=0), tolerance).T)
+    first = vertices[order[0]]
+    away = _steps(x[vertices] - x[first], tolerance)
+    return int(first), away[np.lexsort(away.T)].tobytes()
+
+
+def _steps(x: np.ndarray, tolerance: float) -> np.ndarray:
+    return np.rint(x / tolerance).astype(np.int64)
+
+
+class _Drawing:
+    """What has been drawn of a complex: tags of points, lines and surfaces, by their numbers; in
+    the plane those of the last block."""
+
+    def __init__(self, model: Any, body: Complex, size: float, tolerance: float) -> None:
+        self.model, self.body, self.size, self.tolerance = model, body, size, tolerance
+        self.ends = body.bounds[0][:, 1].reshape(-1, 2)
+        self.points: dict[int, int] = {}
+        self.lines: dict[int, int] = {}
+        self.surfaces: dict[int, int] = {}
+
+    def block(self, facets: list[int]) -> tuple[int, list[int]]:
+        """Draw a block of these facets; return its tag, and those of the facets."""
+        geo = self.model.geo
+        if self.body.dim == 2:
+            self.points, self.lines = {}, {}
+            return geo.addPlaneSurface([self._loop(facets)]), [self.lines[k] for k in facets]
+        for facet in facets:
+            if facet not in self.surfaces:
+                edges = composed(np.array([[0, facet]]), self.body.bounds[1])[0][:, 1]
+                self.surfaces[facet] = geo.addPlaneSurface([self._loop(edges.tolist())])
+        tags = [self.surfaces[facet] for facet in facets]
+        return geo.addVolume([geo.addSurfaceLoop(tags)]), tags
+
+    def _line(self, edge: int) -> int:
+        """Draw an edge, divided by its length; return its tag."""
+        geo, x, ends = self.model.geo, self.body.vertices, self.ends[edge].tolist()
+        if edge not in self.lines:
+            for vertex in ends:
+                if vertex not in self.points:
+                    self.points[vertex] = geo.addPoint(*[*x[vertex].tolist(), 0.0][:3])
+            self.lines[edge] = geo.addLine(*(self.points[vertex] for vertex in ends))
+            # Shorter by more than edges differ that are alike: they are divided alike.
+            length = np.linalg.norm(x[ends[1]] - x[ends[0]]) - 4 * self.tolerance
+            count = max(1, int(np.ceil(length / self.size)))
+            geo.mesh.setTransfiniteCurve(self.lines[edge], count + 1)
+        return self.lines[edge]
+
+    def _loop(self, edges: list[int]) -> int:
+        """Draw the closed loop of edges, given in any order; return its tag."""
+        left = {edge: self.ends[edge].tolist() for edge in edges[1:]}
+        loop, (_, at) = [self._line(edges[0])], self.ends[edges[0]].tolist()
+        while left:
+            edge = next(k for k, pair in left.items() if at in pair)
+            a, b = left.pop(edge)
+            loop.append(self._line(edge) * (1 if a == at else -1))
+            at = b if a == at else a
+        return int(self.model.geo.addCurveLoop(loop))
+
+    def repeat(self, pairs: np.ndarray, shift: np.ndarray) -> None:
+        """Let the first face of each pair have the mesh of the second one, moved."""
+        move = np.eye(4)
+        move[:3, 3] = shift
+        tags = [[self.surfaces[k] for k in side] for side in pairs.T.tolist()]
+        self.model.mesh.setPeriodic(2, *tags, move.ravel().tolist())
+
+
+def _read(
+    mesh: Any, dim: int, tag: int, facets: list[int]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the mesh of a block: places of its vertices [v, d], m, cells [c, d + 1], and the place
+    among its facets of each facet of cells [c, d + 1], or -1."""
+    nodes, places, _ = mesh.getNodes(dim, tag, includeBoundary=True)
+    nodes, first = np.unique(np.asarray(nodes, np.int64), return_index=True)
+    x = np.asarray(places).reshape(-1, 3)[first, :dim]
+    cells = _elements(mesh, KINDS[dim], dim, tag)
+    each = [_elements(mesh, KINDS[dim - 1], dim - 1, one) for one in facets]
+    number = np.repeat(np.arange(len(each)), list(map(len, each)))
+    cells, vertices = (np.searchsorted(nodes, one) for one in (cells, np.concatenate(each)))
+    return x, cells, on_facets(SIMPLICES[dim], cells, vertices, number, len(x))
+
+
+def _elements(mesh: Any, kind: int, dim: int, tag: int) -> np.ndarray:
+    return np.asarray(mesh.getElementsByType(kind, tag)[1], np.int64).reshape(-1, dim + 1)
+
+
+def _placed(
+    body: Complex,
+    groups: list[Alike],
+    found: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]],
+    tolerance: float,
+) -> Conforming:
+    """Return the mesh of all blocks from those of one of each group."""
+    x, cells, block, on, total = [], [], [], [], 0
+    for group, (places, own, facet) in zip(groups, found, strict=True):
+        count, origin = len(group.cells), body.vertices[group.first]
+        x.append((places + (origin - origin[0])[:, None]).reshape(-1, body.dim))
+        first = total + len(places) * np.arange(count)
+        cells.append((first[:, None, None] + own).reshape(-1, own.shape[1]))
+        block.append(np.repeat(group.cells, len(own)))
+        beyond = np.append(group.facets, np.full((count, 1), -1), axis=1)
+        on.append(beyond[:, facet].reshape(-1, own.shape[1]))
+        total += count * len(places)
+    every = np.concatenate(x)
+    used, vertex = np.unique(merged(every, 10 * tolerance), return_inverse=True)
+    order = np.argsort(np.concatenate(block), kind="stable")
+    cells_, block_, on_ = (np.concatenate(one)[order] for one in (cells, block, on))
+    kind = SIMPLICES[body.dim]
+    return _oriented(Conforming(kind, every[used], vertex.reshape(-1)[cells_], block_, on_))
+
+
+def own_cells(body: Complex) -> Conforming:
+    """Return the mesh of a complex whose cells are simplices, as they are."""
+    half, dim = body.halves(), body.dim
+    cells = body.corners(half)[:, 1].reshape(-1, dim + 1)
+    number = np.arange(len(body.sides))
+    vertices = body.corners_of_facets()[:, 1].reshape(-1, dim)
+    on = on_facets(SIMPLICES[dim], cells, vertices, number, len(body.vertices))
+    return _oriented(Conforming(SIMPLICES[dim], body.vertices, cells, np.arange(body.count), on))
+
+
+def are_simplices(body: Complex) -> bool:
+    """Return whether all cells of a complex are triangles or tetrahedra."""
+    half = body.halves()
+    facets, corners = (
+        np.bincount(cell, minlength=body.count) for cell in (half.cell, body.corners(half)[:, 0])
+    )
+    return bool((facets == body.dim + 1).all() and (corners == body.dim + 1).all())
+
+
+def _oriented(mesh: Conforming) -> Conforming:
+    """Return a mesh of simplices whose cells have positive volumes."""
+    arms = mesh.x[mesh.cells[:, 1:]] - mesh.x[mesh.cells[:, :1]]
+    turned = np.linalg.det(arms) < 0
+    cells, on = mesh.cells.copy(), mesh.on.copy()
+    for array in (cells, on):  # facet k is the one without corner k
+        array[turned, -2:] = array[turned, -2:][:, ::-1]
+    return mesh._replace(cells=cells, on=on)

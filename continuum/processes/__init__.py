@@ -1,0 +1,1 @@
+"""Explicit steps of a body that several processes share."""

@@ -1,0 +1,109 @@
+"""Explicit steps of a body that several processes share.
+
+Each process has the whole body while a run is set up, and keeps its share: complete rows of the
+matrices for the freedoms that it steps, and all points of joints that act on these. Freedoms of
+others that these rows and points need, the halo, follow by one exchange of velocities a step, by
+PETSc's star forest. Nothing is summed over processes but what is recorded, once a chunk of steps.
+A point that several processes need is found by each from the same numbers in the same order.
+"""
+
+from __future__ import annotations
+
+from zlib import crc32
+
+import numpy as np
+
+from jointwave.cases.errors import SceneError
+from jointwave.continuum.processes.partition import ranks_of_nodes
+from jointwave.continuum.processes.share import share_of
+from jointwave.continuum.space.fenicsx import MPI
+from jointwave.continuum.space.petsc import PETSc
+from jointwave.continuum.stepping.explicit import leapfrog_for
+from jointwave.continuum.stepping.steps import Leapfrog, Problem
+
+
+class SharedLeapfrog(Leapfrog):
+    """Explicit steps of a problem that the processes of its communicator share; all call its
+    methods and read its properties alike, and get the whole of it.
+
+    Attributes
+    ----------
+    problem : the whole one. samples : of the whole, after each call of `take`. state : of a share.
+    """
+
+    def __init__(self, problem: Problem, dt: float, samples: int, energy: bool = True) -> None:
+        comm, dim = problem.comm, problem.body.components
+        rank_of = ranks_of_nodes(problem.body, comm)
+        self._share = share_of(problem, rank_of, comm.rank)
+        super().__init__(self._share.problem, dt, samples, energy)
+        self.problem, of_freedom = problem, np.repeat(rank_of, dim)
+        self._order = np.argsort(of_freedom, kind="stable")
+        self._known = crc32(rank_of.astype(np.int64).tobytes())
+        self._partition = np.array([self._known])  # in checkpoints
+        place = self.whole(np.arange(self.product.size)).astype(np.int64)
+        remote = np.stack([of_freedom, place], axis=1)[self._share.halo].astype(PETSc.IntType)
+        leaves = np.arange(self.product.size, self.product.size + self.halo)
+        self._forest = PETSc.SF().create(comm)
+        self._forest.setGraph(self.product.size, leaves.astype(PETSc.IntType), remote)
+
+    @property
+    def parts(self) -> tuple:
+        """All arrays that change, and a number of the partition."""
+        return *super().parts, self._partition
+
+    def whole(self, vector: np.ndarray) -> np.ndarray:
+        """Return the values of all freedoms in the vectors of all processes."""
+        found = np.empty(self._order.size)
+        found[self._order] = np.concatenate(self.problem.comm.allgather(super().whole(vector)))
+        return found
+
+    def place(self, values: np.ndarray, vector: np.ndarray) -> None:
+        """Put values of all freedoms into a vector of the share."""
+        super().place(values[self._share.own], vector)
+
+    def start(self, u: np.ndarray, history: np.ndarray | None = None) -> None:
+        """Begin at rest at displacements u (m), with a history of all points."""
+        if history is not None and history.size:
+            history = history[:, self._share.points]
+        super().start(u, history)
+        if self.problem.comm.rank:  # the first one has entered all of the energy
+            self.state.sums[:] = 0.0
+
+    def take(self, first: int, last: int, stride: int) -> None:
+        """Take the steps first .. last - 1, with a sample at each that `stride` divides."""
+        if self._partition[0] != self._known:
+            allowed = "has divided the rock otherwise before: run without --resume"
+            raise SceneError("mpiexec", "-n", self.problem.comm.size, allowed)
+        kernel, state = leapfrog_for(self.flags), self.state
+        given = self.constants, state, self.work, self.samples
+        for vector in (state.u, state.v, state.v_before, *state.elongation):
+            self._follow(vector)
+        for begin, drive, moved in self._driven(self._share.problem, first, last):
+            kernel(*given, drive[:0], moved[:0], (begin, begin, stride))  # compiles
+            for k in range(len(moved)):
+                span = begin + k, begin + k + 1, stride
+                kernel(*given, drive[k : k + 1], moved[k : k + 1], span)
+                self._exchange()
+        self._add_up(-(-first // stride), -(-last // stride))
+
+    def _exchange(self) -> None:
+        """Advance the halo by a step, as the processes have done that step it."""
+        state, halo = self.state, slice(self.product.size, None)
+        state.v_before[halo] = state.v[halo]
+        self._follow(state.v)
+        state.u[halo] += self.dt * state.v[halo]
+        if self.flags.relaxing:
+            memory, past = self.constants.memory, state.elongation[:, halo]
+            past[:] = memory.decay[:, None] * past + memory.gain[:, None] * state.v[halo]
+
+    def _add_up(self, first: int, last: int) -> None:
+        """Sum what the processes have read in samples first .. last - 1."""
+        for rows in self.samples:
+            if rows.size and last > first:
+                some = rows[:, first:last]
+                some[:] = sum(self.problem.comm.allgather(some))
+
+    def _follow(self, vector: np.ndarray) -> None:
+        """Take the halo of a vector from the processes that step it."""
+        self._forest.bcastBegin(MPI.DOUBLE, vector, vector, MPI.REPLACE)
+        self._forest.bcastEnd(MPI.DOUBLE, vector, vector, MPI.REPLACE)

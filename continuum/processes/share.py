@@ -1,0 +1,158 @@
+"""A process's share of a problem: complete rows of the matrices for the freedoms that it steps, the
+halo, freedoms of others that these rows need, and all points of joints that act on its freedoms."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from jointwave.continuum.space.evaluation import blocks_of_nodes
+from jointwave.continuum.space.model import JumpOperator
+from jointwave.continuum.stepping.steps import Dashpots, Forces, Problem, Readings, Springs
+
+OF_POINTS = ("traction", "jump")  # what receivers read of points
+
+
+class Share(NamedTuple):
+    """A process's share of a problem.
+
+    problem : with the freedoms of the process first and then the halo. own, halo : int arrays,
+    these freedoms of the whole problem. points : int array, those of the whole; the first ones are
+    counted here.
+    """
+
+    problem: Problem
+    own: np.ndarray
+    halo: np.ndarray
+    points: np.ndarray
+
+
+class SomeForces:
+    """Those of some forces that act on freedoms of a process, `steps.Forces`; number : int array
+    [freedoms], of these in its share, -1 of others."""
+
+    def __init__(self, forces: Forces, number: np.ndarray) -> None:
+        self.forces, there = forces, number[forces.freedom]
+        self.kept = np.flatnonzero(there >= 0)
+        self.freedom = there[self.kept]
+
+    def at(self, first: int, last: int) -> np.ndarray:
+        """Return the forces of steps first .. last - 1 [steps, k], N."""
+        return self.forces.at(first, last)[:, self.kept]
+
+    def impulse(self, mass: np.ndarray, steps: int, stride: int) -> float:
+        """Return that of all forces; mass : of all freedoms, kg."""
+        return self.forces.impulse(mass, steps, stride)
+
+
+def share_of(problem: Problem, rank_of: np.ndarray, rank: int) -> Share:
+    """Return the share of a process; rank_of : int array [nodes], of each node."""
+    body, dim = problem.body, problem.body.components
+    own, (points, counted) = np.flatnonzero(rank_of == rank), _points(problem, rank_of, rank)
+    rows = _freedoms(own, dim)
+    stiffness, damping = (
+        None if one is None else csr_matrix(one)[rows] for one in (body.stiffness, body.damping)
+    )
+    joints = None if body.joints is None else _some(body.joints, points, dim)
+    matrices = [one for one in (stiffness, damping, joints and joints.matrix) if one is not None]
+    reached = np.unique(np.concatenate([one.indices // dim for one in matrices]))
+    halo = np.setdiff1d(reached, own)
+    number = np.full(len(rank_of), -1)
+    number[np.append(own, halo)] = np.arange(len(own) + len(halo))
+    freedom = np.where(number[:, None] < 0, -1, dim * number[:, None] + np.arange(dim)).ravel()
+
+    def local(matrix: csr_matrix) -> csr_matrix:
+        """Return a matrix with the columns of the share, each row in the order that it had."""
+        entries = matrix.data, freedom[matrix.indices], matrix.indptr
+        return csr_matrix(entries, (matrix.shape[0], dim * (len(own) + len(halo))))
+
+    stiffness, damping = (
+        None if one is None else local(one).sorted_indices() for one in (stiffness, damping)
+    )
+    assert stiffness is not None and body.mass is not None
+    small = body._replace(
+        mesh=None,
+        space=None,
+        tied=None,
+        x=body.x[own],
+        block=np.unique(blocks_of_nodes(body)[own], return_inverse=True)[1],
+        mass=body.mass[rows],
+        stiffness=stiffness,
+        damping=damping,
+        joints=joints and joints._replace(matrix=local(joints.matrix)),
+        sides={},
+    )
+    number[halo] = freedom[_freedoms(halo, dim)] = -1
+    acting = _acting(problem, number, freedom)
+    read = _readings(problem.readings, rows, _freedoms(points[:counted], dim), rank == 0)
+    small_problem = acting._replace(body=small, readings=read, comm=None, counted=counted)
+    return Share(small_problem, rows, _freedoms(halo, dim), points)
+
+
+def _freedoms(nodes: np.ndarray, dim: int) -> np.ndarray:
+    return (dim * nodes[:, None] + np.arange(dim)).ravel()
+
+
+def _points(problem: Problem, rank_of: np.ndarray, rank: int) -> tuple[np.ndarray, int]:
+    """Return the points that act on nodes of a process, first those that have no node of a lower
+    one, and how many these are."""
+    joints, dim = problem.body.joints, problem.body.components
+    if joints is None:
+        return np.zeros(0, np.int64), 0
+    entries = joints.matrix.tocoo()
+    point, of = entries.row // dim, rank_of[entries.col // dim]
+    lowest = np.full(len(joints.weight), rank_of.max() + 1)
+    np.minimum.at(lowest, point, of)
+    acts = np.unique(point[of == rank])
+    first = acts[lowest[acts] == rank]
+    return np.append(first, acts[lowest[acts] < rank]), len(first)
+
+
+def _some(joints: JumpOperator, points: np.ndarray, dim: int) -> JumpOperator:
+    """Return the operator of some points."""
+    return JumpOperator(joints.matrix[_freedoms(points, dim)], *(one[points] for one in joints[1:]))  # type: ignore[call-arg]
+
+
+def _acting(problem: Problem, number: np.ndarray, freedom: np.ndarray) -> Problem:
+    """Return a problem with what acts on nodes of a process; number, freedom : those of nodes and
+    freedoms in its share, -1 of others."""
+    quiet, held, forces, steady = problem.quiet, problem.held, problem.forces, problem.steady
+    if quiet is not None:
+        quiet = _dashpots(quiet, number)
+    if held is not None:
+        there = freedom[held.freedom] >= 0
+        held = held._replace(freedom=freedom[held.freedom[there]], direction=held.direction[there])
+    return problem._replace(
+        steady=None if steady is None else steady[freedom >= 0],
+        quiet=quiet,
+        held=held,
+        forces=None if forces is None else SomeForces(forces, freedom),
+    )
+
+
+def _dashpots(quiet: Dashpots, number: np.ndarray) -> Dashpots:
+    """Return the dashpots of nodes of a process."""
+    there, springs = number[quiet.node] >= 0, quiet.springs
+
+    def some(dt: float) -> Springs:
+        assert springs is not None
+        return Springs(*(one[there] for one in springs(dt)))
+
+    nodes = number[quiet.node[there]]
+    return Dashpots(nodes, quiet.viscosity[there], None if springs is None else some)
+
+
+def _readings(
+    readings: Readings, own: np.ndarray, counted: np.ndarray, constants: bool
+) -> Readings:
+    """Return what receivers read of some freedoms and of the components of some points; constants :
+    whether what is read at u = 0 counts."""
+    found: dict[str, Any] = {}
+    for name, value in readings._asdict().items():
+        if isinstance(value, csr_matrix):
+            found[name] = value[:, counted if name in OF_POINTS else own]
+        elif isinstance(value, np.ndarray) and not constants:
+            found[name] = 0 * value
+    return readings._replace(**found)

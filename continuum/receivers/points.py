@@ -1,0 +1,199 @@
+"""Receivers of a body: motion and stress at points, tractions, gap and slip of joints.
+
+Stress is compression positive. On a joint points read the mean of both sides. Joints are read at
+the place on them that is nearest to the receiver, between their points there.
+"""
+
+import numpy as np
+from scipy.sparse import coo_matrix, csr_matrix, identity, kron
+from scipy.sparse.csgraph import connected_components
+
+from jointwave.cases.material.effective_medium import tensor
+from jointwave.continuum.space import compat
+from jointwave.continuum.space.evaluation import (
+    Places,
+    at_reference,
+    kind_of,
+    matrix_of,
+    nodes_of_cells,
+    order_of,
+    places_in,
+    tabulate,
+)
+from jointwave.continuum.space.model import Body, JumpOperator
+from jointwave.continuum.stepping.steps import Readings
+from jointwave.results.stress import stress_components
+
+LEAST = 1.5  # points for each coefficient of a polynomial
+#: Points at a distance s, over the size of the element, count as exp(-FALL s^2 / 2).
+FALL = 4.0
+WHOLE = 1e-6  # what shares of a joint's points may lack of one where they surround a place
+LEVEL = 1e-6  # cosine between planes that are one
+
+
+def readings_of(
+    body: Body,
+    moduli: np.ndarray,
+    points: np.ndarray,
+    joints: np.ndarray,
+    stress: np.ndarray | None = None,
+    lag: np.ndarray | None = None,
+) -> Readings:
+    """Return how receivers at points [m, d] and on joints near places [r, d] read a body.
+
+    moduli : of each cell in Voigt's form [cells, n, n], Pa. stress : [d, d], Pa, compression
+    positive, at u = 0. lag : time constant of the rock's dashpots in each cell [cells], s.
+    """
+    at, dim = places_in(body, points), body.components
+    share = shares_of_pieces(at.point, pieces_of(body)[at.cell])
+    pairs = stress_components(dim).values()
+    constant = np.zeros((len(points), len(pairs)))
+    read, carried = _joints(body, joints), np.zeros(0)
+    if stress is not None:
+        constant[:] = [stress[i, j] for i, j in pairs]
+    if body.joints is not None:
+        carried = np.zeros(len(body.joints.weight) * dim)
+        if stress is not None:
+            frame = body.joints.frame
+            carried = np.einsum("qac,cd,qd->qa", frame, stress, frame[:, 0]).ravel()
+    viscous = None if lag is None or not lag.any() else lag[:, None, None] * moduli
+    return Readings(
+        motion=motion_at(body, at, share, len(points)),
+        stress=_recovered(body, moduli, points, at, share),
+        constant=constant.ravel(),
+        traction=csr_matrix(kron(read @ _per_area(body.joints), identity(dim))),
+        carried=kron(read, identity(dim)) @ carried,
+        jump=csr_matrix(kron(read, identity(dim))),
+        viscous=None if viscous is None else _recovered(body, viscous, points, at, share),
+    )
+
+
+def motion_at(body: Body, at: Places, share: np.ndarray, count: int) -> csr_matrix:
+    """Return the motion of so many points [count d, freedoms]; share : of each cell."""
+    weights = np.einsum("nk,ac->nakc", share[:, None] * at.basis, np.eye(body.components))
+    return matrix_of(body, at.point, at.cell, weights, count)
+
+
+def pieces_of(body: Body) -> np.ndarray:
+    """Return the connected piece of the body that each cell is of, int array [cells]."""
+    nodes = nodes_of_cells(body)
+    cell = np.repeat(np.arange(len(nodes)), nodes.shape[1])
+    size = len(nodes) + nodes.max() + 1
+    links = coo_matrix((np.ones(nodes.size), (cell, len(nodes) + nodes.ravel())), (size, size))
+    return connected_components(links, directed=False)[1][: len(nodes)]
+
+
+def shares_of_pieces(point: np.ndarray, piece: np.ndarray) -> np.ndarray:
+    """Return the share of each cell [n] in the mean at the point that it is at: pieces that meet
+    there count alike, however many of their cells do."""
+    pieces = 1 + piece.max(initial=0)
+    key = point * pieces + piece
+    side, of_cell, cells = np.unique(key, return_inverse=True, return_counts=True)
+    sides = np.bincount(side // pieces)
+    return 1 / (sides[point] * cells[of_cell.ravel()])
+
+
+def _recovered(
+    body: Body, moduli: np.ndarray, x: np.ndarray, at: Places, share: np.ndarray
+) -> csr_matrix:
+    """Return the stress at points x [m, d], all components of one after the other [m n, freedoms].
+
+    Stress from displacements of order p converges as h^(p + 1) at the Gauss points of cells
+    (Barlow, Int. J. Numer. Meth. Eng. 10, 1976). A polynomial of order p + 1 through those of the
+    cells around a point, by least squares with weights that fall with the distance, has this order
+    everywhere (Zienkiewicz & Zhu, Int. J. Numer. Meth. Eng. 33, 1992). Cells beyond a joint or of
+    other rock do not count. Where there are too few the stress is that of the cell at the point.
+    """
+    nodes, corners = nodes_of_cells(body), compat.cell_corners(body.mesh)
+    row, cells, places, weight = [], [], [], []
+    for n, (point, cell) in enumerate(zip(at.point, at.cell, strict=True)):
+        near = np.flatnonzero(np.isin(nodes, nodes[cell]).any(axis=1))
+        near = near[(moduli[near] == moduli[cell]).all(axis=(1, 2))]
+        some, local, shares = _patch(body, corners, near, cell, x[point])
+        row.append(np.full(len(some), point))
+        cells.append(some)
+        places.append(local)
+        weight.append(share[n] * shares)
+    none = np.zeros(0, np.int64)
+    row, cells = (np.concatenate([none, *one]) for one in (row, cells))
+    found = at_reference(
+        body, row, cells, np.concatenate([np.zeros((0, body.components)), *places])
+    )
+    weights = np.concatenate([np.zeros(0), *weight])
+    full = np.array([tensor(one) for one in np.unique(moduli, axis=0)])
+    which = np.unique(moduli, axis=0, return_inverse=True)[1].reshape(-1)[cells]
+    of_stress = np.stack(
+        [full[which, i, j] for i, j in stress_components(body.components).values()], 1
+    )
+    entries = -np.einsum("nscj,nkj,n->nskc", of_stress, found.gradient, weights)
+    return matrix_of(body, row, cells, entries, len(x))
+
+
+def _patch(
+    body: Body, corners: np.ndarray, near: np.ndarray, own: int, place: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return cells [n], places in them [n, d] and weights [n] of the stresses that make the one at
+    a place in a cell."""
+    kind, order = kind_of(body), order_of(body)
+    simplex = kind in ("triangle", "tetrahedron")
+    rule = compat.quadrature(kind, max(2 * order - 2, 1) if simplex else 2 * order - 1)[0]
+    cells, at = np.repeat(near, len(rule)), np.tile(rule, (len(near), 1))
+    basis = tabulate(kind, corners.shape[1], at)[0]
+    x = np.einsum("nv,nvd->nd", basis, corners[cells])
+    size = np.ptp(corners[own], axis=0).prod() ** (1 / body.components)
+    s = (x - place) / size
+    powers = np.indices([order + 2] * body.components).reshape(body.components, -1).T
+    powers = powers[powers.sum(axis=1) <= order + 1]
+    powers = powers[np.argsort(powers.sum(axis=1), kind="stable")]
+    if len(x) < LEAST * len(powers):
+        here = places_in(body, place[None])
+        local = here.local[here.cell == own]
+        return np.array([own]), local, np.ones(1)
+    weight = np.exp(-FALL * (s**2).sum(axis=1) / 2)
+    terms = weight[:, None] * np.prod(s[:, None] ** powers, axis=2)
+    return cells, at, np.linalg.pinv(terms)[0] * weight
+
+
+def _per_area(joints: JumpOperator | None) -> csr_matrix:
+    """Return one over the area of each point, a diagonal matrix."""
+    weight = np.zeros(0) if joints is None else joints.weight
+    count = len(weight)
+    return csr_matrix((1 / weight, (np.arange(count), np.arange(count))), (count, count))
+
+
+def _joints(body: Body, places: np.ndarray) -> csr_matrix:
+    """Return the shares of joints' points at the places on joints nearest to these [r, points]."""
+    joints = body.joints
+    if joints is None or not len(joints.weight):
+        return csr_matrix((0, 0))
+    nodes, before = nodes_of_cells(body), nodes_before(body)
+    rows = []
+    for place in places:
+        nearest = int(np.linalg.norm(joints.place - place, axis=1).argmin())
+        normal, share = joints.frame[nearest, 0], np.zeros(len(joints.weight))
+        off = (joints.place - joints.place[nearest]) @ normal
+        level = (np.abs(joints.frame[:, 0] @ normal) > 1 - LEVEL) & (
+            np.abs(off) < LEVEL * np.ptp(joints.place, axis=0).max()
+        )
+        at = places_in(body, (place - (place - joints.place[nearest]) @ normal * normal)[None])
+        for cell, basis in zip(at.cell, at.basis, strict=True):
+            here = np.zeros_like(share)
+            for node, value in zip(nodes[cell], basis, strict=True):
+                own = level & (before == node)
+                here[own] = value / max(1, own.sum())
+            share += here if abs(here.sum() - 1) < WHOLE else 0.0
+        if not share.any():
+            share[nearest] = 1.0
+        rows.append(share / share.sum())
+    return csr_matrix(np.array(rows).reshape(len(places), len(joints.weight)))
+
+
+def nodes_before(body: Body) -> np.ndarray:
+    """Return the node of each point on the side that its normal points away from, int array."""
+    joints, dim = body.joints, body.components
+    assert joints is not None
+    entries = joints.matrix[::dim].tocoo()
+    along = entries.data * joints.frame[entries.row, 0, entries.col % dim]
+    found = np.empty(len(joints.weight), np.int64)
+    found[entries.row[along < 0]] = entries.col[along < 0] // dim
+    return found

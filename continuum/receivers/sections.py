@@ -1,0 +1,193 @@
+"""Receivers of a pillar: motion on its axis, and the force over sections, along y, then x and z.
+
+A section between two faces of a layer of cells is read by the balance of momentum of the rock up to
+it. The motion w that is 1 up to the near face of the layer, and falls to 0 in it, gives the force
+at that face, w (K u + C u' + M u''), and what is between there and the section takes its share:
+this is as accurate as displacements, whose derivative would lose an order (Wheeler, SIAM J. Numer.
+Anal. 11, 1974, for the flux at a node). At either end it is the force applied there. On a joint a
+section reads its traction, and where no layer of cells has two faces across the pillar, the
+integral of the stress over it.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import polynomial as poly
+from scipy.sparse import csr_matrix, diags, kron, vstack
+
+from jointwave.cases.material.effective_medium import tensor
+from jointwave.continuum.receivers.points import motion_at, pieces_of, shares_of_pieces
+from jointwave.continuum.space import compat
+from jointwave.continuum.space.build import SIMPLEX
+from jointwave.continuum.space.evaluation import (
+    kind_of,
+    matrix_of,
+    nodes_of_cells,
+    order_of,
+    places_in,
+    tabulate,
+)
+from jointwave.continuum.space.model import Body
+from jointwave.continuum.space.rock import Material
+
+NEAR = 1e-9  # of the pillar: when a section is on a joint
+PER_SIDE = 8  # Gauss points across a section that the mesh does not follow
+CURL = np.array([[[0, 0, 0], [0, 0, 1], [0, -1, 0]], [[0, 0, -1], [0, 0, 0], [1, 0, 0]],
+                 [[0, 1, 0], [-1, 0, 0], [0, 0, 0]]])  # fmt: skip
+
+
+class Sections(NamedTuple):
+    """Force over sections [sections d, freedoms], N, d directions of each: elastic u + viscous u'
+    + inertia u''; contact : [sections d, points d] of the forces of the joint that one is on."""
+
+    elastic: csr_matrix
+    viscous: csr_matrix
+    inertia: csr_matrix
+    contact: csr_matrix
+
+
+def order_of_directions(body: Body) -> list[int]:
+    """Return the components of the motion along y, then x, then z."""
+    return [0] if body.components == 1 else [1, 0, 2][: body.components]
+
+
+def axis_of(body: Body) -> int:
+    """Return which coordinate of the mesh runs along the pillar."""
+    return body.x.shape[1] // 2
+
+
+def points_on_axis(body: Body, places: list[float]) -> csr_matrix:
+    """Return the motion of places on the axis [m d, freedoms] and, in two and three dimensions, the
+    rotation about x, y, z there, half the curl of the motion [m 3, freedoms]; on a joint both are
+    the mean of its sides."""
+    x = np.zeros((len(places), body.x.shape[1]))
+    x[:, axis_of(body)] = places
+    at, dim = places_in(body, x), body.components
+    share = shares_of_pieces(at.point, pieces_of(body)[at.cell])
+    motion = motion_at(body, at, share, len(x))
+    if x.shape[1] == 1:
+        return motion
+    curl = 0.5 * CURL[:, :dim, :dim]
+    weights = np.einsum("aic,n,nki->ankc", curl, share, at.gradient).swapaxes(0, 1)
+    return csr_matrix(vstack([motion, matrix_of(body, at.point, at.cell, weights, len(x))]))
+
+
+def sections(
+    body: Body, materials: list[Material], which: np.ndarray, places: list[float]
+) -> Sections:
+    """Return the receivers of places along the pillar; which : of the materials, of each cell."""
+    rows = [_section(body, materials, which, y) for y in places]
+    nothing = tuple(one[:0] for one in _nothing(body))
+    return Sections(*(csr_matrix(vstack(part)) for part in zip(nothing, *rows, strict=True)))
+
+
+def _nothing(body: Body) -> tuple[csr_matrix, ...]:
+    """Return a section that reads nothing."""
+    none = csr_matrix((body.components, body.stiffness.shape[0]))
+    return none, none, none, _contact(body, on_joint(body, np.inf))
+
+
+def _section(
+    body: Body, materials: list[Material], which: np.ndarray, y: float
+) -> tuple[csr_matrix, ...]:
+    on, nothing = on_joint(body, y), _nothing(body)
+    if on.any():
+        return *nothing[:3], _contact(body, on)
+    layer = _layer(body, y)
+    if layer is None:
+        return *_by_stress(body, materials, which, y), nothing[3]
+    return *_by_momentum(body, materials, which, layer, y), nothing[3]
+
+
+def on_joint(body: Body, y: float) -> np.ndarray:
+    """Return which points of joints a section at y is on, bool [points]."""
+    if body.joints is None:
+        return np.zeros(0, bool)
+    place = body.joints.place[:, axis_of(body)]
+    return np.abs(place - y) <= NEAR * float(np.ptp(body.x[:, axis_of(body)]))
+
+
+def _contact(body: Body, on: np.ndarray) -> csr_matrix:
+    """Return the sum of the forces of points of joints, along y, x and z [d, points d]."""
+    size = body.components
+    if body.joints is None:
+        return csr_matrix((size, 0))
+    turned = body.joints.frame.transpose(0, 2, 1)[:, order_of_directions(body)]
+    weights = on[:, None, None] * turned
+    return csr_matrix(weights.transpose(1, 0, 2).reshape(size, -1))
+
+
+def _layer(body: Body, y: float) -> np.ndarray | None:
+    """Return the cells of the layer that a section is in, of two the first; None where these have
+    no faces across the pillar."""
+    corners = compat.cell_corners(body.mesh)[:, :, axis_of(body)]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    slack = NEAR * float(np.ptp(corners))
+    here = np.flatnonzero((low <= y + slack) & (y <= high + slack))
+    layer = here[np.abs(low[here] - low[here].min()) <= slack]
+    own, bottom, top = corners[layer], low[layer[0]], high[layer[0]]
+    away = np.minimum(np.abs(own - bottom), np.abs(own - top)).max()
+    if kind_of(body) in SIMPLEX or away > slack or y > top + slack:
+        return None
+    return layer
+
+
+def _by_momentum(
+    body: Body, materials: list[Material], which: np.ndarray, layer: np.ndarray, y: float
+) -> tuple[csr_matrix, ...]:
+    """Return a section's force by the momentum of the part of a layer before it."""
+    kind, along, order = kind_of(body), axis_of(body), order_of(body)
+    corners = compat.cell_corners(body.mesh)[layer]
+    near, thickness = corners[:, :, along].min(), np.ptp(corners[:, :, along])
+    nodes, x, piece = nodes_of_cells(body), body.x[:, along], pieces_of(body)
+    moves, strained = np.zeros((2, len(x)))
+    moves[nodes[piece == piece[layer[0]]]] = 1.0
+    moves[x > near + NEAR * float(np.ptp(x))] = 0.0
+    strained[nodes[layer]] = 1.0
+    directions = np.eye(body.components)[order_of_directions(body)]
+    w, in_layer = kron(moves, directions), diags(np.repeat(strained, body.components))
+    elastic, viscous = (
+        csr_matrix((w @ one if one is not None else 0 * w) @ in_layer)
+        for one in (body.stiffness, body.damping)
+    )
+
+    levels = np.sort(compat.reference("interval", order).points[:, 0])
+    running = poly.polyint(poly.polyfit(levels, np.eye(levels.size), order))
+    whole = poly.polyval(1.0, running)
+    share = -poly.polyval((y - near) / thickness, running)
+    share[0] += whole[0]
+    at, weight = compat.quadrature(kind, 2 * order - 1)
+    volumes = weight @ tabulate(kind, nodes.shape[1], at)[0]
+    density = np.array([one.density for one in materials])[which[layer]]
+    size = np.ptp(corners, axis=1).prod(axis=1)
+    own = nodes[layer]
+    level = np.abs((x[own] - near)[:, :, None] / thickness - levels).argmin(axis=2)
+    mass = (density * size)[:, None] * volumes * (share / whole)[level]
+    inertia = np.bincount(own.ravel(), mass.ravel(), len(x))
+    return elastic, viscous, csr_matrix(kron(inertia, directions))
+
+
+def _by_stress(
+    body: Body, materials: list[Material], which: np.ndarray, y: float
+) -> tuple[csr_matrix, ...]:
+    """Return a section's force as the integral of the stress over it, by Gauss points."""
+    at, weight = np.polynomial.legendre.leggauss(PER_SIDE)
+    low, high = body.x.min(axis=0), body.x.max(axis=0)
+    across = [k for k in range(len(low)) if k != axis_of(body)]
+    grids = np.meshgrid(*[(low[k] + high[k] + (high[k] - low[k]) * at) / 2 for k in across])
+    x = np.full((grids[0].size, len(low)), float(y))
+    x[:, across] = np.column_stack([one.ravel() for one in grids])
+    shares = np.meshgrid(*[weight * (high[k] - low[k]) / 2 for k in across])
+    area = np.prod([one.ravel() for one in shares], axis=0)
+    here = places_in(body, x)
+    moduli = np.array([tensor(one.stiffness) for one in materials])[which[here.cell]]
+    own = moduli[:, order_of_directions(body), axis_of(body)]
+    each = (area / np.bincount(here.point))[here.point]
+    entries = -np.einsum("ndcj,nkj,n->ndkc", own, here.gradient, each)
+    eta = np.array([one.time_constant for one in materials])[which[here.cell]]
+    row = np.zeros(len(here.cell), np.int64)
+    elastic, viscous = (
+        matrix_of(body, row, here.cell, values, 1)
+        for values in (entries, eta[:, None, None, None] * entries)
+    )
+    return elastic, viscous, csr_matrix(elastic.shape)

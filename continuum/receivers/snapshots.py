@@ -1,0 +1,140 @@
+"""Snapshots of a body: its nodes, and linear cells between them."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.effective_medium import tensor
+from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.scene import SceneBody
+from jointwave.continuum.space import compat
+from jointwave.continuum.space.evaluation import (
+    element,
+    jacobians,
+    kind_of,
+    lattice_of,
+    nodes_of_cells,
+    places_of_nodes,
+    tabulate,
+)
+from jointwave.continuum.stepping.implicit import Implicit
+from jointwave.continuum.stepping.steps import Leapfrog
+from jointwave.results.snapshots import SnapshotRecorder, snapshots, with_snapshots
+from jointwave.results.stress import stress_components
+from jointwave.results.subcells import KINDS, linear_cells
+
+Frame = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+class StressOfCells:
+    """Stress at the centres of the linear cells that cells are divided into.
+
+    slopes : of the functions of nodes at the centres in the reference cell [parts, nodes, d].
+    inverse : dX/dx of cells there [cells, parts, d, d], 1/m. moduli : float array [cells, n,
+    components, d], Pa: n components of the stress by the gradient of the displacement, compression
+    positive. lag : time constant of the dashpots of the rock [cells, 1, 1], s; None without any.
+    constant : float array [n], Pa, at u = 0.
+    """
+
+    def __init__(self, found: SceneBody, parts: np.ndarray, points: np.ndarray) -> None:
+        body, kind = found.body, kind_of(found.body)
+        self.nodes, corners = nodes_of_cells(body), compat.cell_corners(body.mesh)
+        self.size, centres = body.components, points[parts].mean(axis=1)
+        self.slopes = tabulate(kind, self.nodes.shape[1], centres)[1]
+        at = np.tile(centres, (len(corners), 1))
+        each = np.repeat(corners, len(parts), axis=0)
+        shape = len(corners), len(parts), *2 * (corners.shape[2],)
+        self.inverse = np.linalg.inv(jacobians(kind, each, at)).reshape(shape)
+        self.moduli = -moduli_of(found)[found.of_cell]
+        lag = np.array([one.time_constant for one in found.materials])[found.of_cell]
+        self.lag = lag[:, None, None] if lag.any() else None
+        self.constant = prestress_of(found.scene)
+
+    def of(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Return the stress [cells * parts, n], Pa, of displacements and velocities [freedoms]."""
+        moved = u.reshape(-1, self.size)[self.nodes]
+        if self.lag is not None:
+            moved = moved + self.lag * v.reshape(-1, self.size)[self.nodes]
+        gradient = np.einsum("kni,pne->kpie", moved, self.slopes, optimize=True) @ self.inverse
+        found = np.einsum("ksij,kpij->kps", self.moduli, gradient, optimize=True)
+        return found.reshape(-1, found.shape[2]) + self.constant
+
+
+def moduli_of(found: SceneBody) -> np.ndarray:
+    """Return the components of the stress by the gradient of the displacement in each material
+    [materials, n, components, d], Pa: those of `stress_components`, of a pillar along it alone."""
+    dim, components = found.body.x.shape[1], found.body.components
+    stiffness = np.array([one.stiffness for one in found.materials])
+    if dim == 1:
+        moduli, along = np.zeros((len(stiffness), 1, components, 1)), components // 2
+        moduli[:, 0, along, 0] = stiffness[:, along, along]
+        return moduli
+    full, pairs = np.array([tensor(one) for one in stiffness]), stress_components(dim).values()
+    shown = [(1, 1)] if isinstance(found.scene, Scene) else [*pairs]
+    return np.stack([full[:, i, j] for i, j in shown], axis=1)
+
+
+def prestress_of(scene: AnyScene) -> np.ndarray:
+    """Return the stress at u = 0 [n], Pa, compression positive; zero without."""
+    if isinstance(scene, Scene):
+        return np.array([scene.prestress.normal if scene.prestress else 0.0])
+    dim, given = scene.domain.dimension, scene.prestress
+    stress = np.zeros((dim, dim)) if given is None else given.tensor
+    return np.array([stress[i, j] for i, j in stress_components(dim).values()])
+
+
+class RockRecorder(SnapshotRecorder):
+    """The rock at every snapshot of a scene; raises SceneError for too many, or too large ones.
+
+    steps : which have taken that of a sample last when it is recorded.
+    """
+
+    def __init__(self, scene: AnyScene, found: SceneBody, steps: Leapfrog | Implicit) -> None:
+        self.found, self.steps, body = found, steps, found.body
+        kind, nodes = kind_of(body), compat.cell_nodes(body.space)
+        own = lattice_of(kind, nodes.shape[1])
+        points = element(kind, nodes.shape[1]).points[own]
+        parts = linear_cells(kind, points)
+        self.node, first, number = np.unique(nodes[:, own], return_index=True, return_inverse=True)
+        self.points = places_of_nodes(body)[:, own].reshape(-1, body.x.shape[1])[first]
+        self.cells = number.reshape(-1, len(own))[:, parts].reshape(-1, parts.shape[1])
+        self.parts = len(parts)
+        self.stress = StressOfCells(found, parts, points)
+        count, values = len(self.node), len(self.cells) * len(self.stress.constant)
+        size = snapshot_bytes(scene, count, 6 + values / count)
+        refuse_beyond_memory(scene, {"record.fields": size})
+        super().__init__(scene, max(count, values // 3), self.frame)
+
+    def frame(self, sample: int) -> Frame:
+        """Return displacement and velocity of the nodes, and stress of the cells."""
+        u, v = self.steps.last
+        body = self.found.body
+        node = self.node if body.tied is None else body.tied[self.node]
+        moved, moving = (one.reshape(-1, body.components)[node] for one in (u, v))
+        return moved, moving, self.stress.of(self.steps.strained, v)
+
+    def add_to(self, result: xr.Dataset) -> xr.Dataset:
+        """Return the run's result with its snapshots; in a rock mass displacement counts from the
+        first of them."""
+        time = result["time"].values[:: self.every]
+        u, v, stress = (np.stack(x) for x in zip(*self.frames[: len(time)], strict=True))
+        if isinstance(self.found.scene, Scene):
+            stress = stress[:, :, 0]
+        else:
+            u = u - u[0]
+        cells = self.points, KINDS[kind_of(self.found.body)], self.cells, self.block
+        return with_snapshots(result, snapshots(time, *cells, u, v, stress))
+
+    @property
+    def block(self) -> np.ndarray:
+        """The block of each linear cell, int array; of a layer of a pillar that before its
+        middle."""
+        scene = self.found.scene
+        if isinstance(scene, Scene):
+            height = self.points[self.cells][..., self.points.shape[1] // 2].mean(axis=1)
+            return np.searchsorted(calibrate(scene).contact_y, height) - 1
+        return np.repeat(self.found.body.block, self.parts)

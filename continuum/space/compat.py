@@ -1,0 +1,173 @@
+"""What differs between dolfinx 0.5 and 0.11, told apart by what they offer."""
+
+import inspect
+import os
+from collections.abc import Callable
+from typing import Any
+
+import basix
+import numpy as np
+import ufl
+from scipy.sparse import csr_matrix
+
+from jointwave.continuum.space.compiling import compiled
+from jointwave.continuum.space.fenicsx import MPI, dolfinx
+
+fem, mesh = dolfinx.fem, dolfinx.mesh
+NEW = hasattr(basix, "ufl")  #: whether elements of basix are UFL's
+if not NEW:
+    import basix.ufl_wrapper
+
+
+def make_mesh(kind: str, x: np.ndarray, cells: np.ndarray, comm: Any = None) -> Any:
+    """Return the dolfinx mesh of cells [n, corners] between vertices x [m, d], m.
+
+    Cells that share no vertex are not connected, wherever their vertices lie.
+    """
+    dim = x.shape[1]
+    if NEW:
+        element = basix.ufl.element("Lagrange", kind, 1, shape=(dim,))
+    else:  # of another variant ffcx rewrites the element, and compiles forms again in later runs
+        cell = ufl.Cell(kind, geometric_dimension=dim)
+        element = ufl.VectorElement("Lagrange", cell, 1, variant="equispaced")
+    name = "e" if "e" in inspect.signature(mesh.create_mesh).parameters else "domain"
+    given = {"cells": cells, "x": x, name: ufl.Mesh(element)}
+    return compiled(lambda: mesh.create_mesh(comm or MPI.COMM_SELF, **given))
+
+
+def input_cells(domain: Any) -> np.ndarray:
+    """Return for each cell of a mesh its row in the array of cells that it was made from."""
+    return np.asarray(domain.topology.original_cell_index)
+
+
+def lagrange(domain: Any, order: int, components: int) -> Any:
+    """Return the space of vectors of Lagrange elements of this order.
+
+    On intervals, quadrilaterals and hexahedra its nodes are Gauss-Lobatto-Legendre points.
+    """
+    return _space(domain, "Lagrange", order, components)
+
+
+def vector_space(domain: Any, element: Any, components: int) -> Any:
+    """Return the space of vectors with one of basix's elements, of scalars, for each component."""
+    if NEW:
+        whole = basix.ufl.blocked_element(basix.ufl.wrap_element(element), shape=(components,))
+        return compiled(lambda: fem.functionspace(domain, whole))
+    scalar = basix.ufl_wrapper.BasixElement(element)
+    vector = basix.ufl_wrapper.VectorElement(scalar, components)
+    return compiled(lambda: fem.FunctionSpace(domain, vector))
+
+
+def custom_element(kind: str, span: np.ndarray, points: list, complete: int, degree: int) -> Any:
+    """Return basix's element of functions that are given by their values at points.
+
+    span : float array [n, m], of orthonormal polynomials up to `degree`. points : for each entity
+    of each dimension its points [k, d]. complete : the highest degree that is there completely.
+    """
+    cell, dim = getattr(basix.CellType, kind), points[0][0].shape[1]
+    x = [*points, *[[]] * (3 - dim)]
+    values = [[np.eye(len(one))[:, None, :, None] for one in entities] for entities in x]
+    span = np.ascontiguousarray(span)
+    given: tuple[Any, ...] = cell, [], span, x, values, 0, basix.MapType.identity
+    if not NEW:
+        return basix.create_custom_element(*given, False, complete, degree)
+    continuous = basix.SobolevSpace.H1, False, complete, degree, basix.PolysetType.standard
+    return basix.create_custom_element(*given, *continuous)
+
+
+def cell_constants(domain: Any, values: np.ndarray) -> Any:
+    """Return the vector function that has values [cells, n] in the cells of a mesh."""
+    found = fem.Function(_space(domain, "DG", 0, values.shape[1]), dtype=np.float64)
+    found.x.array[:] = values.ravel()
+    return found
+
+
+def constant(domain: Any, shape: tuple[int, ...], value: float = 0.0) -> Any:
+    """Return a constant of UFL on a mesh, whose `value` can be changed."""
+    return fem.Constant(domain, np.full(shape, value))
+
+
+def cell_sums(domain: Any, form: ufl.Form) -> Callable[[], np.ndarray]:
+    """Return a function that integrates a form without arguments over each cell, float array
+    [cells], with the constants that it has then."""
+    one = ufl.TestFunction(_space(domain, "DG", 0, 1))[0]
+    each = [part.reconstruct(integrand=part.integrand() * one) for part in form.integrals()]
+    made = compiled(lambda: fem.form(ufl.Form(each), dtype=np.float64))
+    return lambda: np.array(fem.assemble_vector(made).array)
+
+
+def _space(domain: Any, family: str, order: int, size: int) -> Any:
+    if hasattr(fem, "functionspace"):
+        return compiled(lambda: fem.functionspace(domain, (family, order, (size,))))
+    return compiled(lambda: fem.VectorFunctionSpace(domain, (family, order), dim=size))
+
+
+def neighbours(domain: Any) -> np.ndarray:
+    """Return the pairs of cells of a mesh that share a facet, int array [2, n]."""
+    topology, dim = domain.topology, domain.topology.dim
+    topology.create_entities(dim - 1)
+    topology.create_connectivity(dim - 1, dim)
+    links = topology.connectivity(dim - 1, dim)
+    first = links.offsets[:-1][np.diff(links.offsets) == 2]
+    return np.stack([links.array[first], links.array[first + 1]])
+
+
+def parts_of_graph(start: np.ndarray, column: np.ndarray, parts: int) -> np.ndarray:
+    """Return the part, 0 .. parts - 1, of each vertex of a graph, int array; parts have about as
+    many vertices and few edges between them. start, column : of its edges, each both ways, CSR."""
+    graph, none = dolfinx.graph, np.zeros(0, np.int32)
+    os.environ.setdefault("SCOTCH_PTHREAD_NUMBER", "1")  # its threads' race decides the parts
+    made = graph.adjacencylist if hasattr(graph, "adjacencylist") else graph.create_adjacencylist
+    edges = made(column.astype(np.int64), start.astype(np.int32))
+    given, divide = (
+        (MPI.COMM_SELF, parts, getattr(edges, "_cpp_object", edges)),
+        graph.partitioner(),
+    )
+    try:
+        found = divide(*given, False)
+    except TypeError:  # newer: with weights of vertices and edges
+        found = divide(*given, none, none, False)
+    return np.array(found.array)
+
+
+def cell_nodes(space: Any) -> np.ndarray:
+    """Return the nodes of each cell of the mesh, int array [cells, nodes per cell]."""
+    nodes = space.dofmap.list
+    table = np.asarray(getattr(nodes, "array", nodes))
+    return table.reshape(len(input_cells(space.mesh)), -1)
+
+
+def matrix(form: ufl.Form) -> csr_matrix:
+    """Assemble a bilinear form."""
+    made = compiled(lambda: fem.form(form, dtype=np.float64))
+    found = dolfinx.fem.petsc.assemble_matrix(made)
+    found.assemble()
+    start, column, value = (np.array(one) for one in found.getValuesCSR())
+    found.destroy()
+    size = len(start) - 1
+    return csr_matrix((np.real(value), column, start), shape=(size, size))
+
+
+def quadrature(kind: str, degree: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return points [n, d] and weights [n] on the reference cell, exact to this degree."""
+    cell, types = getattr(basix.CellType, kind), basix.QuadratureType
+    rule = types.default if hasattr(types, "default") else types.Default
+    try:
+        return basix.make_quadrature(cell, degree, rule=rule)
+    except TypeError:  # older: the rule comes first, and nothing has a name
+        return basix.make_quadrature(rule, cell, degree)
+
+
+def reference(kind: str, order: int) -> Any:
+    """Return basix's Lagrange element of a cell; `points` are its nodes, one for each function."""
+    family, variant = basix.ElementFamily.P, basix.LagrangeVariant.gll_warped
+    return basix.create_element(family, getattr(basix.CellType, kind), order, variant)
+
+
+def cell_corners(domain: Any) -> np.ndarray:
+    """Return the corners of each cell of a mesh of straight cells, float array [cells, corners, d],
+    m."""
+    geometry = domain.geometry
+    table = geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap
+    table = np.asarray(getattr(table, "array", table)).reshape(len(input_cells(domain)), -1)
+    return geometry.x[table][..., : geometry.dim]

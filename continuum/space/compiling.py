@@ -1,0 +1,86 @@
+"""What dolfinx compiles by a C compiler: forms, and in old versions elements."""
+
+import fcntl
+import logging
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from functools import cache
+from pathlib import Path
+from threading import Timer
+from time import time
+from typing import TypeVar
+
+import cffi
+
+from jointwave.continuum.space.fenicsx import dolfinx
+
+Made = TypeVar("Made")
+LINE = "dolfinx compiles the elements and forms of the rock; later runs load them"
+WAIT = 0.5  # s, after which compiling is announced: what is cached loads in less
+FAILED = 10.0  # s without an end, after which dolfinx takes a compilation for failed
+INSTALL = "apt install gcc python3-dev, or conda install c-compiler"
+
+
+def compiled(make: Callable[[], Made]) -> Made:
+    """Return what a call of dolfinx makes, one process at a time, and say so once it takes a while.
+
+    Raises ImportError, with the way to install it, where the compiler is not there or fails.
+    """
+    with _quiet(), _one_process():
+        try:
+            return make()
+        except TimeoutError:  # a run that was killed left its source
+            _forget_unfinished()
+            return make()
+        except cffi.VerificationError:
+            raise ImportError(f"dolfinx needs a C compiler that works: {INSTALL}") from None
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Hide the progress of the compilers, and restore the root logger that they change."""
+    root, disabled = logging.getLogger(), logging.root.manager.disable
+    handlers, level = list(root.handlers), root.level
+    logging.disable(max(disabled, logging.INFO))
+    try:
+        yield
+    finally:
+        root.handlers[:] = handlers
+        root.setLevel(level)
+        logging.disable(disabled)
+
+
+@contextmanager
+def _one_process() -> Iterator[None]:
+    timer = Timer(WAIT, announce)
+    with ExitStack() as held:
+        with suppress(OSError):  # a cache that cannot be written
+            _cache().mkdir(parents=True, exist_ok=True)
+            file = held.enter_context((_cache() / "jointwave.lock").open("w"))
+            fcntl.flock(file, fcntl.LOCK_EX)
+        held.callback(timer.cancel)
+        timer.daemon = True
+        timer.start()
+        yield
+
+
+@cache
+def announce() -> None:
+    """Log once that compiling takes a while, though others' messages are hidden."""
+    log = logging.getLogger("jointwave")
+    if log.getEffectiveLevel() <= logging.INFO:
+        log.handle(log.makeRecord(log.name, logging.INFO, __file__, 0, LINE, (), None))
+
+
+def _cache() -> Path:
+    settings = getattr(dolfinx.jit, "get_options", None) or dolfinx.jit.get_parameters
+    return Path(settings()["cache_dir"])
+
+
+def _forget_unfinished() -> None:
+    """Remove sources whose compilation never ended."""
+    for source in _cache().glob("libffcx_*.c"):
+        with suppress(OSError):
+            old = time() - source.stat().st_mtime > FAILED
+            if old and not source.with_suffix(".c.cached").exists():
+                source.unlink()

@@ -1,0 +1,63 @@
+"""The joints of a body: from pairs of facets to the jump operator."""
+
+import numpy as np
+from scipy.sparse import bsr_matrix, csr_matrix, identity, kron
+
+from jointwave.cases.geometry.measure import frames
+from jointwave.continuum.space.model import JumpOperator
+from jointwave.continuum.space.traces import Reference, Trace
+
+ROUND_OFF = 1e-14  # of entries, which are of the order of 1
+
+
+def jump_operator(
+    one: Trace,
+    other: Trace,
+    column: np.ndarray,
+    shape: tuple[int, int],
+    cell: Reference,
+) -> JumpOperator:
+    """Return the jump operator of facets of block i and those of block j at the same places.
+
+    column : of the law, int array [facets]. shape : nodes of the body, and components. At the end
+    of a joint in rock both sides have one node, and no jump.
+    """
+    facets, (nodes, components) = len(one.node), shape
+    count, weight, place = one.node.size, one.weight, one.place
+    row, ones = np.tile(np.arange(count), 2), np.ones(count)
+    at = row, np.append(one.node.ravel(), other.node.ravel())
+    jump = csr_matrix((np.append(-ones, ones), at), (count, nodes))
+    if cell.points is not None and cell.areas is not None:
+        jump = csr_matrix(kron(identity(facets), cell.points) @ jump)
+        weight = weight.sum(axis=1)[:, None] * cell.areas
+        place = cell.points @ place
+    jump.eliminate_zeros()
+    open_, points = np.flatnonzero(np.diff(jump.indptr)), weight.shape[1]
+    normal = np.repeat(one.normal[:, :1], points, axis=1).reshape(-1, one.normal.shape[2])
+    frame, each = frames_of(normal[open_], components), np.arange(len(open_) + 1)
+    size = len(open_) * components
+    turned = bsr_matrix((frame, each[:-1], each), shape=(size, size))
+    matrix = csr_matrix(turned @ kron(jump[open_], identity(components), format="csr"))
+    matrix.data[np.abs(matrix.data) < ROUND_OFF] = 0.0
+    matrix.eliminate_zeros()
+    return JumpOperator(
+        matrix=matrix,
+        weight=weight.ravel()[open_],
+        column=np.repeat(column, points)[open_],
+        frame=frame,
+        place=place.reshape(-1, place.shape[2])[open_],
+    )
+
+
+def frames_of(normal: np.ndarray, components: int) -> np.ndarray:
+    """Return frames [n, c, c] of joints with normals [n, d]: in the plane the tangent is the normal
+    rotated to the left, in space they are the strike and the line of dip. A mesh of one dimension
+    runs along y where it has three components."""
+    if normal.shape[1] < components:
+        normal = normal * [0.0, 1.0, 0.0]
+    tangents: tuple[np.ndarray, ...] = ()
+    if components == 2:
+        tangents = (np.stack([-normal[:, 1], normal[:, 0]], axis=1),)
+    elif components == 3:
+        tangents = frames(normal)
+    return np.stack([normal, *tangents], axis=1)

@@ -1,0 +1,94 @@
+"""The constants of a jointed elastic body, in one, two or three dimensions.
+
+Component c of node n is freedom d n + c, as in dolfinx's blocked spaces; d is the number of
+components, one or three in a mesh of one dimension, which then runs along the second of three.
+Mass, stiffness and forces are per metre of thickness in the plane, and per square metre of section
+in one dimension.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+
+class Forms(NamedTuple):
+    """Rock, as bilinear forms of UFL on a vector space.
+
+    mass : kg. stiffness : N/m. damping : N s/m; None without. Integrals that state no quadrature
+    take that of the body: at the nodes where this makes the mass diagonal.
+    """
+
+    mass: Any
+    stiffness: Any
+    damping: Any = None
+
+
+class JumpOperator(NamedTuple):
+    """The joints at their points: the jump is matrix @ u, and forces are matrix.T @ (weights times
+    the tractions on block j), with block j on the side that the normal points to.
+
+    A jump is the displacement of block j less that of block i: positive along the normal where the
+    joint opens.
+
+    matrix : [points * d, freedoms], B; d rows a point: along the normal, then along the joint.
+    weight : float array [points], m^(d-1). column : int array [points], of the law: the contact
+    between blocks, those across periodic sides last; of a pillar the joint. frame : float array
+    [points, d, d], unit vectors in rows: the normal, then those along the joint. place : float
+    array [points, dimensions], m, on block i.
+    """
+
+    matrix: csr_matrix
+    weight: np.ndarray
+    column: np.ndarray
+    frame: np.ndarray
+    place: np.ndarray
+
+
+class Facets(NamedTuple):
+    """Facets of one side of the boundary, at their nodes; a node stands once for each facet.
+
+    node : int array [n]. weight : float array [n], m^(d-1): integral of a facet's function that is
+    1 at the node and 0 at others. normal : float array [n, d], unit vectors out of the rock.
+    place : float array [n, d], m. block : int array [n], that the facet belongs to.
+    """
+
+    node: np.ndarray
+    weight: np.ndarray
+    normal: np.ndarray
+    place: np.ndarray
+    block: np.ndarray
+
+
+class Body(NamedTuple):
+    """A jointed elastic body.
+
+    mesh : dolfinx.mesh.Mesh, in which the two sides of a joint share no node. space : dolfinx.fem's
+    vector space of displacements. tied : int array [nodes of the space], the node of the body that
+    each is; None where these are the same, but for rock that is whole across periodic sides.
+    x : float array [nodes, d], m. block : int array [cells], of the partition. mass : float array
+    [freedoms], the diagonal, kg; None where there is the consistent one, [freedoms, freedoms], kg.
+    stiffness : N/m, and damping, N s/m (None without) : [freedoms, freedoms]. joints : None where
+    none is resolved. sides : by name.
+
+    A process's share of a body (`continuum.processes.share`) has the rows of its freedoms, which
+    are the first, and columns of those of others that these need; `block` is of its nodes, and
+    there is no mesh and no space.
+    """
+
+    mesh: Any
+    space: Any
+    tied: np.ndarray | None
+    x: np.ndarray
+    block: np.ndarray
+    mass: np.ndarray | None
+    consistent: csr_matrix | None
+    stiffness: csr_matrix
+    damping: csr_matrix | None
+    joints: JumpOperator | None
+    sides: dict[str, Facets]
+
+    @property
+    def components(self) -> int:
+        """Components of displacements at a node."""
+        return self.stiffness.shape[0] // len(self.x)

@@ -1,0 +1,140 @@
+"""Rock of a script: its density and moduli in every cell, found from its forms.
+
+Of displacements u = E x and v = F x the integrand of the stiffness is C_ijkl E_kl F_ij, and of
+translations u = v = e that of the mass is rho. The means of both over each cell give stress,
+sections, quiet sides and bounds of rock in any form.
+"""
+
+from typing import Any
+
+import numpy as np
+import ufl
+
+from jointwave.cases.errors import SceneError
+from jointwave.cases.material.effective_medium import PAIRS, tensor
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.continuum.space import compat
+from jointwave.continuum.space.model import Forms
+from jointwave.continuum.space.rock import Material, Rock, rock_of_cells
+
+DIGITS = 9  # to which moduli of cells of one rock agree
+ZERO = 1e-9  # of the stiffness: the force of a translation, damping of another form
+
+
+class ChosenRock:
+    """The rock of a script, or that of the scene: forms for `build.build_body`.
+
+    found : once it has been called, the materials, which of them each cell has, int array [cells],
+    and whether they are a script's.
+    """
+
+    found: tuple[list[Material], np.ndarray, bool]
+
+    def __init__(
+        self, scene: AnyScene, rock: Rock | None, own: list[Material], region: np.ndarray
+    ) -> None:
+        self.scene, self.rock, self.own, self.region = scene, rock, own, region
+
+    def __call__(self, space: Any, block: np.ndarray) -> Forms:
+        """Return the forms on a space; block : of each cell of its mesh."""
+        if self.rock is None:
+            self.found = self.own, self.region[block], False
+            return rock_of_cells(space, *self.found[:2])
+        forms = self.rock(self.scene, space)
+        refuse_own_rock(self.scene, forms, self.own)
+        self.found = *materials_of(self.scene, space, forms), True
+        return forms
+
+
+class CellMeans:
+    """The means of a bilinear form's integrand over the cells of a mesh, for displacements that are
+    linear in place."""
+
+    def __init__(self, space: Any, form: ufl.Form) -> None:
+        domain, x = space.mesh, ufl.SpatialCoordinate(space.mesh)
+        v, u = form.arguments()
+        self.size, self.dim = u.ufl_shape[0], domain.geometry.dim
+        shape = self.size, self.dim
+        self.parts = [[compat.constant(domain, one) for one in (shape[:1], shape)] for _ in "uv"]
+        moved = [t + ufl.dot(gradient, x) for t, gradient in self.parts]
+        cells = ufl.Form([one for one in form.integrals() if one.integral_type() == "cell"])
+        self.sums = compat.cell_sums(domain, ufl.replace(cells, {u: moved[0], v: moved[1]}))
+        self.volume = compat.cell_sums(domain, compat.constant(domain, (), 1.0) * ufl.dx(domain))()
+
+    def of(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Return the means [cells] for two displacements, each a translation [components] or a
+        gradient [components, d]."""
+        for parts, given in zip(self.parts, (u, v), strict=True):
+            for k, part in enumerate(parts):
+                part.value[...] = given if given.ndim == k + 1 else 0.0
+        return self.sums() / self.volume
+
+    def moduli(self) -> np.ndarray:
+        """Return the form of unit strains in Voigt's order [cells, n, n]."""
+        strains = strains_of(self.dim, self.size)
+        return np.moveaxis(np.array([[self.of(u, v) for u in strains] for v in strains]), 2, 0)
+
+
+def strains_of(dim: int, size: int) -> np.ndarray:
+    """Return the gradients of displacements of unit strains in Voigt's order [n, components, d]."""
+    if dim == 1:
+        return np.eye(size)[:, :, None]
+    found = np.zeros((len(PAIRS[dim]), dim, dim))
+    for one, (i, j) in zip(found, PAIRS[dim], strict=True):
+        one[i, j] += 0.5
+        one[j, i] += 0.5
+    return found
+
+
+def materials_of(scene: AnyScene, space: Any, forms: Forms) -> tuple[list[Material], np.ndarray]:
+    """Return the materials of forms on a space, and which of them each cell has, int array [cells].
+
+    Raises SceneError for a stiffness that resists translations, and for damping that is no time
+    constant times the stiffness.
+    """
+    means, masses = CellMeans(space, forms.stiffness), CellMeans(space, forms.mass)
+    moves, far = np.eye(means.size), float(np.ptp(space.mesh.geometry.x, axis=0).max())
+    density, stiffness = masses.of(moves[0], moves[0]), means.moduli()
+    held = max(np.abs(means.of(far * one, far * one)).max() for one in moves)
+    if held > ZERO * np.abs(stiffness).max():
+        _refuse(scene, "stiffness in the rock must be of strains, not of displacements")
+    eta = np.zeros(len(density))
+    if forms.damping is not None:
+        damping = CellMeans(space, forms.damping).moduli()
+        eta = np.trace(damping, axis1=1, axis2=2) / np.trace(stiffness, axis1=1, axis2=2)
+        if np.abs(damping - eta[:, None, None] * stiffness).max() > ZERO * np.abs(damping).max():
+            _refuse(scene, "damping must be a time constant times the stiffness")
+    rows = np.column_stack([density, eta, stiffness.reshape(len(density), -1)])
+    scale = np.abs(rows).max(axis=0)
+    alike = np.rint(10**DIGITS * rows / np.where(scale > 0, scale, 1.0))
+    _, first, which = np.unique(alike, axis=0, return_index=True, return_inverse=True)
+    each = [Material(float(density[k]), stiffness[k], float(eta[k])) for k in first]
+    return each, which.reshape(-1)
+
+
+def refuse_own_rock(scene: AnyScene, forms: Forms, own: list[Material]) -> None:
+    """Raise SceneError for what a scene takes from its own [rock], which a script has replaced."""
+    if forms.damping is None and any(one.time_constant for one in own):
+        _refuse(scene, "the scene's dashpots of rock need Forms.damping", "damping")
+    if not isinstance(scene, RockMass):
+        if {scene.ends.start, scene.ends.end} & {"quiet", "matched"}:
+            _refuse(scene, "absorbing ends have the impedance of the scene's rock", "ends")
+        return
+    if scene.waves:
+        _refuse(scene, "waves enter from the scene's rock: take a load on a side", "waves")
+    if any(one.kind == "base" for one in scene.pushes):
+        _refuse(scene, "a compliant base has the impedance of the scene's rock", "loads")
+
+
+def _refuse(scene: AnyScene, why: str, key: str = "rock") -> None:
+    raise SceneError(scene.where, key, None, f"rock of a script: {why}")
+
+
+def impedances_along(materials: list[Material], normal: np.ndarray) -> np.ndarray:
+    """Return the impedances of plane waves along normals [n, d], Pa s/m: of material n each,
+    tensors [n, d, d], the root of rho C_ijkl n_j n_l (Christoffel)."""
+    moduli = np.array([tensor(one.stiffness) for one in materials])
+    density = np.array([one.density for one in materials])[:, None, None]
+    values, shapes = np.linalg.eigh(density * np.einsum("nijkl,nj,nl->nik", moduli, normal, normal))
+    return np.einsum("nik,nk,njk->nij", shapes, np.sqrt(values), shapes)

@@ -1,0 +1,193 @@
+"""Rock as bilinear forms of UFL: mass, stiffness and Kelvin-Voigt damping.
+
+    M(u, v) = rho u . v dx,   K(u, v) = sigma(u) : eps(v) dx,   C(u, v) = eta sigma(u) : eps(v) dx
+
+with eps(u) = sym(grad u). Isotropic rock has sigma = lambda tr(eps) I + 2 mu eps: with Lame's
+constants in plane strain and in space, with lambda = E nu / (1 - nu^2) in plane stress. Anisotropic
+rock has sigma_ij = C_ijkl eps_kl. A bar has sigma = E u' along it, and G u' across it. A script can
+give forms of its own.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+import ufl
+from ufl import dx, grad, inner, sym
+
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.constant_q import mechanisms_of
+from jointwave.cases.material.effective_medium import PAIRS, compliant, stiffness
+from jointwave.cases.material.elastic import shear_modulus, speeds_from_modulus
+from jointwave.cases.material.rock import ElasticRock, elastic_rock
+from jointwave.cases.partition.regions import within
+from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.space.compat import cell_constants
+from jointwave.continuum.space.model import Forms
+
+#: Rock of a script: of a scene and a space of displacements.
+Rock = Callable[[Any, Any], Forms]
+
+
+class Material(NamedTuple):
+    """Linear elastic rock: density, kg/m3; stiffness in Voigt's form [n, n], Pa; Kelvin-Voigt time
+    constant, s."""
+
+    density: float
+    stiffness: np.ndarray
+    time_constant: float = 0.0
+
+
+def isotropic(space: Any, density: Any, lame: Any, shear: Any, time_constant: Any = None) -> Forms:
+    """Return isotropic rock: density, kg/m3; Lame's constants lambda and mu, Pa; Kelvin-Voigt time
+    constant, s. Each is a number, a function or another expression of UFL."""
+
+    def stress(eps: Any) -> Any:
+        return lame * ufl.tr(eps) * ufl.Identity(eps.ufl_shape[0]) + 2 * shear * eps
+
+    return elastic(space, density, stress, time_constant)
+
+
+def anisotropic(space: Any, density: Any, moduli: Any, time_constant: Any = None) -> Forms:
+    """Return anisotropic rock; moduli : C_ijkl, Pa, a tensor of UFL of rank 4 [d, d, d, d]."""
+    i, j, k, m = ufl.indices(4)
+
+    def stress(eps: Any) -> Any:
+        return ufl.as_tensor(moduli[i, j, k, m] * eps[k, m], (i, j))
+
+    return elastic(space, density, stress, time_constant)
+
+
+def elastic(space: Any, density: Any, stress: Callable[[Any], Any], time_constant: Any) -> Forms:
+    """Return rock with a stress that is linear in the strain; a bar's strain is u'."""
+    u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
+    stiffness = inner(stress(strain(u)), strain(v))
+    damping = None if time_constant is None else time_constant * stiffness * dx
+    return Forms(density * inner(u, v) * dx, stiffness * dx, damping)
+
+
+def strain(u: Any) -> Any:
+    """Return the strain of a displacement, sym(grad u); u' in a mesh of one dimension."""
+    gradient = grad(u)
+    return gradient[:, 0] if gradient.ufl_shape[1] == 1 else sym(gradient)
+
+
+def rock_of_cells(space: Any, materials: list[Material], which: np.ndarray) -> Forms:
+    """Return rock by the material of each cell of the mesh, int array [cells]."""
+    density, eta = (
+        np.array([getattr(m, name) for m in materials])[which]
+        for name in ("density", "time_constant")
+    )
+    stiffness = np.array([m.stiffness for m in materials])[which]
+    found = _of_cells(space, density, stiffness)
+    if not eta.any():
+        return found
+    # The form of the stiffness with other numbers: it is compiled once for both.
+    damping = _of_cells(space, density, eta[:, None, None] * stiffness)
+    return found._replace(damping=damping.stiffness)
+
+
+def _of_cells(space: Any, density: np.ndarray, stiffness: np.ndarray) -> Forms:
+    size = stiffness.shape[1]
+    upper, number = np.triu_indices(size), np.zeros((size, size), int)
+    constants = cell_constants(space.mesh, stiffness[:, *upper])
+    number[upper] = range(len(upper[0]))
+    number = np.maximum(number, number.T)
+    voigt = [[constants[int(k)] for k in row] for row in number]
+    rho = cell_constants(space.mesh, density[:, None])[0]
+    if space.mesh.geometry.dim == 1:
+        C = ufl.as_matrix(voigt)
+        return elastic(space, rho, lambda slope: C * slope, None)
+    return anisotropic(space, rho, _tensor(voigt))
+
+
+def _tensor(voigt: list[list[Any]]) -> Any:
+    """Return C_ijkl of Voigt's form."""
+    dim = {3: 2, 6: 3}[len(voigt)]
+    number = {pair: n for n, pair in enumerate(PAIRS[dim])}
+    number |= {(j, i): n for (i, j), n in number.items()}
+    axes = range(dim)
+    return ufl.as_tensor([
+        [[[voigt[number[i, j]][number[k, m]] for m in axes] for k in axes] for j in axes]
+        for i in axes
+    ])  # fmt: skip
+
+
+def rock_mass(scene: RockMass, smeared: list[JointSet], model: str) -> list[Material]:
+    """Return the rock of each region of a rock mass, and last that of the rest: with the effective
+    medium of joint sets that are not resolved."""
+    dim, relaxes = scene.domain.dimension, mechanisms_of(scene, model)
+    unrelaxed = 1.0 if relaxes is None else relaxes.unrelaxed
+    rayleigh = scene.damping.rayleigh
+    eta = 0.0 if rayleigh is None else rayleigh.coefficients[1]
+    return [
+        Material(
+            one.rock.density,
+            unrelaxed * stiffness(elastic_rock(one.rock), compliant(one.joint_sets, dim), dim),
+            eta,
+        )
+        for one in within(scene, smeared)
+    ]
+
+
+def layers_of(scene: Scene) -> dict[int, float]:
+    """Return the thickness (m) of the joints of a pillar that are layers of rock, in order."""
+    found = zip(calibrate(scene).soft.tolist(), scene.soft_layers, strict=True)
+    return dict(sorted((joint, one.thickness) for joint, one in found if one.thickness is not None))
+
+
+def pillar(scene: Scene, model: str, components: int, dim: int) -> list[Material]:
+    """Return the rock of a pillar's segments, intact ("jointed") or homogenised, and its layers.
+
+    A layer of thickness h is rock of modulus K_n h that does not widen when it is compressed: held
+    by the rock on both sides, a thin layer can not either, and K_n is its whole stiffness. Rock
+    with a quality factor has its unrelaxed modulus and no dashpots: those are of joints alone.
+    """
+    p, relaxes, found = calibrate(scene), mechanisms_of(scene, model), []
+
+    def add(density: float, modulus: float, poisson: float, eta: float) -> None:
+        if scene.motion.rotation == "none" and dim > 1:
+            C = plane_sections(modulus, poisson, dim)
+        elif dim == 3:
+            speeds = speeds_from_modulus(modulus, poisson, density)
+            C = stiffness(ElasticRock(density, *speeds), [], 3)
+        else:
+            C = plane_stress(modulus, poisson) if dim == 2 else bar(modulus, poisson, components)
+        found.append(Material(density, C, eta))
+
+    for one, part in zip(p.each, scene.parts, strict=True):
+        modulus, poisson, eta = one.modulus, one.poisson, one.time_constant or 0.0
+        if model == "jointed":
+            assert one.intact_modulus is not None
+            modulus, poisson = one.intact_modulus, scene.alone(part).rock.intact_poisson
+        if relaxes is not None:
+            modulus, eta = modulus * relaxes.unrelaxed, 0.0
+        add(one.density, modulus, poisson, eta)
+    soft = dict(zip(p.soft.tolist(), scene.soft_layers, strict=True))
+    for joint, thickness in layers_of(scene).items():
+        normal = soft[joint].own_stiffness(p.spacing)
+        assert normal is not None
+        etas = p.joint_time_constant
+        add(p.density, normal * thickness, 0.0, 0.0 if etas is None else float(etas[joint]))
+    return found
+
+
+def plane_stress(modulus: float, poisson: float) -> np.ndarray:
+    """Return the stiffness of a sheet that widens freely across its plane."""
+    within = np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
+    return modulus / (1 - poisson**2) * within
+
+
+def plane_sections(modulus: float, poisson: float, dim: int) -> np.ndarray:
+    """Return the stiffness of rock in plane sections that widen freely: E along every axis, and G
+    in shear."""
+    shear = shear_modulus(modulus, poisson)
+    return np.diag([modulus] * dim + [shear] * (dim * (dim - 1) // 2))
+
+
+def bar(modulus: float, poisson: float, components: int) -> np.ndarray:
+    """Return the stiffness of a bar: E along it, and G across it where it has three components."""
+    shear = shear_modulus(modulus, poisson)
+    return np.diag([modulus] if components == 1 else [shear, modulus, shear])

@@ -1,0 +1,129 @@
+"""Nodes on facets of cells, in an order that the two sides of a joint share, and their weights."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from jointwave.continuum.mesh.conforming import Places, facets_of
+from jointwave.continuum.space.compat import quadrature, reference
+
+FACET = {"triangle": "interval", "quadrilateral": "interval"}
+FACET |= {"tetrahedron": "triangle", "hexahedron": "quadrilateral"}
+ON = 1e-9  # share of a corner that a node of another facet has
+
+
+class Trace(NamedTuple):
+    """Nodes of k facets, q of each.
+
+    node : int array [k, q]. weight : float array [k, q], integrals of the functions of the nodes
+    over the facet, m^(d-1). normal : float array [k, q, d], unit vectors out of the cell. place :
+    float array [k, q, d], m. The order follows from that of the numbers of the facet's vertices.
+    """
+
+    node: np.ndarray
+    weight: np.ndarray
+    normal: np.ndarray
+    place: np.ndarray
+
+
+class Reference(NamedTuple):
+    """A cell with its element.
+
+    shares : of its corners at the nodes [nodes, corners]. at : points of a rule on a facet, by
+    shares of its corners [r, c]. functions : of the nodes there, times the weights of the rule, on
+    each reference facet [facets, r, nodes]. points : functions of the nodes of a facet at the
+    points of a rule [p, q] that is exact for their products; None where the nodes are the points.
+    areas : weights of the points, over the area of the facet [p].
+    """
+
+    kind: str
+    shares: np.ndarray
+    at: np.ndarray
+    functions: np.ndarray
+    points: np.ndarray | None
+    areas: np.ndarray | None
+
+
+def reference_cell(kind: str, element: Any) -> Reference:
+    """Return the reference cell of a kind with an element of basix, one function a node."""
+    corners = reference(kind, 1)
+    shares = corners.tabulate(0, element.points)[0, :, :, 0]
+    degree = int(element.highest_degree if hasattr(element, "highest_degree") else element.degree)
+    functions = []
+    for facet in facets_of(kind):
+        at, weight = _rule(kind, 2 * degree)
+        values = element.tabulate(0, at @ corners.points[facet])[0, :, :, 0]
+        functions.append(weight[:, None] * values)
+    found = Reference(kind, shares, at, np.array(functions), None, None)
+    facet = facets_of(kind)[0].tolist()
+    local = _on(found, facet)[0]
+    if (found.functions[0].sum(axis=0)[local] > ON).all():
+        return found
+    points = element.tabulate(0, at @ corners.points[facet])[0, :, local, 0].T
+    return found._replace(points=points, areas=weight / weight.sum())
+
+
+def _rule(kind: str, degree: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return points of a facet, by shares of its corners [n, corners], and weights [n]."""
+    if kind == "interval":
+        return np.ones((1, 1)), np.ones(1)
+    at, weight = quadrature(FACET[kind], degree)
+    return reference(FACET[kind], 1).tabulate(0, at)[0, :, :, 0], weight
+
+
+def trace(
+    cell: Reference, nodes: np.ndarray, vertices: np.ndarray, x: np.ndarray, of: Places
+) -> Trace:
+    """Return the nodes of facets of cells.
+
+    nodes, vertices : int arrays [cells, n], of each cell. x : float array [cells, corners, d], of
+    its corners, m. of : k facets.
+    """
+    facets = facets_of(cell.kind)
+    own = facets[of.facet]
+    order = np.argsort(vertices[of.cell[:, None], own], axis=1)
+    rows = np.column_stack([of.facet, np.take_along_axis(own, order, 1)])
+    kinds, which = np.unique(rows, axis=0, return_inverse=True)
+    which, parts = which.reshape(-1), []
+    for k, (facet, *corners) in enumerate(kinds.tolist()):
+        some = of.cell[which == k]
+        local, shares = _on(cell, corners)
+        places = x[some]
+        normal, _ = _normals(cell, facet, cell.shares[local][:, facets[facet]], places)
+        _, area = _normals(cell, facet, cell.at, places)
+        weight = area @ cell.functions[facet][:, local]
+        parts.append((nodes[some][:, local], weight, normal, shares @ places[:, corners]))
+    back = np.argsort(np.argsort(which, kind="stable"), kind="stable")
+    return Trace(*(np.concatenate(one)[back] for one in zip(*parts, strict=True)))
+
+
+def _on(cell: Reference, corners: list[int]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the nodes on a facet with these corners, and the shares [q, c] of the corners."""
+    others = np.delete(cell.shares, corners, axis=1)
+    local = np.flatnonzero(np.abs(others).max(axis=1) < ON)
+    shares = cell.shares[local][:, corners]
+    order = np.lexsort(np.round(shares, 9).T)
+    return local[order], shares[order]
+
+
+def _normals(
+    cell: Reference, facet: int, at: np.ndarray, x: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the unit normals out of cells with corners x [k, corners, d] at points of a facet
+    [k, q, d], and the area of the facet there over that of the reference facet [k, q]; at : shares
+    of the corners of the facet [q, c]."""
+    corners, dim = facets_of(cell.kind)[facet], x.shape[2]
+    if dim == 1:
+        normal = np.ones((len(x), len(at), 1))
+    else:
+        flat = reference(FACET[cell.kind], 1)
+        slopes = flat.tabulate(1, at @ flat.points)[1:, :, :, 0]
+        along = np.einsum("aqc,kcd->akqd", slopes, x[:, corners])
+        if dim == 2:
+            normal = np.stack([-along[0, ..., 1], along[0, ..., 0]], axis=-1)
+        else:
+            normal = np.cross(*along)
+    area = np.linalg.norm(normal, axis=2)
+    out = x[:, corners].mean(axis=1) - x.mean(axis=1)
+    sense = np.sign(np.einsum("kqd,kd->kq", normal, out))
+    return normal * (sense / area)[..., None], area

@@ -1,0 +1,1 @@
+"""Explicit and implicit steps of a body, and its static states."""

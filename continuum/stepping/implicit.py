@@ -1,0 +1,279 @@
+"""Implicit steps of a body: the generalised-alpha method, each step solved by Newton's method.
+
+Displacement u, velocity v and acceleration a are carried over a step by Newmark's formulas,
+
+    u' = u + dt v + dt^2 ((1/2 - beta) a + beta a'),   v' = v + dt ((1 - gamma) a + gamma a'),
+
+and the equation of motion holds between its ends, with the sum F of all forces (J. Chung &
+G. M. Hulbert, J. Appl. Mech. 60, 1993, 371-375):
+
+    M ((1 - alpha_m) a' + alpha_m a) = (1 - alpha_f) F' + alpha_f F.
+
+A step that does not converge is taken in halves.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from jointwave.cases.errors import StoppedError
+from jointwave.continuum.stepping.balance import LAST_DIGITS, Balance, Factors, Forces, newton
+from jointwave.continuum.stepping.explicit import BOUNDARY, FRICTION, VISCOUS, WORK
+from jointwave.continuum.stepping.memory import memory_of
+from jointwave.continuum.stepping.steps import Held, Problem, samples_for
+from jointwave.results.arrays import copied, fill, size_of
+
+HALVINGS = 10
+RESIDUAL = 1e-10  # tolerance over the largest summed force
+
+
+class Scheme(NamedTuple):
+    """The constants of the method; alpha_m and alpha_f are the shares of the step's beginning."""
+
+    alpha_m: float
+    alpha_f: float
+    beta: float
+    gamma: float
+
+
+def scheme(rho: float) -> Scheme:
+    """Return the second-order, unconditionally stable scheme of spectral radius `rho`, 0 .. 1: what
+    a step leaves of infinite frequencies. 1 is the trapezoidal rule."""
+    alpha_m, alpha_f = (2 * rho - 1) / (rho + 1), rho / (rho + 1)
+    share = 1 - alpha_m + alpha_f
+    return Scheme(alpha_m, alpha_f, share**2 / 4, share - 0.5)
+
+
+class Moment(NamedTuple):
+    """A state and its forces: u, m; v, m/s; a, m/s2 [freedoms]. sums : of the ledger, J."""
+
+    u: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    forces: Forces
+    sums: np.ndarray
+
+
+class Implicit:
+    """Implicit steps of a problem.
+
+    Attributes
+    ----------
+    now : the state at the last step. samples : what is recorded. counts : iterations,
+    factorisations and halvings. work_of_a_step : over that of an explicit one, about.
+    """
+
+    work_of_a_step = 100
+
+    def __init__(
+        self, problem: Problem, dt: float, samples: int, rho: float, energy: bool = True
+    ) -> None:
+        self.problem, self.dt, self.rho, self.scheme = problem, dt, rho, scheme(rho)
+        self.balance, self.counts = Balance(problem), np.zeros(3, np.int64)
+        self.samples = samples_for(problem.readings, samples, energy)
+        n = problem.body.stiffness.shape[0]
+        still, own = np.zeros(n), self.balance
+        forces = own.forces(still, still, still, dt, own.past, still)
+        self.now = Moment(still.copy(), still.copy(), still.copy(), copied(forces), np.zeros(4))
+        self._factors: tuple[float, np.ndarray, Factors] | None = None
+        self._weighs, self._motion = problem.stiffness.diagonal(), np.zeros((3, 1))
+        weight, carried = own.points.weight, np.abs(own.points.carried)
+        each = np.repeat(weight, own.dim)[: carried.size]  # nothing without a prestress
+        self._carried = float((each * carried).max(initial=0.0))
+
+    @property
+    def u(self) -> np.ndarray:
+        """Displacement, m."""
+        return self.now.u
+
+    @property
+    def v(self) -> np.ndarray:
+        """Velocity, m/s."""
+        return self.now.v
+
+    @property
+    def last(self) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement, m, and velocity, m/s, at the last step."""
+        return self.u, self.v
+
+    @property
+    def strained(self) -> np.ndarray:
+        """Displacement by which elastic rock would have the same stress at the last step, m."""
+        return self.balance.strained(self.now.u, self.now.forces.past.elongation)
+
+    @property
+    def parts(self) -> tuple:
+        """All arrays that change."""
+        return self.now, self.counts
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """What a result says of the steps."""
+        names = "newton_iterations", "factorisations", "halved_steps"
+        counts = dict(zip(names, self.counts.tolist(), strict=True))
+        return {"spectral_radius": self.rho, **counts}
+
+    @property
+    def bytes(self) -> int:
+        """The size of matrices, without their factors, and state."""
+        own = self.balance
+        every = own.stiffness, own.damping, own.quiet, own.mass, own.jumps
+        return size_of(self.now, own.points, *((m.data, m.indices, m.indptr) for m in every))
+
+    def start(self, u: np.ndarray, history: np.ndarray) -> None:
+        """Begin at rest at displacements u (m) and with the history of points there."""
+        now, own = self.now, self.balance
+        now.u[:] = u
+        now.forces.past.history[:] = history
+        if own.mechanisms is not None:
+            now.sums[VISCOUS] = own.stored(u, own.past, self.dt)
+
+    def take(self, first: int, last: int, stride: int) -> None:
+        """Go to the steps first .. last - 1, with a sample at each that `stride` divides."""
+        self._motion = motion_of(self.problem.held, last + 1, self.dt)
+        for n in range(first, last):
+            if n == 0:
+                self._begin()
+            else:
+                self._reach(n - 1, 0.0, 1.0, stride)
+            if n % stride == 0:
+                self._record(n // stride)
+
+    def _begin(self) -> None:
+        """Balance the forces of the first moment by its acceleration."""
+        now, own = self.now, self.balance
+        self._hold(now, 0, 0.0)
+        past, external = copied(now.forces.past), self._external(0, 0.0)
+        forces = own.forces(now.u, now.v, 0 * now.u, self.dt, past, external)
+        rest = (forces.whole - own.mass @ now.a)[own.free]
+        now.a[own.free] += Factors(own.mass[own.free][:, own.free], self.problem.comm).solve(rest)
+        fill(now.forces, forces)
+
+    def _reach(self, n: int, begin: float, end: float, stride: int) -> None:
+        """Go from a share of step n to another, in halves where that does not converge."""
+        if self._step(n, begin, end):
+            return
+        self.counts[2] += 1
+        if end - begin <= 2.0**-HALVINGS:
+            error = StoppedError(
+                f"the implicit steps do not converge at t = {(n + begin) * self.dt:.6g} s even "
+                f"with steps of {(end - begin) * self.dt:.3g} s; take shorter ones "
+                "(numerics.continuum.steps_per_period) or explicit ones"
+            )
+            error.samples = n // stride + 1
+            raise error
+        middle = (begin + end) / 2
+        self._reach(n, begin, middle, stride)
+        self._reach(n, middle, end, stride)
+
+    def _step(self, n: int, begin: float, end: float) -> bool:
+        """Try a step, and keep its end where it converges."""
+        alpha_m, alpha_f, beta, gamma = self.scheme
+        own, now, dt = self.balance, self.now, (end - begin) * self.dt
+        trial, external = copied(now), self._external(n, end)
+        self._hold(trial, n, end)
+        drift = dt * now.v + (0.5 - beta) * dt**2 * now.a
+        before = alpha_f * now.forces.whole - alpha_m * (own.mass @ now.a)
+        forces, r, free = [now.forces], gamma / (beta * dt), own.free
+
+        def residual(moved: np.ndarray) -> tuple[np.ndarray, float]:
+            trial.a[free] = (moved - drift[free]) / (beta * dt**2)
+            trial.u[free] = now.u[free] + moved
+            trial.v[free] = now.v[free] + dt * ((1 - gamma) * now.a + gamma * trial.a)[free]
+            forces[0] = own.forces(trial.u, trial.v, trial.u - now.u, dt, now.forces.past, external)
+            inertia = own.mass @ trial.a
+            rest = (1 - alpha_f) * forces[0].whole + before - (1 - alpha_m) * inertia
+            size = max(forces[0].size[0], now.forces.size[0], np.abs(inertia).max(initial=0.0))
+            weighs = np.abs(self._weighs * trial.u).max(initial=0.0) + self._carried
+            return rest[free], RESIDUAL * size + LAST_DIGITS * weighs
+
+        def correction(rest: np.ndarray) -> np.ndarray:
+            self.counts[0] += 1
+            history = now.forces.past.history
+            tangents = own.of_joints(trial.u, trial.v, dt, r, history)
+            return self._factored(dt, r, tangents).solve(rest)
+
+        outcome = newton(residual, correction, (drift + beta * dt**2 * now.a)[free])
+        if outcome.converged:
+            self._enter(trial, forces[0])
+            fill(now, trial._replace(forces=forces[0]))
+        return outcome.converged
+
+    def _factored(self, dt: float, r: float, tangents: np.ndarray) -> Factors:
+        """Return the factors of a step's matrix, the last ones where nothing has changed."""
+        if self._factors is not None:
+            last, known, factors = self._factors
+            if last == dt and np.array_equal(known, tangents):
+                return factors
+        alpha_m, alpha_f, beta, _ = self.scheme
+        own = self.balance
+        inertia = (1 - alpha_m) / (beta * dt**2) * own.mass
+        rock = memory_of(own.mechanisms, dt).tangent(dt) * own.stiffness
+        forces = rock + r * (own.damping + own.quiet) + own.of_springs(dt)
+        found = own.with_joints(inertia + (1 - alpha_f) * forces, tangents, 1 - alpha_f)
+        self._factors = dt, tangents, found
+        self.counts[1] += 1
+        return found
+
+    def _enter(self, trial: Moment, forces: Forces) -> None:
+        """Add the work of all forces over a step by the trapezoidal rule."""
+        now, sums, held = self.now, trial.sums, self.problem.fixed
+        moved = trial.u - now.u
+        sums[VISCOUS] += (now.forces.viscous + forces.viscous) @ moved / 2
+        sums[BOUNDARY] += (now.forces.boundary + forces.boundary) @ moved / 2
+        sums[WORK] += (now.forces.external + forces.external) @ moved / 2
+        sums[FRICTION] += forces.energies[2]
+        if held.size:
+            gained = (self.balance.mass @ (trial.v - now.v))[held] @ (now.v + trial.v)[held]
+            sums[WORK] += (gained - (now.forces.whole + forces.whole)[held] @ moved[held]) / 2
+
+    def _external(self, n: int, share: float) -> np.ndarray:
+        """Return the forces with a history at step n and a share of the next."""
+        found, forces = np.zeros(self.balance.stiffness.shape[0]), self.problem.forces
+        if forces is not None:
+            first, last = forces.at(n, n + 2)
+            found[forces.freedom] = (1 - share) * first + share * last
+        return found
+
+    def _hold(self, moment: Moment, n: int, share: float) -> None:
+        """Give held freedoms their motion at step n and a share of the next."""
+        held = self.problem.held
+        if held is not None and held.moved is not None:
+            given = (1 - share) * self._motion[:, n] + share * self._motion[:, n + 1]
+            for values, value in zip(moment[:3], given, strict=True):
+                values[held.freedom] = value * held.direction
+
+    def _record(self, s: int) -> None:
+        """Take sample s."""
+        now, read, out = self.now, self.problem.readings, self.samples
+        forces = now.forces
+        out.velocity[:, s] = read.motion @ now.v
+        out.displacement[:, s] = read.motion @ now.u
+        out.stress[:, s] = read.stress @ self.strained + read.constant
+        if read.viscous is not None:
+            out.stress[:, s] += read.viscous @ now.v
+        if read.inertia is not None:
+            balancing = self.balance.acceleration(forces.whole, now.a)
+            out.stress[:, s] += read.inertia @ (balancing + self.problem.alpha * now.v)
+        out.traction[:, s] = read.traction @ (forces.loads + forces.drags) + read.carried
+        out.jump[:, s] = read.jump @ forces.jump
+        if out.energy.size:
+            viscous, friction, boundary, work = now.sums
+            joints, spent, _ = forces.energies
+            rock = self.balance.stored(now.u, forces.past, self.dt)
+            if self.balance.mechanisms is not None:
+                viscous -= rock
+            kinetic = 0.5 * (now.v @ (self.balance.mass @ now.v))
+            fallen = self.balance.steady @ now.u
+            terms = kinetic, rock + joints, viscous, friction, spent, boundary, -fallen, work
+            out.energy[:, s] = terms
+
+
+def motion_of(held: Held | None, count: int, dt: float) -> np.ndarray:
+    """Return displacement, velocity and acceleration of what moves at so many steps [3, count]:
+    sums of the given steps, and centred differences of them, at rest before t = 0."""
+    if held is None or held.moved is None:
+        return np.zeros((3, count))
+    after = held.moved(np.arange(count))
+    before = np.concatenate([[0.0], after[:-1]])
+    return np.array([before.cumsum(), (before + after) / (2 * dt), (after - before) / dt**2])

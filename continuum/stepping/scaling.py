@@ -1,0 +1,100 @@
+"""Mass that is added at the nodes of a few small cells, which would decide the step of all rock.
+
+Slivers between planes of joints have cells much smaller than the rest. A step dt is stable where
+
+    sum_j |dt^2 K_ij + 4 dt C_ij| <= 4 m_i
+
+for every freedom i, by Gershgorin's theorem on M^-1 (dt^2 K + 4 dt C) (`body.critical`). Where a
+row lacks mass for a longer step, it is added, as much in each direction.
+
+A mass M in rock of density rho scatters about pi M / (rho l^d) of a wave of length l, as it is one
+wavelength away: in one, two and three dimensions, by the first term of Born's series. All that is
+added is at most `OF_ALL` of the rock, 3e-4 of a wave where small cells lie anywhere; and at most
+`OF_PIECE` of any piece of rock between joints, which bounds the error of its acceleration.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import connected_components
+
+from jointwave.continuum.stepping.steps import Problem
+
+OF_ALL, OF_PIECE = 1e-4, 1e-2  # most mass that is added, of all rock, and of a piece
+WORTH = 2.0  # times as long a step by these bounds, below which mass stays as it is
+HALVINGS = 30  # of the range of steps in search of the longest
+
+
+class Scaled(NamedTuple):
+    """Mass for longer steps.
+
+    mass : float array [freedoms], kg. nodes : how many have more. share : that is added, of all.
+    before : the critical step without it is at most this, s.
+    """
+
+    mass: np.ndarray
+    nodes: int
+    share: float
+    before: float
+
+    def gained(self, critical: float) -> str:
+        """Return what is gained where the critical step is this, s."""
+        return (
+            f"{self.nodes:,} nodes of cells much smaller than the rest have more mass, "
+            f"{self.share:.1g} of all rock: steps are at least {critical / self.before:.2g} "
+            "times as long"
+        )
+
+
+def scaled_mass(problem: Problem) -> Scaled | None:
+    """Return the mass of a body with what small cells lack; None where that is not worth it."""
+    body = problem.body
+    if body.mass is None:
+        return None
+    mass = body.mass.reshape(-1, body.components)
+    stiffness, viscosity = problem.stiffness, problem.viscosity
+    elastic, viscous = (_sums(problem, one, mass.shape) for one in (stiffness, viscosity))
+    piece = connected_components(body.stiffness, directed=False)[1]
+    of_piece = np.bincount(piece, body.mass)
+
+    def lacking(dt: float) -> np.ndarray:
+        """Return what each node lacks for a step, kg [nodes]."""
+        need = dt**2 / 4 * elastic + dt * viscous - mass
+        return np.maximum(need, 0.0).max(axis=1)
+
+    def is_little(dt: float) -> bool:
+        added = np.repeat(lacking(dt), body.components)
+        little = added.sum() <= OF_ALL * of_piece.sum()
+        return bool(little and (np.bincount(piece, added) <= OF_PIECE * of_piece).all())
+
+    steps = _longest(mass, elastic, viscous)
+    low, high = float(steps.min()), float(np.median(steps))
+    if not high > WORTH * low or not is_little(WORTH * low):
+        return None
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if is_little(middle) else (low, middle)
+    added = lacking(low)
+    k, c = (
+        np.zeros(mass.size) if one is None else one.diagonal() for one in (stiffness, viscosity)
+    )
+    before = float(_longest(mass.ravel(), k, c).min())
+    share = float(added.sum() / mass[:, 0].sum())
+    return Scaled((mass + added[:, None]).ravel(), int((added > 0).sum()), share, before)
+
+
+def _sums(problem: Problem, matrix: csr_matrix | None, shape: tuple[int, ...]) -> np.ndarray:
+    """Return sums of the absolute values of rows [nodes, d], 0 where the motion is given."""
+    found = np.zeros(shape)
+    if matrix is not None:
+        found = np.asarray(abs(matrix).sum(axis=1)).reshape(shape)
+    found.reshape(-1)[problem.fixed] = 0.0
+    return found
+
+
+def _longest(mass: np.ndarray, elastic: np.ndarray, viscous: np.ndarray) -> np.ndarray:
+    """Return the steps dt of dt^2 k / 4 + dt c = m where k and c are not 0."""
+    moves = elastic > 0
+    m, k, c = mass[moves], elastic[moves], viscous[moves]
+    return 2 * m / (c + np.sqrt(c**2 + k * m))

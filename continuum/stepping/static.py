@@ -1,0 +1,183 @@
+"""Static states: rock and joints at rest under gravity and around openings, by Newton's method.
+
+Forces are applied in increments, halved if they do not converge, because the state of joints that
+slide, open or break depends on the path. Where that ends, as among joints that open and bear on
+their edges, the rock creeps on under the whole forces against a drag, mass times 1/s2, that falls
+until it is next to nothing (the proximal point method; Rockafellar, SIAM J. Control Optim. 14,
+1976): what stands stops.
+
+Quiet sides that bear the weight are held by springs far stiffer than the rock. Rock that no side
+holds is at rest wherever it is put: a mass matrix that is next to nothing beside the stiffness then
+makes Newton's matrix regular. It regularises the matrix, not the forces.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.continuum.stepping.balance import LAST_DIGITS, Balance, Outcome, newton
+from jointwave.continuum.stepping.steps import Problem
+
+TOLERANCE = 1e-10  # of the residual, over the largest summed force
+LEAST_PART = 2.0**-4  # of the steady forces
+CREEP = 1e-2  # the first drag, of the largest stiffness over mass, above all modes of joints
+MOST_LEFT = 1e-8  # of the last digits of displacements, over the largest summed force
+ROUGH = 1e-3  # residual of a step against a drag, over what the drag bears
+EASED = 8.0  # by which the drag falls after a step, and rises after one that does not converge
+MOST_CREEPS = 400  # steps against a drag
+LEAST_DRAG = 1e-14  # above round-off
+PATIENCE = 8  # of these without progress, and at least as many as led there: a stall
+LOOSE = 1e-10  # of the largest stiffness over mass: what holds loose rock
+STIFF = 1e3  # of the largest stiffness: what holds sides that bear the weight
+
+
+class Rest(NamedTuple):
+    """A static state: u, m [freedoms]; history of points; steps, corrections made; ratio, the
+    largest unbalanced force over the largest force at work."""
+
+    u: np.ndarray
+    history: np.ndarray
+    steps: int
+    ratio: float
+
+
+def holding(problem: Problem, borne: csr_matrix | None) -> csr_matrix | None:
+    """Return the springs (N/m) that hold areas [freedoms, freedoms] of sides that bear the weight;
+    None without."""
+    if borne is None:
+        return None
+    stiffest = float(problem.body.stiffness.diagonal().max())
+    return csr_matrix(STIFF * stiffest / float(borne.diagonal().max()) * borne)
+
+
+def elastic_rest(problem: Problem, weight: np.ndarray, hold: csr_matrix | None) -> np.ndarray:
+    """Return the displacements [freedoms] (m) at rest under a weight (N) where no joint opens or
+    slips."""
+    own, u = _Static(problem, hold), np.zeros_like(weight)
+    free = own.balance.free
+    factors = own.balance.with_joints(own.matrix, own.balance.sticking())
+    u[free] = factors.solve(weight[free])
+    return u
+
+
+def settled(scene: AnyScene, problem: Problem, hold: csr_matrix | None = None) -> Rest:
+    """Return the state at rest under the steady forces of a problem, on springs `holding`; raises
+    SceneError where there is none."""
+    own, done, part, steps, still = _Static(problem, hold), 0.0, 1.0, 0, False
+    while not still:
+        outcome = own.settle(min(done + part, 1.0))
+        steps += len(outcome.errors) - 1
+        if outcome.converged:
+            # A point that slips loses its cohesion for what follows: balanced again without it.
+            still = done >= 1 and outcome.errors[0] <= outcome.tolerance
+            done = min(done + part, 1.0)
+            still = still or (done == 1 and problem.parts is None)
+        elif part > LEAST_PART:
+            part /= 2
+        else:
+            outcome, corrections = _creep(scene, own, done)
+            steps, still = steps + corrections, True
+    return Rest(own.u, own.past.history, steps, outcome.errors[-1] / (own.size or 1.0))
+
+
+def _creep(scene: AnyScene, own: _Static, done: float) -> tuple[Outcome, int]:
+    """Let the rock creep to rest under all of its forces; return the last step, which found it
+    there, and the corrections made.
+
+    Raises SceneError where rock moves farther than it is large, or the unbalanced forces stop
+    falling.
+    """
+    drag, least, corrections = CREEP * own.stiffest, LEAST_DRAG * own.stiffest, 0
+    best, best_at, moves, far = np.inf, 0, 0, False
+    size = float(np.ptp(own.problem.body.x, axis=0).max())
+    for k in range(MOST_CREEPS):
+        outcome = own.settle(1.0, drag)
+        corrections += len(outcome.errors) - 1
+        unbalanced = outcome.errors[0]  # before the step, as nothing drags yet
+        if outcome.converged and unbalanced <= own.allowed:
+            return outcome, corrections
+        if unbalanced < 0.9 * best:
+            best, best_at, moves = unbalanced, k, 0
+        moves += outcome.converged
+        far = float(np.abs(own.u).max()) > size
+        if far or k - best_at > max(PATIENCE, best_at):
+            break
+        drag *= EASED if not outcome.converged else 1 / EASED if drag > least else 1
+    if far or moves > PATIENCE / 2:
+        why = f"{own.fastest()}; it slides, tips or is unsupported"
+        raise _refusal(scene, f"no static state beyond {done:.3g} of", why)
+    why = f"an out-of-balance ratio of {best / own.size:.1e} stays after {corrections} corrections"
+    raise _refusal(scene, "has not come to rest under", why)
+
+
+def _refusal(scene: AnyScene, what: str, why: str) -> SceneError:
+    """Return the refusal of a scene: `what` of its weight or excavation, and why."""
+    key, of, remedy = "gravity", "the weight", "static = false starts without it"
+    if scene.excavated and (scene.gravity is None or not scene.gravity.static):
+        key, of, remedy = "prestress", "the excavation", "the joints around it cannot carry it"
+    return SceneError(scene.where, key, None, f"{what} {of}: {why}: {remedy}")
+
+
+class _Static:
+    """The forces of a problem at rest, without what absorbs and without loads.
+
+    u, past : the last state in balance. size : the largest force that is summed up, N.
+    stiffest : the largest stiffness over mass, 1/s2. allowed : what may be left, N. moved : of the
+    last step under a drag, m/s2.
+    """
+
+    def __init__(self, problem: Problem, hold: csr_matrix | None) -> None:
+        self.problem, self.balance, self.hold = problem, Balance(problem, at_rest=True), hold
+        own, dim = self.balance, problem.body.components
+        k, m = own.stiffness.diagonal(), own.mass.diagonal()
+        self.stiffest, self.size, self.allowed = float((k[m > 0] / m[m > 0]).max()), 0.0, 0.0
+        self.u, self.past = np.zeros_like(k), own.past
+        self.matrix, self.carries = own.stiffness, k
+        if hold is not None:
+            self.matrix, self.carries = csr_matrix(self.matrix + hold), k + hold.diagonal()
+        elif np.unique(problem.fixed % dim).size < dim:
+            self.matrix = csr_matrix(self.matrix + LOOSE * self.stiffest * own.mass)
+        self.moved = np.zeros_like(k)
+
+    def settle(self, share: float, drag: float = 0.0) -> Outcome:
+        """Try to balance a share of the steady forces against a drag (1/s2) on what moves from the
+        state before; what comes of it is kept where that succeeds."""
+        own, free, still = self.balance, self.balance.free, np.zeros_like(self.u)
+        trial, after = self.u.copy(), self.past
+
+        def residual(u: np.ndarray) -> tuple[np.ndarray, float]:
+            nonlocal after
+            trial[free] = u
+            found = own.forces(trial, still, trial - self.u, 1.0, self.past, still, share)
+            self.size, after, force = float(found.size[0]), found.past, found.whole
+            if self.hold is not None:
+                force = force - self.hold @ trial
+            borne = drag * (own.mass @ (trial - self.u))
+            digits = LAST_DIGITS * float((self.carries * np.abs(trial)).max(initial=0.0))
+            self.allowed = TOLERANCE * self.size + min(digits, MOST_LEFT * self.size)
+            left = max(self.allowed, ROUGH * float(np.abs(borne).max(initial=0.0)))
+            return (force - borne)[free], left
+
+        def correction(rest: np.ndarray) -> np.ndarray:
+            tangents = own.sticking()  # rock at rest on joints without friction could be anywhere
+            if trial.any():
+                tangents = own.of_joints(trial, still, 1.0, 0.0, self.past.history)
+            return own.with_joints(self.matrix + drag * own.mass, tangents).solve(rest)
+
+        outcome = newton(residual, correction, self.u[free])
+        if outcome.converged:
+            self.moved = drag * (trial - self.u)
+            self.u, self.past = trial, after
+        return outcome
+
+    def fastest(self) -> str:
+        """Return where the rock has moved farthest in the last step, in words, with the
+        acceleration that the forces borne by the drag would give it."""
+        k, body = int(np.abs(self.moved).argmax()), self.problem.body
+        place = ", ".join(f"{x:.4g}" for x in body.x[k // body.components].round(6) + 0.0)
+        return f"the rock at [{place}] moves on, at {np.abs(self.moved[k]):.3g} m/s2"

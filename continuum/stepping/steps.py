@@ -1,0 +1,435 @@
+"""From a body and what acts on it to the constants, the state and the forces of its steps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from scipy.sparse import csr_matrix, diags
+
+from jointwave.cases.material.constant_q import Mechanisms
+from jointwave.continuum.space.evaluation import blocks_of_nodes
+from jointwave.continuum.space.model import Body
+from jointwave.continuum.stepping.critical import critical_step
+from jointwave.continuum.stepping.explicit import (
+    VISCOUS,
+    Constants,
+    Jumps,
+    Quiet,
+    Receivers,
+    Samples,
+    Sparse,
+    State,
+    StepFlags,
+    Work,
+    leapfrog_for,
+)
+from jointwave.continuum.stepping.memory import memory_of
+from jointwave.continuum.stepping.product import ROWS, Product, Table, product_of, table_of
+from jointwave.continuum.stepping.tractions import Points, history_at_rest
+from jointwave.joints.law import Law, LawFlags, parts_of
+from jointwave.joints.law import table_of as law_table
+from jointwave.numerics.cache_lines import zeros
+from jointwave.results.arrays import size_of
+from jointwave.results.rock_mass import TERMS
+
+BUFFER = 500_000  # numbers: forces with a history that are in memory at a time
+
+
+class Springs(NamedTuple):
+    """Springs in front of the dashpots of nodes [k, d], `joints.ends`: stiffness, N/m; decay and
+    gain (s), by which their closure advances in a step; critical : what of the stiffness counts at
+    the critical step, N/m."""
+
+    stiffness: np.ndarray
+    decay: np.ndarray
+    gain: np.ndarray
+    critical: np.ndarray
+
+
+class Dashpots(NamedTuple):
+    """Nodes on dashpots: node, int array [k]; viscosity, float array [k, d, d], N s/m; springs :
+    those in front of them, of the time step; None without."""
+
+    node: np.ndarray
+    viscosity: np.ndarray
+    springs: Callable[[float], Springs] | None = None
+
+    @property
+    def freedom(self) -> np.ndarray:
+        """Freedoms of the nodes [k, d]."""
+        dim = self.viscosity.shape[1]
+        return dim * self.node[:, None] + np.arange(dim)
+
+
+class Held(NamedTuple):
+    """Freedoms whose motion is given: freedom, int array [k], moves by direction [k] times what
+    `moved` returns for steps [n], m from each to the next; None where none moves."""
+
+    freedom: np.ndarray
+    direction: np.ndarray
+    moved: Callable[[np.ndarray], np.ndarray] | None = None
+
+
+class Forces(Protocol):
+    """Forces that each have a history.
+
+    freedom : int array [k].
+    """
+
+    freedom: np.ndarray
+
+    def at(self, first: int, last: int) -> np.ndarray:
+        """Return the forces of steps first .. last - 1 [steps, k], N."""
+
+    def impulse(self, mass: np.ndarray, steps: int, stride: int) -> float:
+        """Return about the integral of |F| over so many steps in the norm of 1 / m, sqrt(J), by
+        one step in `stride`; mass : of all freedoms, kg."""
+
+
+class Readings(NamedTuple):
+    """How receivers read a body: motion [m d, freedoms]; stress [rows, freedoms], Pa, compression
+    positive, and what is at u = 0 [rows]; traction [joints d, points d] of forces, Pa/N, and what
+    is at u = 0 [joints d]; jump [joints d, points d]. viscous : stress of the rate by rock's
+    dashpots; inertia : of the acceleration (with mass-proportional damping); None without."""
+
+    motion: csr_matrix
+    stress: csr_matrix
+    constant: np.ndarray
+    traction: csr_matrix
+    carried: np.ndarray
+    jump: csr_matrix
+    viscous: csr_matrix | None = None
+    inertia: csr_matrix | None = None
+
+
+class Problem(NamedTuple):
+    """A body and what acts on it.
+
+    law : of its joints, by columns; stiffest : the largest K_n and K_s of each column in reach,
+    Pa/m, a number or an array. stress : float array [d, d], Pa, compression positive, that rock
+    and joints bear at u = 0. alpha : of mass-proportional damping, 1/s. mechanisms : of the
+    relaxation of rock, whose stiffness is then the unrelaxed one. steady : float array [freedoms],
+    N. comm : mpi4py's, of processes that share the run. counted : points whose energies a process
+    counts, the first ones; None of all. Absent parts are None.
+    """
+
+    body: Body
+    readings: Readings
+    law: Law | None = None
+    stiffest: Any = None
+    stress: np.ndarray | None = None
+    alpha: float = 0.0
+    mechanisms: Mechanisms | None = None
+    steady: np.ndarray | None = None
+    quiet: Dashpots | None = None
+    forces: Forces | None = None
+    held: Held | None = None
+    comm: Any = None
+    counted: int | None = None
+
+    @property
+    def parts(self) -> LawFlags | None:
+        """The parts of the joints' law; None without joints."""
+        if self.law is None or self.body.joints is None:
+            return None
+        return parts_of(self.law)._replace(planar=self.body.components == 2)
+
+    @property
+    def fixed(self) -> np.ndarray:
+        """Freedoms whose motion is given."""
+        return np.zeros(0, np.int64) if self.held is None else self.held.freedom
+
+    def of_joints(self, normal: Any, shear: Any) -> csr_matrix:
+        """Return B^T W k B of normal and shear values k of each column, or one of all."""
+        joints, dim = self.body.joints, self.body.components
+        assert joints is not None
+        values = np.zeros((len(joints.weight), dim))
+        for c, value in enumerate([normal, *(dim - 1) * [0.0 if shear is None else shear]]):
+            values[:, c] = joints.weight * (value[joints.column] if np.ndim(value) else value)
+        return csr_matrix(joints.matrix.T @ diags(values.ravel()) @ joints.matrix)
+
+    @property
+    def stiffness(self) -> csr_matrix:
+        """The stiffness of rock and joints, closed as far as is in reach, N/m, and of springs of
+        sides."""
+        found = self.body.stiffness
+        if self.law is not None and self.body.joints is not None:
+            found = csr_matrix(found + self.of_joints(*self.stiffest))
+        if self.quiet is not None and self.quiet.springs is not None:
+            of_sides = np.zeros(found.shape[0])
+            of_sides[self.quiet.freedom] = self.quiet.springs(0.0).critical
+            found = csr_matrix(found + diags(of_sides))
+        return found
+
+    @property
+    def viscosity(self) -> csr_matrix | None:
+        """The viscosity of rock and joints, N s/m; None without dashpots."""
+        law, found = self.law, self.body.damping
+        if law is not None and law.normal_viscosity is not None and self.body.joints is not None:
+            joints = self.of_joints(law.normal_viscosity, law.shear_viscosity)
+            found = joints if found is None else csr_matrix(found + joints)
+        return found
+
+    def critical_step(self) -> float:
+        """Return the critical step of leapfrog, s."""
+        assert self.body.mass is not None
+        return critical_step(self.body.mass, self.stiffness, self.viscosity, self.fixed)
+
+    def points(self) -> Points:
+        """Return the points of the joints as kernels take them."""
+        joints = self.body.joints
+        if self.law is None or joints is None:
+            none = np.zeros(0)
+            return Points(none, none.astype(np.int64), np.zeros((0, 0)), none, 0)
+        table = law_table(self.law)
+        column = joints.column if table.shape[1] > 1 else np.zeros(len(joints.weight), np.int64)
+        carried = self.carried()
+        return Points(
+            joints.weight,
+            column.astype(np.int64),
+            table,
+            np.zeros(0) if carried is None else carried,
+            len(joints.weight) if self.counted is None else self.counted,
+        )
+
+    def carried(self) -> np.ndarray | None:
+        """Return the tractions that points carry at u = 0 [points * d], Pa; None without."""
+        if self.stress is None or self.body.joints is None:
+            return None
+        frame = self.body.joints.frame
+        return np.einsum("qac,cd,qd->qa", frame, self.stress, frame[:, 0]).ravel()
+
+
+def sparse(matrix: csr_matrix, place: np.ndarray | None = None) -> Sparse:
+    """Return a matrix as kernels take it, with columns where `place` has them."""
+    column = matrix.indices if place is None else place[matrix.indices]
+    return Sparse(matrix.indptr.astype(np.int64), column.astype(np.int64), matrix.data)
+
+
+def alike(matrix: csr_matrix, place: np.ndarray) -> Jumps:
+    """Return a jump operator as kernels take it: all rows with as many entries as the longest."""
+    count, rows = np.diff(matrix.indptr), matrix.shape[0]
+    row = np.repeat(np.arange(rows), count)
+    at = row, np.arange(matrix.nnz) - matrix.indptr[row]
+    column, value = np.zeros((2, rows, count.max(initial=0)))
+    column = column.astype(np.int64)
+    column[at], value[at] = place[matrix.indices], matrix.data
+    return Jumps(column, value)
+
+
+class Leapfrog:
+    """Explicit steps of a problem.
+
+    Attributes
+    ----------
+    state : `explicit.State`, in the places of `product`. samples : what is recorded. dt : s.
+    halo : freedoms of other processes, which follow in vectors.
+    """
+
+    work_of_a_step = 1
+
+    def __init__(self, problem: Problem, dt: float, samples: int, energy: bool = True) -> None:
+        self.problem, self.dt, body = problem, dt, problem.body
+        (self.product, self._damping), (rows, columns) = (
+            products_for_steps(body),
+            body.stiffness.shape,
+        )
+        self.halo = columns - rows
+        self.samples = samples_for(problem.readings, samples, energy)
+        self.constants = self._constants()
+        parts, damped = problem.parts, body.damping is not None
+        stressed, many = self.constants.points.carried.size > 0, self.constants.memory.share.size
+        springs, kind = self.constants.quiet.stiffness, self.product.kind
+        rock = damped, many > 0, energy, len(springs) > 0, self.constants.jumps.column.shape[1]
+        self.flags = StepFlags(body.components, kind, parts, stressed, *rock)
+        n, jumps = self.product.size + self.halo, len(self.constants.jumps.column)
+        dashpots, limited = (parts.dashpots, parts.limited) if parts else (False, False)
+        viscous = n if damped or dashpots else 0
+        relaxing = n if many else 0
+        of_rock = n, viscous, viscous, relaxing, relaxing
+        sizes = *of_rock, jumps, jumps * limited, jumps * dashpots, jumps
+        vectors = [zeros(size) for size in (*sizes, jumps * dashpots)]
+        braking = np.zeros(self.constants.quiet.freedom.shape)
+        self.work = Work(*vectors, braking)  # type: ignore[call-arg]
+        history = np.zeros((0, 0))
+        if parts is not None:
+            history = history_at_rest(self.constants.points, parts, body.components)
+        motion, elongation = (zeros(n), zeros(n), zeros(n)), zeros((many, n))
+        self.state = State(*motion, elongation, history, np.zeros(4), np.zeros_like(springs))
+
+    def take(self, first: int, last: int, stride: int) -> None:
+        """Take the steps first .. last - 1, with a sample at each that `stride` divides."""
+        kernel = leapfrog_for(self.flags)
+        for begin, drive, moved in self._driven(self.problem, first, last):
+            span = begin, begin + len(moved), stride
+            kernel(self.constants, self.state, self.work, self.samples, drive, moved, span)
+
+    def _driven(
+        self, problem: Problem, first: int, last: int
+    ) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
+        """Yield the first of some steps, and the forces and the motion in each that have a history,
+        until all are through."""
+        forces, held = problem.forces, problem.held
+        size = max(1, BUFFER // max(1, self.constants.driven.size))
+        for begin in range(first, max(last, first + 1), size):
+            end = min(begin + size, last)
+            drive, moved = np.zeros((end - begin, 0)), np.zeros(end - begin)
+            if forces is not None:
+                drive = np.ascontiguousarray(forces.at(begin, end))
+            if held is not None and held.moved is not None:
+                moved = np.ascontiguousarray(held.moved(np.arange(begin, end)))
+            yield begin, drive, moved
+
+    def whole(self, vector: np.ndarray) -> np.ndarray:
+        """Return the values of the body's freedoms in a vector."""
+        return vector[self.product.place]
+
+    def place(self, values: np.ndarray, vector: np.ndarray) -> None:
+        """Put values of the body's freedoms into a vector."""
+        vector[self.product.place] = values
+
+    @property
+    def u(self) -> np.ndarray:
+        """Displacement of the body's freedoms, m."""
+        return self.whole(self.state.u)
+
+    @property
+    def v(self) -> np.ndarray:
+        """Velocity of the body's freedoms half a step before, m/s."""
+        return self.whole(self.state.v)
+
+    @property
+    def last(self) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement, m, and velocity, m/s, at the last step."""
+        before = self.whole(self.state.v_before)
+        return self.u - self.dt * self.v, (before + self.v) / 2
+
+    @property
+    def strained(self) -> np.ndarray:
+        """Displacement by which elastic rock would have the same stress at the last step, m."""
+        return self.whole(self.work.strained) if self.flags.relaxing else self.last[0]
+
+    @property
+    def parts(self) -> tuple:
+        """All arrays that change."""
+        return (self.state,)
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """What a result says of the steps."""
+        return {}
+
+    @property
+    def bytes(self) -> int:
+        """The size of constants and state."""
+        return size_of(self.constants, self.state, self.work)
+
+    def start(self, u: np.ndarray, history: np.ndarray | None = None) -> None:
+        """Begin at rest at displacements u (m), with a history of points."""
+        self.place(u, self.state.u)
+        if self.flags.relaxing:
+            stored = self.constants.memory.relaxed * (u @ (self.problem.body.stiffness @ u)) / 2
+            self.state.sums[VISCOUS] = stored
+        if history is not None:
+            self.state.history[:] = history
+
+    def throw(self, v: np.ndarray) -> None:
+        """Begin with velocities half a step before the first, m/s."""
+        self.place(v, self.state.v)
+        self.place(v, self.state.v_before)
+
+    def drop(self, force: np.ndarray) -> None:
+        """Begin at rest under forces (N) that act from t = 0 on, in the middle of a step."""
+        mass = self.problem.body.mass
+        assert mass is not None
+        fall = 0.5 * self.dt * force / mass
+        fall[self.problem.fixed] = 0.0
+        self.place(-fall, self.state.v)
+        self.place(-3 * fall, self.state.v_before)
+
+    def _constants(self) -> Constants:
+        problem, place, dt = self.problem, self.product.place, self.dt
+        body, held, forces = problem.body, problem.held, problem.forces
+        assert body.mass is not None
+        braked = 1 + problem.alpha * dt / 2
+        inverse = self._placed(dt / (body.mass * braked))
+        nothing = csr_matrix((0, body.mass.size))
+        return Constants(
+            dt=dt,
+            mass=self._placed(body.mass),
+            inverse=inverse,
+            keep=(1 - problem.alpha * dt / 2) / braked,
+            alpha=problem.alpha,
+            memory=memory_of(problem.mechanisms, dt),
+            stiffness=self.product.table,
+            damping=self._damping,
+            jumps=alike(nothing if body.joints is None else body.joints.matrix, self.columns),
+            points=problem.points(),
+            steady=np.zeros(0) if problem.steady is None else self._placed(problem.steady),
+            driven=np.zeros(0, np.int64) if forces is None else place[forces.freedom],
+            quiet=self._quiet(inverse),
+            fixed=place[problem.fixed],
+            direction=np.zeros(0) if held is None else held.direction,
+            receivers=receivers(problem.readings, place),
+        )
+
+    @property
+    def columns(self) -> np.ndarray:
+        """The place of each column of the body's matrices."""
+        return np.append(self.product.place, self.product.size + np.arange(self.halo))
+
+    def _placed(self, values: np.ndarray) -> np.ndarray:
+        found = zeros(self.product.size)
+        found[self.product.place] = values
+        return found
+
+    def _quiet(self, inverse: np.ndarray) -> Quiet:
+        dim = self.problem.body.components
+        quiet = self.problem.quiet or Dashpots(np.zeros(0, np.int64), np.zeros((0, dim, dim)))
+        own, springs = quiet.freedom, 3 * (np.zeros((0, dim)),)
+        if quiet.springs is not None:
+            springs = quiet.springs(self.dt)[:3]
+        moves = ~np.isin(own, self.problem.fixed)
+        viscosity = quiet.viscosity * (moves[:, :, None] & moves[:, None, :])
+        freedom = self.product.place[own]
+        beta = inverse[freedom][:, :, None] * viscosity / 2
+        return Quiet(freedom, viscosity, beta, np.linalg.inv(np.eye(dim) + beta), *springs)
+
+
+def products_for_steps(body: Body) -> tuple[Product, Table]:
+    """Return the products with the stiffness and with the damping, of one kind; the latter is empty
+    without damping."""
+    dim, of_nodes = body.components, (blocks_of_nodes(body), body.x)
+    own = product_of(body.stiffness, dim, *of_nodes)
+    if body.damping is None:
+        return own, Table(np.zeros(0, np.int64), np.zeros(0, np.uint32), np.zeros(0))
+    other = product_of(body.damping, dim, *of_nodes)
+    if other.kind == own.kind:  # vectors are then in the same places
+        return own, other.table
+    n = body.stiffness.shape[0]
+    rows = Product(ROWS, table_of(body.stiffness, dim), np.arange(n), n)
+    return rows, table_of(body.damping, dim)
+
+
+def receivers(readings: Readings, place: np.ndarray) -> Receivers:
+    """Return readings as kernels take them."""
+    none = csr_matrix((0, readings.stress.shape[1]))
+    return Receivers(
+        motion=sparse(readings.motion, place),
+        stress=sparse(readings.stress, place),
+        viscous=sparse(none if readings.viscous is None else readings.viscous, place),
+        inertia=sparse(none if readings.inertia is None else readings.inertia, place),
+        traction=sparse(readings.traction),
+        jump=sparse(readings.jump),
+        constant=readings.constant,
+        carried=readings.carried,
+    )
+
+
+def samples_for(readings: Readings, samples: int, energy: bool) -> Samples:
+    """Return empty samples."""
+    read = readings.motion, readings.motion, readings.stress, readings.traction, readings.jump
+    shapes = [(one.shape[0], samples) for one in read]
+    return Samples(*map(np.zeros, [*shapes, (len(TERMS), samples if energy else 0)]))

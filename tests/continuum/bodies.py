@@ -1,0 +1,34 @@
+"""Springs of joints, and uniform stress on the sides of a body."""
+
+import numpy as np
+from scipy.sparse import csr_matrix, diags
+
+from jointwave.continuum.space.compat import cell_nodes
+from jointwave.continuum.space.model import Body
+
+STIFFNESS = 2e10, 8e9  # of joints along the normal and in shear, Pa/m
+LAME, SHEAR = 5e10 * 0.2 / (1.2 * 0.6), 5e10 / 2.4  # of the rock, Pa
+
+
+def springs(body: Body) -> csr_matrix:
+    """Return the stiffness of the joints, B^T W k B, N/m."""
+    joints = body.joints
+    assert joints is not None
+    k = [STIFFNESS[0], *[STIFFNESS[1]] * (body.components - 1)]
+    weight = np.repeat(joints.weight, body.components) * np.tile(k, len(joints.weight))
+    return csr_matrix(joints.matrix.T @ diags(weight) @ joints.matrix)
+
+
+def pushed(body: Body, stress: np.ndarray) -> np.ndarray:
+    """Return the forces of a uniform stress [d, d], tension positive, on all sides."""
+    force = np.zeros((len(body.x), body.components))
+    for side in body.sides.values():
+        np.add.at(force, side.node, side.weight[:, None] * (side.normal @ stress))
+    return force.ravel()
+
+
+def of_blocks(body: Body, motion: np.ndarray) -> np.ndarray:
+    """Return the displacement of nodes [nodes, d] of motions of their blocks [blocks, d]."""
+    found = np.empty((len(body.x), motion.shape[1]))
+    found[cell_nodes(body.space)] = motion[body.block][:, None]
+    return found

@@ -1,0 +1,121 @@
+"""Pillars in gmsh files: blocks between joints of any slope, their vertices once or twice."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from jointwave.continuum.mesh.session import gmsh_session
+
+DIMENSION = {"quadrilateral": 2, "triangle": 2, "hexahedron": 3, "tetrahedron": 3}
+
+
+def drawn(
+    path,
+    kind,
+    joints=((0.5, 0.5), (1.0, 1.0)),
+    doubled=False,
+    length=1.5,
+    side=0.4,
+    elements=2,
+    order=1,
+    version=4.1,
+    binary=0,
+    names=None,
+    untagged=(),
+    ends=True,
+    save_all=0,
+):
+    """Let gmsh draw blocks between joints, each given by its y at x = -side/2 and at x = side/2;
+    return the path of the file.
+
+    doubled : neighbours share no vertex. names : of the joints' groups; untagged : numbers of the
+    joints of which only the lower side is tagged.
+    """
+    with gmsh_session() as gmsh:
+        dim, model = DIMENSION[kind], gmsh.model
+        cuts = [(0.0, 0.0), *joints, (length, length)]
+        for pair in pairwise(cuts):
+            _block(model.geo, dim, side, *pair)
+        if not doubled:
+            model.geo.removeAllDuplicates()
+        model.geo.synchronize()
+        _transfinite(model, dim, elements, recombine=kind in ("quadrilateral", "hexahedron"))
+        faces: dict[tuple, list[int]] = {}
+        for tag, across in _faces_across(model, dim, side):
+            faces.setdefault(across, []).append(tag)
+        names = names or [f"joint {k}" for k in range(len(joints))]
+        groups: dict[str, list[int]] = {}
+        for k, (cut, name) in enumerate(zip(joints, names, strict=True)):
+            tags = faces[tuple(np.round(cut, 6))]
+            groups.setdefault(name, []).extend(tags[:1] if k in untagged else tags)
+        if ends:
+            groups |= {"start": faces[0.0, 0.0], "end": faces[length, length]}
+        for name, tags in groups.items():
+            model.setPhysicalName(dim - 1, model.addPhysicalGroup(dim - 1, tags), name)
+        rock = model.addPhysicalGroup(dim, [tag for _, tag in model.getEntities(dim)])
+        model.setPhysicalName(dim, rock, "Rock mass")
+        model.mesh.generate(dim)
+        model.mesh.setOrder(order)
+        for key, value in {
+            "MshFileVersion": version,
+            "Binary": binary,
+            "SaveAll": save_all,
+        }.items():
+            gmsh.option.setNumber(f"Mesh.{key}", value)
+        gmsh.write(str(path))
+    return path
+
+
+def _block(geo, dim, side, lower, upper):
+    """Add one block between two joints."""
+    half = side / 2
+    depths = [0.0] if dim == 2 else [-half, half]
+    ring = [(-half, lower[0]), (half, lower[1]), (half, upper[1]), (-half, upper[0])]
+    rings = [[geo.addPoint(x, y, z) for x, y in ring] for z in depths]
+    loops = [[geo.addLine(r[i], r[(i + 1) % 4]) for i in range(4)] for r in rings]
+    flat = [geo.addPlaneSurface([geo.addCurveLoop(loop)]) for loop in loops]
+    if dim == 2:
+        return
+    rails = [geo.addLine(*pair) for pair in zip(*rings, strict=True)]
+    for i in range(4):
+        after = (i + 1) % 4
+        loop = geo.addCurveLoop([loops[0][i], rails[after], -loops[1][i], -rails[i]])
+        flat.append(geo.addPlaneSurface([loop]))
+    geo.addVolume([geo.addSurfaceLoop(flat)])
+
+
+def _transfinite(model, dim, elements, recombine):
+    """Mesh every curve alike and every face by the same pattern; simplices fill them freely."""
+    for _, curve in model.getEntities(1):
+        model.mesh.setTransfiniteCurve(curve, elements + 1)
+    for _, face in model.getEntities(2):
+        model.mesh.setTransfiniteSurface(face, "Left", _corners_of(model, face) if dim == 3 else [])
+        if recombine:
+            model.mesh.setRecombine(2, face)
+    if recombine:
+        for _, volume in model.getEntities(3):
+            model.mesh.setTransfiniteVolume(volume)
+
+
+def _corners_of(model, face):
+    """Return the corner points of a face, around it from the same corner for opposite faces."""
+    points = [tag for _, tag in model.getBoundary([(2, face)], recursive=True)]
+    x = np.array([model.getValue(0, tag, []) for tag in points])
+    flat = np.delete(x - x.mean(axis=0), np.ptp(x, axis=0).argmin(), axis=1)
+    return [points[i] for i in np.argsort(np.arctan2(flat[:, 1], flat[:, 0]))]
+
+
+def _faces_across(model, dim, side):
+    """Return each face or curve that spans the section, with its y at both ends of x."""
+    for d, tag in model.getEntities(dim - 1):
+        points = [t for _, t in model.getBoundary([(d, tag)], recursive=True)]
+        x = np.array([model.getValue(0, t, []) for t in points])
+        spans = np.ptp(x, axis=0)
+        if np.isclose(spans[0], side) and (dim == 2 or np.isclose(spans[2], side)):
+            yield (
+                tag,
+                tuple(
+                    float(np.round(x[np.isclose(x[:, 0], s), 1][0], 6))
+                    for s in (-side / 2, side / 2)
+                ),
+            )

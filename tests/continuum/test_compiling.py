@@ -1,0 +1,47 @@
+"""Compiling forms: said in a line, refused in a line, done again after a run that was killed."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+RUN = """
+import logging
+from jointwave import cases
+from jointwave.compare.scenes import SHIPPED
+from jointwave.continuum.scene import body_of
+logging.basicConfig(level=logging.INFO, format="%(message)s")
+scene = cases.load(SHIPPED / "rock-mass" / "one-joint.toml", {"numerics.continuum.order": 1})[0]
+try:
+    print(body_of(scene).blocks.count)
+except cases.SceneError as error:
+    print(error)
+"""
+SAID = "dolfinx compiles the elements and forms of the rock; later runs load them"
+
+
+def run(folder, **variables):
+    """Return what a run prints and logs with a cache of its own."""
+    place = os.environ | {"XDG_CACHE_HOME": str(folder)} | variables
+    found = subprocess.run([sys.executable, "-c", RUN], env=place, capture_output=True, text=True)
+    return found.stdout.strip(), found.stderr.strip()
+
+
+def test_a_compiler_that_fails_is_told_in_one_line(tmp_path):
+    told, logged = run(tmp_path, CC="false")
+    assert "dolfinx needs a C compiler" in told
+    assert "\n" not in told
+    assert logged in ("", SAID)
+
+
+@pytest.mark.slow
+def test_a_killed_run_leaves_nothing_that_stops_the_next(tmp_path):
+    """dolfinx waits ten seconds for the other's end."""
+    assert run(tmp_path) == ("2", SAID)
+    assert run(tmp_path)[0] == "2"
+    ready = next(tmp_path.glob("fenics/libffcx_forms_*.c.cached"))
+    ready.unlink()
+    os.utime(ready.with_suffix(""), (0, 0))
+    assert run(tmp_path)[0] == "2"
+    assert ready.exists()

@@ -1,0 +1,175 @@
+"""What acts on a rock mass, and the state that it starts from."""
+
+import numpy as np
+import pytest
+
+from jointwave.cases.errors import SceneError
+from jointwave.continuum.plan import plan_of
+from jointwave.continuum.problem import at_rest
+from jointwave.continuum.run import simulate
+
+SQUARE = {"size": [6.0, 6.0]}
+HELD = {"bottom": "fixed"}
+HOLE = [[2.0, 2.5], [4.0, 2.5], [4.0, 4.0], [2.0, 4.0]]
+EXCAVATED = {
+    "domain": {"size": [6.0, 6.0], "openings": [HOLE], "non_convex": "cut"},
+    "prestress": {"xx": 4e6, "yy": 6e6, "xy": 5e5},
+    "boundaries": dict.fromkeys(("left", "right", "bottom", "top"), "quiet"),
+    "record": {"points": [[0.7, 3.2], [3.3, 5.1]], "joints": [[1.0, 2.0]]},
+}
+
+
+def excavated(rock_mass, **changes):
+    """Return a tunnel under stress in two sets that slip."""
+    sets = [{"dip": 20.0, "spacing": 2.0, "through": [3.0, 2.0]}]
+    sets += [{"dip": -70.0, "spacing": 3.0, "through": [3.0, 3.0]}]
+    return rock_mass(*(one | {"friction_angle": 25.0} for one in sets), **(EXCAVATED | changes))
+
+
+def test_a_prestress_is_in_equilibrium_where_joints_hold_it(rock_mass):
+    # Along the normal (-sin, cos) of 30 degrees of dip and its left: t = P n.
+    scene = rock_mass(
+        {"dip": 30.0, "through": [3.0, 3.0], "friction_angle": 35.0},
+        domain=SQUARE,
+        prestress={"xx": 4e6, "yy": 6e6, "xy": 5e5},
+        record={"points": [[2.0, 1.5]], "joints": [[3.0, 3.0]]},
+    )
+    P, n, s = np.array([[4e6, 5e5], [5e5, 6e6]]), [-0.5, np.sqrt(0.75)], [-np.sqrt(0.75), -0.5]
+    found = simulate(scene)
+    assert np.abs(found.velocity).max() < 1e-13  # under 6 MPa rock moves at up to 0.5 m/s
+    assert np.abs(found.stress[0] - [4e6, 6e6, 5e5]).max() < 1e-6
+    assert np.abs(found.traction[0] - [P @ n @ n, P @ n @ s]).max() < 1e-6
+
+
+@pytest.mark.parametrize(
+    "stress, keys",
+    [
+        ({"xx": 1e6, "yy": -1e6}, {"tension": False}),
+        ({"xx": 9e6, "yy": 1e6}, {"friction_angle": 20.0}),
+    ],
+)
+def test_a_prestress_that_joints_cannot_carry_is_refused(stress, keys, rock_mass):
+    scene = rock_mass({"dip": 30.0, "through": [3.0, 3.0], **keys}, prestress=stress)
+    with pytest.raises(SceneError, match="prestress"):
+        simulate(scene)
+
+
+def test_rock_at_rest_under_gravity_carries_what_is_above(rock_mass):
+    # Without Poisson's ratio every column stands by itself: sigma_yy = rho g (6 m - y).
+    scene = rock_mass(
+        {"dip": 0.0, "through": [3.0, 3.0]},
+        domain=SQUARE,
+        rock={"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.0},
+        gravity={"acceleration": 10.0},
+        boundaries=HELD,
+        continuum={"order": 2},
+        record={"points": [[2.0, 1.5], [4.0, 5.0]], "joints": [[3.0, 3.0]]},
+    )
+    found = simulate(scene)
+    assert found.attrs["static_out_of_balance"] < 1e-10
+    stress, traction = found.stress.values[:, 0], found.traction.values[0, 0]
+    assert stress[:, 1] == pytest.approx([2600 * 10 * 4.5, 2600 * 10 * 1.0], rel=1e-9)
+    assert np.abs(stress[:, [0, 2]]).max() < 1e-6 * 1e5
+    assert traction == pytest.approx([2600 * 10 * 3.0, 0.0], rel=1e-9, abs=1e-4)
+
+
+@pytest.mark.parametrize("scheme", ["explicit", "implicit"])
+def test_nothing_moves_after_an_excavation(scheme, rock_mass):
+    """Forces that are left, 1e-10 of the largest, move a node by at most themselves over its mass
+    times the time; joints have slipped by then."""
+    scene = excavated(rock_mass, continuum={"scheme": scheme})
+    problem = plan_of(scene).problem
+    force = problem.steady.reshape(-1, 2)
+    assert np.abs(force.sum(axis=0)).max() < 1e-13 * np.abs(force).sum()
+    moment = problem.body.x[:, 0] * force[:, 1] - problem.body.x[:, 1] * force[:, 0]
+    assert abs(moment.sum()) < 1e-13 * np.abs(moment).sum()
+    found = simulate(scene)
+    assert (
+        np.abs(found.velocity).max() < 1e-10 * np.abs(force).max() / problem.body.mass.min() * 2e-3
+    )
+    assert np.abs(found.stress[:, 0] - [4e6, 6e6, 5e5]).max() > 1e5
+    assert "gravity" not in found.term
+
+
+def test_a_turned_excavation_is_the_same(rock_mass):
+    """To 1e-11, of gap, slip and tractions where joints slip around it."""
+    turn = np.array([[0.8, -0.6], [0.6, 0.8]])
+
+    def found(turn, sides, friction):
+        def place(points):
+            return (np.array(points) @ turn.T).tolist()
+
+        dip = np.degrees(np.arctan2(turn[1, 0], turn[0, 0]))
+        tensor = turn @ np.diag([5e6, 5.6e6]) @ turn.T
+        law = {"spacing": 2.0, "through": [0.0, 0.0], **friction}
+        record = {key: place(at) for key, at in EXCAVATED["record"].items()}
+        corners = place([[0.0, 0.0], [6.0, 0.0], [6.0, 6.0], [0.0, 6.0]])
+        square = place([[2.0, 2.0], [4.0, 2.0], [4.0, 4.0], [2.0, 4.0]])
+        scene = rock_mass(
+            law | {"dip": dip},
+            law | {"dip": dip + 90.0},
+            domain={"outline": corners, "openings": [square]},
+            prestress={"xx": tensor[0, 0], "yy": tensor[1, 1], "xy": tensor[0, 1]},
+            boundaries=dict.fromkeys(sides, "quiet"),
+            record=record,
+        )
+        problem = plan_of(scene).problem
+        u = at_rest(scene, problem)[1].u
+        jump = problem.readings.jump @ problem.body.joints.matrix @ u
+        return jump, simulate(scene).traction.values[0, 0]
+
+    slips = {"friction_angle": 21.0}
+    one = found(np.eye(2), EXCAVATED["boundaries"], slips)
+    other = found(turn, ["outline"], slips)
+    for a, b in zip(one, other, strict=True):
+        assert np.abs(a - b).max() < 1e-11 * np.abs(a).max()
+    elastic = found(np.eye(2), EXCAVATED["boundaries"], {})
+    assert np.abs(elastic[0] - one[0]).max() > 1e-3 * np.abs(one[0]).max()
+
+
+def test_without_a_prestress_an_opening_costs_nothing(rock_mass):
+    scene = excavated(rock_mass, prestress=None)
+    assert plan_of(scene).problem.steady is None
+    assert "static_steps" not in simulate(scene).attrs
+
+
+def test_gravity_that_acts_later_is_no_part_of_the_excavation(rock_mass):
+    """Rock that nothing holds falls freely from the state that the excavation leaves."""
+    free = dict.fromkeys(("left", "right", "bottom", "top"), "free")
+    found = simulate(excavated(rock_mass, gravity={"static": False}, boundaries=free))
+    fall = -9.81 * found.time.values
+    assert np.abs(found.velocity.values[..., 1] - fall).max() < 1e-6 * np.abs(fall).max()
+    assert np.abs(found.stress - found.stress[:, :1]).max() < 1e-6 * 6e6
+
+
+@pytest.mark.parametrize("scheme", ["explicit", "implicit"])
+def test_a_shaken_side_moves_as_it_is_told(rock_mass, scheme):
+    base = {"kind": "base", "side": "bottom", "direction": [0.6, 0.8], "quantity": "velocity"}
+    pulse = {"shape": "sine", "amplitude": 0.1, "period": 1e-3}
+    record = {"points": [[2.0, 0.0]], "interval": 1e-5}
+    found = simulate(
+        rock_mass(
+            loads=[base | pulse],
+            boundaries=HELD,
+            record=record,
+            continuum={"scheme": scheme, "spectral_radius": 1.0},
+        )
+    )
+    moved = 0.1 * 1e-3 / (2 * np.pi) * (1 - np.cos(2 * np.pi * np.minimum(found.time, 1e-3) / 1e-3))
+    exact = moved.values[:, None] * [0.6, 0.8]
+    assert np.abs(found.displacement[0] - exact).max() < 1e-12
+    energy = found.energy.values - found.energy.values[:, :1]
+    assert np.abs(energy[:-1].sum(axis=0) - energy[-1]).max() < 1e-11 * energy.max()
+
+
+@pytest.mark.parametrize(
+    "joints, changes, reason",
+    [
+        ([{"dip": 30.0, "through": [3.0, 3.0]}], {}, "no joint set has a spacing"),
+        ([{"dip": 30.0, "spacing": 2.0, "friction_angle": 30.0}], {}, "no friction_angle"),
+        ([{"dip": 30.0, "spacing": 2.0}], {"damping": {"local": 0.5}}, "no local damping"),
+    ],
+)
+def test_what_an_effective_medium_cannot_be_is_said(joints, changes, reason, rock_mass):
+    with pytest.raises(SceneError, match=reason):
+        simulate(rock_mass(*joints, **changes), "equivalent")
