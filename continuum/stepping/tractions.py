@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.joints.formula import formula
-from jointwave.joints.law import History, LawFlags, law_of, traction
+from jointwave.joints.law import History, LawFlags, law_of, traction_for
 from jointwave.joints.normal import gap_under
 from jointwave.joints.tangent import tangent
 from jointwave.numerics.jit import jitted
@@ -90,7 +90,7 @@ def tractions_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
     """Return the formula of the forces of joints of a law with these parts in d dimensions;
     stressed : whether they carry anything at u = 0."""
     dashpots, limited, remembers = parts.dashpots, parts.limited, has_history(parts)
-    strained = strained_for(parts, dim)
+    strained, traction = strained_for(parts, dim), traction_for(parts)
 
     @formula
     def tractions(points, dt, jump, moved, rate, before, after, force, drag):
