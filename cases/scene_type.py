@@ -11,17 +11,7 @@ if TYPE_CHECKING:
     from jointwave.cases.schema.scene import Scene
 
 AnyScene: TypeAlias = "Scene | RockMass"  # a text: to import it costs nothing
-NOT_SOLVED = "rigid blocks alone solve these yet"  #: of scenes in space
 Either = TypeVar("Either", bound="AnyScene")
-
-
-def refuse_space(scene: AnyScene) -> None:
-    """Raise SceneError for a scene in space, which rigid blocks alone solve yet."""
-    if scene.in_space:
-        allowed = f"is of a scene in space: {NOT_SOLVED}, by jointwave run --engine dem"
-        domain = scene.domain  # type: ignore[union-attr]
-        key = domain.file_key or "domain.size"
-        raise SceneError(scene.where, key, domain.size or domain.blocks, allowed)
 
 
 def pillar_of(scene: AnyScene, what: str = "this") -> Scene:

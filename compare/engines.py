@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.run_memory import refuse_beyond_memory, waveform_bytes
-from jointwave.cases.scene_type import AnyScene, refuse_space
+from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.solvers.record import Answer, Solver
@@ -101,15 +101,12 @@ def selection() -> dict[str, dict[str | None, str]]:
 
 
 def applies(name: str, scene: AnyScene) -> Answer:
-    """Return whether this engine or solution applies to the scene, or the reason why not.
-
-    Raises SceneError for a scene in space that it does not solve.
-    """
+    """Return whether this engine or solution applies to the scene, or the reason why not."""
     one = solver(name)
-    if not one.in_space:
-        refuse_space(scene)
     if scene.kind not in one.kinds:
         return Answer(f"is for a {one.kinds[0]}, not for a {scene.kind}")
+    if scene.in_space and not one.in_space:
+        return Answer("is for a rock mass in the plane, not for one in space")
     return one.applies(scene)
 
 

@@ -28,6 +28,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 
 DIRECTIONS = 36  # in which speeds are looked at
 RIGID = 1e-9  # of the largest compliance: what bodies without any have
+LEAST = 1e-15  # 1/Pa, in place of the largest where there is none
 PAIRS = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))}
 
 
@@ -118,7 +119,7 @@ def joints_alone(sets: list[JointSet], dimension: int = 2) -> np.ndarray:
     of the sets takes on."""
     scale = _scale(dimension)
     S = sum(map(_added, sets), start=np.zeros((len(scale), len(scale))))
-    S = S + RIGID * np.abs(S).max() * np.eye(len(scale))
+    S = S + RIGID * (np.abs(S).max() or LEAST) * np.eye(len(scale))
     return np.linalg.inv(S) / np.outer(scale, scale)
 
 

@@ -10,8 +10,7 @@ from jointwave.cases.effects import effects
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.block_summary import block_summary
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.scene_type import NOT_SOLVED, AnyScene
-from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import ENGINES, solver
 from jointwave.compare.misfit.ranking import NOT_CHECKED, Reference, applicable, reference_of
@@ -32,8 +31,6 @@ def explanation(scene: AnyScene) -> Facts:
     """
     about: Facts = {"title": scene.title, "variant": scene.name}
     active = {e.name: {"active": e.active, "why": e.reason} for e in effects(scene)}
-    if isinstance(scene, RockMass) and scene.in_space:
-        return about | block_summary(scene) | {"effects": active, "in_space": NOT_SOLVED}
     answers = applicable(scene)
     able = [name for name, answer in answers.items() if answer]
     engines = [name for name in ENGINES if name in able]

@@ -33,7 +33,7 @@ LABELS = {key: f"{key} ({unit})" for unit, keys in UNITS.items() for key in keys
     "transmission": "transmission from the segment before",
 }
 APART = {"title", "variant", "effects", "steps", "limits_the_step", "cannot_run", "solutions"}
-APART |= {"references", "in_space"}
+APART |= {"references"}
 
 
 def show_explanation(found: dict[str, Any], every: bool) -> None:
@@ -47,9 +47,6 @@ def show_explanation(found: dict[str, Any], every: bool) -> None:
         for name, one in found["effects"].items()
     ]
     _show("effects are not active", effects, "active", every)
-    if "in_space" in found:
-        say(f"in space: {found['in_space']}")
-        return
     solutions = [
         {
             "solution": label_of(name),

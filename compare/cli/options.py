@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from jointwave.cases.errors import SceneError, all_of
-from jointwave.cases.scene_type import AnyScene, refuse_space
+from jointwave.cases.scene_type import AnyScene
 from jointwave.compare import scenes
 from jointwave.compare.cli.terminal import say_warnings
 from jointwave.compare.engines import selection
@@ -144,16 +144,9 @@ def root(
 
 
 def load(
-    scene: str,
-    changes: list[str],
-    variant: str | None,
-    strict: bool = False,
-    in_space: bool = False,
+    scene: str, changes: list[str], variant: str | None, strict: bool = False
 ) -> list[AnyScene]:
-    """Return a file's variants, or the one that is named, with `--set` applied, warned of.
-
-    in_space : whether scenes in space are taken; else they are refused.
-    """
+    """Return a file's variants, or the one that is named, with `--set` applied, warned of."""
     from jointwave.cases.read import parse_override
 
     overrides = dict(parse_override(text) for text in changes)
@@ -161,8 +154,6 @@ def load(
         found = scenes.load_variants(scene, overrides)
     else:
         found = [scenes.load(scene, variant, overrides)]
-    for one in found if not in_space else ():
-        refuse_space(one)
     warn(found, strict)
     return found
 

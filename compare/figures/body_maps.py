@@ -66,6 +66,9 @@ def scene_of(result: xr.Dataset) -> AnyScene:
     tables = {key: value for key, value in tables.items() if key not in ASIDE}
     tables["record"]["fields"] = None
     if "domain" in tables:
+        if "point_z" in result.coords:
+            allowed = "is of bodies in the plane: animate and view show a scene in space"
+            raise SceneError(tables["title"], "map", None, allowed)
         return RockMass.model_validate(tables)
     return Scene.model_validate(tables | {"load": tables["load"] | LOAD})
 

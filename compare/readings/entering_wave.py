@@ -87,10 +87,11 @@ def _of_waves(scene: RockMass) -> Iterator[EnteringWave]:
 
 
 def _through_side(scene: RockMass, table: str, load: PlaneLoad) -> Iterator[EnteringWave]:
-    """Yield the P and the S wave of a load on the first edge of a side."""
+    """Yield the P and the S wave of a load on the first face of a side."""
     outline = shape_of(scene.domain)
-    normal, edge = outline.normals()[load.side or ""][:1], outline.edges(load.side)[:1]
-    inside = edge.mean(axis=1) - WITHIN * outline.size * normal
+    corners, out = outline.faces_of(load.side)[0]
+    normal = out[None]
+    inside = corners.mean(axis=0) - WITHIN * outline.size * normal
     region = region_at(scene.regions, inside)
     density = rocks_of(scene)[region[0]].density
     quiet = getattr(scene.boundaries, load.side or "") == "quiet"

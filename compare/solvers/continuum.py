@@ -74,6 +74,7 @@ def _of(model: str, **about: Any) -> Solver:
         form=Form.RUN,
         kinds=("pillar", "rock mass"),
         dimension=3,
+        in_space=True,
         applies=partial(applies, model=model),
         run=partial(run, model=model),
         prepare=partial(prepare, model=model),

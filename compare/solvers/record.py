@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-OF_BLOCK_IN_PLANE = 3  # freedoms of a rigid block of a rock mass
+OF_BLOCK_IN_PLANE = 3  # freedoms of a rigid block of a rock mass ...
+OF_BLOCK_IN_SPACE = 6  # ... and in space
 
 
 class Rock(IntEnum):
@@ -175,4 +176,4 @@ class Solver:
 
         if isinstance(scene, Scene):
             return scene.block_count
-        return freedoms // OF_BLOCK_IN_PLANE
+        return freedoms // (OF_BLOCK_IN_SPACE if scene.in_space else OF_BLOCK_IN_PLANE)

@@ -25,20 +25,22 @@ def speeds(scene: RockMass, resolved: Rock) -> Speeds:
     if resolved is Rock.RIGID_BLOCKS:
         return _along_axes(long_wave_stiffness(scene, further_sets(scene)), scene)
     rock = elastic_rock(scene.rock)
-    sets = compliant(within(scene, scene.joint_sets)[-1].joint_sets)
-    found = _along_axes(stiffness(rock, sets), scene) if sets else {}
+    dim = scene.domain.dimension
+    sets = compliant(within(scene, scene.joint_sets)[-1].joint_sets, dim)
+    found = _along_axes(stiffness(rock, sets, dim), scene) if sets else {}
     if resolved is Rock.JOINTED or not sets:
         found["intact rock"] = float(rock.p_speed), float(rock.s_speed)
     return found
 
 
 def _along_axes(medium: np.ndarray, scene: RockMass) -> Speeds:
-    """Return the speeds of a medium's long waves along x and y, that of P first: of the two shapes
-    that which moves more along the axis."""
-    found, shapes = speeds_of_medium(medium, scene.rock.density, np.eye(2))
+    """Return the speeds of a medium's long waves along the axes: of P, that of the shape which
+    moves most along the axis, and of S, in space the slowest."""
+    dim = scene.domain.dimension
+    found, shapes = speeds_of_medium(medium, scene.rock.density, np.eye(dim))
     found[found > RIGID * float(elastic_rock(scene.rock).p_speed)] = np.inf
     p = np.abs(np.diagonal(shapes, axis1=0, axis2=1)).argmax(axis=0)
     return {
-        f"long waves along {axis}": (float(found[i, p[i]]), float(found[i, 1 - p[i]]))
-        for i, axis in enumerate("xy")
+        f"long waves along {axis}": (float(found[i, p[i]]), float(np.delete(found[i], p[i]).min()))
+        for i, axis in enumerate("xyz"[:dim])
     }

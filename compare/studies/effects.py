@@ -96,8 +96,8 @@ def planned(wanted: list[Variant], folder: Path) -> list[Run]:
                     one = scene if effect is None else left_out(scene, effect)
                     short = shortened(one, engine)
                     found += [Run(name, one, engine), Run(name, short, engine, 1 + REPEATS)]
-        full = shortened(with_every_effect(scene))
-        found.append(Run(name, full, BLOCKS, 1 + REPEATS))
+        full = [] if scene.in_space else [shortened(with_every_effect(scene))]
+        found += [Run(name, one, BLOCKS, 1 + REPEATS) for one in full]
     return found
 
 
@@ -133,7 +133,8 @@ def _rows(variant: Variant, engine: str) -> list[EffectRow]:
             about["misfit"] = misfit(other, result)
             about["steps"] = float(result.attrs["steps"] / other.attrs["steps"])
         found[effect] = about
-    full = [with_every_effect(scene)] if engine == BLOCKS else []
+    timed = engine == BLOCKS and not scene.in_space
+    full = [with_every_effect(scene)] if timed else []
     own, *costs = step_costs([scene, *without.values(), *full], engine)
     for effect, less in zip(without, costs, strict=False):
         ns = own.ns - less.ns

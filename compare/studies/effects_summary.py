@@ -44,8 +44,10 @@ def table(found: pd.DataFrame) -> pd.DataFrame:
         one = next(some.itertuples())
         heading = f"{numbers[one.label]}. {one.title} ({one.label}): {one.own:.3g} ns per "
         if one.engine == BLOCKS:
-            full = f"{percent(one.own / one.everything)} % of {one.everything:.3g} ns"
-            heading += f"block and step, {full} with every effect"
+            heading += "block and step"
+            if isfinite(one.everything):
+                full = f"{percent(one.own / one.everything)} % of {one.everything:.3g} ns"
+                heading += f", {full} with every effect"
         else:
             heading += "degree of freedom and step of jointed rock"
         for e in some.sort_values(["reason", "ns"], ascending=[True, False]).itertuples():
@@ -71,12 +73,14 @@ def sentences(found: pd.DataFrame) -> list[str]:
     """Return the costs of the cheapest and the most expensive set of effects, and the most
     expensive effect without influence."""
     blocks = found[found.engine == BLOCKS].assign(label=_labels)
-    sets = (blocks.own / blocks.everything).groupby(blocks.label).first().sort_values()
-    ends = dict.fromkeys(f"{percent(sets.iloc[i])} % ({sets.index[i]})" for i in (0, -1))
-    said = [
-        f"With only the effects of the scene a step of a block costs {' to '.join(ends)} of a step "
-        "with every effect."
-    ]
+    sets = (blocks.own / blocks.everything).dropna().groupby(blocks.label).first().sort_values()
+    said = []
+    if len(sets):
+        ends = dict.fromkeys(f"{percent(sets.iloc[i])} % ({sets.index[i]})" for i in (0, -1))
+        said = [
+            f"With only the effects of the scene a step of a block costs {' to '.join(ends)} of a "
+            "step with every effect."
+        ]
     idle = blocks[(blocks.ns.abs() > blocks.noise) & (blocks.misfit == 0)]
     if len(idle):
         one = blocks.loc[idle.share.idxmax()]

@@ -22,7 +22,7 @@ MEMBER = "member"  # the key
 PERCENTILES = (5, 25, 50, 75, 95)
 STATISTICS = ("mean", *(f"p{q}" for q in PERCENTILES))
 #: What identifies the numbers of a row, besides the swept keys.
-OF_ROW = ("variant", "engine", "pair", "one", "other", "quantity", "x", "y")
+OF_ROW = ("variant", "engine", "pair", "one", "other", "quantity", "x", "y", "z")
 
 
 def seeds(scene: AnyScene, number: int) -> dict[str, int]:

@@ -132,23 +132,26 @@ def unit_of(key: str, scene: AnyScene) -> str:
 
 def changed(scene: Either, values: Mapping[str, float]) -> Either:
     """Return a scene with dotted keys set; raises SceneError if that is invalid."""
+    context = {"dimension": 3 if scene.in_space else 2}
     for key, value in values.items():
         try:
-            scene = _with(scene, key.split("."), value)
+            scene = _with(scene, key.split("."), value, context)
         except ValidationError as error:
             allowed = str(error.errors()[0]["msg"]).lower()
             raise SceneError(scene.where, key, value, allowed) from None
     return checked(scene)
 
 
-def _with(table: Any, parts: list[str], value: float) -> Any:
+def _with(table: Any, parts: list[str], value: float, context: dict[str, int]) -> Any:
     """Return a table, or a list of tables, with one of its keys set and validated."""
     if isinstance(table, list):
         i = int(parts[0])
-        return [*table[:i], _with(table[i], parts[1:], value), *table[i + 1 :]]
+        return [*table[:i], _with(table[i], parts[1:], value, context), *table[i + 1 :]]
     if len(parts) > 1:
-        inner = _with(getattr(table, parts[0]), parts[1:], value)
+        inner = _with(getattr(table, parts[0]), parts[1:], value, context)
         return table.model_copy(update={parts[0]: inner})
     new = table.model_copy(update={parts[0]: value})
     # A load retains the history that it has read.
-    return new if getattr(new, "file", None) else type(new).model_validate(dict(new))
+    if getattr(new, "file", None):
+        return new
+    return type(new).model_validate(dict(new), context=context)

@@ -11,7 +11,6 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import ENGINES, solve, solver
 from jointwave.compare.runs import timings
 from jointwave.compare.solvers.dem import DEM
-from jointwave.compare.solvers.record import OF_BLOCK_IN_PLANE
 
 SCENES = Path(__file__).parent / "scenes"
 UNIT_STEPS = 1_000_000  # steps of one block or freedom in a timed run, about
@@ -71,7 +70,8 @@ def with_every_effect(scene: AnyScene) -> AnyScene:
     if isinstance(scene, Scene):
         count = min(scene.block_count, BLOCKS)
         return cases.load_variant(SCENES / "every-effect.toml", "", {"pillar.length": 0.5 * count})
-    blocks = solver(DEM.name).prepare(scene).freedoms // OF_BLOCK_IN_PLANE
+    dem = solver(DEM.name)
+    blocks = dem.units(scene, dem.prepare(scene).freedoms)
     side = float(max(2, int(min(blocks, BLOCKS) ** 0.5)))
     return cases.load_variant(
         SCENES / "every-effect-in-plane.toml", "", {"domain.size": [side, side]}

@@ -21,7 +21,7 @@ from pydantic import (
 from jointwave import cases
 from jointwave.cases.errors import SceneError, nearest
 from jointwave.cases.files import read_toml
-from jointwave.cases.scene_type import AnyScene, refuse_space
+from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import names
 from jointwave.compare.scenes import find
 from jointwave.compare.studies import IN_CODE, SHIPPED
@@ -134,9 +134,7 @@ class Study(StudyTable):
     def changed(self, changes: dict[str, Any]) -> AnyScene:
         """Return the scene with changes; raises SceneError if it is invalid."""
         changes = self.changes | changes | {"expect": {}}
-        found = cases.load_variant(find(self.scene), self.variant, changes, asked=False)
-        refuse_space(found)
-        return found
+        return cases.load_variant(find(self.scene), self.variant, changes, asked=False)
 
     def points(self) -> list["StudyPoint"]:
         """Return all points, curve by curve."""

@@ -21,7 +21,7 @@ import xarray as xr
 
 from jointwave.cases.errors import InterruptedRun, SceneError
 from jointwave.cases.read import parse_override
-from jointwave.cases.scene_type import AnyScene, refuse_space
+from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import Progress
 from jointwave.compare.figures.comparison import write_comparisons
 from jointwave.compare.misfit.external import Curves
@@ -117,10 +117,7 @@ def sweep_of(
 def _scenes(path: Path, variant: str | None, changes: dict[str, Any]) -> list[AnyScene]:
     if (number := changes.pop(MEMBER, 0)) > 0:
         changes |= ensemble.seeds(load(path, variant or "", changes), number)
-    found = load_variants(path, changes) if variant is None else [load(path, variant, changes)]
-    for scene in found:
-        refuse_space(scene)
-    return found
+    return load_variants(path, changes) if variant is None else [load(path, variant, changes)]
 
 
 def _folder(setting: dict[str, Any], number: int) -> str:

@@ -80,7 +80,7 @@ def _display(rows: pd.DataFrame, by: str, keys: list[str], numbers: list[str]) -
 
 
 def _receiver(row: dict[str, Any]) -> str:
-    at = tuple(row[name] for name in ("x", "y") if name in row)
+    at = tuple(row[name] for name in ("x", "y", "z") if name in row)
     name = row["quantity"]
     unit = f" ({UNITS[name]})" if "peak" in row and name else ""
     return Place(name, "", at).heading + unit if name else ""

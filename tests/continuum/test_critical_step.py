@@ -30,12 +30,12 @@ def stepped(short, model, dim, changes, fraction):
     the true one, from below."""
     record = {"stress": [1.0], "velocity": [0.3], "interval": 5e-5}
     probe = short(**changes, record=record, time__duration=1e-4)
-    dt = fraction * simulate(probe, model, dim=dim).attrs["critical_dt"]
+    dt = fraction * simulate(probe, model, dim).attrs["critical_dt"]
     forced = {"step_fraction": fraction, "allow_unstable": True}
     forced = {f"numerics__continuum__{key}": value for key, value in forced.items()}
     record |= {"interval": EVERY * dt}
     scene = short(**changes, **forced, record=record, time__duration=STEPS * dt)
-    result = simulate(scene, model, dim=dim)
+    result = simulate(scene, model, dim)
     assert result.attrs["dt"] == pytest.approx(dt, rel=1e-9)
     return result
 

@@ -7,7 +7,6 @@ from typing import Annotated, Any
 
 import typer
 
-from jointwave.cases.scene_type import NOT_SOLVED
 from jointwave.compare.cli import terminal
 from jointwave.compare.cli.options import (
     CORES,
@@ -178,7 +177,8 @@ def report(
     claims, and all studies. Results are read from and stored in out/SCENE, points of studies in
     DIR.
     """
-    scenes = _solved(scenes or [], strict)
+    for name in scenes or []:
+        load(name, [], None, strict)
     from jointwave.compare.cli.forecast_view import show_forecasts
     from jointwave.compare.cli.frames import show_frame
     from jointwave.compare.report.report import build, planned
@@ -186,14 +186,14 @@ def report(
 
     stored = ResultFolder(RESULTS, fresh)
     if dry:
-        runs, parts = planned(out, scenes, stored)
+        runs, parts = planned(out, scenes or [], stored)
         show_forecasts(runs, as_json, parts)
         return
     with (
         locked(out, out / "figures", out / "studies"),
         terminal.progress("report") as advance,
     ):
-        found = build(out, advance, scenes=scenes, peers_table=peers, stored=stored)
+        found = build(out, advance, scenes=scenes or [], peers_table=peers, stored=stored)
     page, summary = found.page, found.summary
     if as_json:
         rows, columns = summary.reset_index().values.tolist(), ["what", "pair", *summary]
@@ -209,14 +209,3 @@ def report(
         holding = sum(claim.holds for _, claim in claims)
         terminal.say(f"{holding} of {len(claims)} claims of the paper's figures hold.")
     terminal.say(f"report: {found.file}")
-
-
-def _solved(names: list[str], strict: bool) -> list[str]:
-    """Return the scenes that engines solve, and print a line for each other one; raises SceneError
-    where there is no other."""
-    every = {name: load(name, [], None, strict, in_space=True) for name in names}
-    left_out = [name for name, found in every.items() if any(one.in_space for one in found)]
-    if names and set(left_out) == set(names):
-        load(left_out[0], [], None)
-    terminal.say_warnings(f"{name} is left out, in space: {NOT_SOLVED}" for name in left_out)
-    return [name for name in names if name not in left_out]

@@ -79,7 +79,7 @@ def picture(
         from jointwave.compare.figures.drawing.scene import scene_figure
         from jointwave.compare.misfit.pairs import Comparison
 
-        scenes = load(source, changes, variant, strict, in_space=True)
+        scenes = load(source, changes, variant, strict)
         title = scenes[0].title
         if explode is not None and not scenes[0].in_space:
             raise SceneError("--explode", "", None, f"is of a scene in space, not of {source}")

@@ -13,7 +13,7 @@ import typer
 
 from jointwave import cases
 from jointwave.cases.errors import SceneError
-from jointwave.cases.scene_type import NOT_SOLVED, AnyScene
+from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli import terminal
 from jointwave.compare.cli.options import (
     CORES,
@@ -50,7 +50,6 @@ def list_scenes(as_json: JsonOption = False) -> None:
             "scene": name,
             "title": scenes[0].title,
             "variants": [one.name for one in scenes[1:]],
-            **({"remark": f"in space: {NOT_SOLVED}"} if scenes[0].in_space else {}),
         }
         for name, scenes in ((name, cases.load(find(name))) for name in shipped())
     ]
@@ -59,8 +58,6 @@ def list_scenes(as_json: JsonOption = False) -> None:
         return
     for one in facts:
         terminal.say_wrapped(f"{one['scene']}: {one['title']}", " " * 4)
-        if "remark" in one:
-            terminal.say_wrapped(f"    {one['remark']}", " " * 6)
         if one["variants"]:
             terminal.say_wrapped(f"    variants: {'; '.join(one['variants'])}", " " * 6)
 
@@ -131,7 +128,7 @@ def run(
 
         sweep(cases_of, work, solvers, workers, dry, as_json, strict)
         return
-    scenes = load(scene, changes, variant, strict, in_space=True)
+    scenes = load(scene, changes, variant, strict)
     asked, left_out = jobs.plan(scenes, wanted, out)
     warn(scenes[:1], strict, lambda _: map(str, left_out))
     if dry:
@@ -173,6 +170,6 @@ def explain(
     from jointwave.compare.cli.explain import explanation
     from jointwave.compare.cli.explain_view import show_explanation
 
-    for one in load(scene, changes, variant or "", strict, in_space=True):
+    for one in load(scene, changes, variant or "", strict):
         found = explanation(one)
         terminal.print_json(found) if as_json else show_explanation(found, every)

@@ -5,12 +5,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.incident import across, in_components
+from jointwave.cases.partition.joints import attitude, direction_of
 from jointwave.cases.partition.regions import strata
-from jointwave.cases.partition.shape import shape_of
+from jointwave.cases.partition.shape import SIDES, shape_of
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.law_parts import PARTS
+from jointwave.cases.schema.region import Region
 from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.sources import Wave
 
 PARALLEL = 1e-6  #: sine of the largest angle between directions that count as parallel
 #: Sine of the angle to joints, layers or a free face, 1 degree, up to which a wave runs along them:
@@ -19,7 +22,7 @@ ALONG = 0.0175
 
 
 class Face(NamedTuple):
-    """A free face: its outward unit normal [2], and its distance from the origin along that, m."""
+    """A free face: its outward unit normal [d], and its distance from the origin along that, m."""
 
     normal: np.ndarray
     offset: float
@@ -74,9 +77,9 @@ def reflecting_side(scene: RockMass, face: Face | None = None) -> str | None:
         if held == "periodic" and not _is_invariant(scene, side):
             return f"the {side} is periodic, and waves or joints vary along it"
         if held == "roller" and not (
-            _is_invariant(scene, side) and all(one.kind == "P" for one in scene.waves)
+            _is_invariant(scene, side) and all(not _moves(one, normals[0]) for one in scene.waves)
         ):
-            return f"the {side} is on rollers, and waves do not run along it as P waves"
+            return f"the {side} is on rollers, and waves vary along it or move rock into it"
         is_face = held == "free" and face is not None and (normals @ face.normal).min() > ALONG
         if held in ("free", "fixed") and not is_face:
             return f"the {side} is {held} and reflects waves"
@@ -87,11 +90,11 @@ def free_face(scene: RockMass) -> Face | None:
     """Return the free face that waves of a scene reach; None where they reach none, or several that
     are not one plane."""
     outline, found = shape_of(scene.domain), []
-    for side, normals in outline.normals().items():
+    for side in outline.normals():
         if getattr(scene.boundaries, side) == "free":
-            for n, edge in zip(normals, outline.edges(side), strict=True):
+            for corners, n in outline.faces_of(side):
                 if any(n @ np.array(wave.direction) > ALONG for wave in scene.waves):
-                    found.append(Face(n, float(edge.mean(axis=0) @ n)))
+                    found.append(Face(n, float(corners.mean(axis=0) @ n)))
     near = PARALLEL * outline.size
     one_plane = all(
         along(a.normal, b.normal) and abs(a.offset - b.offset) <= near for a, b in pairwise(found)
@@ -100,30 +103,44 @@ def free_face(scene: RockMass) -> Face | None:
 
 
 def prestress_of(scene: RockMass) -> np.ndarray:
-    """Return the initial stress (xx, yy, xy) of a scene, before any load, Pa, compression
+    """Return the components of the initial stress of a scene, before any load, Pa, compression
     positive."""
-    stress = scene.prestress
-    return np.zeros(3) if stress is None else np.array([stress.xx, stress.yy, stress.xy])
+    dim = scene.domain.dimension
+    tensor = np.zeros((dim, dim)) if scene.prestress is None else scene.prestress.tensor
+    return in_components(tensor)
 
 
 def all_parallel(scene: RockMass) -> bool:
     """Return whether all joints of a scene, and boundaries of its regions, are parallel."""
-    return all(along(*pair) for pair in pairwise(directions_of(scene)))
+    return all(along(*pair) for pair in pairwise(normals_of(scene)))
+
+
+def normals_of(scene: RockMass) -> list[np.ndarray]:
+    """Return unit normals [d] of the joint sets and of the boundaries of regions."""
+    planes: list[JointSet | Region] = [*scene.joint_sets, *strata(scene.regions)]
+    return [attitude(one, scene.domain.dimension)[0] for one in planes]
 
 
 def directions_of(scene: RockMass) -> list[np.ndarray]:
-    """Return unit vectors along the joint sets and the boundaries of regions."""
+    """Return unit vectors along the joint sets and the boundaries of regions, in the plane."""
     dips = [*(one.dip for one in scene.joint_sets), *(one.dip for one in strata(scene.regions))]
     return [direction_of(dip) for dip in dips]
 
 
 def along(one: np.ndarray, other: np.ndarray, sine: float = PARALLEL) -> bool:
     """Return whether two unit vectors have the same or opposite directions."""
-    return bool(abs(one[0] * other[1] - one[1] * other[0]) < sine)
+    return bool(np.linalg.norm(one - (one @ other) * other) < sine)
 
 
 def _is_invariant(scene: RockMass, side: str) -> bool:
-    axis = np.array([1.0, 0.0] if side in ("left", "right") else [0.0, 1.0])
-    across = np.array([-axis[1], axis[0]])
-    joints = all(along(one, axis) for one in directions_of(scene))
-    return joints and all(along(np.array(one.direction), across) for one in scene.waves)
+    """Return whether joints and waves do not vary along the axis that a side lies across."""
+    dim = scene.domain.dimension
+    axis = np.eye(dim)[SIDES[dim].index(side) // 2]
+    every = [*normals_of(scene), *(np.array(one.direction) for one in scene.waves)]
+    return all(abs(one @ axis) < PARALLEL for one in every)
+
+
+def _moves(wave: Wave, normal: np.ndarray) -> bool:
+    """Return whether a wave moves rock along a normal."""
+    n = np.array(wave.direction)
+    return bool(abs((n if wave.kind == "P" else across(n, wave)) @ normal) > PARALLEL)

@@ -39,6 +39,8 @@ from jointwave.compare.exact.rock_mass.conditions import (
 from jointwave.compare.solvers.record import Answer, Form, Kind, Rock, Solver, thin
 from jointwave.results.rock_mass import rock_mass_dataset
 
+ALIKE = 1e-9  # two speeds, relative
+
 
 @dataclass(frozen=True)
 class MediumWave(PlaneWave):
@@ -77,8 +79,10 @@ def medium_wave(scene: RockMass, wave: Wave, C: np.ndarray) -> MediumWave:
     along = n if wave.kind == "P" else across(n, wave)
     slow = np.abs(along @ shapes[:, :-1]).argmax()
     branch = len(found) - 1 if wave.kind == "P" else int(slow)
-    c, g = float(found[branch]), shapes[:, branch]
-    g = g * np.sign(g @ along)
+    c = float(found[branch])
+    alike = shapes[:, np.abs(found - c) < ALIKE * c]  # any S waves of one speed are such waves
+    g = alike @ (along @ alike)
+    g = g / np.linalg.norm(g)
     full = np.einsum("ijkl,k,l->ij", tensor(C), g, n) / c
     corners = np.array(scene.domain.corners)
     through = corners[np.argmin(corners @ n)] if wave.through is None else np.array(wave.through)
@@ -131,7 +135,7 @@ def applies(scene: RockMass) -> Answer:
         (any(one.damping_ratio for one in scene.joint_sets), "the joints are damped"),
     ]
     reason = beyond_waves(scene) or next((why for there, why in reasons if there), None)
-    face = free_face(scene)
+    face = None if scene.in_space else free_face(scene)
     reason = reason or beyond_linear_rock(scene) or reflecting_side(scene, face)
     if reason is None:
         corners, waves = np.array(scene.domain.corners), medium_field(scene).waves
@@ -145,7 +149,8 @@ def applies(scene: RockMass) -> Answer:
 
 def solve(scene: RockMass) -> xr.Dataset:
     """Return velocity, displacement and stress at the points of a scene."""
-    times, points = sample_times(scene), np.array(scene.record.points).reshape(-1, 2)
+    times, points = sample_times(scene), np.array(scene.record.points)
+    points = points.reshape(-1, scene.domain.dimension)
     field = medium_field(scene)
     velocity, stress = field(points, times)
     by_integral = (replace(wave, pulse=Integrated(wave.pulse)) for wave in field.waves)
@@ -163,7 +168,8 @@ SOLVER = Solver(
     rock=Rock.HOMOGENISED,
     form=Form.CLOSED,
     kinds=("rock mass",),
-    dimension=2,
+    dimension=3,
+    in_space=True,
     label="effective medium, exact",
     line=thin("#005a3c", 6, (9, 13)),
     applies=applies,

@@ -42,6 +42,13 @@ from jointwave.compare.exact.rock_mass.conditions import (
     free_face,
 )
 from jointwave.compare.exact.rock_mass.effective_medium import medium_field
+from jointwave.compare.exact.rock_mass.normal_incidence import ClosingField
+from jointwave.compare.exact.rock_mass.sections import (
+    Section,
+    against,
+    poisson_at,
+    sections_of,
+)
 from jointwave.compare.exact.rock_mass.stack import JointStack, scatters_otherwise, stack_of
 
 #: Periodic sides, and the direction in which they repeat the rock.
@@ -76,7 +83,7 @@ def field_of(scene: RockMass) -> IncidentField:
     if scene.in_space:
         return _field_in_space(scene)
     if normal_incidence.applies(scene):
-        return normal_incidence.ClosingField(scene)
+        return ClosingField(scene)
     planes = planes_of(scene)
     waves = tuple(plane_wave(scene, one) for one in scene.waves)
     if planes.joint_sets or planes.regions:
@@ -89,21 +96,46 @@ def field_of(scene: RockMass) -> IncidentField:
 
 
 def _field_in_space(scene: RockMass) -> IncidentField:
-    """Return the waves of a scene in space, of its intact rock or of the effective medium of its
-    joints; raises SceneError where joints are alone, or rock or sides send waves back."""
+    """Return the waves of a scene in space: in parallel planes those of their sections, else of
+    intact rock or of the effective medium of its joints; raises SceneError where joints that are
+    alone, other rock or sides send them back otherwise."""
     axis, of = SIDES[3][: 6 + (scene.domain.given is not None)], scene.boundaries
-    back = [one for one in axis if getattr(of, one) in ("free", "fixed")]
+    sections = [] if against(scene) else sections_of(scene)
+    fields, in_planes = [field_of(one.scene) for one in sections], StackField | ClosingField
+    known = bool(sections) and all(isinstance(one, in_planes) for one in fields)
+    faces = [side for one in sections for side in one.faces]
+    back = [one for one in axis if getattr(of, one) in ("free", "fixed") and one not in faces]
     quiet, why = [one for one in axis if getattr(of, one) == "quiet"], None
-    if scene.regions:
+    if scene.regions and not known:
         why = "regions"
-    elif not all(one.spacing for one in scene.joint_sets):
+    elif not known and not all(one.spacing for one in scene.joint_sets):
         why = "joints that are alone"
     elif any(axis.index(one) // 2 != axis.index(other) // 2 for one in back for other in quiet):
         why = f"a side that sends them back, {back[0]}, beside quiet ones"
     if why:
         allowed = f"meet {why}: their field is not known in space yet"
         raise SceneError(scene.where, "waves", len(scene.waves), allowed)
+    if known:
+        return SectionsField(scene, tuple(zip(sections, fields, strict=True)))
     return medium_field(scene) if scene.joint_sets else free_field(scene)
+
+
+@dataclass(frozen=True)
+class SectionsField:
+    """The waves of a scene in space as the fields of its sections."""
+
+    scene: RockMass
+    fields: tuple[tuple[Section, IncidentField], ...]
+
+    def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
+        places = np.asarray(points, dtype=float)
+        poisson = poisson_at(self.scene, places)
+        total = [np.zeros((len(places), count, len(times))) for count in (3, 6)]
+        for one, field in self.fields:
+            velocity, stress = field(places @ one.axes[:2].T, times)
+            total[0] += one.vectors(velocity)
+            total[1] += one.stresses(stress, poisson)
+        return WaveMotion(*total)
 
 
 def planes_of(scene: RockMass) -> RockMass:

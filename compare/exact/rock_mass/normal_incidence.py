@@ -17,6 +17,7 @@ from jointwave.compare.exact.linear import bound
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass import stack_waves
 from jointwave.compare.exact.rock_mass.conditions import along, prestress_of
+from jointwave.compare.exact.rock_mass.sections import of_sections
 from jointwave.compare.exact.rock_mass.stack import JointStack, stack_of
 from jointwave.compare.solvers.record import Answer, Rock, Solver, thin
 
@@ -26,6 +27,8 @@ def applies(scene: RockMass) -> Answer:
     if all(one.maximum_closure is None for one in scene.joint_sets):
         return Answer("no joint has closure: see oblique-joint")
     linear = [one.model_copy(update={"maximum_closure": None}) for one in scene.joint_sets]
+    if scene.in_space:
+        return of_sections(scene, applies)
     answer = stack_waves.holds(scene.model_copy(update={"joint_sets": linear}), one=True)
     if not answer:
         return answer
@@ -107,7 +110,8 @@ SOLVER = Solver(
     name="normal-incidence",
     rock=Rock.JOINTED,
     kinds=("rock mass",),
-    dimension=2,
+    dimension=3,
+    in_space=True,
     label="stiffening joint, plane wave, exact",
     line=thin("#d55e00", 8, (4.5, 8.5)),
     applies=applies,

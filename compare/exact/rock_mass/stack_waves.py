@@ -25,6 +25,12 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane.layer_pulses import fields
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass.conditions import beyond_waves, prestress_of
+from jointwave.compare.exact.rock_mass.sections import (
+    Records,
+    of_sections,
+    sections_of,
+    summed,
+)
 from jointwave.compare.exact.rock_mass.stack import JointStack, begun, scatters_otherwise, stack_of
 from jointwave.compare.solvers.record import Answer, Kind, Line, Rock, Solver, thin
 from jointwave.results.rock_mass import rock_mass_dataset
@@ -46,7 +52,11 @@ Motion = Callable[["RockMass", JointStack, np.ndarray, np.ndarray], PlaneMotion]
 
 def holds(scene: RockMass, one: bool) -> Answer:
     """Return whether a scene has plane waves at one joint or, if not `one`, at several."""
-    if reason := beyond_waves(scene) or scatters_otherwise(scene):
+    if reason := beyond_waves(scene):
+        return Answer(reason)
+    if scene.in_space:
+        return of_sections(scene, partial(holds, one=one))
+    if reason := scatters_otherwise(scene):
         return Answer(reason)
     stack = stack_of(scene)
     count = len(stack.joints) - stack.has_face
@@ -63,6 +73,16 @@ def holds(scene: RockMass, one: bool) -> Answer:
 
 def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Dataset:
     """Return the records of a scene's receivers; motion : in place of `motion_at`."""
+    if scene.in_space:
+        sections = sections_of(scene)
+        values, errors = summed(scene, sections, [_records(one.scene, motion) for one in sections])
+    else:
+        values, errors = _records(scene, motion)
+    return rock_mass_dataset(scene, name, sample_times(scene), values, errors=errors)
+
+
+def _records(scene: RockMass, motion: Motion | None) -> Records:
+    """Return the waveforms of the receivers of a scene in the plane, and their errors."""
     stack, times = stack_of(scene), sample_times(scene)
     joints, axes = joint_receivers(scene, stack)
     points, on_joint, beyond = point_receivers(scene, stack)
@@ -92,7 +112,7 @@ def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Datase
     names = "velocity", "displacement", "stress"
     errors = {name: getattr(at_points, f"{name}_error") for name in names}
     errors |= {"traction": pulled, "gap": slipped[:, 0], "slip": slipped[:, 1]}
-    return rock_mass_dataset(scene, name, times, values, errors=errors)
+    return values, errors
 
 
 def motion_at(
@@ -173,7 +193,8 @@ def _solver(name: str, label: str, line: Line, one: bool) -> Solver:
         name=name,
         rock=Rock.JOINTED,
         kinds=("rock mass",),
-        dimension=2,
+        dimension=3,
+        in_space=True,
         label=label,
         line=line,
         applies=partial(holds, one=one),

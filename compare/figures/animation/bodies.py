@@ -34,6 +34,7 @@ FACES = {
     ],
 }
 FRONT, OBLIQUE = (0.0, 0.0), (0.1, 0.4)  # to the right and up per metre away from the viewer
+ABOVE = (0.4, 0.3)  # the same of a rock mass in space
 EDGE, WIDTH = "#333333", 0.4  # of the faces' edges, points
 MANY = 1000  # faces whose edges are thinner, in order not to hide the colours
 CELLS = 4000  # faces above which they have no edges
@@ -46,19 +47,22 @@ class Body(NamedTuple):
 
     rest : float array [nodes, 3], m, thickness as drawn. motion : float array [snapshots, nodes,
     3], m, as drawn. faces : int array [faces, corners], nodes. values : float array [snapshots,
-    faces], shown by the colours, in the quantity's unit.
+    faces], shown by the colours, in the quantity's unit. block : int array [faces], of each.
     """
 
     rest: np.ndarray
     motion: np.ndarray
     faces: np.ndarray
     values: np.ndarray
+    block: np.ndarray
 
     def front(self) -> "Body":
         """Return the faces nearest to the viewer alone."""
         along, away, _ = self.rest[self.faces].mean(axis=1).T
         near = away <= away.min() + 1e-6 * np.ptp(along)
-        return self._replace(faces=self.faces[near], values=self.values[:, near])
+        return self._replace(
+            faces=self.faces[near], values=self.values[:, near], block=self.block[near]
+        )
 
     def profile(self) -> pd.DataFrame:
         """Return the mean value of the faces nearest to the viewer by instant, in columns by the
@@ -78,7 +82,8 @@ def body_of(s: Snapshots, scene: object, settings: ViewSettings) -> Body:
     faces, cells = _outside(s)
     values = _values(s, settings, faces, cells)
     motion = settings.scale * thick * (s.displacement @ axes)
-    return Body(thick * (s.points @ axes), motion, faces, settings.quantity.factor * values)
+    values = settings.quantity.factor * values
+    return Body(thick * (s.points @ axes), motion, faces, values, s.block[cells])
 
 
 def _values(
@@ -106,12 +111,23 @@ def _principal(stress: np.ndarray) -> np.ndarray:
 
 
 def _outside(s: Snapshots) -> tuple[np.ndarray, np.ndarray]:
-    """Return the faces that one cell has, and their cells."""
+    """Return the faces that one cell has, counter-clockwise from outside, and their cells."""
     rings = np.array(FACES[s.kind])
     faces = s.cells[:, rings].reshape(-1, rings.shape[1])
     cells = np.repeat(np.arange(len(s.cells)), len(rings))
     once = ~pd.DataFrame(np.sort(faces, axis=1)).duplicated(keep=False).to_numpy()
-    return faces[once], cells[once]
+    faces, cells = faces[once], cells[once]
+    if len(rings) > 1:
+        x = s.points[faces]
+        out = x.mean(axis=1) - s.points[s.cells[cells]].mean(axis=1)
+        inwards = (_normals(x) * out).sum(axis=1) < 0
+        faces[inwards] = faces[inwards, ::-1]
+    return faces, cells
+
+
+def _normals(corners: np.ndarray) -> np.ndarray:
+    """Return normals of faces [n, 3] by their corners [n, k, 3]."""
+    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
 
 def _solid(s: Snapshots, side: float) -> Snapshots:
@@ -182,8 +198,15 @@ class BodyView:
         ax.set_ylim(self.low[1] - margin, self.high[1] + margin)
 
     def show(self, i: int) -> None:
-        """Update the picture to an instant; the nearest faces are drawn last."""
-        corners = (self.body.rest + self.body.motion[i])[self.body.faces]
-        order = np.argsort(-(corners.mean(axis=1) @ self.farther), kind="stable")
+        """Update the picture to an instant; the nearest faces of the nearest block are drawn last.
+        Of a body seen obliquely those that face away are left out: they would cover others that
+        touch them."""
+        corners, block = (self.body.rest + self.body.motion[i])[self.body.faces], self.body.block
+        away = corners.mean(axis=1) @ self.farther
+        count = np.maximum(np.bincount(block), 1)
+        of_block = (np.bincount(block, away) / count)[block]
+        order = np.lexsort((-away, -of_block))
+        if self.farther[0]:
+            order = order[_normals(corners[order]) @ self.farther <= 0]
         self.faces.set_verts(corners[order] @ self.projection)
         self.faces.set_array(self.body.values[i, order])

@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import label_of
 from jointwave.compare.figures.animation.bodies import (
+    ABOVE,
     FRONT,
     OBLIQUE,
     BodyView,
@@ -54,9 +55,10 @@ class Frame:
                 self._add_pillars()
             else:
                 axes = self.figure.subplots(1, len(found), sharey=True, squeeze=False)[0]
-                self._add_bodies(axes, FRONT)
+                self._add_bodies(axes, ABOVE if scene.in_space else FRONT)
+                up = "z (m)" if scene.in_space else "y (m)"
                 for ax in axes:
-                    ax.set(anchor="N", xlabel="x (m)", ylabel="y (m)" * (ax is axes[0]))
+                    ax.set(anchor="N", xlabel="x (m)", ylabel=up * (ax is axes[0]))
             axes, label = self.figure.axes, settings.quantity.label + self._beyond()
             self.figure.colorbar(self.colours, ax=axes, label=label, aspect=50, panchor=False)
             self.show(0)

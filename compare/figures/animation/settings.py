@@ -79,9 +79,10 @@ def settings_for(
     """Return the view settings for snapshots by engine.
 
     scale, quantity : of displacements and of the colours, instead of ours. A pillar is seen so that
-    most of its motion across the axis is upwards, a rock mass in its plane.
+    most of its motion across the axis is upwards, a rock mass in its plane or, in space, from the
+    south.
     """
-    up, stretch, ours = np.array([0.0, 1.0, 0.0]), stretch_of(scene), SPEED
+    up, stretch, ours = np.eye(3)[2 if scene.in_space else 1], stretch_of(scene), SPEED
     if isinstance(scene, Scene):
         up, ours = _upwards(found), _quantity(scene, found)
     largest = min(_largest_scale(scene, s, stretch) for s in found.values())

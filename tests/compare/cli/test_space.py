@@ -1,4 +1,4 @@
-"""Commands on scenes in space: run by rigid blocks, refused in one line by all else that solves."""
+"""Commands on scenes in space, which both engines and the exact solutions of plane waves solve."""
 
 import json
 import re
@@ -10,43 +10,112 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-import jointwave as jw
-from jointwave.cases.errors import SceneError
 from jointwave.compare.figures.drawing import space
 
 WALL = "rock-mass/masonry-wall"
-SAID = "is of a scene in space: rigid blocks alone solve these yet, by jointwave run --engine dem"
-SOLVING = {
-    "run": ("--engine", "continuum"),
-    "run in a sweep": ("--sweep", "rock.density=2000,2500"),
-    "compare": (),
-    "figure": ("--out", "a.png"),
-    "view": (),
-    "animate": (),
-    "report": (),
-    "plan": ("--misfit", "0.1"),
-    "effects": (),
-    "fit": ("--with", "a.csv", "--free", "rock.density"),
-}
+#: A column of two blocks, 2 m high, that a P wave of 8 to 20 m goes through.
+COLUMN = """
+title = "a column"
+domain = { size = [1.0, 1.0, 2.0] }
+rock = { density = 2600.0, intact_modulus = 5e10, intact_poisson = 0.2 }
+time = { duration = 1.2e-2 }
+numerics = { continuum.size = 1.0 }
+
+[[waves]]
+kind = "P"
+direction = [0.0, 0.0, 1.0]
+shape = "ricker"
+amplitude = 1e6
+period = 6e-3
+
+[[joint_sets]]
+name = "bed"
+dip = 0.0
+spacing = 1.0
+through = [0.0, 0.0, 1.0]
+normal_stiffness = 2e10
+shear_stiffness = 8e9
+
+[boundaries]
+bottom = "quiet"
+top = "quiet"
+left = "roller"
+right = "roller"
+front = "roller"
+back = "roller"
+
+[record]
+points = [[0.3, 0.3, 0.5], [0.3, 0.3, 1.5]]
+joints = [[0.5, 0.5, 1.0]]
+
+[expect]
+"continuum-jointed ~ oblique-joint" = 0.01
+"""
 
 
 @pytest.fixture(autouse=True)
 def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    Path("column.toml").write_text(COLUMN)
 
 
-@pytest.mark.parametrize("command", SOLVING)
-def test_what_solves_refuses_a_scene_in_space(jointwave, tmp_path, command):
-    """In one line, before anything is computed or written."""
-    error = jointwave(command.split()[0], WALL, *SOLVING[command], code=2).err
-    assert error.endswith(f"masonry-wall.toml: domain.size = [6.0, 0.6, 3.0]: {SAID}\n")
-    assert error.count("\n") == 1 and not list(tmp_path.iterdir())
+def test_compare_judges_both_engines_by_the_exact_solution(jointwave):
+    (found,) = json.loads(jointwave("compare", "column.toml", "--json").out)
+    rock, blocks = (found["engines"][name] for name in ("continuum-jointed", "dem"))
+    assert rock["against"] == blocks["against"] == "oblique-joint"
+    assert rock["misfit"] < 5e-3 and rock["ppv_worst"] < 1e-3
+    assert blocks["ppv_worst"] < 0.05
 
 
-@pytest.mark.parametrize("solve", [jw.compare, jw.solvers])
-def test_so_does_the_python_interface(solve):
-    with pytest.raises(SceneError, match="rigid blocks alone solve these yet"):
-        solve(WALL)
+def test_explain_knows_steps_and_references(jointwave):
+    facts = json.loads(jointwave("explain", "column.toml", "--json").out)
+    assert [one["engine"] for one in facts["steps"]] == [
+        "dem",
+        "continuum-jointed",
+        "continuum-equivalent",
+    ]
+    assert facts["references"]["continuum-jointed"]["name"] == "oblique-joint"
+    why = {name: one["why_not"] for name, one in facts["solutions"].items()}
+    assert why["line-force"] == "is for a rock mass in the plane, not for one in space"
+    speeds = facts["speeds"]["continuum-equivalent"]
+    shear = 5e10 / 2.4
+    slow = (2600 * (1 / shear + 1 / 8e9)) ** -0.5
+    assert speeds["long waves along z"][1] == pytest.approx(slow)
+    assert speeds["long waves along x"][1] == pytest.approx(slow)
+
+
+def test_it_is_run_in_a_sweep_with_places_of_three_coordinates(jointwave):
+    found = jointwave(
+        "run", "column.toml", "--engine", "continuum", "--sweep", "rock.density=2500,2700"
+    )
+    assert "velocity at [0.3, 0.3, 1.5] m" in found.out
+
+
+def test_snapshots_are_shown_by_both_engines_but_no_map(jointwave):
+    fields = ("--set", "record.fields=3e-3")
+    said = jointwave("view", "column.toml", "--out", "a.png", *fields).out
+    assert said.startswith("a.png: rigid blocks and jointed rock")
+    jointwave("run", "column.toml", "--engine", "continuum", "--out", "out", *fields)
+    error = jointwave("picture", "out", code=2).err
+    assert error.endswith("is of bodies in the plane: animate and view show a scene in space\n")
+
+
+def test_waveforms_are_drawn(jointwave):
+    assert jointwave("figure", "column.toml", "--out", "a.svg").out == "wrote a.svg\n"
+
+
+def test_a_key_is_fitted(jointwave):
+    """To the exact waveform, by the same solution: from 0.8 of its value on."""
+    jointwave("run", "column.toml", "--engine", "exact", "--out", "out")
+    asked = ("--with", "out/exact-oblique-joint.nc:velocity_z@[0.3,0.3,1.5]")
+    key = "joint_sets.0.normal_stiffness"
+    more = ("--free", key, "--set", f"{key}=1.6e10", "--engine", "continuum", "--model", "jointed")
+    found = json.loads(jointwave("fit", "column.toml", *asked, *more, "--json").out)
+    assert found["keys"][0]["value"] == pytest.approx(2e10, rel=0.02)
+
+
+def test_a_dry_run_of_a_report_counts_its_runs(jointwave):
+    assert "would run" in jointwave("report", "column.toml", "--dry-run").out
 
 
 def test_rigid_blocks_run_the_wall(jointwave, tmp_path):
@@ -88,36 +157,14 @@ def test_rigid_blocks_run_the_cavern(jointwave, tmp_path):
         assert abs(left).max() < 1e-6 * energy.sel(term="work").max()
 
 
-def test_a_report_leaves_it_out(jointwave):
-    found = jointwave("report", WALL, "rock-mass/one-joint", "--dry-run")
-    assert (
-        found.err
-        == f"jointwave: warning: {WALL} is left out, in space: rigid blocks alone solve these yet\n"
-    )
-    assert "12 would run" in found.out
-
-
-def test_it_is_listed_with_a_remark(jointwave):
-    facts = json.loads(jointwave("list", "--json").out)
-    said = {
-        one["scene"]
-        for one in facts
-        if one.get("remark") == "in space: rigid blocks alone solve these yet"
-    }
-    assert said == {"rock-mass/cavern", WALL}
-    words = jointwave("list").out
-    assert words.count("    in space: rigid blocks alone solve these yet\n") == 2
-
-
 def test_explain_counts_its_blocks(jointwave):
     """10 courses of 10 and of 11 blocks, in two leaves; the smallest are half blocks."""
     words = jointwave("explain", WALL).out
     assert "blocks: 210\ncontacts: 655\nvolume (m³): 10.8\n" in words
     assert "smallest block: volume (m³) 0.027; width (m) 0.3" in words
-    assert "in space: rigid blocks alone solve these yet" in words
     facts = json.loads(jointwave("explain", WALL, "--json").out)
     assert facts["joint_sets"]["bed"] == {"contacts": 360, "area": pytest.approx(9 * 3.6)}
-    assert facts["effects"]["gravity"]["active"] and "steps" not in facts
+    assert facts["effects"]["gravity"]["active"]
 
 
 OWN = """
@@ -126,7 +173,7 @@ domain = { blocks = "bricks.obj" }
 rock = { density = 2600.0, intact_modulus = 5e10 }
 boundaries = { bottom = "fixed" }
 gravity = {}
-time = { duration = 6e-3 }
+time = { duration = 1.2e-2 }
 record = { points = [[0.5, 0.5, 1.5]] }
 
 [[joint_sets]]
@@ -158,8 +205,6 @@ def test_so_are_blocks_of_a_file(jointwave, tmp_path):
     jointwave("run", "own.toml", "--engine", "dem", "--out", "out")
     with xr.open_dataset("out/dem.nc") as found:
         assert found.attrs["blocks"] == 3
-    error = jointwave("compare", "own.toml", code=2).err
-    assert error.endswith(f"own.toml: domain.blocks = 'bricks.obj': {SAID}\n")
 
 
 def test_it_is_drawn(jointwave):

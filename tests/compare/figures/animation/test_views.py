@@ -29,7 +29,7 @@ def test_a_body_is_where_it_moves_to_in_the_colours_of_its_faces():
     motion = np.zeros((2, 6, 3))
     motion[1, :, 0] = 4.0
     faces, values = np.array([[0, 1, 4, 5], [1, 2, 3, 4]]), np.array([[0.0, 0.0], [1.0, -1.0]])
-    shown = picture(Body(PLATE, motion, faces, values), FRONT, 1)
+    shown = picture(Body(PLATE, motion, faces, values, np.arange(2)), FRONT, 1)
     height, width = shown.shape[:2]
     empty, _, red, blue = (shown[height // 2, int((k + 0.5) / 4 * width)] for k in range(4))
     assert (empty == 255).all()
@@ -42,7 +42,9 @@ def test_what_is_near_hides_what_is_far(per_away, order):
     """Two plates of which the first is nearer to the viewer by 0.1 m, in any order."""
     rest = np.concatenate([PLATE, PLATE + np.array([0.0, 0.1, 0.0])])
     faces = np.array([[0, 2, 3, 5], [6, 8, 9, 11]])[order]
-    body = Body(rest, np.zeros((1, 12, 3)), faces, np.array([[1.0, -1.0]])[:, order])
+    body = Body(
+        rest, np.zeros((1, 12, 3)), faces, np.array([[1.0, -1.0]])[:, order], np.array(order)
+    )
     shown = picture(body, per_away, 0)
     middle = shown[shown.shape[0] // 2, shown.shape[1] // 2]
     assert middle[0] > middle[2] + 50
