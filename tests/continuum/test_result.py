@@ -8,7 +8,7 @@ from jointwave.continuum import simulate
 
 @pytest.mark.parametrize("dim", [1, 2, 3])
 def test_attributes_survive_netcdf(short, tmp_path, dim):
-    result = simulate(short(), "jointed", dim)
+    result = simulate(short(), dim=dim)
     expected = {
         "engine": "continuum-jointed",
         "model": "jointed",
@@ -27,7 +27,7 @@ def test_attributes_survive_netcdf(short, tmp_path, dim):
 
 def test_axial_motion_has_one_axis_and_motion_in_space_three(short):
     """Variables and shapes are those of every engine: places by samples by axes."""
-    axial, plane = simulate(short(), "jointed"), simulate(short(), "jointed", 2)
+    axial, plane = simulate(short(), "jointed"), simulate(short(), dim=2)
     samples = axial["time"].size
     assert axial["velocity"].shape == axial["displacement"].shape == (3, samples, 1)
     assert plane["velocity"].shape == plane["rotation"].shape == (3, samples, 3)
@@ -43,7 +43,7 @@ def test_section_on_a_joint_reads_the_same_from_either_side(short, dim):
     near = 1e-6
     places = {"stress": [1.0 - near, 1.0, 1.0 + near]}
     blow = {} if dim == 1 else {"load__direction": [0.6, 0.8, 0.0], "load__at": [0.1, 0.0]}
-    result = simulate(short(record=places, **blow), "jointed", dim)
+    result = simulate(short(record=places, **blow), dim=dim)
     for quantity in ("stress",) if dim == 1 else ("stress", "shear"):
         waves = result[quantity].values
         assert waves[0] == pytest.approx(waves[1], abs=1e-5 * np.abs(waves).max())
