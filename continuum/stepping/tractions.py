@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.joints.formula import formula
-from jointwave.joints.law import History, LawFlags, law_of, traction
+from jointwave.joints.law import History, LawFlags, law_of, traction_for
 from jointwave.joints.normal import gap_under
-from jointwave.joints.tangent import tangent
+from jointwave.joints.tangent import tangent_for
 from jointwave.numerics.jit import jitted
 
 #: Rows of the history of points [rows, points]: of `joints.law.History`, what has slid in two.
@@ -90,7 +90,7 @@ def tractions_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
     """Return the formula of the forces of joints of a law with these parts in d dimensions;
     stressed : whether they carry anything at u = 0."""
     dashpots, limited, remembers = parts.dashpots, parts.limited, has_history(parts)
-    strained = strained_for(parts, dim)
+    strained, traction = strained_for(parts, dim), traction_for(parts)
 
     @formula
     def tractions(points, dt, jump, moved, rate, before, after, force, drag):
@@ -172,7 +172,8 @@ def forces_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
 @cache
 def tangents_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
     """Return the kernel of the tangents of joints of a law with these parts."""
-    dashpots, remembers, strained = parts.dashpots, has_history(parts), strained_for(parts, dim)
+    dashpots, remembers = parts.dashpots, has_history(parts)
+    strained, tangent = strained_for(parts, dim), tangent_for(parts)
 
     @jitted
     def tangents(points, dt, r, jump, rate, before, stiffness):

@@ -30,12 +30,12 @@ def stepped(short, model, dim, changes, fraction):
     the true one, from below."""
     record = {"stress": [1.0], "velocity": [0.3], "interval": 5e-5}
     probe = short(**changes, record=record, time__duration=1e-4)
-    dt = fraction * simulate(probe, model, dim).attrs["critical_dt"]
+    dt = fraction * simulate(probe, model, dim=dim).attrs["critical_dt"]
     forced = {"step_fraction": fraction, "allow_unstable": True}
     forced = {f"numerics__continuum__{key}": value for key, value in forced.items()}
     record |= {"interval": EVERY * dt}
     scene = short(**changes, **forced, record=record, time__duration=STEPS * dt)
-    result = simulate(scene, model, dim)
+    result = simulate(scene, model, dim=dim)
     assert result.attrs["dt"] == pytest.approx(dt, rel=1e-9)
     return result
 
@@ -95,9 +95,9 @@ def test_slip_and_opening_do_not_lower_it(joints, short):
     but for a tenth."""
     load = {"shape": "sine", "amplitude": 1e5, "period": 1e-3, "direction": [0.6, 0.8, 0.0]}
     changes = {"load": load, "joints": joints, "numerics__continuum__step_fraction": 0.999}
-    dt = 0.999 * simulate(short(**changes), dim=2).attrs["critical_dt"]
+    dt = 0.999 * simulate(short(**changes), "jointed", 2).attrs["critical_dt"]
     changes |= {"record": {"interval": dt}, "time__duration": 4000 * dt}
-    result = simulate(short(**changes), dim=2)
+    result = simulate(short(**changes), "jointed", 2)
     assert result.attrs["steps"] == 4000
     energy = result.energy
     held = energy.sel(term="kinetic") + energy.sel(term="elastic")

@@ -33,7 +33,7 @@ def test_blocks_and_rock_tend_to_the_exact_sliding_joint():
     misfits = []
     for block in (1.0, 0.5, 0.25):
         scene = sliding(block)
-        blocks, rock = dem.simulate(scene), simulate(scene, "jointed", 1)
+        blocks, rock = dem.simulate(scene), simulate(scene, "jointed", dim=1)
         exact = sliding_joint.solve(scene)
         waves = [result["shear"].values[..., 0] for result in (blocks, rock, exact)]
         misfits.append(

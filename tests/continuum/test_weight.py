@@ -14,7 +14,7 @@ def test_rock_in_free_fall_carries_no_stress(short):
     way = np.array([0.48, 0.6, -0.64])
     gravity = {"direction": way.tolist(), "static": False}
     scene = short(**STILL, gravity=gravity, record=RECORD, time__duration=2e-3)
-    result = simulate(scene, "jointed", 3)
+    result = simulate(scene, "jointed", dim=3)
     t = result["time"].values[:, None]
     for quantity, fallen in (("velocity", t), ("displacement", t**2 / 2)):
         expected = 9.81 * fallen * way
@@ -37,7 +37,7 @@ def test_rock_of_consistent_mass_in_free_fall_carries_no_stress(short):
         numerics__continuum__scheme="implicit",
         time__duration=2e-3,
     )
-    result = simulate(scene, "jointed", 2)
+    result = simulate(scene, "jointed", dim=2)
     expected = 9.81 * result["time"].values[:, None] * way
     assert np.abs(result["velocity"].values - expected).max() < 1e-9 * expected.max()
     weight = 2400.0 * 9.81 * 2.0
@@ -65,7 +65,7 @@ def test_standing_rock_carries_the_weight_above(dim, cell, places, short):
         numerics__continuum__cell=cell,
         time__duration=2e-4,
     )
-    stress = simulate(scene, "jointed", dim)["stress"].values
+    stress = simulate(scene, "jointed", dim=dim)["stress"].values
     expected = 2400.0 * 9.81 * np.array(places)
     assert np.abs(stress - expected[:, None]).max() < 1e-8 * expected.max()
 
@@ -85,7 +85,7 @@ def test_joints_of_friction_alone_stand_under_weight_on_a_slope(law, short):
         record={"stress": [0.5], "velocity": [0.0]},
         time__duration=2e-4,
     )
-    result = simulate(scene, "jointed", 2)
+    result = simulate(scene, "jointed", dim=2)
     stress, shear = (result[name].values[0].ravel() for name in ("stress", "shear"))
     weight = 2400.0 * 9.81 * 0.5
     assert stress == pytest.approx(weight * np.cos(np.pi / 18), rel=1e-8)

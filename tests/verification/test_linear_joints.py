@@ -28,7 +28,7 @@ PARALLEL = {
 def test_one_joint(bar, soft_joint, amplitude, kappa, passes):
     """|T| and |R| of Schoenberg (1980) within 0.1 %."""
     scene = bar(soft_layers=[soft_joint(20.0, kappa)])
-    result = continuum.simulate(scene, "equivalent", 1)
+    result = continuum.simulate(scene, "equivalent", dim=1)
     times = result.time.values
     front, behind = result.stress.values
     incident = load_history(scene).value(times - 10.0 / 2000.0) / 2
@@ -57,7 +57,7 @@ def test_plane_sections_and_one_joint(bar, soft_joint, amplitude, dim, wave):
         time__duration=160.0 / speed,
         record__stress=[20.0, 50.0, 70.0],
     )
-    result = continuum.simulate(scene, "equivalent", dim)
+    result = continuum.simulate(scene, "equivalent", dim=dim)
     times, load = result.time.values, load_history(scene)
     stress = result.stress.values if wave == "P" else result.shear.values[:, :, 0]
     arrived = times < 95.0 / speed
@@ -79,7 +79,7 @@ def test_parallel_joints(bar, soft_joint, amplitude, count, i, spacing):
         time__duration=0.4,
         record__stress=[50.0],
     )
-    result = continuum.simulate(scene, "equivalent", 1)
+    result = continuum.simulate(scene, "equivalent", dim=1)
     times = result.time.values
     incident = load_history(scene).value(times - 10.0 / 2000.0) / 2
     T = amplitude(times, result.stress.values[0]) / amplitude(times, incident)

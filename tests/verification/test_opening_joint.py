@@ -27,7 +27,7 @@ def waves(bar):
         record__interval=1e-5,
         numerics__continuum__elements_per_block=4,
     )
-    result = continuum.simulate(scene, "equivalent", 1)
+    result = continuum.simulate(scene, "equivalent", dim=1)
     motion = result.velocity.values[:, :, 0], result.displacement.values[:, :, 0]
     return load_history(scene), result.time.values, result.stress.values, *motion
 

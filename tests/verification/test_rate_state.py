@@ -41,7 +41,7 @@ def test_blocks_and_rock_tend_to_the_exact_joint():
     for block in (1.0, 0.5, 0.25):
         scene = rated(**{"pillar.block": block, "rock.intact_modulus": 8.64e10})
         exact = shear(sliding_joint.solve(scene))
-        found = dem.simulate(scene), continuum.simulate(scene, "jointed", 1)
+        found = dem.simulate(scene), continuum.simulate(scene, "jointed", dim=1)
         assert max(map(energy_residual, found)) < 1e-11
         for one in found:
             friction = one["energy"].sel(term="friction").values

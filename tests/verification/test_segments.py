@@ -160,7 +160,7 @@ def test_a_quarter_wave_layer_matches_two_rocks(bars):
 
 def test_energy_of_what_meets_two_bars_is_kept(bars):
     scene = bars(STEEL, SALT)
-    for result in (dem.simulate(scene), continuum.simulate(scene, "jointed", 1)):
+    for result in (dem.simulate(scene), continuum.simulate(scene, "jointed", dim=1)):
         energy = result.energy.sel(term=["kinetic", "elastic", "boundary"]).sum("term")
         work = float(np.abs(result.energy.sel(term="work")).max())
         assert float(np.abs(energy - result.energy.sel(term="work")).max()) < 1e-10 * work
@@ -182,7 +182,7 @@ def test_a_column_of_two_rocks(bars, dim):
         time__duration=5e-4,
         record={"stress": [0.5, 1.4], "velocity": [0.25, 1.6], "interval": 5e-7},
     )
-    flat, solid = (continuum.simulate(scene, "jointed", d) for d in (1, dim))
+    flat, solid = (continuum.simulate(scene, "jointed", dim=d) for d in (1, dim))
     assert flat.attrs["dt"] == solid.attrs["dt"]
     assert misfit(solid, flat) < 1e-10
 

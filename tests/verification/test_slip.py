@@ -30,7 +30,7 @@ def simulate(strength):
         "expect": {},
     }
     scene = cases.load_variant(SCENE, "", changes)
-    result = continuum.simulate(scene, "equivalent", 1)
+    result = continuum.simulate(scene, "equivalent", dim=1)
     return scene, result.shear.values[0, :, 0], result.energy.sel(term="friction").values
 
 

@@ -44,7 +44,7 @@ def test_blocks_and_rock_tend_to_the_exact_joint():
     misfits = []
     for block in (1.0, 0.5, 0.25):
         scene = weakening(**{"pillar.block": block, "rock.intact_modulus": 8.64e10})
-        found = dem.simulate(scene), continuum.simulate(scene, "jointed", 1)
+        found = dem.simulate(scene), continuum.simulate(scene, "jointed", dim=1)
         assert max(map(energy_residual, found)) < 1e-11
         misfits.append([relative_l2(shear(one), exact_shear()) for one in found])
     misfits = np.array(misfits)
@@ -53,7 +53,7 @@ def test_blocks_and_rock_tend_to_the_exact_joint():
 
 
 def bar(scene):
-    return continuum.simulate(scene, "equivalent", 1)
+    return continuum.simulate(scene, "equivalent", dim=1)
 
 
 @pytest.mark.parametrize("scheme", ["explicit", "implicit"])
@@ -66,7 +66,7 @@ def test_one_joint_in_homogenised_rock(scheme):
             "numerics.continuum.elements_per_block": 1,
         }
     )
-    found = continuum.simulate(scene, "equivalent", 1)
+    found = continuum.simulate(scene, "equivalent", dim=1)
     assert relative_l2(shear(found), exact_shear()) < 0.01
     assert energy_residual(found) < 1e-6
 

@@ -86,7 +86,7 @@ def test_a_saw_tooth_breaks_the_jointed_bars_joint(saw_tooth):
 def test_the_ledger_of_the_saw_tooth_closes(saw_tooth):
     """Within 1e-6 of the work, where 1e-4 is promised: a joint that reaches its strength or breaks
     between two steps costs an energy of second order in the step."""
-    result = continuum.simulate(saw_tooth, "jointed", 1)
+    result = continuum.simulate(saw_tooth, "jointed", dim=1)
     spent = result.energy.sel(term="fracture").values
     assert spent[-1] > 0.01 * float(result.energy.sel(term="work").max())
     assert (np.diff(spent) >= 0).all()

@@ -18,7 +18,7 @@ THICKNESS = PHASE * RATIO * SPEED * PERIOD / (2 * np.pi)
 
 def transmission(scene, amplitude):
     """Return |T| at 20 m."""
-    result = continuum.simulate(scene, "equivalent", 1)
+    result = continuum.simulate(scene, "equivalent", dim=1)
     times = result.time.values
     incident = load_history(scene).value(times - 10.0 / SPEED) / 2
     return amplitude(times, result.stress.values[1]) / amplitude(times, incident)
