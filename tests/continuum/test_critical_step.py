@@ -95,9 +95,9 @@ def test_slip_and_opening_do_not_lower_it(joints, short):
     but for a tenth."""
     load = {"shape": "sine", "amplitude": 1e5, "period": 1e-3, "direction": [0.6, 0.8, 0.0]}
     changes = {"load": load, "joints": joints, "numerics__continuum__step_fraction": 0.999}
-    dt = 0.999 * simulate(short(**changes), "jointed", 2).attrs["critical_dt"]
+    dt = 0.999 * simulate(short(**changes), dim=2).attrs["critical_dt"]
     changes |= {"record": {"interval": dt}, "time__duration": 4000 * dt}
-    result = simulate(short(**changes), "jointed", 2)
+    result = simulate(short(**changes), dim=2)
     assert result.attrs["steps"] == 4000
     energy = result.energy
     held = energy.sel(term="kinetic") + energy.sel(term="elastic")
