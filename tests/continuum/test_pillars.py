@@ -266,20 +266,28 @@ def test_a_mesh_of_the_user_runs_as_that_of_the_scene(column, tmp_path):
         np.testing.assert_allclose(found[name], known[name], rtol=0, atol=1e-8 * scale)
 
 
-@pytest.mark.parametrize("keys", [{}, IMPLICIT], ids=["explicit", "implicit"])
-def test_standing_rock_carries_the_weight_above(short, keys):
-    """rho g y at y below the free top, in the rock and on joints."""
-    places = [0.25, 0.3, 1.0]
+@pytest.mark.parametrize(
+    ("dim", "keys", "places"),
+    [
+        (1, {}, [0.25, 0.3, 1.0]),
+        (1, IMPLICIT, [0.25, 0.3, 1.0]),
+        (3, {}, [0.25, 0.3, 1.0]),
+        (3, {"numerics__continuum__cell": "simplex"}, [0.5, 1.0, 1.5]),
+    ],
+)
+def test_standing_rock_carries_the_weight_above(short, dim, keys, places):
+    """rho g y at y below the free top, in the rock and on joints; among simplices on joints."""
     scene = short(
         **STILL,
         **keys,
         gravity={"direction": [0.0, 1.0, 0.0]},
         ends__end="fixed",
+        rock__intact_poisson=0.0,
         record__stress=places,
         time__duration=2e-4,
     )
     expected = 2400.0 * 9.81 * np.array(places)
-    stress = simulate(scene)["stress"].values
+    stress = simulate(scene, dim=dim)["stress"].values
     assert np.abs(stress - expected[:, None]).max() < 1e-8 * expected.max()
 
 
