@@ -10,8 +10,7 @@ from scipy.sparse import diags
 from scipy.sparse.linalg import eigsh
 
 from closed_forms import beam, column
-from jointwave.continuum.build import discretise, operators
-from jointwave.continuum.ends import face_area
+from jointwave.continuum.scene import body_of
 
 DENSITY, MODULUS, SIDE = 2400.0, 9.6e9, 0.5
 
@@ -21,7 +20,7 @@ def rock(pillar):
     """Return a function that gives a column of this length (m) and Poisson's ratio in space, with
     so many quartic elements along it and in each direction of the section."""
 
-    def discrete(length, poisson, dim, along=4, across=1):
+    def body(length, poisson, dim, along=4, across=1):
         scene = pillar(
             pillar={"length": length, "side": SIDE, "block": length / along},
             rock={
@@ -35,39 +34,34 @@ def rock(pillar):
             numerics__continuum__elements_per_block=1,
             numerics__continuum__elements_across=across,
         )
-        return discretise(scene, "equivalent", dim)
+        return body_of(scene, "equivalent", dim=dim).body
 
-    return discrete
+    return body
 
 
-def modes(discrete, held, near, count=4):
+def modes(body, held, near, count=4):
     """Return the frequencies (rad/s) nearest to `near`, and their shapes [freedoms, modes]."""
-    stiffness, _ = operators(discrete)
-    free = stiffness.diagonal() > 0
+    free = np.ones(body.mass.size, bool)
     free[held] = False
-    mass = discrete.body.mass
-    scale = diags(1 / np.sqrt(mass[free]))
-    matrix = (scale @ stiffness[free][:, free] @ scale).tocsc()
+    scale = diags(1 / np.sqrt(body.mass[free]))
+    matrix = (scale @ body.stiffness[free][:, free] @ scale).tocsc()
     square, shapes = eigsh(matrix, count, sigma=0.99 * near**2)
-    found = np.zeros((mass.size, count))
+    found = np.zeros((body.mass.size, count))
     found[free] = scale @ shapes
     return np.sqrt(square), found
 
 
-def mirrors(discrete, components):
-    """Return the freedoms of both end faces in the directions that a mirror there holds."""
-    body = discrete.body
-    areas = [face_area(body, side) for side in (body.mesh.start, body.mesh.end)]
-    return np.concatenate([np.flatnonzero(area[c]) for area in areas for c in components])
+def held(body, ends, components):
+    """Return the freedoms of end faces in these directions."""
+    nodes = np.unique(np.concatenate([body.sides[end].node for end in ends]))
+    return (body.components * nodes[:, None] + np.array(components)).ravel()
 
 
-def frequency(discrete, held, near, shape):
+def frequency(body, mirrored, near, shape):
     """Return the frequency (rad/s) of the mode that is like a shape [nodes, components], which
-    holds all but 1 % of the shape's energy."""
-    body, like = discrete.body, np.zeros(discrete.body.mass.size)
-    for c, values in enumerate(shape.T):
-        like[body.freedom(np.arange(len(body.x)), c)] = values
-    omega, shapes = modes(discrete, held, near)
+    holds all but 1 % of the shape's energy; mirrored : directions in which both ends are held."""
+    like = shape.ravel()
+    omega, shapes = modes(body, held(body, ("start", "end"), mirrored), near)
     overlap = (shapes.T @ (body.mass * like)) ** 2 / (like @ (body.mass * like))
     assert overlap.max() > 0.99
     return omega[overlap.argmax()]
@@ -85,11 +79,11 @@ def test_long_waves_are_slowed_as_love_and_rayleigh_say(rock, dim, poisson):
     bar, found = np.sqrt(MODULUS / DENSITY), []
     for ka in (0.2, 0.4):
         k = ka / SIDE
-        discrete = rock(np.pi / k, poisson, dim)
-        y = discrete.body.x[:, 1]
+        body = rock(np.pi / k, poisson, dim)
+        y = body.x[:, 1]
         shape = np.zeros((y.size, dim))
         shape[:, 1] = np.sin(k * y)
-        omega = frequency(discrete, mirrors(discrete, [1]), k * bar, shape)
+        omega = frequency(body, [1], k * bar, shape)
         found.append((1 - omega / (k * bar)) / column.love_rayleigh(poisson, k, SIDE, dim))
     assert found[0] == pytest.approx(1, abs=1e-2)
     assert (4 * found[0] - found[1]) / 3 == pytest.approx(1, abs=1e-3)
@@ -99,11 +93,11 @@ def test_torsion_runs_at_saint_venants_speed(rock):
     """sqrt(G J / (rho I_p)), 0.9184 of the shear speed, within 0.02 %: four quartic elements
     resolve the warping to 3e-5 of the speed, and terms in k^2 are 2e-6 of it at k a = 0.2."""
     shear, k = np.sqrt(MODULUS / 2.5 / DENSITY), 0.2 / SIDE
-    discrete = rock(np.pi / k, 0.25, 3, across=2)
-    x, y, z = discrete.body.x.T
+    body = rock(np.pi / k, 0.25, 3, across=2)
+    x, y, z = body.x.T
     shape = np.stack([z, 0 * y, -x], axis=1) * np.sin(k * y)[:, None]
     speed = column.torsion_speed(shear)
-    omega = frequency(discrete, mirrors(discrete, [0, 2]), k * speed, shape)
+    omega = frequency(body, [0, 2], k * speed, shape)
     assert speed == pytest.approx(0.9184 * shear, rel=1e-4)
     assert omega / k == pytest.approx(speed, rel=2e-4)
 
@@ -119,11 +113,9 @@ def test_a_cantilever_swings_at_timoshenkos_frequency(rock, dim, poisson, bound)
     would spread it further.
     """
     length = 20 * SIDE
-    discrete = rock(length, poisson, dim, along=16)
-    body = discrete.body
-    clamped = np.concatenate([np.flatnonzero(area) for area in face_area(body, body.mesh.start)])
+    body = rock(length, poisson, dim, along=16)
     exact = beam.timoshenko(MODULUS, poisson, DENSITY, SIDE, length)
-    omega = modes(discrete, clamped, exact)[0].min()
+    omega = modes(body, held(body, ["start"], range(dim)), exact)[0].min()
     assert omega == pytest.approx(exact, rel=bound)
     slender = beam.euler_bernoulli(MODULUS, DENSITY, SIDE, length)
     assert 0.995 < exact / slender < 0.999

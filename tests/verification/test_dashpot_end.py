@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from jointwave.cases.loads import load_history
-from jointwave.cases.sampling import clock
-from jointwave.continuum.build import build_model, critical_step_of, discretise
-from jointwave.continuum.explicit.march import run
-from jointwave.continuum.state import empty_samples, state_at_rest
+from jointwave.continuum.plan import plan_of
+from jointwave.continuum.problem import in_time
+from jointwave.continuum.stepping.steps import Leapfrog
 
 
 @pytest.mark.parametrize("beta", [0.5, 1.0, 2.0])
@@ -22,21 +21,21 @@ def test_reflection(bar, beta):
     20 quadratic elements and 300 steps a wavelength: after four wavelengths the pulse is off by
     less than 1e-4 of a period.
     """
-    scene = bar(time__duration=0.075, record__velocity=[40.0])
-    discrete = discretise(scene, "equivalent", 1)
-    critical = critical_step_of(scene, discrete, "equivalent")
-    time = clock(scene, critical, 0.2, False, "continuum")
-    model = build_model(scene, discrete, "equivalent", time)
-    quiet = model.ends.quiet
-    far = np.where(quiet.freedom == quiet.freedom.max(), beta, 1.0)
-    quiet = quiet._replace(viscosity=far * quiet.viscosity, beta=far * quiet.beta)
-    model = model._replace(ends=model.ends._replace(quiet=quiet))
-    state = state_at_rest(model, keep_ledger=False)
-    samples = empty_samples(model, state, time.samples)
-    run(model, state, samples, time.stride, 0, time.steps + 1)
-    load, z = load_history(scene), 2400.0 * 2000.0
-    there, back = (load.value(time.times - y / 2000.0) / (2 * z) for y in (40.0, 80.0))
-    reflected = samples.velocity[0] - there
+    scene = bar(
+        time__duration=0.075,
+        record__velocity=[40.0],
+        numerics__continuum__scheme="explicit",
+        numerics__continuum__step_fraction=0.2,
+    )
+    found, problem, choice, _ = plan_of(scene, "equivalent", dim=1)
+    far = np.where(problem.quiet.node == found.body.x[:, 0].argmax(), beta, 1.0)
+    quiet = problem.quiet._replace(viscosity=far[:, None, None] * problem.quiet.viscosity)
+    own = in_time(scene, problem._replace(quiet=quiet), choice.time, None)
+    steps = Leapfrog(own, choice.time.dt, choice.time.samples)
+    steps.take(0, choice.time.steps + 1, choice.time.stride)
+    load, z, times = load_history(scene), 2400.0 * 2000.0, choice.time.times
+    there, back = (load.value(times - y / 2000.0) / (2 * z) for y in (40.0, 80.0))
+    reflected = steps.samples.velocity[0] - there
     share = reflected @ back / (back @ back)
     reflection = (1 - beta) / (1 + beta)
     assert share == pytest.approx(reflection, abs=1e-3)

@@ -8,41 +8,41 @@ from closed_forms.spall import spall
 from jointwave import cases, continuum
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.sampling import clock
 from jointwave.compare.scenes import SHIPPED
-from jointwave.continuum.build import build_model, critical_step_of, discretise
-from jointwave.continuum.explicit.march import march
-from jointwave.continuum.state import empty_samples, state_at_rest
+from jointwave.continuum.plan import plan_of
+from jointwave.continuum.problem import in_time
+from jointwave.continuum.stepping.steps import Leapfrog
 from jointwave.results.dataset import energy_residual
 
 SAW_TOOTH = SHIPPED / "beyond" / "spall.toml"
+EXPLICIT = {"numerics.continuum.scheme": "explicit", "numerics.continuum.step_fraction": 0.5}
 
 
 @pytest.fixture
 def saw_tooth():
     """The shipped scene in deformable blocks."""
-    return cases.load_variant(SAW_TOOTH, "", {"rock.intact_modulus": 8.64e10, "variants": []})
+    keys = {"rock.intact_modulus": 8.64e10, "variants": [], **EXPLICIT}
+    return cases.load_variant(SAW_TOOTH, "", keys)
 
 
 def first_break(scene, after):
     """Return the joints (int array) and the time (s) of the first step at which any of them is
     open beyond where it reaches its strength; none before `after` (s)."""
-    discrete = discretise(scene, "jointed", 1)
-    critical = critical_step_of(scene, discrete, "jointed")
-    time = clock(scene, critical, 0.5, False, "continuum")
-    model = build_model(scene, discrete, "jointed", time)
-    state = state_at_rest(model, keep_ledger=True)
-    samples = empty_samples(model, state, time.samples)
-    law, start = model.interfaces.law, int(after / time.dt)
-    limit = law.tensile_strength / law.normal_stiffness
-    steps = march(model, state, samples, time.stride, None)
-    steps(0, start)
-    assert (state.opening <= limit).all()
-    for n in range(start, time.steps):
-        steps(n, n + 1)
-        broken = np.flatnonzero(state.opening > limit)
-        if broken.size:
-            return discrete.jumps.joint[broken], n * time.dt
+    _, problem, choice, _ = plan_of(scene, "jointed", dim=1)
+    own, dt = in_time(scene, problem, choice.time, None), choice.time.dt
+    steps, start = Leapfrog(own, dt, 1), int(after / choice.time.dt)
+    joints = problem.body.joints
+    limit = problem.law.tensile_strength / problem.law.normal_stiffness
+
+    def broken():
+        return np.flatnonzero(joints.matrix @ steps.last[0] > limit)
+
+    steps.take(0, start, choice.time.steps)
+    assert not broken().size
+    for n in range(start, choice.time.steps):
+        steps.take(n, n + 1, choice.time.steps)
+        if broken().size:
+            return joints.column[broken()], n * dt
     raise AssertionError("nothing breaks")
 
 
@@ -64,6 +64,7 @@ def test_a_smooth_pulse_breaks_the_joint_beside_the_bars_place(pillar, period, s
         joints={"tensile_strength": strength, "fracture_energy": 1.001 * least},
         time__duration=0.12,
         record__interval=2e-5,
+        **EXPLICIT,
     )
     bar = spall(load_history(scene), 2 * strength, 50.0, p.bar_speed, 0.12)
     exact = jointed_spall(scene)
