@@ -10,26 +10,26 @@ import pytest
 
 from closed_forms.kirsch import Kirsch
 from jointwave.cases.read import load
-from jointwave.continuum.explicit.march import readings
-from jointwave.continuum.implicit.static import settle_static
+from jointwave.continuum.loads.forces import forces_on
+from jointwave.continuum.loads.sides import facets_on
 from jointwave.continuum.mesh.session import gmsh_session
-from jointwave.continuum.plane.sides import outward
-from jointwave.continuum.run import run_of
-from jointwave.continuum.space import basix_versions
-from jointwave.continuum.space.evaluation import on_freedoms, places_in
+from jointwave.continuum.plan import plan_of
+from jointwave.continuum.stepping.static import settled
+from jointwave.continuum.stepping.tractions import SLIDE, history_at_rest
 
 HOLE = Kirsch(radius=1.0, stress=(10e6, 4e6), modulus=5e10, poisson=0.25)
 HALF = 4.0  # m, of the domain's width
 SIZE = 0.25  # m, of triangles
-SIDES = ("left", "right", "bottom", "top")
-SCENE = """
+SIDES = ["left", "right", "bottom", "top"]
+PLACES = [[1.9, 0.2], [0.1, 1.4], [-1.2, 1.3]]
+SCENE = f"""
 title = "a tunnel"
-domain = { mesh = "rock.msh" }
-rock = { density = 2600.0, intact_modulus = 5e10, intact_poisson = 0.25 }
-prestress = { xx = 10e6, yy = 4e6 }
-boundaries = { left = "quiet", right = "quiet", bottom = "quiet", top = "quiet" }
-time = { duration = 1e-3 }
-record = { points = [[1.9, 0.2], [0.1, 1.4], [-1.2, 1.3]] }
+domain = {{ mesh = "rock.msh" }}
+rock = {{ density = 2600.0, intact_modulus = 5e10, intact_poisson = 0.25 }}
+prestress = {{ xx = 10e6, yy = 4e6 }}
+boundaries = {{ left = "quiet", right = "quiet", bottom = "quiet", top = "quiet" }}
+time = {{ duration = 1e-3 }}
+record = {{ points = {PLACES} }}
 """
 FAULT = """
 [[joint_sets]]
@@ -87,48 +87,32 @@ def _written(gmsh, path):
     gmsh.write(str(path))
 
 
-def beyond(body):
-    """Return the forces of what Kirsch's solution adds to the in-situ stress at the sides."""
-    found, (at, weight) = 0.0, basix_versions.quadrature("interval", 8)
-    for side in (body.mesh.sides[name] for name in SIDES):
-        along = np.diff(side.corners, axis=1)
-        x = (side.corners[:, :1] + at * along).reshape(-1, 2)
-        cell = np.repeat(side.cell, len(at))
-        normal = np.repeat(outward(body, side), len(at), axis=0)
-        push = -np.einsum("nij,nj->ni", HOLE.stress_at(x) - np.diag(HOLE.stress), normal)
-        push *= (np.linalg.norm(along[:, 0], axis=1)[:, None] * weight).reshape(-1, 1)
-        basis = places_in(body, cell, x).basis
-        found += on_freedoms(body, cell, np.einsum("qk,qc->qkc", basis, push)[None])[0]
-    return found
-
-
 def excavated(folder, text):
-    """Return the run of a scene at rest around its hole."""
+    """Return the problem of a scene, with what Kirsch's solution adds to the in-situ stress at the
+    sides, and its state at rest around the hole."""
     (folder / "scene.toml").write_text(text)
     (scene,) = load(folder / "scene.toml")
-    run = run_of(scene, "jointed")
-    body = run.discrete.body
-    model = run.model._replace(weight=run.model.weight + beyond(body))
-    settle_static(scene, model, run.state, body)
-    return run
+    problem = plan_of(scene).problem
+    sides = facets_on(problem.body, SIDES)
+    added = np.diag(HOLE.stress) - HOLE.stress_at(sides.place)
+    beyond = forces_on(problem.body, sides, np.einsum("nij,nj->ni", added, sides.normal))
+    problem = problem._replace(steady=problem.steady + beyond)
+    return problem, settled(scene, problem)
 
 
-def errors(run):
+def errors(problem, rest):
     """Return how far displacement and stress are off, over the largest of the displacement and the
     larger in-situ stress; displacement but for a rigid motion."""
-    body, x = run.discrete.body, run.discrete.body.x
-    freedoms = body.freedom(np.arange(len(x))[:, None], np.arange(2))
+    x, read = problem.body.x, problem.readings
     exact = HOLE.displacement_at(x)
     one, none = np.ones(len(x)), np.zeros(len(x))
     rigid = np.stack([[one, none], [none, one], [-x[:, 1], x[:, 0]]]).transpose(2, 1, 0)
-    rigid, off = rigid.reshape(-1, 3), (run.state.u[freedoms] - exact).ravel()
+    rigid, off = rigid.reshape(-1, 3), rest.u - exact.ravel()
     off -= rigid @ np.linalg.lstsq(rigid, off, rcond=None)[0]
-    matrix, added = readings(run.model, run.state)
-    places = np.array(run.scene.record.points)
-    rows = (matrix @ run.state.fields + added)[: 3 * len(places)].reshape(3, -1)
-    tensor = HOLE.stress_at(places)
-    aim = np.stack([tensor[:, 0, 0], tensor[:, 1, 1], tensor[:, 0, 1]])
-    return np.array([np.abs(off).max() / np.abs(exact).max(), np.abs(rows - aim).max() / 10e6])
+    tensor = HOLE.stress_at(np.array(PLACES))
+    aim = np.stack([tensor[:, 0, 0], tensor[:, 1, 1], tensor[:, 0, 1]], axis=1).ravel()
+    stress = read.stress @ rest.u + read.constant
+    return np.array([np.abs(off).max() / np.abs(exact).max(), np.abs(stress - aim).max() / 10e6])
 
 
 @pytest.mark.parametrize(("order", "coarse"), [(1, 16), (2, 8)])
@@ -139,7 +123,7 @@ def test_displacement_and_stress_around_a_tunnel_are_those_of_kirsch(order, coar
     off = []
     for n in (coarse, 2 * coarse):
         rings(tmp_path / "rock.msh", n)
-        off.append(errors(excavated(tmp_path, SCENE + f"numerics.continuum.order = {order}\n")))
+        off.append(errors(*excavated(tmp_path, SCENE + f"numerics.continuum.order = {order}\n")))
     assert (np.log2(off[0] / off[1]) > 1.9).all()
     assert off[1].max() < 2e-3
 
@@ -161,10 +145,10 @@ def test_a_joint_beside_a_tunnel_slips_where_coulombs_criterion_says(tmp_path):
     most = called_for(line).max()
     for share in (1.04, 0.96):
         angle = np.degrees(np.arctan(share * most))
-        run = excavated(tmp_path, SCENE + FAULT + f"friction_angle = {angle}\n")
-        joints, places = run.discrete.joints, run.discrete.jumps.x
-        at_first = joints.prestress[1] / joints.law.shear_stiffness
-        slid, over = run.state.slide[0] != at_first, called_for(places) > share * most
+        problem, rest = excavated(tmp_path, SCENE + FAULT + f"friction_angle = {angle}\n")
+        places = problem.body.joints.place
+        at_first = history_at_rest(problem.points(), problem.parts, 2)
+        slid, over = rest.history[SLIDE] != at_first[SLIDE], called_for(places) > share * most
         assert slid[over].all() and over.any() == (share < 1)
         assert slid.sum() <= over.sum() + 2
         apart = np.hypot(*(places[slid][:, None] - places[over]).T)
