@@ -308,16 +308,16 @@ def leapfrog_for(flags: StepFlags) -> Callable:
         for i in range(c.mass.size):
             s.v_before[i] = s.v[i]
             s.v[i] = c.keep * s.v[i] + c.inverse[i] * w.force[i]
-        q, now = c.quiet, np.empty(dim)
+        q, known = c.quiet, w.braking
         for k in range(q.freedom.shape[0]):
             for a in range(dim):
-                now[a] = s.v[q.freedom[k, a]]
+                known[k, a] = s.v[q.freedom[k, a]]
                 for b in range(dim):
-                    now[a] -= q.beta[k, a, b] * s.v_before[q.freedom[k, b]]
+                    known[k, a] -= q.beta[k, a, b] * s.v_before[q.freedom[k, b]]
             for a in range(dim):
                 found = 0.0
                 for b in range(dim):
-                    found += q.solve[k, a, b] * now[b]
+                    found += q.solve[k, a, b] * known[k, b]
                 s.v[q.freedom[k, a]] = found
             for a in range(dim):
                 braked = 0.0
