@@ -1,0 +1,133 @@
+"""Plane waves at parallel joints in space, as waves in the plane of their travel."""
+
+from math import atan2, degrees
+
+import numpy as np
+import pytest
+
+from jointwave.compare.engines import applies, solve
+from jointwave.compare.exact.rock_mass.field import field_of
+from jointwave.results.stress import tensors
+
+TO_RIGHT, UP = np.array([-0.6, -0.8, 0.0]), np.array([0.0, 0.0, 1.0])  # x and y of the plane
+CENTRE = np.array([30.0, 30.0, 15.0])  # of the plane's [20, 15]
+QUIET = dict.fromkeys(("left", "right", "front", "back", "bottom", "top"), "quiet")
+NORTH = {"dip": 0.0, "through": [0.0, 0.0, 15.0]}
+ALONG = {"polarisation": [0.8, -0.6, 0.0]}  # across the plane
+
+
+def placed(place):
+    return (CENTRE + (place[0] - 20.0) * TO_RIGHT + (place[1] - 15.0) * UP).tolist()
+
+
+def directed(vector):
+    return (vector[0] * TO_RIGHT + vector[1] * UP).tolist()
+
+
+@pytest.fixture
+def in_space(rock_mass, joint, wave):
+    """Return the scene of `rock_mass` in a vertical plane of a box of 60 m by 60 m by 30 m."""
+
+    def scene(waves, **changes):
+        plane = rock_mass(waves=waves)
+        azimuth = degrees(atan2(*-TO_RIGHT[:2])) % 360
+        sets = [joint(dip=25.0, dip_direction=azimuth, through=placed([20.0, 15.0]))]
+        there = []
+        for one in waves:
+            x, y = one["direction"]
+            more = {"direction": directed([x, y]), "through": placed(one["through"])}
+            if one["kind"] == "S":
+                more["polarisation"] = directed([-y, x])
+            there.append(one | more)
+        record = {
+            key: list(map(placed, getattr(plane.record, key))) for key in ("points", "joints")
+        }
+        tables = {"domain": {"size": [60.0, 60.0, 30.0]}, "joint_sets": sets, "waves": there}
+        tables |= {"boundaries": QUIET, "record": record}
+        return plane, rock_mass(**tables | changes)
+
+    return scene
+
+
+@pytest.mark.parametrize("kinds", ["P", "S", "PS"])
+def test_waves_and_joint_of_a_vertical_plane_are_those_of_the_plane(in_space, wave, kinds):
+    waves = [wave(kind=k, direction=[0.28, 0.96], through=[20.0, -25.0]) for k in kinds]
+    plane, space = in_space(waves)
+    flat, found = solve("oblique-joint", plane), solve("oblique-joint", space)
+    axes = np.array([TO_RIGHT, UP])
+    for name in ("velocity", "displacement"):
+        expected = flat[name].values @ axes
+        assert abs(found[name].values - expected).max() < 1e-7 * abs(expected).max()
+    frame = np.array([TO_RIGHT, UP, np.cross(TO_RIGHT, UP)])
+    in_plane, expected = tensors(flat.stress.values), np.zeros((2, len(flat.time), 3, 3))
+    expected[..., :2, :2] = in_plane
+    expected[..., 2, 2] = 0.25 * np.trace(in_plane, axis1=2, axis2=3)
+    expected = frame.T @ expected @ frame
+    assert abs(tensors(found.stress.values) - expected).max() < 1e-7 * abs(expected).max()
+    assert abs(found.gap.values - flat.gap.values).max() < 1e-7 * abs(flat.gap.values).max()
+    slip = np.linalg.norm(found.slip.values, axis=2)
+    assert np.allclose(slip, abs(flat.slip.values), rtol=0, atol=1e-7 * slip.max())
+
+
+def test_the_joint_obeys_its_law_in_its_own_frame(in_space, wave):
+    """Traction is minus the stiffness times the jump, across and along strike and dip, whatever the
+    two planes in which the waves travel."""
+    _, scene = in_space([wave(direction=[0.28, 0.96], through=[20.0, -25.0])])
+    other = scene.waves[0].model_copy(update={"direction": [0.352, 0.0, 0.936]})
+    scene = scene.model_copy(update={"waves": [*scene.waves, other]})
+    found = solve("oblique-joint", scene)
+    jump = np.concatenate([found.gap.values[..., None], found.slip.values], axis=2)
+    expected = -np.array([1e10, 4e9, 4e9]) * jump
+    size = abs(expected).max()
+    assert abs(found.traction.values - expected).max() < 1e-6 * size
+    assert abs(expected).max(axis=(0, 1)).min() > 0.01 * size
+
+
+def test_the_field_on_sides_is_that_of_the_solution(in_space, wave):
+    waves = [wave(direction=[0.28, 0.96], through=[20.0, -25.0])]
+    _, scene = in_space(waves)
+    exact = solve("oblique-joint", scene)
+    velocity, stress = field_of(scene)(np.array(scene.record.points), exact.time.values)
+    assert abs(velocity.swapaxes(1, 2) - exact.velocity.values).max() < 1e-8
+    assert abs(stress.swapaxes(1, 2) + exact.stress.values).max() < 1e-8 * 1e6 * 10
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"kind": "S", **ALONG}, "moves rock along the joints, across its plane of incidence"),
+        ({"direction": [0.8, -0.6, 0.0]}, "travels along the joints"),
+    ],
+)
+def test_other_waves_have_no_solution(in_space, wave, changes, reason):
+    _, scene = in_space([wave(direction=[0.28, 0.96], through=[20.0, -25.0])])
+    one = scene.waves[0].model_copy(update=changes)
+    answer = applies("oblique-joint", scene.model_copy(update={"waves": [one]}))
+    assert answer.reason == f"waves[0] {reason}"
+
+
+@pytest.mark.parametrize("kind", ["P", "S"])
+def test_a_free_face_along_the_joints_sends_waves_back(rock_mass, joint, wave, kind):
+    """Twice the pulse, the way it moves rock, behind a joint too stiff to be met."""
+    more = {"polarisation": [0.6, 0.8, 0.0]} if kind == "S" else {}
+    up = wave(kind=kind, direction=[0.0, 0.0, 1.0], **more)
+    beside = "roller" if kind == "P" else "quiet"
+    sides = dict.fromkeys(("left", "right", "front", "back"), beside)
+    stiff = joint(**NORTH, normal_stiffness=1e18, shear_stiffness=1e18)
+    scene = rock_mass(
+        domain={"size": [20.0, 20.0, 30.0]},
+        joint_sets=[stiff],
+        waves=[up],
+        boundaries=sides | {"bottom": "quiet", "top": "free"},
+        record={"points": [[10.0, 10.0, 0.0], [10.0, 10.0, 30.0]], "joints": []},
+    )
+    assert not applies("oblique-joint", scene)
+    assert applies("parallel-joints", scene)
+    found = solve("parallel-joints", scene).velocity.values
+    way = np.array(more.get("polarisation", [0.0, 0.0, 1.0]))
+    speed = {"P": 4898.979, "S": 2828.427}[kind]
+    assert abs(found @ way).max(axis=1)[1] == pytest.approx(2e6 / (2500 * speed), rel=1e-3)
+    across = found - (found @ way)[..., None] * way
+    assert abs(across).max() < 1e-6 * abs(found).max()
+    bottom = field_of(scene)(np.array(scene.record.points), np.linspace(0, 0.03, 301))
+    assert abs(bottom.velocity.swapaxes(1, 2) - found).max() < 1e-6 * abs(found).max()
