@@ -1,90 +1,158 @@
-"""The order of the elements and of the step, by a manufactured motion of the whole body."""
+"""The order of the elements and of the step, by a manufactured motion g(t) U(x) of a whole body."""
 
 from functools import cache
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 import pytest
-from scipy.sparse import csr_matrix
 
-from jointwave.continuum.explicit.critical import critical_time_step
-from jointwave.continuum.explicit.march import march
-from jointwave.continuum.implicit.balance import implicit_matrices
-from jointwave.continuum.implicit.run import Implicit
-from jointwave.continuum.model import Ends, Model, Receivers, RockOperators
-from jointwave.continuum.space.body import whole
-from jointwave.continuum.space.operator import zeros
-from jointwave.continuum.state import empty_samples, state_at_rest
+from closed_forms.manufactured import Manufactured
+from jointwave.continuum.mesh.conforming import Conforming, facets_of
+from jointwave.continuum.mesh.domain import Marks
+from jointwave.continuum.space import compat
+from jointwave.continuum.space.build import build_body
+from jointwave.continuum.space.evaluation import (
+    Places,
+    at_reference,
+    jacobians,
+    nodes_of_cells,
+    tabulate,
+)
+from jointwave.continuum.space.model import Body
+from jointwave.continuum.space.rock import isotropic
+from jointwave.continuum.stepping.implicit import Implicit
+from jointwave.continuum.stepping.steps import Leapfrog, Problem
+from tests.continuum.stacked import readings
 
-#: Kind, order p, cells a side of the coarser mesh, and the order of convergence.
+DENSITY, LAME, SHEAR = 2400.0, 4e9, 3.8e9
+#: Kind, order p, and cells a side of the coarser mesh.
 MESHES = [
-    ("quadrilateral", 1, 8, 2),
-    ("quadrilateral", 2, 4, 3),
-    ("quadrilateral", 3, 3, 4),
-    ("quadrilateral", 4, 2, 5),
-    ("hexahedron", 1, 4, 2),
-    ("hexahedron", 2, 2, 3),
-    ("hexahedron", 3, 2, 4),
-    ("hexahedron", 4, 1, 5),
-    ("triangle", 1, 8, 2),
-    ("triangle", 2, 4, 2),
-    ("tetrahedron", 1, 4, 2),
-    ("tetrahedron", 2, 3, 2),
+    *(("quadrilateral", p, count) for p, count in ((1, 8), (2, 4), (3, 3), (4, 2))),
+    *(("hexahedron", p, count) for p, count in ((1, 4), (2, 2), (3, 2))),
+    *(("triangle", p, count) for p, count in ((1, 8), (2, 4))),
+    *(("tetrahedron", p, count) for p, count in ((1, 4), (2, 3))),
 ]
-SIMPLICES = ("triangle", "tetrahedron")
-DEAR = ("hexahedron", 3)  # to factorise: implicit steps take orders 1, 2 and 4 by default
+SIMPLICES = {"triangle": [[0, 1, 3], [0, 2, 3]]}
+SIMPLICES["tetrahedron"] = [[0, a, a + b, 7] for a in (1, 2, 4) for b in (1, 2, 4) if a != b]
+WAVES = np.array([[1.9, 0.7, -0.4], [-0.6, 2.3, 0.5], [0.8, -0.5, 1.6]])  # 1/m
+PHASES = np.array([0.3, -0.5, 0.8])
 END = 1e-3  # s, 0.6 of a period
+NEVER = 10**9  # steps between samples
 
 
-def model_of(problem, dt):
-    """Return the constants of a run of the body alone, whose weight may change from step to step:
-    it is the load."""
-    body, n = problem.body, problem.body.mass.size
-    none = csr_matrix((0, n))
-    return Model(
-        rock=RockOperators(body.stiffness, None, body.mass, dt / body.mass, None),
-        interfaces=None,
-        ends=Ends(None, None, None),
-        weight=zeros(n),
-        receivers=Receivers(none, None, none, None, none, None),
-        dt=dt,
-    )
+class Moved(NamedTuple):
+    """A body that the force g'' inertia + g elastic (N) on its freedoms moves as g(t) U(x).
+
+    at, x, volume : quadrature points in all cells, their places (m) and volumes (m2 or m3).
+    """
+
+    body: Body
+    motion: Manufactured
+    at: Places
+    x: np.ndarray
+    volume: np.ndarray
+    inertia: np.ndarray
+    elastic: np.ndarray
+
+    def error(self, u: np.ndarray) -> float:
+        """Return the distance of u [freedoms] from U at the end, over U, in the L2 norm."""
+        exact = self.motion.history(END) * self.motion.displacement(self.x)
+        nodes = u.reshape(-1, self.body.components)[nodes_of_cells(self.body)[self.at.cell]]
+        off = np.einsum("nk,nkc->nc", self.at.basis, nodes) - exact
+        return float(np.sqrt((self.volume @ off**2).sum() / (self.volume @ exact**2).sum()))
 
 
-def drive(problem, dt, steps, inertia):
+class Load:
+    """The force of a moved body at steps dt (s); inertia : g'' (1/s2) at a time (s)."""
+
+    def __init__(self, moved, dt, inertia):
+        self.moved, self.dt, self.inertia = moved, dt, inertia
+        self.freedom = np.arange(moved.inertia.size)
+
+    def at(self, first, last):
+        times = self.dt * np.arange(first, last)
+        inertia, history = (
+            np.array([of(t) for t in times]) for of in (self.inertia, self.moved.motion.history)
+        )
+        return np.outer(inertia, self.moved.inertia) + np.outer(history, self.moved.elastic)
+
+
+@cache
+def moved(kind, order, count, consistent=False) -> Moved:
+    """Return a unit square or cube (m) of skewed cells, `count` a side, under that motion."""
+    x, cells = unit_cube(kind, count)
+    dim = x.shape[1]
+    x = x + 0.08 * np.sin(np.pi * x) * np.roll(np.cos(2 * np.pi * x), 1, axis=1)
+    block, on = np.zeros(len(cells), int), np.full((len(cells), len(facets_of(kind))), -1)
+    none = Marks(np.zeros(0, int), np.zeros(0, int), ())
+    mesh = Conforming(kind, x, cells, block, on)
+    body = build_body(
+        mesh, none, order, lambda space, _: isotropic(space, DENSITY, LAME, SHEAR),
+        consistent=consistent,
+    )  # fmt: skip
+    motion = Manufactured(WAVES[:dim, :dim], PHASES[:dim], 4000.0, 0.4)
+    points, weights = compat.quadrature(kind, 2 * order + 4)
+    cell, local = np.repeat(np.arange(len(cells)), len(points)), np.tile(points, (len(cells), 1))
+    at = at_reference(body, cell, cell, local)
+    corners = compat.cell_corners(body.mesh)[cell]
+    places = np.einsum("nv,nvd->nd", tabulate(kind, corners.shape[1], local)[0], corners)
+    volume = np.abs(np.linalg.det(jacobians(kind, corners, local))) * np.tile(weights, len(cells))
+    stress = motion.stress(places, LAME, SHEAR)
+    inertia = DENSITY * at.basis[:, :, None] * motion.displacement(places)[:, None]
+    elastic = np.einsum("nkj,ncj->nkc", at.gradient, stress)
+    forces = (summed(body, cell, volume[:, None, None] * one) for one in (inertia, elastic))
+    return Moved(body, motion, at, places, volume, *forces)
+
+
+def unit_cube(kind, count):
+    """Return vertices and cells of a unit square or cube; simplices are halves of the square's
+    cells by one diagonal, or Kuhn's six of the cube's."""
+    dim = 2 if kind in ("quadrilateral", "triangle") else 3
+    x = np.array(list(product(range(count + 1), repeat=dim))) / count
+    corner = np.array(list(product(range(2), repeat=dim)))[:, ::-1]
+    first = np.array(list(product(range(count), repeat=dim)))
+    cells = (first[:, None] + corner) @ (count + 1) ** np.arange(dim)[::-1]
+    if kind in SIMPLICES:
+        cells = np.concatenate([cells[:, path] for path in SIMPLICES[kind]])
+    return x, cells
+
+
+def summed(body, cell, values):
+    """Return the sum [freedoms] of values [n, nodes of a cell, d] of cells [n]."""
+    found = np.zeros((len(body.x), body.components))
+    np.add.at(found, nodes_of_cells(body)[cell], values)
+    return found.ravel()
+
+
+def free(one):
+    """Return the problem of a body alone."""
+    return Problem(one.body, readings(one.body))
+
+
+def drive(one, dt, steps, inertia):
     """Return the displacement after so many steps dt (s) of leapfrog from the exact start.
 
     inertia : g'' (1/s2) at a time (s).
     """
-    model, g, start = model_of(problem, dt), problem.motion.history, problem.at_nodes()
-    state = state_at_rest(model, keep_ledger=False)
-    state.u[:], state.v[:] = g(0.0) * start, (g(0.0) - g(-dt)) / dt * start
-    leapfrog = march(model, state, empty_samples(model, state, 1), steps, None)
-    for k in range(steps):
-        t = k * dt
-        model.weight[:] = inertia(t) * problem.inertia + g(t) * problem.elastic
-        leapfrog(k, k + 1)
-    return state.u
+    g, start = one.motion.history, one.motion.displacement(one.body.x).ravel()
+    leapfrog = Leapfrog(free(one)._replace(forces=Load(one, dt, inertia)), dt, 1, energy=False)
+    leapfrog.start(g(0.0) * start)
+    leapfrog.throw((g(0.0) - g(-dt)) / dt * start)
+    leapfrog.take(0, steps, NEVER)
+    return leapfrog.u
 
 
-def stiffness(body):
-    """Return the stiffness matrix of a body, N/m."""
-    return whole(body.layout, body.mesh, body.blocks)
-
-
-def drive_implicitly(problem, dt, steps, frequency, rho=1.0):
+def drive_implicitly(one, dt, steps, frequency, rho=1.0):
     """Return the displacement after so many implicit steps dt (s) of spectral radius rho, from the
     exact start; frequency : rad/s, that velocity and inertia of the motion are taken with."""
-    model, motion, start = model_of(problem, dt), problem.motion, problem.at_nodes()
-    state = state_at_rest(model, keep_ledger=False)
-    speed = frequency * np.cos(motion.start)
-    state.u[:], state.v[:] = motion.history(0.0) * start, speed * start
-    samples = empty_samples(model, state, 1)
-    stepper = Implicit(model, state, samples, implicit_matrices(problem.body), rho)
-    for k in range(steps + 1):
-        load = problem.elastic - frequency**2 * problem.inertia
-        model.weight[:] = motion.history(k * dt) * load
-        stepper.run(steps + 1, k, k + 1)
-    return state.u
+    motion, start = one.motion, one.motion.displacement(one.body.x).ravel()
+    load = Load(one, dt, lambda t: -(frequency**2) * motion.history(t))
+    own = Implicit(free(one)._replace(forces=load), dt, 1, rho, energy=False)
+    own.now.u[:] = motion.history(0.0) * start
+    own.now.v[:] = frequency * np.cos(motion.start) * start
+    own.take(0, steps + 1, NEVER)
+    return own.u
 
 
 def trapezoids_own(motion, dt):
@@ -93,100 +161,60 @@ def trapezoids_own(motion, dt):
     return 2 / dt * np.tan(motion.omega * dt / 2)
 
 
-def steps_of(problem, fraction):
-    """Return how many equal steps of this fraction of the critical one reach the end."""
-    critical = critical_time_step(problem.body.mass, stiffness(problem.body))
-    return int(np.ceil(END / (fraction * critical)))
-
-
 def leapfrogs_own(motion, dt):
     """Return g'' as leapfrog takes it, by differences: under it, its steps make no error."""
     g = motion.history
     return lambda t: (g(t + dt) - 2 * g(t) + g(t - dt)) / dt**2
 
 
-@pytest.mark.parametrize("kind", ["quadrilateral", "tetrahedron"])
-def test_the_loads_balance_the_motion(problem, kind):
-    """rho u'' is the body force and the divergence of the stress: here by central differences."""
-    motion, h = problem(kind, 1, 1).motion, 1e-5
-    dim, lame = len(motion.phase), (3e9, 2e9)
-    x = np.random.default_rng(0).random((20, dim))
-    steps = h * np.eye(dim)
-    gradient = np.stack(
-        [(motion.displacement(x + d) - motion.displacement(x - d)) / (2 * h) for d in steps], axis=2
-    )
-    trace = np.trace(gradient, axis1=1, axis2=2)[:, None, None] * np.eye(dim)
-    stress = lame[0] * trace + lame[1] * (gradient + gradient.transpose(0, 2, 1))
-    assert np.abs(motion.stress(x, *lame) - stress).max() < 1e-8 * np.abs(stress).max()
-    divergence = sum(
-        (motion.stress(x + d, *lame) - motion.stress(x - d, *lame))[:, :, j] / (2 * h)
-        for j, d in enumerate(steps)
-    )
-    exact = motion.divergence(x, *lame)
-    assert np.abs(exact - divergence).max() < 1e-8 * np.abs(exact).max()
+def steps_of(one):
+    """Return how many equal steps of 0.9 of the critical one reach the end."""
+    return int(np.ceil(END / (0.9 * free(one).critical_step())))
 
 
-@pytest.mark.parametrize("distorted", [False, True], ids=["straight", "distorted"])
-@pytest.mark.parametrize("kind, order, count, expected", MESHES)
-def test_order_of_the_elements(problem, kind, order, count, expected, distorted):
-    """The displacement converges at p + 1 in the L2 norm, with steps that make no error.
-
-    Lumped quadratic simplices converge at 2: the diagonal of their mass, scaled, integrates only
-    linear functions exactly, and the error of a smooth load is second order (Strang & Fix, An
-    Analysis of the Finite Element Method, 1973, section 4.3).
-    """
+@pytest.mark.parametrize("kind, order, count", MESHES)
+def test_order_of_the_elements(kind, order, count):
+    """The displacement converges at p + 1 in the L2 norm, with steps that make no error."""
     errors = []
     for cells in (count, 2 * count):
-        one = problem(kind, cells, order, distorted)
-        steps = steps_of(one, 0.9)
-        u = drive(one, END / steps, steps, leapfrogs_own(one.motion, END / steps))
-        errors.append(one.error(u, one.motion.history(END)))
+        one = moved(kind, order, cells)
+        dt = END / steps_of(one)
+        u = drive(one, dt, steps_of(one), leapfrogs_own(one.motion, dt))
+        errors.append(one.error(u))
     rate = np.log2(errors[0] / errors[1])
-    assert expected - 0.2 < rate < expected + 0.5
+    assert order + 1 - 0.2 < rate < order + 1 + 0.5
 
 
-@pytest.mark.parametrize(
-    "kind, order, count, expected, consistent",
-    [pytest.param(*mesh, False, marks=[pytest.mark.slow] * (mesh[:2] == DEAR)) for mesh in MESHES]
-    + [(*mesh[:3], mesh[1] + 1, True) for mesh in MESHES if mesh[0] in SIMPLICES],
-)
-def test_order_of_the_elements_in_implicit_steps(problem, kind, order, count, expected, consistent):
-    """The same orders; p + 1 for quadratic simplices too, where their mass is consistent. Steps of
-    any length make no error."""
+@pytest.mark.parametrize("kind, order, count", [mesh for mesh in MESHES if mesh[0] in SIMPLICES])
+def test_order_of_simplices_of_consistent_mass(kind, order, count):
+    """p + 1, too, by implicit steps, which make no error at any length."""
     errors, dt = [], END / 10
     for cells in (count, 2 * count):
-        one = problem(kind, cells, order, True, consistent)
+        one = moved(kind, order, cells, consistent=True)
         u = drive_implicitly(one, dt, 10, trapezoids_own(one.motion, dt))
-        errors.append(one.error(u, one.motion.history(END)))
+        errors.append(one.error(u))
     rate = np.log2(errors[0] / errors[1])
-    assert expected - 0.2 < rate < expected + 0.5
+    assert order + 1 - 0.2 < rate < order + 1 + 0.5
 
 
 @pytest.mark.parametrize("kind", ["quadrilateral", "hexahedron"])
-def test_order_of_the_step(problem, kind):
+def test_order_of_the_step(kind):
     """Two: the distance from the steps under leapfrog's own inertia, which make no error."""
-    one, errors = problem(kind, 1, 4), []
-    coarsest = steps_of(one, 0.9)
-    for steps in (coarsest, 2 * coarsest, 4 * coarsest):
+    one, errors = moved(kind, 4, 1), []
+    for steps in (steps_of(one), 2 * steps_of(one), 4 * steps_of(one)):
         dt = END / steps
         u = drive(one, dt, steps, one.motion.acceleration)
         errors.append(np.linalg.norm(u - drive(one, dt, steps, leapfrogs_own(one.motion, dt))))
     assert np.diff(-np.log2(errors)) == pytest.approx([2, 2], abs=0.02)
 
 
-@cache
-def without_error_of_steps(problem, kind, steps):
-    """Return the displacement of one cell of order 4 at the end, after trapezoidal steps."""
-    one, dt = problem(kind, 1, 4), END / steps
-    return drive_implicitly(one, dt, steps, trapezoids_own(one.motion, dt))
-
-
 @pytest.mark.parametrize("rho", [1.0, 0.5, 0.0])
-@pytest.mark.parametrize("kind", ["quadrilateral", "hexahedron"])
-def test_order_of_the_implicit_step(problem, kind, rho):
+def test_order_of_the_implicit_step(rho):
     """Two for every spectral radius: the distance from steps that make no error."""
-    one, errors = problem(kind, 1, 4), []
+    one, errors = moved("quadrilateral", 4, 1), []
     for steps in (60, 120, 240):
-        u = drive_implicitly(one, END / steps, steps, one.motion.omega, rho)
-        errors.append(np.linalg.norm(u - without_error_of_steps(problem, kind, steps)))
+        dt = END / steps
+        u = drive_implicitly(one, dt, steps, one.motion.omega, rho)
+        exact = drive_implicitly(one, dt, steps, trapezoids_own(one.motion, dt))
+        errors.append(np.linalg.norm(u - exact))
     assert np.diff(-np.log2(errors)) == pytest.approx([2, 2], abs=0.05)

@@ -8,10 +8,9 @@ nothing of the operators cancels (manufactured solutions: Roache, J. Fluids Eng.
 In isotropic rock with Lame's constants lambda and G and density rho
 
     sigma_ij = g (lambda delta_ij sum_l D_ll + G (D_ij + D_ji)),   D_ij = k_ij cos(theta_i)
-    (div sigma)_i = -g ((lambda + G) sum_j k_ji k_jj sin(theta_j) + G |k_i|^2 sin(theta_i))
 
-and the body force is rho u'' - div sigma, the traction on the surface sigma n. In dim 2 lambda is
-that of plane stress. g(t) = sin(omega t + psi).
+and the body force is rho u'' - div sigma, the traction on the surface sigma n: on a test function v
+both together do the work of rho u'' . v + sigma : grad v. g(t) = sin(omega t + psi).
 """
 
 from typing import NamedTuple
@@ -48,12 +47,6 @@ class Manufactured(NamedTuple):
         dilatation = np.trace(gradient, axis1=1, axis2=2)
         symmetric = gradient + gradient.transpose(0, 2, 1)
         return lame * dilatation[:, None, None] * np.eye(len(self.wave)) + shear * symmetric
-
-    def divergence(self, x: np.ndarray, lame: float, shear: float) -> np.ndarray:
-        """Return div sigma / g [n, dim] (N/m3); lambda and G in Pa."""
-        wave = np.sin(self._angle(x))
-        volume = (wave * np.diag(self.wave)) @ self.wave
-        return -(lame + shear) * volume - shear * (self.wave**2).sum(axis=1) * wave
 
     def _angle(self, x: np.ndarray) -> np.ndarray:
         return x @ self.wave.T + self.phase
