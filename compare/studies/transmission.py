@@ -105,12 +105,13 @@ def _period(scene: AnyScene, frequency: float | None) -> float:
 def _joints_of(scene: RockMass, period: float) -> ParallelJoints:
     """Return the joints of a rock mass; raises SceneError where they are no series of joints."""
     reasons = [
+        (scene.in_space, "it is in space"),
         (not scene.joint_sets, "there is no joint"),
         (bool(scene.regions), "regions differ in rock"),
         (bool(scene.domain.holes), "openings cut the joints"),
         (not all_parallel(scene), "joints are not parallel"),
     ]
-    why = beyond_linear_rock(scene) or next((why for there, why in reasons if there), None)
+    why = next((why for there, why in reasons if there), None) or beyond_linear_rock(scene)
     if why:
         raise SceneError(scene.where, "", None, f"{NONE}: {why}")
     stack = stack_of(scene)

@@ -143,3 +143,34 @@ def test_it_holds_for_crossing_spaced_linear_sets_alone(crossed, joint, wave):
     begun = crossed(waves=[wave(through=[0.0, 5.0])])
     expected = "a pulse is inside the domain before t = 0"
     assert applies("effective-medium", begun).reason == expected
+
+
+@pytest.mark.parametrize("kind", ["P", "S"])
+def test_homogenised_rock_in_space_carries_the_waves_of_its_medium(rock_mass, joint, wave, kind):
+    """Of three sets across each other, of which two shear: an S wave along the vertical moves rock
+    as it is polarised, though all of that direction have one speed."""
+    law = {"spacing": 10.0, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    dips = ({"dip": 0.0}, {"dip": 90.0, "dip_direction": 0.0}, {"dip": 90.0, "dip_direction": 90.0})
+    sets = [
+        joint(name=f"set {k}", through=[5.0, 5.0, 5.0], **dip, **law) for k, dip in enumerate(dips)
+    ]
+    more = {"polarisation": [0.6, 0.8, 0.0]} if kind == "S" else {}
+    scene = rock_mass(
+        domain={"size": [20.0, 20.0, 30.0]},
+        joint_sets=sets,
+        waves=[wave(kind=kind, direction=[0.0, 0.0, 1.0], period=0.02, **more)],
+        boundaries=dict.fromkeys(("left", "right", "front", "back", "bottom", "top"), "quiet"),
+        time={"duration": 0.06},
+        record={"points": [[8.0, 9.0, 11.0]], "joints": []},
+        numerics={"continuum": {"size": 5.0}},
+    )
+    assert applies("effective-medium", scene)
+    exact, found = (solve(name, scene) for name in ("effective-medium", "continuum-equivalent"))
+    peak = abs(exact.velocity.values).max()
+    assert abs(found.velocity.values - exact.velocity.values).max() < 0.02 * peak
+    way = np.array(more.get("polarisation", [0.0, 0.0, 1.0]))
+    assert abs(np.cross(exact.velocity.values, way)).max() < 1e-9 * peak
+    if kind == "S":
+        arrival = float(exact.time[np.abs(exact.velocity.values[0] @ way).argmax()])
+        slowness = np.sqrt(2500 * (1 / 2e10 + 2 / (4e9 * 10.0)))
+        assert arrival == pytest.approx(1.5 * 0.02 + 11.0 * slowness, abs=2e-4)
