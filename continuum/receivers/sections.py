@@ -31,6 +31,7 @@ from jointwave.continuum.space.model import Body
 from jointwave.continuum.space.rock import Material
 
 NEAR = 1e-9  # of the pillar: when a section is on a joint
+COVERS = 1e-6  # of a section: what joints that it is on may leave uncovered
 PER_SIDE = 8  # Gauss points across a section that the mesh does not follow
 CURL = np.array([[[0, 0, 0], [0, 0, 1], [0, -1, 0]], [[0, 0, -1], [0, 0, 0], [1, 0, 0]],
                  [[0, 1, 0], [-1, 0, 0], [0, 0, 0]]])  # fmt: skip
@@ -100,11 +101,14 @@ def _section(
 
 
 def on_joint(body: Body, y: float) -> np.ndarray:
-    """Return which points of joints a section at y is on, bool [points]."""
+    """Return which points of joints a section at y is on, bool [points]: none where they do not
+    cover it, as those of an inclined joint."""
     if body.joints is None:
         return np.zeros(0, bool)
-    place = body.joints.place[:, axis_of(body)]
-    return np.abs(place - y) <= NEAR * float(np.ptp(body.x[:, axis_of(body)]))
+    along, extent = axis_of(body), np.ptp(compat.cell_corners(body.mesh), axis=(0, 1))
+    on = np.abs(body.joints.place[:, along] - y) <= NEAR * extent[along]
+    covered = body.joints.weight[on].sum() / np.delete(extent, along).prod()
+    return on & (covered > 1 - COVERS)
 
 
 def _contact(body: Body, on: np.ndarray) -> csr_matrix:

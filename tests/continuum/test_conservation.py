@@ -1,4 +1,5 @@
-"""Momentum of free bodies, drag on rock that drifts, and weight on joints of friction alone."""
+"""Momentum of free bodies, mirrored blows, drag on rock that drifts, and weight on joints of
+friction alone."""
 
 import numpy as np
 import pytest
@@ -38,6 +39,34 @@ def test_momenta_are_the_impulse_of_the_load(dim, joints):
     np.testing.assert_allclose(found, turn, atol=1e-11 * np.abs(turn).max())
     if joints == "slip":
         assert steps.state.sums[1] > 0
+
+
+KINDS = {
+    "elastic": {},
+    "slip": {"friction_angle": 20.0, "cohesion": 1e4},
+    "no tension": {"tension": False},
+}
+
+
+@pytest.mark.parametrize("mirror", [0, 2], ids=["x", "z"])
+@pytest.mark.parametrize("joints", KINDS)
+def test_a_mirrored_blow_gives_the_mirrored_motion(joints, mirror, short):
+    """x to -x: the displacement along x and the turns about y and z change their signs; z alike."""
+    signs = np.ones(3)
+    signs[mirror] = -1
+
+    def struck(signs):
+        way, at = signs * [0.48, 0.6, -0.64], signs[[0, 2]] * [0.1, -0.05]
+        load = {"shape": "sine", "amplitude": 1e5, "period": 1e-3}
+        load |= {"direction": way.tolist(), "at": at.tolist()}
+        scene = short(load=load, joints=KINDS[joints], numerics__continuum__order=1)
+        return simulate(scene, dim=3)
+
+    one, other = struck(np.ones(3)), struck(signs)
+    changes = {"stress": 1.0, "shear": signs[[0, 2]], "velocity": signs, "rotation": -signs}
+    for name, change in changes.items():
+        known = one[name].values * change
+        assert np.abs(other[name].values - known).max() < 1e-10 * np.abs(known).max() > 0
 
 
 def test_drag_on_rock_that_drifts_strains_nothing():

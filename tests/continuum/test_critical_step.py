@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_matrix
 
 from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.continuum import simulate
+from jointwave.continuum.stepping.critical import critical_step
 
 SHORT = {"load__amplitude": 1.0, "pillar__length": 4.0}
 LAYER = {"soft_layers": [{"y": 2.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.1}]}
@@ -123,3 +125,39 @@ def test_run_that_was_forced_above_the_critical_step_is_stopped_and_dated(pillar
     scene = pillar(numerics__continuum__step_fraction=1.2, numerics__continuum__allow_unstable=True)
     with pytest.raises(UnstableError, match=r"diverged at t = .* s, step \d+ of .* times the"):
         simulate(scene)
+
+
+def of_matrices(stiffness, viscosity):
+    """Return the critical step of masses of 1 kg on springs and dashpots, s."""
+    matrices = csr_matrix(stiffness), None if viscosity is None else csr_matrix(viscosity)
+    return critical_step(np.ones(len(stiffness)), *matrices, np.zeros(0, int))
+
+
+def test_critical_step_of_one_freedom():
+    """omega = 3: 2/3 s. With a dashpot of C / M = 2: 9 dt^2 + 8 dt = 4, 2 (sqrt(13) - 2) / 9 s."""
+    spring, dashpot = np.array([[9.0]]), np.array([[2.0]])
+    assert of_matrices(spring, None) == pytest.approx(2 / 3, rel=1e-15)
+    damped = 2 * (np.sqrt(13) - 2) / 9
+    assert of_matrices(spring, dashpot) == pytest.approx(damped, rel=1e-12)
+
+
+def test_critical_step_where_dashpots_decide_the_mode():
+    """The stiffest freedom is bounded by 2/3 s, the most damped one, 1 + 16 dt = 4 / dt, by less:
+    (sqrt(68) - 8) s = 0.2462 s."""
+    found = of_matrices(np.diag([9.0, 1.0]), np.diag([0.0, 4.0]))
+    assert found == pytest.approx(np.sqrt(68) - 8, rel=1e-12)
+
+
+def test_critical_step_of_modes_that_dashpots_turn():
+    """The largest eigenvalue of dt^2 K + 4 dt C is 4, of no mode of either alone; to the square of
+    the change of 1e-6 at which the search ends."""
+    springs, dashpots = np.random.default_rng(4).standard_normal((2, 6, 6))
+    k, c = springs @ springs.T, 0.2 * dashpots @ dashpots.T
+    dt = of_matrices(k, c)
+    largest = np.linalg.eigvalsh(dt**2 * k + 4 * dt * c)[-1]
+    assert largest == pytest.approx(4.0, rel=1e-10)
+
+
+def test_freedoms_whose_motion_is_given_do_not_bound_it():
+    found = critical_step(np.ones(2), csr_matrix(np.diag([9.0, 1.0])), None, np.array([0]))
+    assert found == pytest.approx(2.0, rel=1e-15)

@@ -1,0 +1,109 @@
+"""What points and sections of pillars read, against motions whose values are known."""
+
+import numpy as np
+import pytest
+
+from jointwave.cases.material.calibrate import calibrate
+from jointwave.continuum.receivers.sections import points_on_axis, sections
+from jointwave.continuum.scene import body_of
+from tests.continuum.drawing import drawn
+
+BOXES = [(1, "hexahedron", order) for order in (1, 3)]
+BOXES += [(2, "hexahedron", order) for order in (1, 2, 4)]
+BOXES += [(3, "hexahedron", order) for order in (1, 2)]
+SIMPLICES = [(2, "simplex", 1), (2, "simplex", 2), (3, "simplex", 1)]
+kinds = ("dim", "cell", "order")
+
+SIDE, PLACES = 0.4, [0.0, 0.11, 0.25, 0.5, 0.77, 1.23, 1.5]  # m
+
+#: m/m; du/dx of a motion that strains, shears and turns.
+GRADIENT = np.array([[0.3, -0.5, 0.2], [0.4, 0.7, -0.6], [-0.1, 0.9, 0.5]])
+
+
+@pytest.fixture
+def homogenised(column):
+    """Return a function that gives a scene of damped rock, and its body."""
+
+    def made(dim, cell, order, **keys):
+        scene = column(**{f"numerics__continuum__{key}": value for key, value in {
+            "cell": cell, "order": order, "elements_per_block": 1, "elements_across": 1,
+        }.items()}, joints__damping_ratio=0.05, **keys)  # fmt: skip
+        return scene, body_of(scene, "equivalent", dim=dim)
+
+    return made
+
+
+def affine(body) -> np.ndarray:
+    """Return the displacement of GRADIENT, of all freedoms, m."""
+    dim = body.components
+    return (body.x @ GRADIENT[:dim, :dim].T).ravel()
+
+
+def uniform_force(modulus: float, poisson: float, dim: int) -> np.ndarray:
+    """Return the force on what lies beyond a section of GRADIENT, along y, then x and z, of the
+    body of that dimension; plane stress in two."""
+    a = GRADIENT[:dim, :dim]
+    if dim == 1:
+        return -modulus * a[0]
+    strain, shear = (a + a.T) / 2, modulus / (2 * (1 + poisson))
+    lame = 2 * shear * poisson / (1 - poisson if dim == 2 else 1 - 2 * poisson)
+    stress = lame * np.trace(strain) * np.eye(dim) + 2 * shear * strain
+    return -(SIDE ** (dim - 1)) * stress[[1, 0, 2][:dim], 1]
+
+
+@pytest.mark.parametrize(kinds, [one for one in BOXES + SIMPLICES if one[0] > 1])
+def test_rotation_is_half_the_curl(dim, cell, order, homogenised):
+    """Of an affine motion, everywhere: (A - A^T) / 2 as a vector; in the plane about z alone."""
+    body, a = homogenised(dim, cell, order)[1].body, np.zeros((3, 3))
+    a[:dim, :dim] = GRADIENT[:dim, :dim]
+    turn = (points_on_axis(body, PLACES) @ affine(body))[dim * len(PLACES) :].reshape(-1, 3)
+    curl = np.array([a[2, 1] - a[1, 2], a[0, 2] - a[2, 0], a[1, 0] - a[0, 1]])
+    np.testing.assert_allclose(turn, np.tile(curl / 2, (len(PLACES), 1)), atol=1e-12)
+
+
+@pytest.mark.parametrize(kinds, BOXES + SIMPLICES)
+def test_sections_read_uniform_stress_exactly(dim, cell, order, homogenised):
+    """Compression and the shear along x and z, as the force on what lies beyond; and that of the
+    dashpots of a rate."""
+    scene, found = homogenised(dim, cell, order)
+    rock, u = calibrate(scene).each[0], affine(found.body)
+    read = sections(found.body, found.materials, found.of_cell, PLACES[1:-1])
+    force = uniform_force(rock.modulus, rock.poisson, dim)
+    for matrix, expected in ((read.elastic, force), (read.viscous, rock.time_constant * force)):
+        values = (matrix @ u).reshape(-1, dim)
+        assert np.abs(values - expected).max() < 1e-11 * np.abs(expected).max()
+    assert bool(read.inertia.nnz) == (cell == "hexahedron")
+
+
+@pytest.mark.parametrize("kind", ["quadrilateral", "hexahedron"])
+def test_sections_of_skewed_cells_read_uniform_stress_exactly(kind, column, tmp_path):
+    """Between joints that are inclined, where no layer of cells has faces across the pillar."""
+    dim = {"quadrilateral": 2, "hexahedron": 3}[kind]
+    path = drawn(tmp_path / "skewed.msh", kind, [(0.4, 0.6), (1.1, 0.9)])
+    scene = column(path, joints__damping_ratio=None)
+    found, rock = body_of(scene, "jointed", dim=dim), scene.rock
+    read = sections(found.body, found.materials, found.of_cell, [0.2, 0.5, 0.77])
+    values = (read.elastic @ affine(found.body)).reshape(-1, dim)
+    force = uniform_force(rock.intact_modulus, rock.intact_poisson, dim)
+    assert np.abs(values - force).max() < 1e-11 * np.abs(force).max()
+    assert read.inertia.nnz == 0
+
+
+@pytest.mark.parametrize(kinds, BOXES)
+def test_section_force_of_a_bar_pushed_at_one_end_falls_linearly(dim, cell, order, homogenised):
+    """A free bar under a constant end force F accelerates as a whole; force(y) = F (1 - y / L).
+
+    Whatever Poisson's ratio bends the section to: the balance of momentum holds on every mesh.
+    """
+    found, push, force = homogenised(dim, cell, order)[1], 0.0, 5.0
+    body, along = found.body, dim // 2
+    start, upright = body.sides["start"], np.tile(np.arange(dim) == along, len(body.x))
+    face = np.bincount(dim * start.node + along, start.weight, upright.size)
+    rate = upright * force / body.mass[upright].sum()
+    push = force * face / face.sum() - body.mass * rate
+    u = np.linalg.lstsq(body.stiffness.toarray(), push, rcond=1e-12)[0]
+    places = np.array([0.0, 0.05, 0.2, 0.3, 0.5, 0.9, 1.41])
+    read = sections(body, found.materials, found.of_cell, places.tolist())
+    values = (read.elastic @ u + read.inertia @ rate).reshape(-1, dim)
+    assert values[:, 0] == pytest.approx(force * (1 - places / 1.5), abs=1e-10)
+    assert np.abs(values[:, 1:]).max(initial=0.0) < 1e-10
