@@ -118,7 +118,8 @@ def view(
 ) -> None:
     """Show a scene by both engines, displaced and coloured by the wave.
 
-    Pillars are shown in three dimensions, rock masses in their plane, on one colour scale.
+    Pillars and scenes in space are shown in three dimensions, other rock masses in their plane, on
+    one colour scale.
     Opens a window of PyVista with a slider over time. With --out, or without a display or PyVista,
     writes an image of the snapshot nearest to T: one of record.fields, else one of 201.
     """
