@@ -55,15 +55,18 @@ def history_of(pulse: Pulse, amplitude: float) -> LoadHistory:
     return periodic(pulse.shape, amplitude, pulse.period, pulse.cycles)
 
 
-def step_means(load: LoadHistory, dt: float, count: int, first: int = 0) -> np.ndarray:
+def step_means(
+    load: LoadHistory, dt: float, count: int, first: int = 0, stride: int = 1
+) -> np.ndarray:
     """Return the mean stress over [(n - 1/2) dt, (n + 1/2) dt] for `count` steps n from the first
-    on, Pa.
+    on, one in `stride`, Pa.
 
     This is the load that makes leapfrog exact for the bar at c dt = d: the momentum that enters
     between two half steps is the true one.
     """
-    edges = dt * (np.arange(first, first + count + 1) - 0.5)
-    return np.diff(load.impulse(edges)) / dt
+    steps = first + stride * np.arange(count)
+    before, after = (load.impulse(dt * (steps + half)) for half in (-0.5, 0.5))
+    return (after - before) / dt
 
 
 def until_it_ends(steps: np.ndarray) -> np.ndarray:

@@ -21,6 +21,7 @@ from jointwave.continuum.space.evaluation import matrix_of, places_in
 from jointwave.continuum.space.model import Body, Facets
 
 IN_A_PERIOD = 100  # samples of a field that is not evaluated at every step
+AT_ONCE = 500_000  # numbers: forces that are in memory at a time for their impulse
 GAUSS = 6  # points between two nodes: exact for elements of the highest order
 
 
@@ -140,22 +141,25 @@ class Loads:
             shape = len(place), len(self.freedom)
             self._onto = csr_matrix((np.ones(len(place)), entries), shape)
 
-    def at(self, first: int, last: int) -> np.ndarray:
-        """Return the forces of steps first .. last - 1 [steps, k], N."""
-        found = np.zeros((last - first, self.freedom.size))
+    def at(self, first: int, last: int, stride: int = 1) -> np.ndarray:
+        """Return the forces of steps first .. last - 1, one in `stride`, [steps, k], N."""
+        steps = np.arange(first, last, stride)
+        found = np.zeros((steps.size, self.freedom.size))
         for push in self.pushes:
-            mean = step_means(push.history, self.dt, last - first, first)
+            mean = step_means(push.history, self.dt, steps.size, first, stride)
             found += mean[:, None] * push.share
-        if self.waves is not None and last > first:
-            found += self.waves.at(self.dt * np.arange(first, last)) @ self._onto
+        if self.waves is not None and steps.size:
+            found += self.waves.at(self.dt * steps) @ self._onto
         return found
 
     def impulse(self, mass: np.ndarray, steps: int, stride: int) -> float:
         """Return about the integral of |F| over all steps in the norm of 1 / m, sqrt(J): of one
         step in `stride`."""
         felt, own = 0.0, mass[self.freedom]
-        for n in range(0, steps, stride):
-            felt += float(np.sqrt((self.at(n, n + 1) ** 2 / own).sum()))
+        many = stride * max(1, AT_ONCE // max(1, own.size))
+        for first in range(0, steps, many):
+            force = self.at(first, min(first + many, steps), stride)
+            felt += float(np.sqrt((force**2 / own).sum(axis=1)).sum())
         return self.dt * stride * felt
 
 
