@@ -7,12 +7,7 @@ few of them to be needless where loops have branches. The caller of a kernel kee
 from typing import Any
 
 from numba import types
-from numba.extending import intrinsic, overload
-
-
-def borrowed(values: Any) -> Any:
-    """Return an argument of a kernel, an array or a tuple of such, as a kernel should take it."""
-    return values
+from numba.extending import intrinsic
 
 
 def places_of(kind: Any) -> list[list[int]]:
@@ -24,7 +19,8 @@ def places_of(kind: Any) -> list[list[int]]:
 
 
 @intrinsic
-def _borrowed(typing, values):
+def borrowed(typing, values):
+    """Return an argument of a kernel, an array or a tuple of such, as a kernel should take it."""
     places = places_of(values)
 
     def generate(context, builder, signature, arguments):
@@ -35,8 +31,3 @@ def _borrowed(typing, values):
         return found
 
     return values(values), generate
-
-
-@overload(borrowed)
-def _overloaded(values):
-    return lambda values: _borrowed(values)

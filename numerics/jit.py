@@ -28,7 +28,8 @@ def jitted(function: Callable) -> Callable:
     lock of Python's, so that threads run side by side. What it closes over is constant.
     """
     numba.config.CACHE_DIR = str(DIRECTORY)
-    kernel = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    options = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+    kernel = numba.njit(**options)(function)
     known = set()
 
     @wraps(function)

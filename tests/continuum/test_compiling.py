@@ -1,10 +1,13 @@
 """Compiling forms: said in a line, refused in a line, done again after a run that was killed."""
 
+import logging
 import os
 import subprocess
 import sys
 
 import pytest
+
+from jointwave.continuum.space.compiling import compiled
 
 RUN = """
 import logging
@@ -45,3 +48,24 @@ def test_a_killed_run_leaves_nothing_that_stops_the_next(tmp_path):
     os.utime(ready.with_suffix(""), (0, 0))
     assert run(tmp_path)[0] == "2"
     assert ready.exists()
+
+
+def test_the_compilers_leave_logging_as_it_was():
+    """Their handlers and their level are taken away again, and what they report is hidden."""
+    root, disabled, hidden = logging.getLogger(), logging.root.manager.disable, []
+    before = list(root.handlers), root.level
+
+    def make():
+        hidden.append(not root.isEnabledFor(logging.INFO) and root.isEnabledFor(logging.WARNING))
+        root.addHandler(logging.NullHandler())
+        root.setLevel(before[1] + 1)
+        raise RuntimeError
+
+    logging.disable(5)
+    try:
+        with pytest.raises(RuntimeError):
+            compiled(make)
+        assert hidden == [True] and (list(root.handlers), root.level) == before
+        assert logging.root.manager.disable == 5
+    finally:
+        logging.disable(disabled)
