@@ -5,7 +5,7 @@ import numpy as np
 from jointwave.cases.sampling import Clock
 from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space.model import Body
-from jointwave.continuum.stepping.steps import Problem
+from jointwave.continuum.stepping.problem import Problem
 from jointwave.numerics.divergence import speed_that
 
 

@@ -15,7 +15,7 @@ from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.scheme import Choice
 from jointwave.continuum.space.evaluation import nodes_of_cells, places_of_nodes
 from jointwave.continuum.stepping.implicit import Implicit
-from jointwave.continuum.stepping.steps import Leapfrog
+from jointwave.continuum.stepping.leapfrog import Leapfrog
 from jointwave.numerics.divergence import ENERGY, SPEED, audit, guard
 from jointwave.numerics.instability import Divergence, stopped
 from jointwave.numerics.small_motion import (

@@ -18,7 +18,7 @@ from jointwave.continuum.receivers.sections import points_on_axis, sections
 from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space.model import Body
 from jointwave.continuum.space.rock import layers_of
-from jointwave.continuum.stepping.steps import Problem, Readings
+from jointwave.continuum.stepping.problem import Problem, Readings
 from jointwave.joints.law import Law, stiffest
 
 

@@ -13,8 +13,8 @@ from jointwave.continuum.problem import problem_of
 from jointwave.continuum.scene import SceneBody, body_of
 from jointwave.continuum.scheme import Choice, choose
 from jointwave.continuum.space.rock import Rock
+from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.scaling import scaled_mass
-from jointwave.continuum.stepping.steps import Problem
 from jointwave.continuum.validity import refuse
 
 log = logging.getLogger("jointwave")

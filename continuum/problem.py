@@ -29,8 +29,8 @@ from jointwave.continuum.receivers.points import readings_of
 from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space.model import Facets
 from jointwave.continuum.space.own_rock import impedances_along
+from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.static import Rest, elastic_rest, holding, settled
-from jointwave.continuum.stepping.steps import Problem
 from jointwave.joints.law import Law, law, stiffest
 
 

@@ -25,8 +25,9 @@ from jointwave.continuum.scheme import Choice
 from jointwave.continuum.space.evaluation import kind_of
 from jointwave.continuum.space.rock import Rock
 from jointwave.continuum.stepping.implicit import Implicit
+from jointwave.continuum.stepping.leapfrog import Leapfrog
+from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.static import Rest
-from jointwave.continuum.stepping.steps import Leapfrog, Problem
 from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
 
 FREEDOM_STEPS_AT_ONCE = 10_000_000  # some 0.1 s: often enough for a progress bar

@@ -11,7 +11,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.sampling import MOST_STEPS, Clock, clock, sample_times
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.mesh.size import resolved_period
-from jointwave.continuum.stepping.steps import Problem
+from jointwave.continuum.stepping.problem import Problem
 
 STEPS_PER_IMPLICIT = 20  # explicit steps that one implicit step must replace to be looked into
 #: Entries that a step takes in a second: of products, and of triangular factors.

@@ -22,7 +22,7 @@ from jointwave.continuum.loads.forces import Push, forces_on
 from jointwave.continuum.loads.sides import facets_on
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.model import Body
-from jointwave.continuum.stepping.steps import Dashpots, Held, Springs
+from jointwave.continuum.stepping.problem import Dashpots, Held, Springs
 from jointwave.joints.ends import HalfSpring, half_spring
 
 ENDS = ("start", "end")

@@ -121,7 +121,7 @@ def _on_line(body: Body, facets: Facets, start: np.ndarray, end: np.ndarray) -> 
 
 
 class Loads:
-    """All forces that are known before a run, `steps.Forces`.
+    """All forces that are known before a run, `problem.Forces`.
 
     Attributes
     ----------

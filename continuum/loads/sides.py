@@ -18,7 +18,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.evaluation import nodes_of_cells
 from jointwave.continuum.space.model import Body, Facets
-from jointwave.continuum.stepping.steps import Dashpots, Held
+from jointwave.continuum.stepping.problem import Dashpots, Held
 
 INSIDE = 1e-7  # of a cell: how far inside it a field is asked for, lest it is beyond a joint
 #: Sides by the axis of their normal.

@@ -19,7 +19,8 @@ from jointwave.continuum.processes.share import share_of
 from jointwave.continuum.space.fenicsx import MPI
 from jointwave.continuum.space.petsc import PETSc
 from jointwave.continuum.stepping.explicit import leapfrog_for
-from jointwave.continuum.stepping.steps import Leapfrog, Problem
+from jointwave.continuum.stepping.leapfrog import Leapfrog
+from jointwave.continuum.stepping.problem import Problem
 
 
 class SharedLeapfrog(Leapfrog):

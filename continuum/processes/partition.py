@@ -9,8 +9,8 @@ from jointwave.cases.errors import SceneError
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.evaluation import nodes_of_cells
 from jointwave.continuum.space.model import Body
+from jointwave.continuum.stepping.leapfrog import products_for_steps
 from jointwave.continuum.stepping.product import LANES, SHARED
-from jointwave.continuum.stepping.steps import products_for_steps
 
 SAME = 1e-9  # of the domain: by how much places of a node on two processes may differ
 

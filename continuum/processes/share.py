@@ -10,7 +10,7 @@ from scipy.sparse import csr_matrix
 
 from jointwave.continuum.space.evaluation import blocks_of_nodes
 from jointwave.continuum.space.model import JumpOperator
-from jointwave.continuum.stepping.steps import Dashpots, Forces, Problem, Readings, Springs
+from jointwave.continuum.stepping.problem import Dashpots, Forces, Problem, Readings, Springs
 
 OF_POINTS = ("traction", "jump")  # what receivers read of points
 
@@ -30,7 +30,7 @@ class Share(NamedTuple):
 
 
 class SomeForces:
-    """Those of some forces that act on freedoms of a process, `steps.Forces`; number : int array
+    """Those of some forces that act on freedoms of a process, `problem.Forces`; number : int array
     [freedoms], of these in its share, -1 of others."""
 
     def __init__(self, forces: Forces, number: np.ndarray) -> None:

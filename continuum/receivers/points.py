@@ -21,7 +21,7 @@ from jointwave.continuum.space.evaluation import (
     tabulate,
 )
 from jointwave.continuum.space.model import Body, JumpOperator
-from jointwave.continuum.stepping.steps import Readings
+from jointwave.continuum.stepping.problem import Readings
 from jointwave.results.stress import stress_components
 
 LEAST = 1.5  # points for each coefficient of a polynomial

@@ -22,7 +22,7 @@ from jointwave.continuum.space.evaluation import (
     tabulate,
 )
 from jointwave.continuum.stepping.implicit import Implicit
-from jointwave.continuum.stepping.steps import Leapfrog
+from jointwave.continuum.stepping.leapfrog import Leapfrog
 from jointwave.results.snapshots import SnapshotRecorder, snapshots, with_snapshots
 from jointwave.results.stress import stress_components
 from jointwave.results.subcells import KINDS, linear_cells

@@ -9,8 +9,8 @@ import xarray as xr
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.pillar import extent_of
-from jointwave.continuum.stepping.explicit import Samples
-from jointwave.continuum.stepping.steps import Problem
+from jointwave.continuum.stepping.arrays import Samples
+from jointwave.continuum.stepping.problem import Problem
 from jointwave.results.dataset import dataset
 from jointwave.results.rock_mass import TERMS, rock_mass_dataset
 

@@ -11,7 +11,7 @@ from scipy.sparse import bsr_matrix, csr_matrix, diags
 
 from jointwave.continuum.space.petsc import PETSc
 from jointwave.continuum.stepping.memory import memory_of
-from jointwave.continuum.stepping.steps import Problem
+from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.tractions import forces_for, history_at_rest, tangents_for
 from jointwave.joints.law import IN_MOTION
 

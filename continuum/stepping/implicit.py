@@ -17,10 +17,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from jointwave.cases.errors import StoppedError
+from jointwave.continuum.stepping.arrays import BOUNDARY, FRICTION, VISCOUS, WORK
 from jointwave.continuum.stepping.balance import LAST_DIGITS, Balance, Factors, Forces, newton
-from jointwave.continuum.stepping.explicit import BOUNDARY, FRICTION, VISCOUS, WORK
+from jointwave.continuum.stepping.leapfrog import samples_for
 from jointwave.continuum.stepping.memory import memory_of
-from jointwave.continuum.stepping.steps import Held, Problem, samples_for
+from jointwave.continuum.stepping.problem import Held, Problem
 from jointwave.results.arrays import copied, fill, size_of
 
 HALVINGS = 10

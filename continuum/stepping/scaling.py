@@ -19,7 +19,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
-from jointwave.continuum.stepping.steps import Problem
+from jointwave.continuum.stepping.problem import Problem
 
 OF_ALL, OF_PIECE = 1e-4, 1e-2  # most mass that is added, of all rock, and of a piece
 WORTH = 2.0  # times as long a step by these bounds, below which mass stays as it is

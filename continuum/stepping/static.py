@@ -21,7 +21,7 @@ from scipy.sparse import csr_matrix
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.stepping.balance import LAST_DIGITS, Balance, Outcome, newton
-from jointwave.continuum.stepping.steps import Problem
+from jointwave.continuum.stepping.problem import Problem
 
 TOLERANCE = 1e-10  # of the residual, over the largest summed force
 LEAST_PART = 2.0**-4  # of the steady forces

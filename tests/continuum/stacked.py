@@ -10,7 +10,7 @@ from scipy.sparse import csr_matrix, diags
 
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.model import Body, Facets, JumpOperator
-from jointwave.continuum.stepping.steps import Readings
+from jointwave.continuum.stepping.problem import Readings
 
 KINDS = {1: "interval", 2: "quadrilateral", 3: "hexahedron"}
 SIDES = {1: ("bottom", "top"), 2: ("left", "right", "bottom", "top")}

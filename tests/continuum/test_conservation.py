@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from jointwave.continuum.run import simulate
-from jointwave.continuum.stepping.steps import Leapfrog
+from jointwave.continuum.stepping.leapfrog import Leapfrog
 from tests.continuum.stacked import Force, stack
 from tests.continuum.test_explicit import joined, problem
 

@@ -14,9 +14,10 @@ from jointwave.continuum.problem import problem_of
 from jointwave.continuum.run import simulate
 from jointwave.continuum.scene import body_of
 from jointwave.continuum.stepping.implicit import Implicit
+from jointwave.continuum.stepping.leapfrog import Leapfrog
 from jointwave.continuum.stepping.memory import memory_of
+from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.static import settled
-from jointwave.continuum.stepping.steps import Leapfrog, Problem
 from jointwave.results.dataset import energy_residual
 from jointwave.results.snapshots import snapshots_of
 from tests.cases.material.test_constant_q import roots

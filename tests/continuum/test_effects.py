@@ -3,7 +3,7 @@
 import pytest
 
 from jointwave.continuum import simulate
-from jointwave.continuum.stepping import steps
+from jointwave.continuum.stepping import leapfrog
 from jointwave.continuum.stepping.explicit import leapfrog_for
 from jointwave.continuum.stepping.tractions import forces_for
 

@@ -11,8 +11,9 @@ from jointwave.continuum.run import simulate
 from jointwave.continuum.space.evaluation import blocks_of_nodes
 from jointwave.continuum.stepping import product
 from jointwave.continuum.stepping.implicit import Implicit
+from jointwave.continuum.stepping.leapfrog import Leapfrog
+from jointwave.continuum.stepping.problem import Dashpots, Held, Problem
 from jointwave.continuum.stepping.static import settled
-from jointwave.continuum.stepping.steps import Dashpots, Held, Leapfrog, Problem
 from jointwave.joints.law import law
 from tests.conftest import PILLAR
 from tests.continuum.stacked import Force, readings, stack

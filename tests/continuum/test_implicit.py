@@ -12,7 +12,7 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.compare.exact.bar.bars import JOINTED
 from jointwave.continuum.run import simulate
 from jointwave.continuum.stepping.implicit import HALVINGS, Implicit, scheme
-from jointwave.continuum.stepping.steps import Held
+from jointwave.continuum.stepping.problem import Held
 from tests.continuum.stacked import Force, stack
 from tests.continuum.test_explicit import joined, problem
 

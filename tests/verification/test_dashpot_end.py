@@ -11,7 +11,7 @@ import pytest
 from jointwave.cases.loads import load_history
 from jointwave.continuum.plan import plan_of
 from jointwave.continuum.problem import in_time
-from jointwave.continuum.stepping.steps import Leapfrog
+from jointwave.continuum.stepping.leapfrog import Leapfrog
 
 
 @pytest.mark.parametrize("beta", [0.5, 1.0, 2.0])

@@ -6,7 +6,8 @@ import pytest
 from jointwave.continuum.pillar import extent_of
 from jointwave.continuum.plan import plan_of
 from jointwave.continuum.space.evaluation import blocks_of_nodes
-from jointwave.continuum.stepping.steps import Held, Leapfrog
+from jointwave.continuum.stepping.leapfrog import Leapfrog
+from jointwave.continuum.stepping.problem import Held
 from jointwave.results.rock_mass import TERMS
 
 STRENGTH, ENERGY, AREA = 5e5, 30.0, 0.25

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from jointwave.continuum.stepping.implicit import Implicit
-from jointwave.continuum.stepping.steps import Leapfrog, Problem
+from jointwave.continuum.stepping.leapfrog import Leapfrog
+from jointwave.continuum.stepping.problem import Problem
 from tests.continuum.stacked import readings
 from tests.verification.moved import END, SIMPLICES, Load, moved
 

@@ -11,7 +11,7 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.compare.scenes import SHIPPED
 from jointwave.continuum.plan import plan_of
 from jointwave.continuum.problem import in_time
-from jointwave.continuum.stepping.steps import Leapfrog
+from jointwave.continuum.stepping.leapfrog import Leapfrog
 from jointwave.results.dataset import energy_residual
 
 SAW_TOOTH = SHIPPED / "beyond" / "spall.toml"

@@ -12,8 +12,8 @@ import processes
 from rock import BLOCKS, CUT, assert_same, engine_of, scene_of
 from timing import Timed, side_by_side
 
+from jointwave.continuum.stepping.leapfrog import products_for_steps
 from jointwave.continuum.stepping.product import product_for
-from jointwave.continuum.stepping.steps import products_for_steps
 
 STEPS = 200  # of the motion that all must share, and of one call of the engine
 SAME = 1e-10  # of its largest displacement

@@ -16,7 +16,7 @@ from jointwave.continuum.space.build import by_rule, rock_rule
 from jointwave.continuum.space.compiling import compiled
 from jointwave.continuum.space.evaluation import kind_of
 from jointwave.continuum.space.rock import rock_of_cells
-from jointwave.continuum.stepping.steps import Problem
+from jointwave.continuum.stepping.problem import Problem
 
 
 class Steps:

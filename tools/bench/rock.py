@@ -11,7 +11,8 @@ from jointwave.cases.read import load
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.plan import Plan, plan_of
 from jointwave.continuum.problem import in_time
-from jointwave.continuum.stepping.steps import Leapfrog, Problem
+from jointwave.continuum.stepping.leapfrog import Leapfrog
+from jointwave.continuum.stepping.problem import Problem
 
 LOAD = {"kind": "pressure", "side": "top", "shape": "sine", "period": 2e-3, "amplitude": 1e6}
 SCENE = Path(cases.__file__).parent / "rock-mass" / "random-network.toml"

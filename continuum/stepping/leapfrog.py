@@ -1,18 +1,16 @@
-"""From a body and what acts on it to the constants, the state and the forces of its steps."""
+"""Explicit steps of a problem: from it to the constants, the state and the forces of the kernel."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple, Protocol
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags
+from scipy.sparse import csr_matrix
 
-from jointwave.cases.material.constant_q import Mechanisms
 from jointwave.continuum.space.evaluation import blocks_of_nodes
 from jointwave.continuum.space.model import Body
-from jointwave.continuum.stepping.critical import critical_step
-from jointwave.continuum.stepping.explicit import (
+from jointwave.continuum.stepping.arrays import (
     VISCOUS,
     Constants,
     Jumps,
@@ -23,183 +21,17 @@ from jointwave.continuum.stepping.explicit import (
     State,
     StepFlags,
     Work,
-    leapfrog_for,
 )
+from jointwave.continuum.stepping.explicit import leapfrog_for
 from jointwave.continuum.stepping.memory import memory_of
+from jointwave.continuum.stepping.problem import Dashpots, Problem, Readings
 from jointwave.continuum.stepping.product import ROWS, Product, Table, product_of, table_of
-from jointwave.continuum.stepping.tractions import Points, history_at_rest
-from jointwave.joints.law import Law, LawFlags, parts_of
-from jointwave.joints.law import table_of as law_table
+from jointwave.continuum.stepping.tractions import history_at_rest
 from jointwave.numerics.cache_lines import zeros
 from jointwave.results.arrays import size_of
 from jointwave.results.rock_mass import TERMS
 
 BUFFER = 500_000  # numbers: forces with a history that are in memory at a time
-
-
-class Springs(NamedTuple):
-    """Springs in front of the dashpots of nodes [k, d], `joints.ends`: stiffness, N/m; decay and
-    gain (s), by which their closure advances in a step; critical : what of the stiffness counts at
-    the critical step, N/m."""
-
-    stiffness: np.ndarray
-    decay: np.ndarray
-    gain: np.ndarray
-    critical: np.ndarray
-
-
-class Dashpots(NamedTuple):
-    """Nodes on dashpots: node, int array [k]; viscosity, float array [k, d, d], N s/m; springs :
-    those in front of them, of the time step; None without."""
-
-    node: np.ndarray
-    viscosity: np.ndarray
-    springs: Callable[[float], Springs] | None = None
-
-    @property
-    def freedom(self) -> np.ndarray:
-        """Freedoms of the nodes [k, d]."""
-        dim = self.viscosity.shape[1]
-        return dim * self.node[:, None] + np.arange(dim)
-
-
-class Held(NamedTuple):
-    """Freedoms whose motion is given: freedom, int array [k], moves by direction [k] times what
-    `moved` returns for steps [n], m from each to the next; None where none moves."""
-
-    freedom: np.ndarray
-    direction: np.ndarray
-    moved: Callable[[np.ndarray], np.ndarray] | None = None
-
-
-class Forces(Protocol):
-    """Forces that each have a history.
-
-    freedom : int array [k].
-    """
-
-    freedom: np.ndarray
-
-    def at(self, first: int, last: int) -> np.ndarray:
-        """Return the forces of steps first .. last - 1 [steps, k], N."""
-
-    def impulse(self, mass: np.ndarray, steps: int, stride: int) -> float:
-        """Return about the integral of |F| over so many steps in the norm of 1 / m, sqrt(J), by
-        one step in `stride`; mass : of all freedoms, kg."""
-
-
-class Readings(NamedTuple):
-    """How receivers read a body: motion [m d, freedoms]; stress [rows, freedoms], Pa, compression
-    positive, and what is at u = 0 [rows]; traction [joints d, points d] of forces, Pa/N, and what
-    is at u = 0 [joints d]; jump [joints d, points d]. viscous : stress of the rate by rock's
-    dashpots; inertia : of the acceleration (with mass-proportional damping); None without."""
-
-    motion: csr_matrix
-    stress: csr_matrix
-    constant: np.ndarray
-    traction: csr_matrix
-    carried: np.ndarray
-    jump: csr_matrix
-    viscous: csr_matrix | None = None
-    inertia: csr_matrix | None = None
-
-
-class Problem(NamedTuple):
-    """A body and what acts on it.
-
-    law : of its joints, by columns; stiffest : the largest K_n and K_s of each column in reach,
-    Pa/m, a number or an array. stress : float array [d, d], Pa, compression positive, that rock
-    and joints bear at u = 0. alpha : of mass-proportional damping, 1/s. mechanisms : of the
-    relaxation of rock, whose stiffness is then the unrelaxed one. steady : float array [freedoms],
-    N. comm : mpi4py's, of processes that share the run. counted : points whose energies a process
-    counts, the first ones; None of all. Absent parts are None.
-    """
-
-    body: Body
-    readings: Readings
-    law: Law | None = None
-    stiffest: Any = None
-    stress: np.ndarray | None = None
-    alpha: float = 0.0
-    mechanisms: Mechanisms | None = None
-    steady: np.ndarray | None = None
-    quiet: Dashpots | None = None
-    forces: Forces | None = None
-    held: Held | None = None
-    comm: Any = None
-    counted: int | None = None
-
-    @property
-    def parts(self) -> LawFlags | None:
-        """The parts of the joints' law; None without joints."""
-        if self.law is None or self.body.joints is None:
-            return None
-        return parts_of(self.law)._replace(planar=self.body.components == 2)
-
-    @property
-    def fixed(self) -> np.ndarray:
-        """Freedoms whose motion is given."""
-        return np.zeros(0, np.int64) if self.held is None else self.held.freedom
-
-    def of_joints(self, normal: Any, shear: Any) -> csr_matrix:
-        """Return B^T W k B of normal and shear values k of each column, or one of all."""
-        joints, dim = self.body.joints, self.body.components
-        assert joints is not None
-        values = np.zeros((len(joints.weight), dim))
-        for c, value in enumerate([normal, *(dim - 1) * [0.0 if shear is None else shear]]):
-            values[:, c] = joints.weight * (value[joints.column] if np.ndim(value) else value)
-        return csr_matrix(joints.matrix.T @ diags(values.ravel()) @ joints.matrix)
-
-    @property
-    def stiffness(self) -> csr_matrix:
-        """The stiffness of rock and joints, closed as far as is in reach, N/m, and of springs of
-        sides."""
-        found = self.body.stiffness
-        if self.law is not None and self.body.joints is not None:
-            found = csr_matrix(found + self.of_joints(*self.stiffest))
-        if self.quiet is not None and self.quiet.springs is not None:
-            of_sides = np.zeros(found.shape[0])
-            of_sides[self.quiet.freedom] = self.quiet.springs(0.0).critical
-            found = csr_matrix(found + diags(of_sides))
-        return found
-
-    @property
-    def viscosity(self) -> csr_matrix | None:
-        """The viscosity of rock and joints, N s/m; None without dashpots."""
-        law, found = self.law, self.body.damping
-        if law is not None and law.normal_viscosity is not None and self.body.joints is not None:
-            joints = self.of_joints(law.normal_viscosity, law.shear_viscosity)
-            found = joints if found is None else csr_matrix(found + joints)
-        return found
-
-    def critical_step(self) -> float:
-        """Return the critical step of leapfrog, s."""
-        assert self.body.mass is not None
-        return critical_step(self.body.mass, self.stiffness, self.viscosity, self.fixed)
-
-    def points(self) -> Points:
-        """Return the points of the joints as kernels take them."""
-        joints = self.body.joints
-        if self.law is None or joints is None:
-            none = np.zeros(0)
-            return Points(none, none.astype(np.int64), np.zeros((0, 0)), none, 0)
-        table = law_table(self.law)
-        column = joints.column if table.shape[1] > 1 else np.zeros(len(joints.weight), np.int64)
-        carried = self.carried()
-        return Points(
-            joints.weight,
-            column.astype(np.int64),
-            table,
-            np.zeros(0) if carried is None else carried,
-            len(joints.weight) if self.counted is None else self.counted,
-        )
-
-    def carried(self) -> np.ndarray | None:
-        """Return the tractions that points carry at u = 0 [points * d], Pa; None without."""
-        if self.stress is None or self.body.joints is None:
-            return None
-        frame = self.body.joints.frame
-        return np.einsum("qac,cd,qd->qa", frame, self.stress, frame[:, 0]).ravel()
 
 
 def sparse(matrix: csr_matrix, place: np.ndarray | None = None) -> Sparse:
@@ -224,7 +56,7 @@ class Leapfrog:
 
     Attributes
     ----------
-    state : `explicit.State`, in the places of `product`. samples : what is recorded. dt : s.
+    state : `arrays.State`, in the places of `product`. samples : what is recorded. dt : s.
     halo : freedoms of other processes, which follow in vectors.
     """
 
