@@ -69,8 +69,9 @@ def body_of(
         if isinstance(scene, Scene):
             return _pillar(scene, model, rock, implicit, dimension_of(scene, dim))
         return _rock_mass(scene, model, rock, implicit)
-    except ImportError as error:  # gmsh, or a compiler
-        raise SceneError(scene.where, "numerics.continuum", None, str(error)) from None
+    except ImportError as error:
+        key = "numerics.continuum.cell"
+        raise SceneError(scene.where, key, scene.numerics.continuum.cell, str(error)) from None
 
 
 def _rock_mass(scene: RockMass, model: str, rock: Rock | None, implicit: bool) -> SceneBody:

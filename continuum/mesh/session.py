@@ -21,7 +21,7 @@ def gmsh_session() -> Iterator:
         try:
             import gmsh
         except (ImportError, OSError) as error:
-            raise ImportError(f"{error}; {INSTALL}") from None
+            raise ImportError(f"needs gmsh ({error}; {INSTALL})") from None
         if getattr(gmsh, "isInitialized", int)():
             raise RuntimeError("gmsh is in use: call gmsh.finalize() first")
         takes_interrupts = "interruptible" in inspect.signature(gmsh.initialize).parameters

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags
 
 from jointwave.cases.material.constant_q import Mechanisms
+from jointwave.continuum.space.evaluation import blocks_of_nodes
 from jointwave.continuum.space.model import Body
 from jointwave.continuum.stepping.critical import critical_step
 from jointwave.continuum.stepping.tractions import Points
@@ -154,7 +155,8 @@ class Problem(NamedTuple):
     def critical_step(self) -> float:
         """Return the critical step of leapfrog, s."""
         assert self.body.mass is not None
-        return critical_step(self.body.mass, self.stiffness, self.viscosity, self.fixed)
+        start = any_motion(self.body)
+        return critical_step(self.body.mass, self.stiffness, self.viscosity, self.fixed, start)
 
     def points(self) -> Points:
         """Return the points of the joints as kernels take them."""
@@ -179,3 +181,14 @@ class Problem(NamedTuple):
             return None
         frame = self.body.joints.frame
         return np.einsum("qac,cd,qd->qa", frame, self.stress, frame[:, 0]).ravel()
+
+
+def any_motion(body: Body) -> np.ndarray:
+    """Return a motion [freedoms] that has something of every mode, the same however nodes are
+    numbered; both sides of a joint differ by the middles of their blocks."""
+    block, x = blocks_of_nodes(body), body.x - body.x.min(axis=0)
+    count = np.bincount(block)
+    middle = np.stack([np.bincount(block, one) / count for one in x.T], axis=1)
+    weights = np.sqrt([2.0, 3.0, 5.0])[: x.shape[1]]
+    phase = (x + middle[block]) @ weights / x.max()
+    return np.sin(np.outer(phase, 1e3 * np.sqrt(np.arange(7, 7 + body.components)))).ravel()

@@ -66,7 +66,11 @@ def scene(tmp_path):
     return read
 
 
-@pytest.mark.parametrize("name", ["dem", "continuum-jointed", "continuum-equivalent"])
+#: Triangles of a block follow the order of its edges, those of homogenised rock all of it.
+OFF = {"dem": 1e-12, "continuum-jointed": 1e-5, "continuum-equivalent": 0.05}
+
+
+@pytest.mark.parametrize("name", OFF)
 def test_waves_in_a_wall_of_bricks_are_those_in_the_wall_that_is_cut(name, scene):
     engine = solver(name)
     own, cut = scene(), scene(CUT)
@@ -75,7 +79,7 @@ def test_waves_in_a_wall_of_bricks_are_those_in_the_wall_that_is_cut(name, scene
     assert np.abs(expected.velocity).max() > 0.01
     for one in ("velocity", "stress"):
         off = np.abs(found[one] - expected[one]).max() / np.abs(expected[one]).max()
-        assert off < (1e-12 if name != "continuum-equivalent" else 0.05)  # of other elements
+        assert off < OFF[name]
 
 
 def test_a_window_is_an_opening(scene):

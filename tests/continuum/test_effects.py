@@ -25,7 +25,7 @@ def kernel(short, monkeypatch):
     def seen(flags):
         return lambda *given: found.append((flags, given))
 
-    monkeypatch.setattr(steps, "leapfrog_for", seen)
+    monkeypatch.setattr(leapfrog, "leapfrog_for", seen)
 
     def of(model="jointed", dim=None, **changes):
         found.clear()
