@@ -55,17 +55,18 @@ def kind(value: Any) -> Any:
 
 
 def compile_for(kernel: Any, types: tuple) -> None:
-    """Load a kernel from the cache, or compile and save it; one process at a time.
+    """Load a kernel from the cache, or compile and save it; one process at a time per function.
 
-    Others that want it, such as those of a run that MPI shares, wait and load it. numba reads a
-    kernel's index, adds to it and writes it back: two processes at once would give two
+    Others that want it, such as those of a run that MPI shares, wait and load it. numba reads the
+    index of a function, adds to it and writes it back: two processes at once would give two
     specialisations the same file.
     """
-    timer = Timer(WAIT, announce)
+    timer, function = Timer(WAIT, announce), kernel.py_func
+    name = f"{function.__module__}.{function.__qualname__}.lock"
     with ExitStack() as held:
         with suppress(OSError):  # a cache that cannot be written
             make(DIRECTORY)
-            file = held.enter_context((DIRECTORY / "lock").open("w"))
+            file = held.enter_context((DIRECTORY / name).open("w"))
             fcntl.flock(file, fcntl.LOCK_EX)
         held.callback(timer.cancel)
         timer.daemon = True

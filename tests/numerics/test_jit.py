@@ -61,13 +61,17 @@ def test_kernels_are_cached_there():
     assert str(jit.DIRECTORY) == numba.config.CACHE_DIR
 
 
-def test_one_process_at_a_time_compiles(tmp_path, monkeypatch):
-    """While another holds the lock a kernel waits, and nothing enters the cache; then it does."""
+def more(x):
+    return x + 1.0
+
+
+def test_one_process_at_a_time_compiles_a_function(tmp_path, monkeypatch):
+    """While another holds its lock a kernel waits, and nothing enters the cache; then it does."""
     monkeypatch.setattr(jit, "DIRECTORY", tmp_path)
-    kernel = jitted(lambda x: x + 1.0)
+    kernel = jitted(more)
     monkeypatch.setattr(numba.config, "CACHE_DIR", "")  # as numba does when it is set anew
     worker = threading.Thread(target=kernel, args=(1.0,))
-    with (tmp_path / "lock").open("w") as other:
+    with (tmp_path / f"{__name__}.more.lock").open("w") as other:
         fcntl.flock(other, fcntl.LOCK_EX)
         worker.start()
         worker.join(timeout=0.3)
@@ -79,7 +83,7 @@ def test_one_process_at_a_time_compiles(tmp_path, monkeypatch):
 def test_what_takes_long_is_announced_once(monkeypatch, caplog):
     jit.announce.cache_clear()
     monkeypatch.setattr(jit, "WAIT", 0.0)
-    slow = SimpleNamespace(compile=lambda types: time.sleep(0.3))
+    slow = SimpleNamespace(compile=lambda types: time.sleep(0.3), py_func=more)
     with caplog.at_level("INFO", logger="jointwave"):
         jit.compile_for(slow, ())
         jit.compile_for(slow, ())
