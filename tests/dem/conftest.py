@@ -52,6 +52,7 @@ def plain(monkeypatch):
     stand_ins = {
         "flush_denormals": lambda: 0,
         "restore_denormals": lambda old: None,
+        "borrowed": lambda values: values,
         "peek": lambda counters, i: counters[i],
         "post": lambda counters, i, value: counters.__setitem__(i, value),
     }
