@@ -3,10 +3,14 @@
 import numpy as np
 
 from jointwave.cases.sampling import Clock
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.pulse import shortest_period
 from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space.model import Body
 from jointwave.continuum.stepping.problem import Problem
 from jointwave.numerics.divergence import speed_that
+
+IN_PERIOD = 50  # forces that are looked at in the period of a pulse, at least
 
 
 def masses(body: Body) -> np.ndarray:
@@ -29,7 +33,7 @@ def highest_speed(
     mass = masses(body)
     rock, pushed, shaken, weight, stored = mass > 0, 0.0, 0.0, 0.0, 0.0
     if problem.forces is not None:
-        pushed = problem.forces.impulse(mass, time.steps, time.stride)
+        pushed = problem.forces.impulse(mass, time.steps, sampled(found.scene, time))
     if problem.held is not None and problem.held.moved is not None:
         moved = problem.held.moved(np.arange(time.steps + 1)) / time.dt
         speed = np.diff(moved, prepend=0.0, append=0.0)
@@ -41,6 +45,13 @@ def highest_speed(
     with np.errstate(over="ignore"):
         pressed = prestressed(found, problem, duration * least)
         return float(least * speed_that(pushed, shaken, duration * weight, stored, pressed))
+
+
+def sampled(scene: AnyScene, time: Clock) -> int:
+    """Return how many steps apart forces are looked at, which must not miss a pulse."""
+    period = shortest_period(scene.pulses)
+    most = time.stride if period is None else int(period / (IN_PERIOD * time.dt))
+    return max(1, min(time.stride, most))
 
 
 def prestressed(found: SceneBody, problem: Problem, pushing: float) -> float:

@@ -102,6 +102,7 @@ def _pressure(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:
 def _on_line(body: Body, facets: Facets, start: np.ndarray, end: np.ndarray) -> np.ndarray:
     """Return a pressure of 1 Pa on a straight part of the boundary in the plane: by Gauss points
     between the nodes there."""
+    start, end = sorted((start, end), key=tuple)  # from either end to the last bit
     length = float(np.linalg.norm(end - start))
     along = (end - start) / length
     s = (facets.place - start) @ along

@@ -187,7 +187,7 @@ def any_motion(body: Body) -> np.ndarray:
     """Return a motion [freedoms] that has something of every mode, the same however nodes are
     numbered; both sides of a joint differ by the middles of their blocks."""
     block, x = blocks_of_nodes(body), body.x - body.x.min(axis=0)
-    count = np.bincount(block)
+    count = np.maximum(np.bincount(block), 1)
     middle = np.stack([np.bincount(block, one) / count for one in x.T], axis=1)
     weights = np.sqrt([2.0, 3.0, 5.0])[: x.shape[1]]
     phase = (x + middle[block]) @ weights / x.max()

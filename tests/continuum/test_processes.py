@@ -11,7 +11,7 @@ import pytest
 from jointwave.continuum.run import simulate
 from tests.continuum import shared
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[2]
 SAME = 1e-11  # of the largest value: sums of some hundred steps in another order
 #: Terms of the ledger that a scene is there for.
 HAPPENS = {
