@@ -66,6 +66,7 @@ def test_a_run_warns_of_an_open_ledger(jointwave, in_toml, tmp_path):
     tables = rock({}, np.random.default_rng(0), 0.5)
     damps = {"scheme": "implicit", "steps_per_period": 20, "spectral_radius": 0.0}
     tables["numerics"]["continuum"] = damps | {"size": 8.0}
+    tables["record"]["interval"] = 3e-4
     (file := tmp_path / "open.toml").write_text(in_toml(tables))
     run = ["run", file, "--engine", "continuum", "--model", "jointed", "--out", tmp_path]
     for command in (run, ["compare", file]):
