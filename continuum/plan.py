@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from math import nan
 from typing import Any, NamedTuple
 
 from jointwave.cases.material.prestress import refuse_beyond_strength
@@ -24,7 +25,7 @@ class Plan(NamedTuple):
     """A run before its first step.
 
     found : the scene as a body. problem : the body and what acts on it all the time. choice : how
-    it is stepped. critical : the critical step of explicit steps, s; 0 of a consistent mass.
+    it is stepped. critical : the critical step of explicit steps, s; NaN of a consistent mass.
     """
 
     found: SceneBody
@@ -53,7 +54,7 @@ def plan_of(
     if scaled is not None:
         found = found._replace(body=found.body._replace(mass=scaled.mass))
         problem = problem_of(scene, found)
-    critical = problem.critical_step() if problem.body.mass is not None else 0.0
+    critical = problem.critical_step() if problem.body.mass is not None else nan
     if comm is not None:
         critical = comm.bcast(critical)
     choice = choose(scene, problem, critical)
