@@ -69,43 +69,21 @@ def simulate(
     time = choice.time
     problem, rest, sudden = at_rest(scene, in_time(scene, still, time, incident))
     steps = stepper(scene, problem, choice, rest, sudden)
-    u, about = None, dict[str, Any]()
-    if rest is not None:
-        u = rest.u
-        about = {"static_steps": rest.steps, "static_out_of_balance": rest.ratio}
-    monitor = Monitor(scene, found, steps, choice, critical, u)
+    monitor = Monitor(scene, found, steps, choice, critical, None if rest is None else rest.u)
     recorder = None if scene.record.fields is None else RockRecorder(scene, found, steps)
     built = perf_counter()
     steps.take(0, 0, time.stride)
     compiled = perf_counter()
 
     def result(count: int) -> xr.Dataset:
-        dataset = recorded(
-            scene,
-            problem,
-            steps.samples,
-            time.times[:count],
-            {
-                "model": model,
-                "scheme": choice.scheme,
-                "scheme_reason": choice.reason,
-                "dim": problem.body.x.shape[1],
-                "cell": kind_of(problem.body),
-                "order": scene.numerics.continuum.order,
-                "dt": time.dt,
-                "critical_dt": critical,
-                "steps": time.steps,
-                "degrees_of_freedom": len(problem.body.stiffness.indptr) - 1,
-                "bytes": steps.bytes if comm is None else comm.allreduce(steps.bytes),
-                "processes": 1 if comm is None else comm.size,
-                **about,
-                **steps.attributes,
-                "seconds_setup": built - began,
-                "seconds_compile": compiled - built,
-                "seconds_stepping": perf_counter() - compiled,
-                "versions": versions(),
-            },
-        )
+        about = {
+            "model": model,
+            **about_run(scene, choice, critical, steps, rest),
+            "seconds_setup": built - began,
+            "seconds_compile": compiled - built,
+            "seconds_stepping": perf_counter() - compiled,
+        }
+        dataset = recorded(scene, problem, steps.samples, time.times[:count], about)
         return dataset if recorder is None else recorder.add_to(dataset)
 
     def march(first: int, last: int) -> None:
@@ -127,6 +105,37 @@ def simulate(
         error.result = result(error.samples)
         raise
     return result(time.samples)
+
+
+def about_run(
+    scene: AnyScene,
+    choice: Choice,
+    critical: float,
+    steps: Leapfrog | Implicit,
+    rest: Rest | None,
+) -> dict[str, Any]:
+    """Return the attributes of a result about its run; critical : step, s. All processes that share
+    it call this alike."""
+    problem, time = steps.problem, choice.time
+    comm, static = problem.comm, {}
+    if rest is not None:
+        static = {"static_steps": rest.steps, "static_out_of_balance": rest.ratio}
+    return {
+        "scheme": choice.scheme,
+        "scheme_reason": choice.reason,
+        "dim": problem.body.x.shape[1],
+        "cell": kind_of(problem.body),
+        "order": scene.numerics.continuum.order,
+        "dt": time.dt,
+        "critical_dt": critical,
+        "steps": time.steps,
+        "degrees_of_freedom": problem.body.stiffness.shape[0],
+        "bytes": steps.bytes if comm is None else comm.allreduce(steps.bytes),
+        "processes": 1 if comm is None else comm.size,
+        "versions": versions(),
+        **static,
+        **steps.attributes,
+    }
 
 
 def stepper(

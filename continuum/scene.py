@@ -132,13 +132,9 @@ def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool, dim: in
     joint = np.isin(number, resolved_joints(p, model, components > 1, tuple(layers)).number)
     mesh = _mesh_of_pillar(scene, blocks, np.append(elements_along(scene, model), ones), components)
     own = materials.pillar(scene, model, components, dim)
-    chosen, consistent = (
-        ChosenRock(scene, rock, own, blocks.body.region),
-        numerics.mass == "consistent",
-    )
-    marks = marks_of(blocks, joint, ENDS)
+    chosen = ChosenRock(scene, rock, own, blocks.body.region)
+    marks, consistent = marks_of(blocks, joint, ENDS), numerics.mass == "consistent" and implicit
     flat = scene.motion.rotation == "none" and dim > 1
-    consistent &= implicit
     body = build_body(mesh, marks, numerics.order, chosen, components, consistent, flat=flat)
     if body.joints is not None:
         body = body._replace(joints=body.joints._replace(column=number[body.joints.column]))
@@ -180,11 +176,8 @@ def _mesh_of_pillar(scene: Scene, blocks: Blocks, each: np.ndarray, components: 
 
 def _refuse_order(scene: AnyScene) -> None:
     """Raise SceneError where simplices have no diagonal mass."""
-    order, allowed = (
-        scene.numerics.continuum.order,
-        "must be at most 2 for triangles and tetrahedra",
-    )
-    if order > 2:
+    if (order := scene.numerics.continuum.order) > 2:
+        allowed = "must be at most 2 for triangles and tetrahedra"
         raise SceneError(scene.where, "numerics.continuum.order", order, allowed)
 
 
