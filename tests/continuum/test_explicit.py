@@ -55,12 +55,18 @@ def test_without_dashpots_energy_stays(dim):
     np.testing.assert_allclose(kinetic + elastic, kinetic[0], rtol=1e-13)
 
 
-@pytest.mark.parametrize("dim", [1, 2, 3])
-def test_the_ledger_closes_with_dashpots_everywhere(dim):
+def damped(dim):
+    """Return three blocks with dashpots, their bottom and top, and dashpots at the bottom."""
     body = stack(dim, 3, 1, 1)
     body = body._replace(damping=0.02 * body.stiffness)
     bottom, top = body.sides["bottom"], body.sides["top"]
     quiet = Dashpots(bottom.node, bottom.weight[:, None, None] * np.eye(dim))
+    return body, bottom, top, quiet
+
+
+@pytest.mark.parametrize("dim", [1, 2, 3])
+def test_the_ledger_closes_with_dashpots_everywhere(dim):
+    body, bottom, top, quiet = damped(dim)
     along = dim * top.node + dim - 1
     fixed = Held(along, np.ones(along.size), lambda steps: 1e-3 * np.sin(0.1 * steps))
     own = problem(body, joined(2, dim > 1, 0.1), alpha=0.2, quiet=quiet, held=fixed)
@@ -169,10 +175,7 @@ def test_products_by_any_structure_are_the_matrix_times_a_vector(dim, monkeypatc
 @pytest.mark.parametrize("dim", [1, 2, 3])
 def test_implicit_steps_move_as_explicit_ones(dim):
     """Joints with friction, open to tension, dashpots, a shaken side and a quiet one."""
-    body = stack(dim, 3, 1, 1)
-    body = body._replace(damping=0.02 * body.stiffness)
-    bottom, top = body.sides["bottom"], body.sides["top"]
-    quiet = Dashpots(bottom.node, bottom.weight[:, None, None] * np.eye(dim))
+    body, bottom, top, quiet = damped(dim)
     along = dim * top.node + dim - 1
     strengths = {"friction": np.array([0.5, 0.4])} if dim > 1 else {}
     own = problem(
