@@ -24,9 +24,15 @@ HAPPENS = {
 }
 
 
+@pytest.fixture(scope="module")
+def alone():
+    """Return the results of one process."""
+    return {name: simulate(scene) for name, scene in shared.scenes().items()}
+
+
 @pytest.fixture(scope="module", params=[2, 3])
-def found(request, mpiexec, tmp_path_factory):
-    """Return what `shared.main` finds in so many processes."""
+def found(request, mpiexec, alone, tmp_path_factory):
+    """Return what `shared.main` finds in so many processes, by kernels that are compiled already."""
     (launcher, environment), count = mpiexec, request.param
     path = tmp_path_factory.mktemp("shared") / "found"
     command = [*launcher, "-n", str(count), sys.executable, "-m", shared.__name__, path]
@@ -35,12 +41,6 @@ def found(request, mpiexec, tmp_path_factory):
     )
     assert done.returncode == 0, done.stderr
     return count, pickle.loads(path.read_bytes())
-
-
-@pytest.fixture(scope="module")
-def alone():
-    """Return the results of one process."""
-    return {name: simulate(scene) for name, scene in shared.scenes().items()}
 
 
 @pytest.mark.parametrize("name", HAPPENS)

@@ -39,13 +39,13 @@ def scene(pillar):
 
 
 def test_blocks_are_drawn_in_the_colour_of_their_stress(row, scene):
-    """Six faces a block at every instant, compression red and tension blue."""
+    """The three faces of each block that face the viewer, compression red and tension blue."""
     figure = draw_snapshots("row", scene, row)
     figure.canvas.draw()
     first, second = (ax.collections[0].get_facecolor() for ax in figure.axes[:2])
-    assert len(first) == len(second) == 18
+    assert len(first) == len(second) == 9
     red_over_blue = second[:, 0] - second[:, 2]
-    assert (red_over_blue > 0.2).sum() == (red_over_blue < -0.2).sum() == 6
+    assert (red_over_blue > 0.2).sum() == (red_over_blue < -0.2).sum() == 3
     assert [ax.get_ylabel() for ax in figure.axes[:2]] == ["0 ms", "2 ms"]
     assert "displacements × " in figure.axes[1].get_xlabel()
 

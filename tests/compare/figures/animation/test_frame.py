@@ -31,7 +31,9 @@ def test_blocks_of_both_engines_are_drawn_where_they_are_in_their_colours(frame)
         s = frame.simulated.found[name]
         colours = view.faces.to_rgba(view.faces.get_array())
         assert np.abs(colours[:, 0] - colours[:, 2]).max() > 0.2
-        assert sorted(view.faces.get_array()) == sorted(frame.bodies[name].values[20])
+        corners = frame.bodies[name].rest[frame.bodies[name].faces]
+        assert len(view.faces.get_array()) == len(corners) / 2  # the others face away
+        assert set(view.faces.get_array()) <= set(frame.bodies[name].values[20])
         places = np.concatenate([path.vertices for path in view.faces.get_paths()])
         moved = s.points[:, 1] + frame.settings.scale * s.displacement[20, :, 1]
         aside = 0.1 * 0.5 * frame.simulated.scene.pillar.side * frame.settings.stretch
