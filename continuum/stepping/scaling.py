@@ -4,8 +4,8 @@ Slivers between planes of joints have cells much smaller than the rest. A step d
 
     sum_j |dt^2 K_ij + 4 dt C_ij| <= 4 m_i
 
-for every freedom i, by Gershgorin's theorem on M^-1 (dt^2 K + 4 dt C) (`stepping.critical`). Where a
-row lacks mass for a longer step, it is added, as much in each direction.
+for every freedom i, by Gershgorin's theorem on M^-1 (dt^2 K + 4 dt C) (`stepping.critical`). Where
+a row lacks mass for a longer step, it is added, as much in each direction.
 
 A mass M in rock of density rho scatters about pi M / (rho l^d) of a wave of length l, as it is one
 wavelength away: in one, two and three dimensions, by the first term of Born's series. All that is

@@ -32,7 +32,7 @@ def alone():
 
 @pytest.fixture(scope="module", params=[2, 3])
 def found(request, mpiexec, alone, tmp_path_factory):
-    """Return what `shared.main` finds in so many processes, by kernels that are compiled already."""
+    """Return what `shared.main` finds in so many processes, by kernels compiled before."""
     (launcher, environment), count = mpiexec, request.param
     path = tmp_path_factory.mktemp("shared") / "found"
     command = [*launcher, "-n", str(count), sys.executable, "-m", shared.__name__, path]
