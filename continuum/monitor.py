@@ -5,9 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from jointwave.cases.errors import StoppedError
-from jointwave.cases.partition.blocks import plane_partition
 from jointwave.cases.partition.periodic import of_all
-from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.bounds import highest_speed
@@ -47,10 +45,7 @@ class Monitor:
         self.scene, self.found, self.steps, self.time = scene, found, steps, choice.time
         self.explicit, self.critical = choice.scheme == "explicit", critical
         self.guard = guard(highest_speed(found, steps.problem, choice.time, start))
-        self.partition = None
-        if matters(scene) and not isinstance(scene, Scene) and scene.domain.dimension == 2:
-            names = tuple(one.name for one in scene.joint_sets)
-            self.partition = plane_partition(found.blocks, shape_of(scene.domain).sides, names)
+        self.in_plane = not isinstance(scene, Scene) and scene.domain.dimension == 2
 
     def check(self, first: int, last: int) -> None:
         """Raise StoppedError where a run leaves its bounds in samples first .. last - 1."""
@@ -86,9 +81,9 @@ class Monitor:
         that overlap without a contact; None without joints."""
         u = self.steps.u
         found = farthest_joint(self.found, u)
-        if self.partition is None or (found is not None and found.by > LARGEST * found.size):
+        if not self.in_plane or (found is not None and found.by > LARGEST * found.size):
             return found
-        return overlapping(self.partition, motion_of_blocks(self.found, u)) or found
+        return overlapping(self.found.blocks, motion_of_blocks(self.found, u)) or found
 
 
 def farthest_joint(found: SceneBody, u: np.ndarray) -> Moved | None:

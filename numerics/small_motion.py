@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.errors import StoppedError
-from jointwave.cases.partition.blocks import Partition
+from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 
@@ -74,29 +74,29 @@ def refuse_large_motion(
     raise error
 
 
-def overlapping(partition: Partition, motion: np.ndarray) -> Moved | None:
-    """Return two blocks that have no contact and overlap, by their displacements and rotations
-    [n, 3]; None, and little done, where displacements differ too little for it."""
-    least = float(np.sqrt(partition.area.min()))
+def overlapping(cut: Blocks, motion: np.ndarray) -> Moved | None:
+    """Return two blocks in the plane that have no contact and overlap, by their displacements and
+    rotations [n, 3]; None, and little done, where displacements differ too little for it."""
+    least = float(np.sqrt(cut.volume.min()))
     if not np.ptp(motion[:, :2], axis=0).max() > OVERLAP / 2 * least:
         return None
     import shapely
 
-    owner = np.repeat(np.arange(partition.count), np.diff(partition.first))
-    arm = partition.corners - partition.centroid[owner]
+    corners, first = cut.outlines
+    owner = np.repeat(np.arange(cut.count), np.diff(first))
+    arm = corners - cut.centroid[owner]
     turned = motion[owner, 2, None] * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
-    moved = partition.corners + motion[owner, :2] + turned
-    rings = [moved[a:b] for a, b in zip(partition.first[:-1], partition.first[1:], strict=True)]
-    blocks = np.array([shapely.Polygon(ring) for ring in rings])
+    moved = corners + motion[owner, :2] + turned
+    blocks = np.array([shapely.Polygon(ring) for ring in np.split(moved, first[1:-1])])
     i, j = shapely.STRtree(blocks).query(blocks, predicate="intersects")
-    touching = partition.contacts.blocks @ [partition.count, 1]
-    new = (i < j) & ~np.isin(i * partition.count + j, touching)
+    touching = cut.contacts.blocks @ [cut.count, 1]
+    new = (i < j) & ~np.isin(i * cut.count + j, touching)
     i, j = i[new], j[new]
     common = shapely.area(shapely.intersection(blocks[i], blocks[j]))
-    smaller = np.minimum(partition.area[i], partition.area[j])
+    smaller = np.minimum(cut.volume[i], cut.volume[j])
     if not (common > OVERLAP * smaller).any():
         return None
     k = int((common / smaller).argmax())
     size = float(np.sqrt(smaller[k]))
-    place = tuple(partition.centroid[i[k]].tolist())
+    place = tuple(cut.centroid[i[k]].tolist())
     return Moved(int(i[k]), int(j[k]), float(common[k]) / size, size, place, True)

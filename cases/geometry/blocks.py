@@ -1,6 +1,7 @@
 """Blocks, contacts and boundary facets as arrays, in one, two or three dimensions."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -49,14 +50,9 @@ class Facets:
         return len(self.area)
 
     @property
-    def start(self) -> np.ndarray:
-        """In the plane one end of each [c, 2], m: to the other block i lies to the left."""
-        return self.outlines.corners[0::2]
-
-    @property
-    def end(self) -> np.ndarray:
-        """In the plane the other end of each [c, 2], m."""
-        return self.outlines.corners[1::2]
+    def ends(self) -> np.ndarray:
+        """In the plane the ends of each [c, 2, 2], m: to the second block i lies to the left."""
+        return self.outlines.corners.reshape(-1, 2, 2)
 
     def of_joints(self, sets: int) -> np.ndarray:
         """Return which lie on joints of a scene with this number of sets, bool array [c]."""
@@ -106,6 +102,14 @@ class Blocks:
         normal = half.outward[first]
         found = outlines(self.body, half.facet[order], group, normal, tolerance)
         return half.cell[first], normal, found
+
+    @cached_property
+    def outlines(self) -> Outlines:
+        """In the plane the corners of each block, counter-clockwise."""
+        block, normal, edges = self.faces(0.0)
+        order = np.lexsort([np.arctan2(normal[:, 1], normal[:, 0]), block])
+        first = np.searchsorted(block, np.arange(self.count + 1))
+        return Outlines(edges.corners[::2][order], first)
 
 
 def blocks_of(body: Complex, tolerance: float, in_rows: bool = True) -> Blocks:

@@ -8,18 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.joints import attitude
 from jointwave.cases.partition.regions import rocks_beside
 from jointwave.cases.schema.plane import IntactRock
 from jointwave.cases.schema.rock_mass import RockMass
-
-
-class Inertia(NamedTuple):
-    """Of each block: mass [n], kg/m, and moment of inertia about the centroid [n], kg m."""
-
-    mass: np.ndarray
-    moment: np.ndarray
 
 
 class Stiffness(NamedTuple):
@@ -27,11 +19,6 @@ class Stiffness(NamedTuple):
 
     normal: np.ndarray
     shear: np.ndarray
-
-
-def inertia(partition: Partition, density: float | np.ndarray) -> Inertia:
-    """Return the inertia of blocks of a density (kg/m3), of all or of each [n]."""
-    return Inertia(density * partition.area, density * partition.polar_moment)
 
 
 def constrained_modulus(rock: IntactRock) -> float:

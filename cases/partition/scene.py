@@ -15,7 +15,6 @@ from jointwave.cases.geometry.measure import cell_moments
 from jointwave.cases.geometry.sets import cut_by_sets
 from jointwave.cases.geometry.slivers import Limits, without_slivers
 from jointwave.cases.geometry.solids import check_convex, cut_into_regions, taken_out
-from jointwave.cases.partition.blocks import Partition, plane_partition
 from jointwave.cases.partition.joints import attitude, plane_sets
 from jointwave.cases.partition.periodic import across_periodic
 from jointwave.cases.partition.regions import bounded
@@ -115,12 +114,6 @@ def blocks_of_scene(scene: RockMass, further: Sequence[JointSet] = ()) -> Blocks
     except GeometryError as error:
         raise SceneError(scene.where, error.key, None, str(error)) from None
     return found
-
-
-def partition_of(scene: RockMass, further: Sequence[JointSet] = ()) -> Partition:
-    """Return the blocks of a rock mass in the plane, as `blocks_of_scene` does, with corners."""
-    sides, names = shape_of(scene.domain).sides, tuple(one.name for one in scene.joint_sets)
-    return plane_partition(blocks_of_scene(scene, further), sides, names)
 
 
 def block_count(domain: Domain, sets: Sequence[JointSet]) -> float:

@@ -11,7 +11,7 @@ import xarray as xr
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
 from jointwave.cases.partition.pillar import block_ends, welds
-from jointwave.cases.partition.scene import partition_of
+from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
@@ -142,10 +142,9 @@ def _joints(scene: AnyScene) -> np.ndarray:
     if isinstance(scene, Scene):
         y, half = block_ends(scene)[1:-1][~welds(scene)], scene.pillar.side / 2
         return np.array([[(at, -half), (at, half)] for at in y]).reshape(-1, 2, 2)
-    partition = partition_of(scene)
-    here = partition.contacts.of_joints(len(scene.joint_sets))
-    ends = np.stack([partition.contacts.start, partition.contacts.end], axis=1)[here]
-    longest = float(np.ptp(partition.corners, axis=0).max()) / PIECES
+    blocks = blocks_of_scene(scene)
+    ends = blocks.contacts.ends[blocks.contacts.of_joints(len(scene.joint_sets))]
+    longest = float(np.ptp(blocks.outlines.corners, axis=0).max()) / PIECES
     lines = shapely.segmentize(shapely.linestrings(ends), longest)
     places, line = shapely.get_coordinates(lines, return_index=True)
     return np.stack([places[:-1], places[1:]], axis=1)[line[1:] == line[:-1]]

@@ -11,7 +11,6 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import Blocks as Cut
 from jointwave.cases.geometry.cell_complex import GeometryError
 from jointwave.cases.material.rigid_blocks import RigidJoints, rigid_joints
-from jointwave.cases.partition.blocks import Partition, plane_partition
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.regions import rocks_of
 from jointwave.cases.partition.scene import blocks_of_scene
@@ -44,12 +43,6 @@ class BlocksOfRockMass(RigidBlocks):
     def size(self) -> np.ndarray:
         """The root of the area or volume of each block [N], m."""
         return self.cut.volume ** (1 / self.dim)
-
-    @cached_property
-    def partition(self) -> Partition:
-        """The blocks in the plane, with the corners of each."""
-        names = tuple(one.name for one in self.scene.joint_sets)
-        return plane_partition(self.cut, self.sides, names)
 
     @property
     def critical(self) -> float:

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.geometry.measure import Outlines
 from jointwave.cases.partition.shape import shape_of
 from jointwave.dem.bounds import motion_of_contacts
 from jointwave.dem.leapfrog import march
@@ -67,8 +66,7 @@ def recorder(system: BlockSystem, state: State) -> BlockRecorder | None:
         return BlockFrame(moved, moving, stress[:, 0], slip[:, 0, 1])
 
     if system.blocks.dim == 2:
-        partition = system.blocks.partition
-        owner, pieces = receivers.places, Outlines(partition.corners, partition.first)
+        owner, pieces = receivers.places, cut.outlines
     else:
         owner, _, pieces = cut.faces(shape_of(scene.domain).tolerance)
     return BlockRecorder(scene, cut, pieces, owner, capture)
@@ -98,7 +96,7 @@ def moved_apart(system: BlockSystem, state: State) -> Moved | None:
     plane blocks that overlap without one; None in a single block."""
     blocks, met, dim = system.blocks, system.blocks.contacts, system.blocks.dim
     count = blocks.count
-    if dim == 2 and (overlap := overlapping(blocks.partition, state.u[:count])) is not None:
+    if dim == 2 and (overlap := overlapping(blocks.cut, state.u[:count])) is not None:
         return overlap
     if not len(met.blocks):
         return None

@@ -25,7 +25,7 @@ from jointwave.cases.effects import active_effects
 from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.loads import load_history, step_means
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.partition.scene import partition_bytes, partition_of
+from jointwave.cases.partition.scene import blocks_of_scene, partition_bytes
 from jointwave.cases.records import read_history
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
@@ -111,7 +111,7 @@ def _examine_rock_mass(one: RockMass) -> None:
     for name in names():
         applies(name, one)
     if partition_bytes(one) <= TINY_PARTITION:
-        partition_of(one)
+        blocks_of_scene(one)
 
 
 def _steps(one: Scene) -> int:

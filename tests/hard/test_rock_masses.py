@@ -11,7 +11,7 @@ from jointwave.cases.geometry.locate import blocks_at
 from jointwave.cases.loads import history_of, step_means
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.scene import partition_of
+from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.compare.engines import solve
 from jointwave.compare.exact.rock_mass.block_lattice import masses, reads
 from jointwave.compare.misfit.metrics import relative_l2
@@ -45,7 +45,7 @@ def test_free_blocks_move_as_leapfrog_in_closed_form(changes, variant):
     """The modes are singular vectors of the roots of all contacts' stiffnesses, from the partition
     and the joints' laws alone. Leapfrog errs by round-off, some eps a step."""
     run = HardRun("dem", "leapfrog", changes, BRICKS, variant)
-    partition = partition_of(run.scene)
+    partition = blocks_of_scene(run.scene)
     steps = np.rint(run.result["time"].values / run.dt).astype(int)
     (load,) = run.scene.loads
     force = step_means(history_of(load, load.amplitude), run.dt, int(steps[-1]) + 1)
@@ -72,7 +72,7 @@ def unit_force(scene, partition):
     """Return the forces on all degrees of freedom [3 N] per unit of the load."""
     (load,) = scene.loads
     at = np.array([load.at])
-    ((block, *_),) = blocks_at(partition.blocks, at)
+    ((block, *_),) = blocks_at(partition, at)
     found = np.zeros((partition.count, 3))
     found[block] = jump(np.array([load.direction]), at - partition.centroid[block])[0]
     return found.ravel()

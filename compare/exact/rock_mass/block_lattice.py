@@ -13,17 +13,17 @@ import numpy as np
 import xarray as xr
 from scipy.sparse import bsr_array, csr_array
 
+from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.incident import tractions
 from jointwave.cases.material.contact_points import bending, points_of
 from jointwave.cases.material.quiet_sides import impedances
 from jointwave.cases.material.rigid_blocks import rigid_joints, welds
-from jointwave.cases.material.rock_mass import inertia
-from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.periodic import across_periodic
-from jointwave.cases.partition.scene import block_count, partition_of
+from jointwave.cases.partition.scene import block_count, blocks_of_scene
+from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.rock_mass import RockMass
@@ -68,18 +68,18 @@ def solve(scene: RockMass) -> xr.Dataset:
     """Return velocity and displacement at the points of a scene."""
     from scipy.interpolate import CubicSpline
 
-    partition, times = partition_of(scene, further_sets(scene)), sample_times(scene)
-    quiet = _quiet(scene, partition)
-    parts = zip(*_between_blocks(scene, partition), quiet, strict=True)
+    blocks, times = blocks_of_scene(scene, further_sets(scene)), sample_times(scene)
+    quiet = _quiet(scene, blocks)
+    parts = zip(*_between_blocks(scene, blocks), quiet, strict=True)
     contacts = Contacts(*map(np.concatenate, parts))
     period = shortest_period(scene.waves)
     assert period is not None
     stride = 2 * int(np.ceil(scene.interval * IN_A_PERIOD / period / 2))
     fine = scene.interval / stride * np.arange(stride * (len(times) - 1) + 1)
-    freedoms, forces = _incident(scene, partition, quiet, fine)
-    system = first_order(masses(scene, partition), contacts)
+    freedoms, forces = _incident(scene, blocks, quiet, fine)
+    system = first_order(masses(scene, blocks), contacts)
     system = system._replace(load=system.driven[:, freedoms].T)
-    points, found = reads(scene, partition), []
+    points, found = reads(scene, blocks), []
     for step, noise in ((1, 0.0), (2, NOISE)):
         loads = Loads(CubicSpline(fine[::step], forces[::step]), fine[::step])
         states = integrate(system, loads, times, noise=noise).states.T
@@ -91,15 +91,15 @@ def solve(scene: RockMass) -> xr.Dataset:
     return rock_mass_dataset(scene, SOLVER.name, times, values, errors=errors)
 
 
-def masses(scene: RockMass, partition: Partition) -> np.ndarray:
+def masses(scene: RockMass, blocks: Blocks) -> np.ndarray:
     """Return masses (kg) and moments of inertia (kg m2) of all blocks [N, 3], per m."""
-    own = inertia(partition, scene.rock.density)
-    return np.stack([own.mass, own.mass, own.moment], axis=1)
+    polar = np.trace(blocks.second_moment, axis1=1, axis2=2)
+    return scene.rock.density * np.stack([blocks.volume, blocks.volume, polar], axis=1)
 
 
-def _between_blocks(scene: RockMass, partition: Partition) -> list[Contacts]:
+def _between_blocks(scene: RockMass, blocks: Blocks) -> list[Contacts]:
     """Return the contacts of blocks, and those across periodic sides."""
-    further, blocks, parts = further_sets(scene), partition.blocks, []
+    further, parts = further_sets(scene), []
     joints, sets = rigid_joints(scene, further), [*scene.joint_sets, *further]
     springs = np.stack([joints.normal, joints.shear], axis=1)
     bends = np.array([bending(one.point_rule, one.contact_points) for one in sets])
@@ -109,25 +109,25 @@ def _between_blocks(scene: RockMass, partition: Partition) -> list[Contacts]:
         rock = facets.joint_set == NO_SET
         weld = facets.blocks[rock], facets.centroid[rock], facets.normal[rock]
         shifts = np.tile(shift, (len(weld[0]), 1))
-        k[rock] = np.stack(welds(scene, partition.blocks, further, *weld, shifts), axis=1)
+        k[rock] = np.stack(welds(scene, blocks, further, *weld, shifts), axis=1)
         share[rock] = 1.0
         parts.append(contacts_of(blocks, facets, k, 0 * k, share, shift))
     return parts
 
 
-def _quiet(scene: RockMass, partition: Partition) -> Contacts:
+def _quiet(scene: RockMass, blocks: Blocks) -> Contacts:
     """Return the dashpots of the facets of quiet sides."""
-    outer, held = partition.blocks.boundary, scene.boundaries.model_dump()
-    own = np.array([held.get(name) == "quiet" for name in partition.sides])[outer.side]
+    outer, held = blocks.boundary, scene.boundaries.model_dump()
+    own = np.array([held.get(name) == "quiet" for name in shape_of(scene.domain).sides])[outer.side]
     impedance = np.zeros((len(own), 2))
-    regions = partition.region[outer.blocks[own, 0]]
+    regions = blocks.body.region[outer.blocks[own, 0]]
     impedance[own] = impedances(scene, outer.normal[own], regions)
-    found = contacts_of(partition.blocks, outer, 0 * impedance, impedance)
+    found = contacts_of(blocks, outer, 0 * impedance, impedance)
     return Contacts(*(x[own] for x in found))
 
 
 def _incident(
-    scene: RockMass, partition: Partition, quiet: Contacts, times: np.ndarray
+    scene: RockMass, blocks: Blocks, quiet: Contacts, times: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the freedoms [k] of blocks on quiet sides, and the forces on them [n, k], N and N m
     per m, of the incident field at two Gauss points of each facet."""
@@ -135,7 +135,7 @@ def _incident(
     along = np.stack([-quiet.normal[:, 1], quiet.normal[:, 0]], axis=1) * quiet.area[:, None]
     arm = (quiet.arm[:, :1] + (x - 0.5)[:, None] * along[:, None]).reshape(-1, 2)
     block, impedance = np.repeat(quiet.blocks[:, 0], 2), np.repeat(quiet.dashpots, 2, axis=0)
-    place, normal = partition.centroid[block] + arm, np.repeat(quiet.normal, 2, axis=0)
+    place, normal = blocks.centroid[block] + arm, np.repeat(quiet.normal, 2, axis=0)
     found = tractions(field_of(scene), place, normal, impedance, times)
     pushes = np.outer(quiet.area, weight).ravel()[:, None, None] * carried(arm, 3)[:, :2]
     own, which = np.unique(block, return_inverse=True)
@@ -145,16 +145,16 @@ def _incident(
     return freedoms, forces.swapaxes(0, 1).reshape(len(times), -1)
 
 
-def reads(scene: RockMass, partition: Partition) -> csr_array:
+def reads(scene: RockMass, blocks: Blocks) -> csr_array:
     """Return the matrix from the motion of all blocks to that of the points of a scene, sparse
     [2 points, 3 N]; on joints the mean of the blocks there."""
     points = np.array(scene.record.points)
-    sides = sides_at(partition.blocks, points, len(scene.joint_sets))
-    count = np.array([len(blocks) for blocks in sides])
+    sides = sides_at(blocks, points, len(scene.joint_sets))
+    count = np.array(list(map(len, sides)))
     which, block = np.repeat(np.arange(len(points)), count), np.concatenate(sides)
-    parts = carried(points[which] - partition.centroid[block], 3)[:, :2]
+    parts = carried(points[which] - blocks.centroid[block], 3)[:, :2]
     parts = parts / count[which][:, None, None]
-    first, shape = np.append(0, np.cumsum(count)), (2 * len(points), 3 * partition.count)
+    first, shape = np.append(0, np.cumsum(count)), (2 * len(points), 3 * blocks.count)
     return csr_array(bsr_array((parts, block, first), shape=shape))
 
 

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.incident import PlaneWave, plane_wave
 from jointwave.cases.material.rock import ElasticRock, elastic_rock
 from jointwave.cases.material.rock_mass import set_time_constants
-from jointwave.cases.partition.blocks import Partition
 from jointwave.cases.partition.joints import direction_of
 from jointwave.cases.partition.regions import rocks_of, strata
-from jointwave.cases.partition.scene import partition_of
+from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import TOLERANCE, shape_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import Wave
@@ -46,14 +46,14 @@ class JointStack:
 
     rocks : of the layers, along the normal [N + 1]. direction : unit vector along the joints [2];
     their normal is its left. offsets : of the joints along the normal from the origin, ascending,
-    m, [N]. joints : [N]. partition : of the domain. has_face : whether one of them is a free face.
+    m, [N]. joints : [N]. blocks : of the domain. has_face : whether one of them is a free face.
     """
 
     rocks: list[ElasticRock]
     direction: np.ndarray
     offsets: np.ndarray
     joints: list[Joint]
-    partition: Partition
+    blocks: Blocks
     has_face: bool = False
 
     @property
@@ -77,25 +77,25 @@ class JointStack:
 def stack_of(scene: RockMass) -> JointStack:
     """Return the stack of a scene whose joints, and free face, are parallel: of joints that are not
     linear, as they are at first."""
-    partition, face = partition_of(scene), free_face(scene)
+    blocks, face = blocks_of_scene(scene), free_face(scene)
     direction = next(iter(directions_of(scene)), None)
     if direction is None:
         assert face is not None
         direction = np.array([face.normal[1], -face.normal[0]])
-    contacts, etas = partition.contacts, set_time_constants(scene)
+    contacts, etas = blocks.contacts, set_time_constants(scene)
     etas = np.zeros(len(scene.joint_sets)) if etas is None else etas
     laws = [
         Joint(K_n, K_s, K_n * eta, K_s * eta)
         for K_n, K_s, eta in zip(*stiffnesses(scene), etas, strict=True)
     ]
     laws.append(Joint(np.inf, np.inf))  # NO_SET's
-    normal, region = np.array([-direction[1], direction[0]]), partition.region[contacts.blocks]
-    depths = contacts.start @ normal
+    normal, region = np.array([-direction[1], direction[0]]), blocks.body.region[contacts.blocks]
+    depths = contacts.ends[:, 0] @ normal
     order = np.argsort(depths)
     met = (contacts.joint_set != NO_SET) | (region[:, 0] != region[:, 1])
     order = order[met[order]]
     apart = np.diff(depths[order], prepend=-np.inf)  # an opening may cut a joint into parts
-    order = order[apart > TOLERANCE * np.ptp(partition.corners, axis=0).max()]
+    order = order[apart > TOLERANCE * np.ptp(blocks.outlines.corners, axis=0).max()]
     joints = [laws[k] for k in contacts.joint_set[order]]
     below, above = region[order].T
     swap = contacts.normal[order] @ normal < 0
@@ -109,7 +109,7 @@ def stack_of(scene: RockMass) -> JointStack:
         offsets = np.insert(offsets, at, face.offset * along_normal)
         joints.insert(at, Joint(0.0, 0.0))
         rocks.insert(at, rocks[at])
-    return JointStack(rocks, direction, offsets, joints, partition, face is not None)
+    return JointStack(rocks, direction, offsets, joints, blocks, face is not None)
 
 
 def stiffnesses(scene: RockMass) -> np.ndarray:
@@ -185,6 +185,6 @@ def first_scattered(stack: JointStack, wave: PlaneWave) -> float:
     t = np.array([-n[1], n[0]])
     p, q = wave.direction @ t / wave.speed, wave.direction @ n / wave.speed
     least = min(slownesses_across(one, p).real.min() for one in stack.rocks)
-    places = stack.partition.corners - wave.through
+    places = stack.blocks.outlines.corners - wave.through
     first = ((stack.offsets * (n @ stack.normal)) - wave.through @ n).min()
     return float((places @ t * p + q * first + least * np.abs(places @ n - first)).min())

@@ -154,8 +154,8 @@ def point_receivers(
         return points, np.zeros(0, dtype=bool), points
     apart = (points @ stack.normal)[:, None] - stack.offsets
     apart = np.take_along_axis(apart, np.abs(apart).argmin(axis=1)[:, None], axis=1)
-    sides = sides_at(stack.partition.blocks, points, len(scene.joint_sets))
-    inward = stack.partition.centroid[[min(blocks, default=OUTSIDE) for blocks in sides]] - points
+    sides = sides_at(stack.blocks, points, len(scene.joint_sets))
+    inward = stack.blocks.centroid[[min(blocks, default=OUTSIDE) for blocks in sides]] - points
     side = _beside(stack) * np.sign(inward @ stack.normal)[:, None]
     near = np.abs(apart) <= TOLERANCE / BESIDE * _beside(stack)
     here, there = (points + (off - apart) * stack.normal for off in (side, -side))
@@ -166,12 +166,12 @@ def point_receivers(
 def joint_receivers(scene: RockMass, stack: JointStack) -> tuple[np.ndarray, np.ndarray]:
     """Return the places on joints [m, 2] (m) nearest to those given by a scene, and the axes there
     [m, (n, s), 2]: the outward normal of the block with the smaller number, and its left."""
-    asked, contacts = np.array(scene.record.joints).reshape(-1, 2), stack.partition.contacts
+    asked, contacts = np.array(scene.record.joints).reshape(-1, 2), stack.blocks.contacts
     chosen = np.zeros(0, dtype=int)
     if len(asked):
-        chosen = contact_at(stack.partition.blocks, asked, len(scene.joint_sets))
-    start, normal = contacts.start[chosen], contacts.normal[chosen]
-    way = contacts.end[chosen] - start
+        chosen = contact_at(stack.blocks, asked, len(scene.joint_sets))
+    (start, end), normal = contacts.ends[chosen].swapaxes(0, 1), contacts.normal[chosen]
+    way = end - start
     share = ((asked - start) * way).sum(axis=1) / contacts.area[chosen] ** 2
     axes = np.stack([normal, np.stack([-normal[:, 1], normal[:, 0]], axis=1)], axis=1)
     return start + np.clip(share, 0, 1)[:, None] * way, axes
@@ -185,7 +185,7 @@ def on_face(stress: np.ndarray, normal: np.ndarray) -> np.ndarray:
 
 def _beside(stack: JointStack) -> float:
     """Return the distance of a place beside a joint from it, m."""
-    return BESIDE * float(np.hypot(*np.ptp(stack.partition.corners, axis=0)))
+    return BESIDE * float(np.hypot(*np.ptp(stack.blocks.outlines.corners, axis=0)))
 
 
 def _solver(name: str, label: str, line: Line, one: bool) -> Solver:

@@ -3,8 +3,8 @@
 import numpy as np
 from matplotlib.artist import Artist
 
-from jointwave.cases.partition.blocks import Partition
-from jointwave.cases.partition.scene import partition_of
+from jointwave.cases.geometry.blocks import Blocks, Facets
+from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad, Wave
@@ -33,13 +33,13 @@ SLENDER = 0.6  # of the length of a slender rock mass, that sizes its arrows ins
 
 def sketch_of(scene: RockMass) -> Sketch:
     """Return the sketch of a rock mass, cut into blocks."""
-    partition, record = partition_of(scene), scene.record
-    low, high = partition.corners.min(axis=0), partition.corners.max(axis=0)
+    blocks, record = blocks_of_scene(scene), scene.record
+    low, high = (at(blocks.outlines.corners, axis=0) for at in (np.min, np.max))
     size = float(max((high - low).min(), SLENDER * (high - low).max()))
     shapes = [
-        *_blocks(scene, partition),
-        *_joints(partition),
-        *_sides(scene, partition),
+        *_blocks(scene, blocks),
+        *_joints(scene, blocks.contacts),
+        *_sides(scene, blocks.boundary),
         *receivers("point", record.points, "o"),
         *receivers("point of a joint", record.joints, "^"),
         *(shape for wave in scene.waves for shape in _wave(wave, low, high, size)),
@@ -58,32 +58,29 @@ def sketch_of(scene: RockMass) -> Sketch:
     return Sketch(shapes, low - margin, high + margin, ("x", "y"), size=places)
 
 
-def _blocks(scene: RockMass, partition: Partition) -> list[Artist]:
+def _blocks(scene: RockMass, blocks: Blocks) -> list[Artist]:
     """Return the blocks of every region of rock."""
-    blocks = dict(enumerate(np.split(partition.corners, partition.first[1:-1])))
     return [
-        rock(name, [blocks[i] for i in np.flatnonzero(partition.region == k - 1)], k)
+        rock(name, [blocks.outlines.of(i) for i in np.flatnonzero(blocks.body.region == k - 1)], k)
         for k, name in enumerate(["_rock", *(one.name for one in scene.regions)])
     ]
 
 
-def _joints(partition: Partition) -> list[Artist]:
+def _joints(scene: RockMass, contacts: Facets) -> list[Artist]:
     """Return the contacts of every joint set, and cuts through intact rock."""
-    of = partition.contacts
-    segments, width = np.stack([of.start, of.end], axis=1), 0.4 if len(of.start) > DENSE else 0.9
-    shapes = lines("no joint", segments[of.joint_set == -1], EDGE, width, (0, (1.0, 2.0)))
-    for k, name in enumerate(partition.joint_sets):
-        shapes += lines(name, segments[of.joint_set == k], SETS[k % len(SETS)], width)
+    ends, of, width = contacts.ends, contacts.joint_set, 0.4 if len(contacts) > DENSE else 0.9
+    shapes = lines("no joint", ends[of == -1], EDGE, width, (0, (1.0, 2.0)))
+    for k, one in enumerate(scene.joint_sets):
+        shapes += lines(one.name, ends[of == k], SETS[k % len(SETS)], width)
     return shapes
 
 
-def _sides(scene: RockMass, partition: Partition) -> list[Artist]:
+def _sides(scene: RockMass, edges: Facets) -> list[Artist]:
     """Return the boundary by its condition; openings are free."""
-    edges, shapes = partition.boundary, list[Artist]()
-    segments = np.stack([edges.start, edges.end], axis=1)
-    held = np.array([getattr(scene.boundaries, name, "free") for name in partition.sides])
+    shapes, sides = list[Artist](), shape_of(scene.domain).sides
+    held = np.array([getattr(scene.boundaries, name, "free") for name in sides])
     for condition in dict.fromkeys(held.tolist()):
-        shapes += side("side", segments[(held == condition)[edges.side]], condition)
+        shapes += side("side", edges.ends[(held == condition)[edges.side]], condition)
     return shapes
 
 

@@ -10,12 +10,13 @@ from scipy.linalg import eigh
 
 from jointwave.cases.geometry.cell_complex import GeometryError
 from jointwave.cases.material.contact_points import points_of
-from jointwave.cases.material.rock_mass import constrained_modulus, inertia
+from jointwave.cases.material.rock_mass import constrained_modulus
+from jointwave.cases.partition.scene import blocks_of_domain as cut
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.plane import IntactRock
 from tests.cases.material.block_stiffness import block_stiffness, jump
-from tests.cases.partition.polygons import cut, periodic_contacts, points_between
+from tests.cases.partition.polygons import periodic_contacts, points_between
 
 DENSITY, NORMAL, SHEAR = 2500.0, 1.1e10, 4e9
 
@@ -41,9 +42,15 @@ def assembled(count, pieces):
 
 def bound(own, weight):
     """Return the critical step that follows from blocks held by their neighbours, s."""
-    scale = 1 / np.sqrt(np.stack([weight.mass, weight.mass, weight.moment], axis=1))
+    scale = 1 / np.sqrt(weight)
     largest = np.linalg.eigvalsh(scale[:, :, None] * own * scale[:, None, :]).max()
     return 2 / np.sqrt(2 * largest)
+
+
+def masses_of(found):
+    """Masses and moments of inertia of blocks, [n, 3]."""
+    polar = np.trace(found.second_moment, axis1=1, axis2=2)
+    return DENSITY * np.stack([found.volume, found.volume, polar], axis=1)
 
 
 def uniform(found, contacts, sets, shear=SHEAR, shift=(0.0, 0.0)):
@@ -55,9 +62,9 @@ def uniform(found, contacts, sets, shear=SHEAR, shift=(0.0, 0.0)):
 def test_inertia_of_a_rectangle():
     """Mass rho b h, moment m (b^2 + h^2) / 12, per metre."""
     sets = [joint_set("flat", 0.0, spacing=1.0), joint_set("steep", 90.0, spacing=2.0)]
-    found = inertia(cut(Domain(size=[4.0, 2.0]), sets), DENSITY)
-    np.testing.assert_allclose(found.mass, 2 * DENSITY, rtol=1e-15)
-    np.testing.assert_allclose(found.moment, 2 * DENSITY * 5 / 12, rtol=1e-14)
+    found = masses_of(cut(Domain(size=[4.0, 2.0]), sets))
+    np.testing.assert_allclose(found[:, :2], 2 * DENSITY, rtol=1e-15)
+    np.testing.assert_allclose(found[:, 2], 2 * DENSITY * 5 / 12, rtol=1e-14)
 
 
 @pytest.mark.parametrize("count", range(1, 9))
@@ -114,13 +121,13 @@ def test_critical_step_is_bounded_on_both_sides(sets, ratio):
         found = cut(Domain(size=[4.0, 3.0], least_width=1e-5, least_angle=0.0), sets)
     except GeometryError:  # joints that end at others may all miss so small a domain
         reject()
-    points, weight = uniform(found, found.contacts, sets, ratio * NORMAL), inertia(found, DENSITY)
+    points, weight = uniform(found, found.contacts, sets, ratio * NORMAL), masses_of(found)
     own, whole = block_stiffness(found.count, *points), assembled(found.count, [points])
     for k in range(found.count):
         np.testing.assert_allclose(
             own[k], whole[3 * k : 3 * k + 3, 3 * k : 3 * k + 3], rtol=1e-9, atol=1e-3
         )
-    masses = np.stack([weight.mass, weight.mass, weight.moment], axis=1).ravel()
+    masses = weight.ravel()
     omega2 = eigh(whole, np.diag(masses), eigvals_only=True)
     least, exact = bound(own, weight), 2 / np.sqrt(omega2[-1])
     assert least <= exact * (1 + 1e-12) and exact <= 2**0.5 * least * (1 + 1e-12)
@@ -142,10 +149,10 @@ def test_periodic_square_lattice_has_its_closed_form(count):
     found = cut(Domain(size=[nx * side, ny * side]), sets)
     shifts = {"left": (nx * side, 0.0), "bottom": (0.0, ny * side)}
     parts = [(found.contacts, (0.0, 0.0))]
-    parts += [(periodic_contacts(found, name), shift) for name, shift in shifts.items()]
+    parts += [(periodic_contacts(found, name, sets), shift) for name, shift in shifts.items()]
     pieces = [uniform(found, c, sets, shift=shift) for c, shift in parts]
-    weight = inertia(found, DENSITY)
-    masses = np.stack([weight.mass, weight.mass, weight.moment], axis=1).ravel()
+    weight = masses_of(found)
+    masses = weight.ravel()
     numbers = eigh(assembled(found.count, pieces), np.diag(masses), eigvals_only=True)
 
     kn, ks, kb = NORMAL * side, SHEAR * side, (count - 1) * NORMAL * side**3 / 12

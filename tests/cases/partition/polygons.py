@@ -9,26 +9,18 @@ from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.geometry.locate import blocks_at
 from jointwave.cases.geometry.periodic import contacts_across
 from jointwave.cases.material.contact_points import points_of
-from jointwave.cases.partition.blocks import plane_partition
-from jointwave.cases.partition.scene import blocks_of_domain
-from jointwave.cases.partition.shape import shape_of
-
-
-def cut(domain, sets, further=(), regions=()):
-    """A domain in blocks, as arrays."""
-    blocks = blocks_of_domain(domain, sets, further, regions)
-    return plane_partition(blocks, shape_of(domain).sides, tuple(one.name for one in sets))
 
 
 def block_at(found, points):
     """The first block that each point lies in, or OUTSIDE."""
-    return np.array([min(some, default=OUTSIDE) for some in blocks_at(found.blocks, points)])
+    return np.array([min(some, default=OUTSIDE) for some in blocks_at(found, points)])
 
 
-def periodic_contacts(found, side):
+def periodic_contacts(found, side, sets):
     """Contacts across the left and the right, or the bottom and the top."""
     pair = {"left": ("left", "right"), "bottom": ("bottom", "top")}[side]
-    return contacts_across(found.blocks, int(side == "bottom"), pair, found.joint_sets)
+    names = [one.name for one in sets]
+    return contacts_across(found, int(side == "bottom"), pair, names)
 
 
 def points_between(found, contacts, sets, normal, shear, shift=(0.0, 0.0)):
@@ -38,7 +30,7 @@ def points_between(found, contacts, sets, normal, shear, shift=(0.0, 0.0)):
     x, weight = np.moveaxis(rules[contacts.joint_set], 1, 0)
     contact = np.repeat(np.arange(len(contacts)), x.shape[1])
     x, weight = x.reshape(-1, 1), weight.reshape(-1, 1)
-    at = contacts.start[contact] * (1 - x) + contacts.end[contact] * x
+    at = contacts.ends[contact, 0] * (1 - x) + contacts.ends[contact, 1] * x
     blocks, axis = contacts.blocks[contact], contacts.normal[contact]
     arm = at[:, None] - found.centroid[blocks] - np.array([(0.0, 0.0), shift])
     frame = np.stack([axis, np.stack([-axis[:, 1], axis[:, 0]], axis=1)], axis=1)

@@ -6,9 +6,10 @@ import pytest
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError, NonConvex, Sliver
-from jointwave.cases.partition.scene import block_count, partition_bytes, partition_of
+from jointwave.cases.partition.scene import block_count, blocks_of_scene, partition_bytes
+from jointwave.cases.partition.scene import blocks_of_domain as cut
 from jointwave.cases.read import load_variant
-from tests.cases.partition.polygons import cut, periodic_contacts
+from tests.cases.partition.polygons import periodic_contacts
 
 SCENE = """\
 title = "rows"
@@ -43,14 +44,14 @@ def scene(tmp_path):
 def line(scene):
     """Return the one line that refuses a scene, without its file."""
     with pytest.raises(SceneError) as error:
-        partition_of(scene)
+        blocks_of_scene(scene)
     said = str(error.value)
     assert said.startswith(scene.where) and "\n" not in said
     return said.removeprefix(f"{scene.where}: ")
 
 
 def test_the_scene_is_cut(scene):
-    assert partition_of(scene()).count == 6
+    assert blocks_of_scene(scene()).count == 6
 
 
 @pytest.mark.parametrize("scatter", [{}, {"scatter": 0.01, "seed": 1}])
@@ -62,7 +63,7 @@ def test_a_set_that_cuts_nothing_is_refused_when_it_is_read(scene, scatter):
         match=r"rows.toml: joint_sets\[0\]: does not cut the domain, or only",
     ):
         scene(joint_sets__0__spacing=7.0, **changes)
-    assert partition_of(scene(joint_sets__0__spacing=5.5, **changes)).count == 2
+    assert blocks_of_scene(scene(joint_sets__0__spacing=5.5, **changes)).count == 2
 
 
 def test_a_set_along_the_joints_of_another_cuts_nothing(scene):
@@ -98,7 +99,7 @@ def test_blocks_that_are_not_convex(scene):
     assert said.startswith("domain: a block is not convex") and 'domain.non_convex = "cut"' in said
     assert re.search(r"near \[[46], 2.5\]$", said)
     changes = {"domain__openings": [tunnel], "domain__non_convex": "cut"}
-    assert partition_of(scene(**changes, record__points=[[1.0, 1.0]])).count == 6 + 1 + 2
+    assert blocks_of_scene(scene(**changes, record__points=[[1.0, 1.0]])).count == 6 + 1 + 2
 
 
 def test_an_outline_that_is_not_convex(scene):
@@ -117,8 +118,8 @@ def test_a_row_that_is_too_thin(scene, slivers):
         update={"joint_sets": [*changed.joint_sets, type(changed.joint_sets[0])(**near)]}
     )
     if slivers == "merge":
-        found = partition_of(changed)
-        assert found.count == 6 and found.area.sum() == pytest.approx(60, rel=1e-14)
+        found = blocks_of_scene(changed)
+        assert found.count == 6 and found.volume.sum() == pytest.approx(60, rel=1e-14)
     else:
         said = line(changed)
         assert "is 0.005 m wide" in said and "domain.least_width = 0.01" in said
@@ -132,8 +133,8 @@ def test_slivers_that_two_neighbours_take(rectangle, joints):
     cross = joints("cross", 90.0, spacing=2.0, ends_at=["rows"], offset=0.5)
     found = cut(rectangle(10.0, 3.005), [rows, cross])
     assert found.count == cut(rectangle(10.0, 3.0), [rows, cross]).count
-    assert found.area.sum() == pytest.approx(30.05, rel=1e-14)
-    assert found.corners[:, 1].max() == 3.005 and (found.area < 2.1).all()
+    assert found.volume.sum() == pytest.approx(30.05, rel=1e-14)
+    assert found.outlines.corners[:, 1].max() == 3.005 and (found.volume < 2.1).all()
 
 
 def test_slivers_that_no_neighbour_takes(rectangle, joints):
@@ -178,21 +179,23 @@ def test_a_corner_of_less_than_the_least_angle(rectangle, joints):
 
 def test_periodic_sides_need_the_same_joint_on_both(rectangle, joints):
     rows, columns = joints("rows", 0.0, spacing=1.0), joints("columns", 90.0, spacing=2.0)
-    found = cut(rectangle(10.0, 6.0), [rows, columns])
-    across = periodic_contacts(found, "left")
+    sets = [rows, columns]
+    found = cut(rectangle(10.0, 6.0), sets)
+    across = periodic_contacts(found, "left", sets)
     assert len(across) == 6 and set(across.joint_set) == {1}
-    assert (across.normal == [1.0, 0.0]).all() and (across.start[:, 0] == 10.0).all()
-    assert (across.end[:, 1] > across.start[:, 1]).all()
-    assert len(periodic_contacts(found, "bottom")) == 5
+    assert (across.normal == [1.0, 0.0]).all() and (across.ends[..., 0] == 10.0).all()
+    assert (across.ends[:, 1, 1] > across.ends[:, 0, 1]).all()
+    assert len(periodic_contacts(found, "bottom", sets)) == 5
     with pytest.raises(GeometryError, match="no joint of one set runs along both sides"):
-        periodic_contacts(cut(rectangle(9.0, 6.0), [rows, columns]), "left")
+        periodic_contacts(cut(rectangle(9.0, 6.0), sets), "left", sets)
 
 
 def test_periodic_sides_of_other_rows_split_each_other(rectangle, joints):
     """Rows that climb by half a row from column to column: each block meets two across."""
     columns = joints("columns", 90.0, spacing=2.0)
     bricks = joints("bricks", 0.0, spacing=1.0, ends_at=["columns"], offset=0.5)
-    across = periodic_contacts(cut(rectangle(4.0, 4.0), [columns, bricks]), "left")
+    sets = [columns, bricks]
+    across = periodic_contacts(cut(rectangle(4.0, 4.0), sets), "left", sets)
     assert across.area.sum() == pytest.approx(4.0, rel=1e-14)
     assert len(across) == 8 and across.area.max() == pytest.approx(0.5)
 
@@ -202,19 +205,19 @@ def test_a_periodic_scene_needs_faces_that_match(scene, rectangle, joints):
     its own end. Joints at 45 degrees climb 10 m: those 1 m apart meet, those 4 m apart end 2 m
     from one another. An opening at the left leaves rock at the right that meets none."""
     for sides in (("bottom", "top"), ("left", "right")):
-        assert partition_of(scene(boundaries=dict.fromkeys(sides, "periodic"))).count == 6
-    across = periodic_contacts(partition_of(scene()), "left")
+        assert blocks_of_scene(scene(boundaries=dict.fromkeys(sides, "periodic"))).count == 6
+    across = periodic_contacts(blocks_of_scene(scene()), "left", scene().joint_sets)
     assert len(across) == 6 and set(across.joint_set) == {NO_SET}
-    met = cut(rectangle(10.0, 12.0), [joints("steep", 45.0, spacing=0.5**0.5, through=[0.0, 0.5])])
-    assert len(periodic_contacts(met, "left")) == 13
-    missed = joints("steep", 45.0, spacing=8**0.5, through=[0.0, 1.0])
+    met = [joints("steep", 45.0, spacing=0.5**0.5, through=[0.0, 0.5])]
+    assert len(periodic_contacts(cut(rectangle(10.0, 12.0), met), "left", met)) == 13
+    missed = [joints("steep", 45.0, spacing=8**0.5, through=[0.0, 1.0])]
     with pytest.raises(GeometryError, match=r"a joint of 'steep' ends there .* near \[0, 1\]"):
-        periodic_contacts(cut(rectangle(10.0, 12.0), [missed]), "left")
+        periodic_contacts(cut(rectangle(10.0, 12.0), missed), "left", missed)
     hole = [[0.0, 2.0], [2.0, 2.0], [2.0, 4.0], [0.0, 4.0]]
     flat = joints("rows", 0.0, spacing=2.0)
     open_at_left = cut(rectangle(10.0, 6.0, openings=[hole], non_convex="cut"), [flat])
     with pytest.raises(GeometryError, match=r"faces none on the left, near \[10, 3\]"):
-        periodic_contacts(open_at_left, "left")
+        periodic_contacts(open_at_left, "left", [flat])
 
 
 def test_a_size_beyond_the_memory(scene, monkeypatch):
@@ -245,13 +248,13 @@ def test_the_estimate_bounds_the_memory_that_is_taken(rectangle, joints, scene):
     changed = scene(domain__size=[100.0, 100.0], joint_sets__0__spacing=0.7)
     steep = joints("steep", 60.0, spacing=0.7)
     changed = changed.model_copy(update={"joint_sets": [*changed.joint_sets, steep]})
-    partition_of(changed)  # whatever is imported
+    blocks_of_scene(changed)  # whatever is imported
     tracemalloc.start()
-    found = partition_of(changed)
+    found = blocks_of_scene(changed)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert found.count > 15_000
-    assert found.blocks.nbytes < peak < partition_bytes(changed) < 4 * peak
+    assert found.nbytes < peak < partition_bytes(changed) < 4 * peak
 
 
 def test_faults_are_told_apart():

@@ -11,7 +11,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.locate import contact_at
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.partition.lattice import further_sets
-from jointwave.cases.partition.scene import blocks_of_scene, partition_of
+from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.validate import validated
 from tests.cases.partition.polygons import widths
 
@@ -39,13 +39,13 @@ def cut_blocks(own):
 
 
 def cut(own):
-    return partition_of(own, further_sets(own))
+    return blocks_of_scene(own, further_sets(own))
 
 
 def test_rock_without_joints_is_cut_in_squares():
     found = cut(scene())
     assert found.count == 120
-    assert found.area == pytest.approx(np.ones(120), rel=1e-12)
+    assert found.volume == pytest.approx(np.ones(120), rel=1e-12)
     assert not found.contacts.of_joints(0).any()
 
 
@@ -53,28 +53,28 @@ def test_quiet_sides_are_met_in_the_middle_of_blocks():
     """Half blocks at the left and the right, quarter ones at corners of two quiet sides."""
     sides = dict.fromkeys(("left", "right", "bottom"), "quiet")
     found = cut(scene(**sides))
-    assert np.sort(found.area)[:2] == pytest.approx([0.25 * 10 / 9.5] * 2, rel=1e-12)
-    assert found.area.sum() == pytest.approx(120, rel=1e-12)
-    assert np.median(found.area) == pytest.approx(10 / 9.5, rel=1e-12)
+    assert np.sort(found.volume)[:2] == pytest.approx([0.25 * 10 / 9.5] * 2, rel=1e-12)
+    assert found.volume.sum() == pytest.approx(120, rel=1e-12)
+    assert np.median(found.volume) == pytest.approx(10 / 9.5, rel=1e-12)
 
 
 @pytest.mark.parametrize("dip", [0.0, 30.0, 45.0, -70.0])
 def test_a_joint_alone_lies_on_a_line_of_squares_along_it(dip):
     """All of it, and nothing besides: its contacts are as long as the joint in the domain."""
     own = scene({"dip": dip, "through": [6.0, 5.0]})
-    alone, found = partition_of(own), cut(own)
+    alone, found = blocks_of_scene(own), cut(own)
     assert alone.count == 2
     mine = found.contacts.of_joints(1)
     assert found.contacts.area[mine].sum() == pytest.approx(alone.contacts.area[0], rel=1e-9)
-    assert np.median(found.area) == pytest.approx(1.0, rel=1e-9)
-    assert (contact_at(found.blocks, np.array([[1.0, 1.0]]), 1) == np.flatnonzero(mine)).any()
+    assert np.median(found.volume) == pytest.approx(1.0, rel=1e-9)
+    assert (contact_at(found, np.array([[1.0, 1.0]]), 1) == np.flatnonzero(mine)).any()
 
 
 def test_rock_with_a_poisson_effect_is_cut_in_triangles():
     """Equilateral ones, of height h and area h^2 / sqrt(3), off the sides."""
     found = cut(scene({"dip": 30.0, "through": [6.0, 5.0]}, poisson=0.25))
-    assert np.median(found.area) == pytest.approx(1 / np.sqrt(3), rel=1e-9)
-    assert np.median(np.diff(found.first)) == 3
+    assert np.median(found.volume) == pytest.approx(1 / np.sqrt(3), rel=1e-9)
+    assert np.median(np.diff(found.outlines.first)) == 3
 
 
 def test_a_spacing_is_divided_by_a_whole_number():
@@ -143,10 +143,10 @@ def test_slivers_of_a_lattice_are_joined_along_joints_not_across_them():
     """Triangles have slivers at all sides, and at the joint's ends as well: it keeps its length,
     and no block is thinner than 0.03 of the spacing."""
     own = scene({"dip": -40.0, "through": [5.3, 4.1]}, block=1.1, poisson=0.25)
-    found, alone = cut(own), partition_of(own)
+    found, alone = cut(own), blocks_of_scene(own)
     mine = found.contacts.of_joints(1)
     assert found.contacts.area[mine].sum() == pytest.approx(alone.contacts.area[0], rel=1e-9)
-    assert widths(found.corners, found.first).min() > 0.03 * 1.1
+    assert widths(*found.outlines).min() > 0.03 * 1.1
 
 
 BOX = (6.0, 5.0, 4.0)

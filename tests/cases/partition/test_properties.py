@@ -10,11 +10,12 @@ from jointwave.cases.geometry.cell_complex import GeometryError, Sliver
 from jointwave.cases.geometry.locate import contact_at
 from jointwave.cases.geometry.sets import _scattered
 from jointwave.cases.partition.joints import direction_of, plane_sets
+from jointwave.cases.partition.scene import blocks_of_domain as cut
 from jointwave.cases.partition.scene import least_width
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
-from tests.cases.partition.polygons import block_at, cut, following, least_angles, owner, widths
+from tests.cases.partition.polygons import block_at, following, least_angles, owner, widths
 
 LAW = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 HEXAGON = [[0.0, 1.0], [4.0, 0.0], [9.0, 0.5], [10.0, 4.0], [6.0, 7.0], [1.0, 5.0]]
@@ -88,8 +89,8 @@ domains = st.sampled_from([Domain(**keys, non_convex="cut", least_angle=0.5) for
 @given(domain=domains, sets=joint_sets())
 def test_areas_add_up_to_the_domain(domain, sets):
     found, shape = partition(domain, sets), rock_by_shapely(domain)
-    assert found.area.sum() == pytest.approx(shape.area, rel=1e-12)
-    whole = (found.area @ found.centroid) / shape.area
+    assert found.volume.sum() == pytest.approx(shape.area, rel=1e-12)
+    whole = (found.volume @ found.centroid) / shape.area
     np.testing.assert_allclose(whole, shape.centroid.coords[0], rtol=1e-11)
 
 
@@ -97,15 +98,16 @@ def test_areas_add_up_to_the_domain(domain, sets):
 @given(domain=domains, sets=joint_sets())
 def test_blocks_are_convex_and_no_slivers(domain, sets):
     found = partition(domain, sets)
-    corners, whose, after = found.corners, owner(found.first), following(found.first)
+    corners, first = found.outlines
+    whose, after = owner(first), following(first)
     along = corners[after] - corners
     along /= np.hypot(*along.T)[:, None]
     turn = along[:, 0] * along[after, 1] - along[:, 1] * along[after, 0]
     assert turn.min() > 1e-9
     total = np.bincount(whose, weights=np.arctan2(turn, (along * along[after]).sum(axis=1)))
     np.testing.assert_allclose(total, 2 * np.pi, rtol=1e-9)  # once around
-    assert widths(corners, found.first).min() >= least_width(domain, sets)
-    assert least_angles(corners, found.first).min() >= domain.least_angle
+    assert widths(corners, first).min() >= least_width(domain, sets)
+    assert least_angles(corners, first).min() >= domain.least_angle
 
 
 @settings(max_examples=25)
@@ -113,7 +115,7 @@ def test_blocks_are_convex_and_no_slivers(domain, sets):
 def test_blocks_do_not_overlap_and_fill_the_domain(domain, sets):
     """By shapely: the union of all blocks is the domain, so that no area is counted twice."""
     found = partition(domain, sets)
-    blocks = [shapely.Polygon(found.corners_of(k)) for k in range(found.count)]
+    blocks = [shapely.Polygon(found.outlines.of(k)) for k in range(found.count)]
     union, shape = shapely.union_all(blocks, grid_size=1e-10), rock_by_shapely(domain)
     assert union.symmetric_difference(shape).area < 1e-7 * shape.area
 
@@ -125,7 +127,7 @@ def test_euler(domain, sets):
     openings; C parts of the domain."""
     found, shape = partition(domain, sets), rock_by_shapely(domain)
     edges = [found.contacts, found.boundary]
-    segments = np.concatenate([np.stack([e.start, e.end], axis=1) for e in edges])
+    segments = np.concatenate([e.ends for e in edges])
     rounded = np.round(segments.reshape(-1, 2), 8) + 0.0
     points, number = np.unique(rounded, axis=0, return_inverse=True)
     number = number.reshape(-1, 2)
@@ -146,12 +148,12 @@ def test_contacts_are_what_pairs_of_blocks_share(domain, sets):
     i, j = contacts.blocks.T
     assert (i < j).all() and len(np.unique(contacts.blocks, axis=0)) == len(contacts)
     assert (np.lexsort([j, i]) == np.arange(len(i))).all()
-    chord = contacts.end - contacts.start
+    chord = np.diff(contacts.ends, axis=1)[:, 0]
     np.testing.assert_allclose(np.hypot(*chord.T), contacts.area, rtol=1e-12)
     tangent = np.stack([-contacts.normal[:, 1], contacts.normal[:, 0]], axis=1)
     np.testing.assert_allclose(tangent * contacts.area[:, None], chord, atol=1e-8)
     for which, sign in ((i, -1), (j, 1)):
-        away = sign * ((found.centroid[which] - contacts.start) * contacts.normal).sum(axis=1)
+        away = sign * ((found.centroid[which] - contacts.ends[:, 0]) * contacts.normal).sum(axis=1)
         assert away.min(initial=1.0) > 0
     for k, one in enumerate(sets):
         own = contacts.normal[contacts.joint_set == k]
@@ -175,9 +177,9 @@ def test_each_outline_is_closed_by_its_contacts_and_boundary(domain, sets):
         np.add.at(total, block, sign * edges.normal * edges.area[:, None])
         np.add.at(around, block, edges.area)
     assert np.abs(total).max() < 1e-8
-    after = following(found.first)
-    sides = np.hypot(*(found.corners[after] - found.corners).T)
-    np.testing.assert_allclose(around, np.add.reduceat(sides, found.first[:-1]), rtol=1e-8)
+    corners, first = found.outlines
+    sides = np.hypot(*(corners[following(first)] - corners).T)
+    np.testing.assert_allclose(around, np.add.reduceat(sides, first[:-1]), rtol=1e-8)
     assert b.area.sum() == pytest.approx(rock_by_shapely(domain).length, rel=1e-9)
 
 
@@ -186,8 +188,9 @@ def test_each_outline_is_closed_by_its_contacts_and_boundary(domain, sets):
 def test_moments_are_those_of_triangles(domain, sets):
     """Against a fan of triangles about the centroid, each by its closed form."""
     found = partition(domain, sets)
-    whose = owner(found.first)
-    one, other = (found.corners[k] - found.centroid[whose] for k in (..., following(found.first)))
+    corners, first = found.outlines
+    whose = owner(first)
+    one, other = (corners[k] - found.centroid[whose] for k in (..., following(first)))
     double = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
     parts = np.stack(
         [
@@ -203,11 +206,11 @@ def test_moments_are_those_of_triangles(domain, sets):
         ],
         axis=1,
     )
-    expected = np.add.reduceat(parts, found.first[:-1])
+    expected = np.add.reduceat(parts, first[:-1])
     np.testing.assert_allclose(
-        found.blocks.second_moment[:, [0, 1, 0], [0, 1, 1]], expected, rtol=1e-8, atol=1e-12
+        found.second_moment[:, [0, 1, 0], [0, 1, 1]], expected, rtol=1e-8, atol=1e-12
     )
-    np.testing.assert_allclose(np.add.reduceat(double / 2, found.first[:-1]), found.area, rtol=1e-9)
+    np.testing.assert_allclose(np.add.reduceat(double / 2, first[:-1]), found.volume, rtol=1e-9)
 
 
 @settings(max_examples=25)
@@ -221,11 +224,11 @@ def test_points_are_found_in_their_blocks(domain, sets):
         assert block_at(found, centre[None]).tolist() == [-1]
     contacts = found.contacts
     inner = np.flatnonzero(contacts.joint_set >= 0)
-    middle = (contacts.start + contacts.end)[inner] / 2
+    middle = contacts.ends[inner].mean(axis=1)
     np.testing.assert_array_equal(block_at(found, middle), contacts.blocks[inner, 0])
     # Nearer than any end: where rows nearly meet, a contact is no longer than what sets them apart.
     beside = middle + 1e-6 * contacts.area[inner, None] * contacts.normal[inner]
-    np.testing.assert_array_equal(contact_at(found.blocks, beside, len(sets)), inner)
+    np.testing.assert_array_equal(contact_at(found, beside, len(sets)), inner)
 
 
 @settings(max_examples=25)
@@ -233,7 +236,7 @@ def test_points_are_found_in_their_blocks(domain, sets):
 def test_same_seed_same_blocks_to_the_bit(domain, sets):
     one, other = partition(domain, sets), cut(domain, sets)
     for a, b in (
-        (one.blocks, other.blocks),
+        (one, other),
         (one.contacts, other.contacts),
         (one.boundary, other.boundary),
     ):
@@ -260,8 +263,9 @@ def test_a_turned_domain_is_cut_into_turned_blocks(sets, angle):
     pair = block_at(turned, found.centroid @ turn)
     assert sorted(pair) == list(range(found.count))
     np.testing.assert_allclose(turned.centroid[pair], found.centroid @ turn, atol=1e-8)
-    np.testing.assert_allclose(turned.area[pair], found.area, rtol=1e-6)
-    np.testing.assert_allclose(turned.polar_moment[pair], found.polar_moment, rtol=1e-6)
+    np.testing.assert_allclose(turned.volume[pair], found.volume, rtol=1e-6)
+    polar = [np.trace(each.second_moment, axis1=1, axis2=2) for each in (turned, found)]
+    np.testing.assert_allclose(polar[0][pair], polar[1], rtol=1e-6)
     known = {tuple(sorted(blocks)) for blocks in turned.contacts.blocks}
     assert known == {tuple(sorted(pair[blocks])) for blocks in found.contacts.blocks}
 
@@ -289,7 +293,7 @@ def test_blocks_are_those_of_polygonize(sets):
         [area for area in inside if area > 1e-10]
     )  # where three lines meet to round-off
     assert len(areas) == found.count
-    np.testing.assert_allclose(np.sort(found.area), areas, rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(np.sort(found.volume), areas, rtol=1e-7, atol=1e-9)
 
 
 @settings(max_examples=25)
@@ -305,5 +309,5 @@ def test_slivers_are_refused_with_place_and_cause(sets):
     except GeometryError as error:
         assert error.key.startswith("joint_sets")
     else:
-        assert widths(found.corners, found.first).min() >= 0.2
-        assert least_angles(found.corners, found.first).min() >= 10.0
+        assert widths(*found.outlines).min() >= 0.2
+        assert least_angles(*found.outlines).min() >= 10.0

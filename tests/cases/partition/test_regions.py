@@ -5,8 +5,8 @@ import pytest
 
 from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError
 from jointwave.cases.partition.regions import ROCK, region_at
+from jointwave.cases.partition.scene import blocks_of_domain as cut
 from jointwave.cases.schema.region import Region
-from tests.cases.partition.polygons import cut
 
 
 def region(name, y, dip=0.0, x=0.0):
@@ -15,12 +15,12 @@ def region(name, y, dip=0.0, x=0.0):
 
 def of_region(found, k):
     """Return the area of a region's blocks."""
-    return found.area[found.region == k].sum()
+    return found.volume[found.body.region == k].sum()
 
 
 def between(found):
     """Return which contacts lie between two regions."""
-    one, other = found.region[found.contacts.blocks].T
+    one, other = found.body.region[found.contacts.blocks].T
     return one != other
 
 
@@ -36,7 +36,7 @@ def test_layers_share_the_domain_by_their_areas(rectangle, joints, dip):
     assert found.contacts.area[welded].sum() == pytest.approx(
         2 * 8 / np.cos(np.radians(dip)), rel=1e-12
     )
-    assert (found.region == region_at(layers, found.centroid)).all()
+    assert (found.body.region == region_at(layers, found.centroid)).all()
 
 
 def test_a_later_region_lies_over_one_that_dips(rectangle):
@@ -55,7 +55,7 @@ def test_sets_cut_the_regions_that_they_name_alone(rectangle, joints):
     of_set = [found.contacts.area[found.contacts.joint_set == k].sum() for k in (0, 1)]
     assert of_set == pytest.approx([30.0, 3 * 1.5], rel=1e-12)
     assert found.count == 4 + 4
-    assert (found.region[found.contacts.blocks[found.contacts.joint_set == 0]] == ROCK).all()
+    assert (found.body.region[found.contacts.blocks[found.contacts.joint_set == 0]] == ROCK).all()
 
 
 def test_a_joint_along_a_boundary_is_what_that_is(rectangle, joints):
@@ -74,7 +74,7 @@ def test_slivers_are_joined_to_rock_of_their_own(rectangle, joints):
         rectangle(4.0, 6.0), [joints("bed", 0.0, spacing=2.0)], (), [region("upper", 1.999)]
     )
     assert of_region(found, 0) == pytest.approx(4 * 4.001, rel=1e-12)
-    assert found.area.min() > 7.9
+    assert found.volume.min() > 7.9
 
 
 LENS = [[2.0, 3.0], [5.0, 2.0], [8.0, 3.5], [6.0, 5.5], [3.0, 5.0]]
@@ -95,8 +95,8 @@ def test_an_outline_holds_its_own_area(rectangle, joints, corners):
     assert [of_region(found, k) for k in (ROCK, 0, 1)] == pytest.approx(
         [80 - area, 20, area], rel=1e-12
     )
-    assert (found.region == region_at(both, found.centroid)).all()
-    welded = between(found) & (found.region[found.contacts.blocks] == 1).any(axis=1)
+    assert (found.body.region == region_at(both, found.centroid)).all()
+    welded = between(found) & (found.body.region[found.contacts.blocks] == 1).any(axis=1)
     assert found.contacts.area[welded].sum() == pytest.approx(around, rel=1e-12)
     plain = cut(domain, sets)
     of_sets = [c.contacts.area[c.contacts.joint_set >= 0].sum() for c in (plain, found)]
@@ -109,4 +109,4 @@ def test_rock_around_an_outline_is_refused_or_cut_as_around_an_opening(rectangle
     with pytest.raises(GeometryError, match="not convex at an opening, a region or a corner"):
         cut(rectangle(10.0, 10.0), [], (), lens)
     found = cut(rectangle(10.0, 10.0, non_convex="cut"), [], (), lens)
-    assert sorted(found.region) == [ROCK] * 5 + [0]
+    assert sorted(found.body.region) == [ROCK] * 5 + [0]

@@ -67,11 +67,11 @@ def stiffness(system):
 
 def released(system):
     """Return the forces [N, 3] that walls lose: of the tensor on every edge at the opening."""
-    part = system.blocks.partition
+    part, sides = system.blocks.cut, system.blocks.sides
     edges, force = part.boundary, np.zeros((part.count, 3))
-    for k in np.flatnonzero(edges.side == part.sides.index("opening 0")):
+    for k in np.flatnonzero(edges.side == sides.index("opening 0")):
         pull = edges.area[k] * TENSOR @ edges.normal[k]
-        arm = (edges.start[k] + edges.end[k]) / 2 - part.centroid[edges.blocks[k, 0]]
+        arm = edges.ends[k].mean(axis=0) - part.centroid[edges.blocks[k, 0]]
         force[edges.blocks[k, 0]] += [*pull, arm[0] * pull[1] - arm[1] * pull[0]]
     return force.ravel()
 
