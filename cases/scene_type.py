@@ -19,8 +19,7 @@ def pillar_of(scene: AnyScene, what: str = "this") -> Scene:
 
     what : accepts pillars only, in words.
     """
-    from jointwave.cases.schema.scene import Scene
 
-    if isinstance(scene, Scene):
+    if scene.is_column:
         return scene
     raise SceneError(scene.where, "domain", None, f"is a rock mass; {what} accepts pillars only")

@@ -7,7 +7,6 @@ import numpy as np
 from jointwave.cases.errors import StoppedError
 from jointwave.cases.partition.periodic import of_all
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.bounds import highest_speed
 from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.scheme import Choice
@@ -45,7 +44,6 @@ class Monitor:
         self.scene, self.found, self.steps, self.time = scene, found, steps, choice.time
         self.explicit, self.critical = choice.scheme == "explicit", critical
         self.guard = guard(highest_speed(found, steps.problem, choice.time, start))
-        self.in_plane = not isinstance(scene, Scene) and scene.domain.dimension == 2
 
     def check(self, first: int, last: int) -> None:
         """Raise StoppedError where a run leaves its bounds in samples first .. last - 1."""
@@ -66,11 +64,7 @@ class Monitor:
         """Return the error of a run with these speeds of its nodes, m/s."""
         step, what, sound = self.guard.found.tolist()
         place = self.found.body.x[int(np.nan_to_num(speed, nan=np.inf).argmax())]
-        at = (
-            float(place[len(place) // 2])
-            if isinstance(self.scene, Scene)
-            else tuple(place.tolist())
-        )
+        at = float(place[len(place) // 2]) if self.scene.is_column else tuple(place.tolist())
         key = f"numerics.continuum.{'step_fraction' if self.explicit else 'steps_per_period'}"
         seen = Divergence("the continuum", key, step, sound, what == ENERGY, at)
         critical = self.critical if self.explicit else np.inf
@@ -81,7 +75,7 @@ class Monitor:
         that overlap without a contact; None without joints."""
         u = self.steps.u
         found = farthest_joint(self.found, u)
-        if not self.in_plane or (found is not None and found.by > LARGEST * found.size):
+        if not self.scene.in_plane or (found is not None and found.by > LARGEST * found.size):
             return found
         return overlapping(self.found.blocks, motion_of_blocks(self.found, u)) or found
 
@@ -94,7 +88,7 @@ def farthest_joint(found: SceneBody, u: np.ndarray) -> Moved | None:
     if joints is None or not joints.weight.size:
         return None
     jump = (joints.matrix @ u).reshape(-1, body.components)
-    if isinstance(scene, Scene):
+    if scene.is_column:
         if body.components == 1:
             return None
         pairs, jump = joints.column[:, None] + np.arange(2), jump[:, 1:]

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 from jointwave.cases.material.prestress import refuse_beyond_strength
 from jointwave.cases.run_memory import load_bytes, refuse_beyond_memory, waveform_bytes
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.problem import problem_of
 from jointwave.continuum.scene import SceneBody, body_of
 from jointwave.continuum.scheme import Choice, choose
@@ -47,8 +46,7 @@ def plan_of(
     consistent = getattr(numerics, "mass", None) == "consistent" and numerics.scheme == "auto"
     implicit = numerics.scheme == "implicit" or consistent
     found = body_of(scene, model, rock, implicit, dim)
-    if isinstance(found.scene, RockMass):
-        refuse_beyond_strength(found.scene)
+    refuse_beyond_strength(found.scene)
     problem = problem_of(scene, found)
     scaled, plain = None if implicit else scaled_mass(problem), (found, problem)
     if scaled is not None:

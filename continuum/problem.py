@@ -13,8 +13,6 @@ from jointwave.cases.material.strength import strength_of
 from jointwave.cases.partition.periodic import of_all
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.loads.ends import bearing_ends
 from jointwave.continuum.loads.forces import loads_of, released, weight_of
 from jointwave.continuum.loads.sides import (
@@ -37,7 +35,7 @@ from jointwave.joints.law import Law, law, stiffest
 def law_of(found: SceneBody) -> Law | None:
     """Return the law of a rock mass's joints, a column for each contact; None without joints."""
     scene = found.scene
-    assert isinstance(scene, RockMass)
+    assert not scene.is_column
     if found.body.joints is None:
         return None
     sets, which = scene.joint_sets, of_all(found.blocks, found.across, "joint_set")
@@ -59,7 +57,7 @@ def law_of(found: SceneBody) -> Law | None:
 
 def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
     """Return the body of a scene and what acts on it all the time."""
-    if isinstance(scene, Scene):
+    if scene.is_column:
         return pillar_problem(scene, found)
     body, own = found.body, law_of(found)
     stress = None if scene.prestress is None else scene.prestress.tensor
@@ -104,7 +102,7 @@ def in_time(
 ) -> Problem:
     """Return a problem with forces and motion that have a history, for the steps of a clock;
     incident : of the waves, in intact rock where absent."""
-    if isinstance(scene, Scene):
+    if scene.is_column:
         return pillar_in_time(scene, problem, time)
     forces = loads_of(scene, problem.body, time.dt, incident)
     return problem._replace(forces=forces, held=held_sides(scene, problem.body, time))
@@ -118,7 +116,7 @@ def at_rest(scene: AnyScene, problem: Problem) -> tuple[Problem, Rest | None, np
     static, weight = gravity is not None and gravity.static, weight_of(scene, body)
     if weight is None and not scene.excavated:
         return problem, None, None
-    bears = bearing_ends(scene, body) if isinstance(scene, Scene) else bearing_sides(scene, body)
+    bears = bearing_ends(scene, body) if scene.is_column else bearing_sides(scene, body)
     hold = holding(problem, bears)
     before, rest = problem, None
     if weight is not None and not static:  # it acts later

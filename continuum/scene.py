@@ -66,7 +66,7 @@ def body_of(
     Raises SceneError where the scene cannot be cut or meshed as it asks for.
     """
     try:
-        if isinstance(scene, Scene):
+        if scene.is_column:
             return _pillar(scene, model, rock, implicit, dimension_of(scene, dim))
         return _rock_mass(scene, model, rock, implicit)
     except ImportError as error:

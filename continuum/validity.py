@@ -34,10 +34,7 @@ def refuse(scene: AnyScene, model: str, dim: int | None) -> None:
 
 def applies(scene: AnyScene, model: str = "jointed", dim: int | None = None) -> str:
     """Return "" if this model can simulate the scene, else the reason; dim : of a pillar's mesh."""
-    if isinstance(scene, Scene):
-        reasons = _of_pillar(scene, model, dim)
-    else:
-        reasons = _of_rock_mass(scene, model)
+    reasons = _of_pillar(scene, model, dim) if scene.is_column else _of_rock_mass(scene, model)
     return next((why for there, why in reasons if there), "")
 
 

@@ -13,7 +13,6 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.damping import NOT_OF_BLOCKS
-from jointwave.cases.schema.scene import Scene
 from jointwave.dem.bounds import highest_energy
 from jointwave.dem.leapfrog import march
 from jointwave.dem.model import Samples, State, samples_for, state_at_rest
@@ -123,7 +122,7 @@ def plan(scene: AnyScene) -> Plan:
 
 def modules(scene: AnyScene) -> tuple[Any, Any]:
     """Return the module that makes blocks of a scene, and the one that reads its results."""
-    if isinstance(scene, Scene):
+    if scene.is_column:
         return pillar, pillar_record
     from jointwave.dem.rock_mass import system, waveforms  # with shapely, which no pillar needs
 

@@ -39,7 +39,7 @@ def matters(scene: Scene | RockMass) -> bool:
     """
     if scene.numerics.allow_large_motion:
         return False
-    return not isinstance(scene, Scene) or scene.motion.rotation == "small"
+    return scene.rotation == "small"
 
 
 def farthest(by: np.ndarray, size: np.ndarray) -> int:

@@ -18,9 +18,7 @@ from jointwave.cases.loads import velocity_of
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.plane import InSituStress
-from jointwave.cases.schema.pulse import Pulse
-from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.pulse import Load, Pulse
 from jointwave.cases.schema.scene import Scene
 
 SAMPLES = 10_001  # of a pulse, for its peak, in addition to its breaks
@@ -67,27 +65,12 @@ def stress_in_reach(scene: AnyScene) -> float:
 
 def _at_rest(scene: AnyScene) -> float:
     """Return the stress of prestress and weight, doubled for a sudden weight, Pa."""
-    stress, densities = 0.0, [scene.rock.density]
-    if isinstance(scene, Scene):
-        extent = scene.pillar.length
-        if scene.prestress is not None:
-            stress = abs(scene.prestress.normal)
-    else:
-        if scene.prestress is not None:
-            stress = _largest(scene.prestress, scene.excavated)
-        extent = float(np.linalg.norm(np.ptp(np.array(scene.domain.corners), axis=0)))
-        densities += [one.density or 0.0 for one in scene.regions]
+    stress = 0.0 if scene.prestress is None else scene.prestress.largest(scene.excavated)
     if scene.gravity is None:
         return stress
-    weight = max(densities) * scene.gravity.acceleration * extent
+    density = max(scene.rock.density, *(one.density or 0.0 for one in scene.regions), 0.0)
+    weight = density * scene.gravity.acceleration * scene.reach
     return stress + (1 if scene.gravity.static else 2) * weight
-
-
-def _largest(stress: InSituStress, excavated: bool) -> float:
-    """Return the largest principal stress s1, not below zero, or with the least one 3 s1 - s2 at
-    the wall of a circular opening (Kirsch); at corners of others it is more in places."""
-    low, *_, high = np.linalg.eigvalsh(stress.tensor)
-    return max(0.0, float(3 * high - low if excavated else high))
 
 
 def _peak(pulse: Pulse, duration: float) -> float:
@@ -100,22 +83,23 @@ def _peak(pulse: Pulse, duration: float) -> float:
 def _stress_of(pulse: Pulse, scene: AnyScene) -> float:
     """Return the stress in rock by a pulse of one: itself, that of a velocity by the impedance, of
     a force over the least spacing of joints."""
-    if isinstance(scene, Scene) and not scene.load.is_motion:
-        lever = sum(map(abs, scene.load.at)) + (scene.load.arm or 0.0)
-        acts = 2 if pulse.quantity == "incident-stress" else 1
-        return acts * (1 + 6 * lever / scene.pillar.side)  # at the edges of the section
+    if scene.is_column:
+        return _at_start(scene.load, scene)
     if pulse.quantity == "stress":
         return 1.0
-    if isinstance(scene, Scene):
-        p = calibrate(scene).at_start
-        return sqrt((p.intact_modulus or p.modulus) * p.density)
     if pulse.quantity == "force":
-        return 1 / _least_spacing(scene)
+        spacings = (one.spacing for one in scene.joint_sets if one.spacing)
+        return 1 / min(spacings, default=scene.domain.extent.max())
     from jointwave.cases.partition.regions import rocks_of  # with shapely
 
     return max(float(elastic_rock(one).p_impedance) for one in rocks_of(scene))
 
 
-def _least_spacing(scene: RockMass) -> float:
-    extent = float(np.ptp(np.array(scene.domain.corners), axis=0).max())
-    return min((one.spacing for one in scene.joint_sets if one.spacing), default=extent)
+def _at_start(load: Load, scene: Scene) -> float:
+    """Return the same of the load on the start of a column."""
+    if load.is_motion:
+        p = calibrate(scene).at_start
+        return sqrt((p.intact_modulus or p.modulus) * p.density)
+    lever = sum(map(abs, load.at)) + (load.arm or 0.0)
+    acts = 2 if load.quantity == "incident-stress" else 1
+    return acts * (1 + 6 * lever / scene.pillar.side)  # at the edges of the section

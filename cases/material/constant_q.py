@@ -22,7 +22,6 @@ import numpy as np
 
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 
 SPACING = 0.85  # decades between relaxation frequencies, at most: Q is within 4 % from Q = 5 on
 BEYOND = 0.1  # decades that they go beyond the band
@@ -55,7 +54,7 @@ def mechanisms_of(scene: AnyScene, model: str) -> Mechanisms | None:
     if rock.quality_factor is None:
         return None
     found = fitted(rock.quality_factor, *rock.quality_frequencies(scene.pulses))
-    if model == "jointed" or not isinstance(scene, Scene):
+    if model == "jointed" or not scene.is_column:
         return found
     p = calibrate(scene)
     assert p.intact_modulus is not None

@@ -6,17 +6,17 @@ import numpy as np
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.partition.joints import attitude
+from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.plane import InSituStress
-from jointwave.cases.schema.rock_mass import RockMass
 
 SLACK = 1e-9  # of the stress: tractions that are at a limit
 
 
-def refuse_beyond_strength(scene: RockMass) -> None:
+def refuse_beyond_strength(scene: AnyScene) -> None:
     """Raise SceneError where a joint opens or slides under the prestress: the scene would not start
     in equilibrium."""
-    if scene.prestress is None:
+    if scene.is_column or scene.prestress is None:
         return
     for one in scene.joint_sets:
         if what := beyond_strength(one, scene.prestress):

@@ -1,19 +1,31 @@
 """What pillars and rock masses share."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 from pydantic import PrivateAttr
 
+from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.values import Table, Words
 
 
 class SceneBase(Table):
-    """A scene: its title and its times."""
+    """A scene: its title, its times, and what is asked of it whichever way it is written.
+
+    Attributes
+    ----------
+    kind : in words.
+    is_column : whether it is a row of blocks along y with free sides, whose sections have an axial
+        stress, not a body in two or three dimensions.
+    law_tables : which hold joint laws. side_table : which holds the conditions of its sides.
+    """
 
     title: Words  #: used in tables and figures
     source: Words | None = None  #: reference of the scene
 
+    kind: ClassVar[str]
+    law_tables: ClassVar[tuple[str, ...]]
+    side_table: ClassVar[str]
     _where: str = PrivateAttr(default="")
 
     def __repr__(self) -> str:
@@ -26,7 +38,24 @@ class SceneBase(Table):
         return self._where or self.title
 
     @property
-    def pulses(self: Any) -> tuple:
+    def laws(self) -> dict[str, JointLaw]:
+        """The joint laws by their tables, such as `joint_sets[0]`."""
+        return {key: one for table in self.law_tables for key, one in self.entries(table)}
+
+    @property
+    def sides(self) -> dict[str, str]:
+        """The condition of each side by its key, such as `ends.start`."""
+        return {f"{self.side_table}.{side}": held for side, held in getattr(self, self.side_table)}
+
+    def entries(self, table: str) -> list[tuple[str, Any]]:
+        """Return what a table holds by its key: each of a list, none of a table it cannot have."""
+        held = getattr(self, table, [])
+        if isinstance(held, Table):
+            return [(table, held)]
+        return [(f"{table}[{i}]", one) for i, one in enumerate(held)]
+
+    @property
+    def pulses(self: Any) -> tuple[Any, ...]:
         """Everything that acts over time."""
         return tuple(self.sources.values())
 

@@ -139,6 +139,11 @@ class Domain(Table):
         return len(self.size) if self.size is not None else len(self.corners[0])
 
     @property
+    def extent(self) -> np.ndarray:
+        """Its size along each axis, m [d]."""
+        return np.ptp(self.corners, axis=0)
+
+    @property
     def holes(self) -> list[Any]:
         """All openings: corners of polygons or boxes, or of those in a file, m, and prisms."""
         own = [*self.openings, *self.prisms]

@@ -93,6 +93,13 @@ class InSituStress(Table):
         )
         return np.array([x, y, z])
 
+    def largest(self, excavated: bool) -> float:
+        """Return the largest principal stress s1, not below zero, or with the least one 3 s1 - s2
+        at the wall of a circular opening (Kirsch), Pa; at corners of others it is more in places.
+        """
+        low, *_, high = np.linalg.eigvalsh(self.tensor)
+        return max(0.0, float(3 * high - low if excavated else high))
+
 
 class RecordOfRock(Table):
     """The results that are recorded."""

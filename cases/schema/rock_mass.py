@@ -5,7 +5,10 @@ mean the same. SI units; x to the right and y upwards in plane strain, or x to t
 north and z upwards.
 """
 
-from typing import ClassVar
+from pathlib import Path
+from typing import ClassVar, Literal
+
+import numpy as np
 
 from jointwave.cases.schema.any_scene import SceneBase
 from jointwave.cases.schema.damping import Damping
@@ -45,11 +48,30 @@ class RockMass(SceneBase):
     name: str = ""  #: of the variant; empty for the base scene
 
     kind: ClassVar[str] = "rock mass"
+    is_column: ClassVar[Literal[False]] = False
+    law_tables: ClassVar[tuple[str, ...]] = ("joint_sets",)
+    side_table: ClassVar[str] = "boundaries"
+    rotation: ClassVar[str] = "small"
 
     @property
     def in_space(self) -> bool:
         """Whether the scene is one in space, not in the plane."""
         return self.domain.dimension == 3
+
+    @property
+    def in_plane(self) -> bool:
+        """Whether the scene is one in the plane."""
+        return self.domain.dimension == 2
+
+    @property
+    def mesh_path(self) -> Path | None:
+        """The file of the rock's cells or blocks, None where they are built."""
+        return self.domain.mesh_path
+
+    @property
+    def reach(self) -> float:
+        """The largest distance in it, m."""
+        return float(np.linalg.norm(self.domain.extent))
 
     @property
     def sources(self) -> dict[str, Wave | PlaneLoad]:

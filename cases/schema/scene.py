@@ -5,7 +5,8 @@ end, x and z across. The reference scene is that of Guo & Li (2002), Chin. J. Ro
 21(8), 1124-1129.
 """
 
-from typing import Any, ClassVar
+from pathlib import Path
+from typing import Any, ClassVar, Literal
 
 from jointwave.cases.schema.any_scene import SceneBase
 from jointwave.cases.schema.damping import Damping
@@ -50,8 +51,31 @@ class Scene(SceneBase):
     name: str = ""  #: of the variant; empty for the base scene
 
     kind: ClassVar[str] = "pillar"
-    excavated: ClassVar[bool] = False  #: as of a `RockMass`
-    in_space: ClassVar[bool] = False  #: as of a `RockMass`
+    is_column: ClassVar[Literal[True]] = True
+    law_tables: ClassVar[tuple[str, ...]] = ("joints", "soft_layers")
+    side_table: ClassVar[str] = "ends"
+    #: As of a rock mass that has none.
+    in_plane: ClassVar[Literal[False]] = False
+    in_space: ClassVar[Literal[False]] = False
+    excavated: ClassVar[Literal[False]] = False
+    waves: ClassVar[tuple[()]] = ()
+    joint_sets: ClassVar[tuple[()]] = ()
+    regions: ClassVar[tuple[()]] = ()
+
+    @property
+    def rotation(self) -> str:
+        """The rotations of blocks that are computed: "none", "small" or "finite"."""
+        return self.motion.rotation
+
+    @property
+    def mesh_path(self) -> Path | None:
+        """The file of the rock's cells, None where they are built."""
+        return self.numerics.continuum.mesh_path
+
+    @property
+    def reach(self) -> float:
+        """Its length, m."""
+        return self.pillar.length
 
     @property
     def sources(self) -> dict[str, Load]:

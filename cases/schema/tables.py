@@ -161,6 +161,10 @@ class Prestress(Table):
 
     normal: Number  #: Pa, compression positive
 
+    def largest(self, excavated: bool) -> float:
+        """Return its magnitude, Pa."""
+        return abs(self.normal)
+
 
 class Time(Table):
     """Duration of the scene."""

@@ -36,7 +36,7 @@ def explanation(scene: AnyScene) -> Facts:
     engines = [name for name in ENGINES if name in able]
     runs, failures = _prepared(scene, engines)
     references = {name: reference_of(name, able, scene) or UNCHECKED for name in engines}
-    if isinstance(scene, Scene):
+    if scene.is_column:
         about |= _pillar(scene)
     else:
         found = {name: speeds(scene, ENGINES[name].rock) for name in runs}

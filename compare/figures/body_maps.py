@@ -84,7 +84,7 @@ def maps_of(
     if shown == PEAK and time is not None:
         why = "is of one instant, ppv the largest of all: choose speed, stress or slip"
         raise SceneError(scene.title, "time", time, why)
-    if isinstance(scene, Scene) and shown == PRINCIPAL:
+    if scene.is_column and shown == PRINCIPAL:
         shown = STRESS
     found: dict[str, Map] = {}
     for result, name in zip(results, _names(results), strict=True):
@@ -118,7 +118,7 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
     corners, joints = body.rest[body.faces][..., [0, 2]], _joints(scene)
     values = body.values
     if quantity == SLIP:
-        if not len(joints) or (isinstance(scene, Scene) and not is_spatial(scene)):
+        if not len(joints) or (scene.is_column and not is_spatial(scene)):
             why = "is of joints along which something moves; this body has none"
             raise SceneError(scene.title, "map", "slip", why)
         recorded = "field_slip" in result
@@ -139,7 +139,7 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
 
 def _joints(scene: AnyScene) -> np.ndarray:
     """Return the joints of a scene as they are seen, in pieces [n, 2, 2], m."""
-    if isinstance(scene, Scene):
+    if scene.is_column:
         y, half = block_ends(scene)[1:-1][~welds(scene)], scene.pillar.side / 2
         return np.array([[(at, -half), (at, half)] for at in y]).reshape(-1, 2, 2)
     blocks = blocks_of_scene(scene)

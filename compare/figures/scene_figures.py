@@ -74,7 +74,7 @@ def along_pillar(scene: AnyScene, stored: ResultFolder = NOWHERE) -> dict[str, x
 
 def runs_along(scene: AnyScene) -> tuple[list[str], AnyScene]:
     """Return the solvers of `along_pillar`, and the scene that they solve."""
-    if not isinstance(scene, Scene) or scene.block_count < FEWEST:
+    if not scene.is_column or scene.block_count < FEWEST:
         return [], scene
     wide = recorded_along(scene)
     every = [name for name in names() if applies(name, wide)]

@@ -3,7 +3,6 @@
 from typing import Any
 
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.compare.misfit.pairs import Comparison
 
 
@@ -16,7 +15,7 @@ def variant_names(comparisons: list[Comparison]) -> list[str]:
 
 
 def _base_name(base: AnyScene, variants: list[AnyScene]) -> str:
-    if not isinstance(base, Scene):
+    if not base.is_column:
         return "base scene"
     words, others = _words(base), [_words(variant) for variant in variants]
     changed = [word for key, word in words.items() if any(one[key] != word for one in others)]

@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import ENGINES, applies, names, solver
 from jointwave.compare.exact.conditions import has_thick_layer
 from jointwave.compare.scenes import AnySource, load
@@ -37,7 +36,7 @@ def lacks(name: str, scene: AnyScene) -> str:
     in two or three dimensions: a bar has none.
     """
     of = solver(name)
-    if not isinstance(scene, Scene):
+    if not scene.is_column:
         return ""
     if has_thick_layer(scene) and of.rock is Rock.RIGID_BLOCKS:
         return "the thickness of a soft layer"
@@ -112,7 +111,7 @@ def deciding(scene: AnyScene) -> dict[str, Answer]:
 
 def _fineness(name: str, scene: AnyScene) -> tuple[bool, int, int]:
     of = solver(name)
-    known = not isinstance(scene, Scene) or scene.rock.intact_modulus is not None
+    known = scene.rock.intact_modulus is not None
     first = not known and of.exact and of.rock is not Rock.ONE_BODY
     return first, int(of.rock), int(of.form)
 

@@ -43,7 +43,7 @@ class EnteringWave(NamedTuple):
 def entering_waves(scene: AnyScene) -> list[EnteringWave]:
     """Return the plane waves that enter a scene; none of a couple, a force at a point, or a
     pressure on an opening or on a part of a side."""
-    if isinstance(scene, Scene):
+    if scene.is_column:
         return list(_along_pillar(scene))
     loads = (
         wave

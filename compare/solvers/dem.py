@@ -39,13 +39,12 @@ def prepare(scene: Scene | RockMass) -> Prepared:
 
 def applies(scene: Scene | RockMass) -> Answer:
     """Return whether a scene has blocks that can be rigid."""
-    from jointwave.cases.schema.scene import Scene
 
     if scene.rock.quality_factor is not None:
         from jointwave.cases.schema.damping import NOT_OF_BLOCKS
 
         return Answer(f"rock.quality_factor {NOT_OF_BLOCKS}")
-    if isinstance(scene, Scene):
+    if scene.is_column:
         return Answer()
     from jointwave.cases.material.rigid_blocks import against
 

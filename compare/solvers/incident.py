@@ -18,9 +18,7 @@ if TYPE_CHECKING:
 
 def incident(scene: Scene | RockMass) -> IncidentField | None:
     """Return what enters a rock mass through its quiet sides; None for a scene without waves."""
-    from jointwave.cases.schema.scene import Scene
-
-    if isinstance(scene, Scene) or not scene.waves:
+    if not scene.waves:
         return None
     from jointwave.compare.exact.rock_mass.field import field_of
 
@@ -29,9 +27,7 @@ def incident(scene: Scene | RockMass) -> IncidentField | None:
 
 def side_error(scene: Scene | RockMass) -> SideError | None:
     """Return the error of the quiet sides of a rock mass that its receivers feel, None without."""
-    from jointwave.cases.schema.scene import Scene
-
-    if isinstance(scene, Scene) or scene.in_space or not scene.waves:
+    if not scene.in_plane or not scene.waves:
         return None
     from jointwave.compare.exact.rock_mass import side_error
 

@@ -9,7 +9,6 @@ from jointwave.cases.material.strength import SLIP
 from jointwave.cases.scene_type import Either
 from jointwave.cases.schema.damping import Attenuating
 from jointwave.cases.schema.law_parts import PARTS
-from jointwave.cases.schema.scene import Scene
 
 ALONG = (*SLIP, *(key for part in PARTS if part.along for key in part.all_keys))
 #: By effect, the tables and keys that leave it out of a scene; `joints` are all its joints.
@@ -40,8 +39,7 @@ def left_out(scene: Either, name: str) -> Either:
         raise SceneError(scene.where, name, None, "is the subject of the scene")
     changes = dict(WITHOUT[name])
     if law := changes.pop("joints", None):
-        joints = ("joints", "soft_layers") if isinstance(scene, Scene) else ("joint_sets",)
-        changes |= dict.fromkeys(joints, law)
+        changes |= dict.fromkeys(scene.law_tables, law)
     tables = {key: _changed(getattr(scene, key), change) for key, change in changes.items()}
     changed: Any = scene.model_copy(update=tables)
     return checked(changed)

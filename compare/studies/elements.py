@@ -11,7 +11,6 @@ from jointwave.cases.material.effective_medium import slowest
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import shortest_period
-from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import ENGINES, applies, solve, solver
 from jointwave.compare.runs import timings
 from jointwave.compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
@@ -117,7 +116,7 @@ def elements(scene: AnyScene, name: str, changes: dict[str, Any]) -> Elements:
 
 def coarsest(scene: AnyScene) -> list[tuple[str, dict[str, Any]]]:
     """Return the engines with their schemes and coarsest elements, as changes of [numerics]."""
-    if isinstance(scene, Scene):
+    if scene.is_column:
         rigid: list[dict[str, Any]] = [{"scheme": scheme} for scheme in DEM.schemes]
     else:
         rigid = [{}, {"block": _part(scene, BLOCKS_IN_WAVE)}]
@@ -131,7 +130,7 @@ def coarsest(scene: AnyScene) -> list[tuple[str, dict[str, Any]]]:
 
 def rock(scene: AnyScene, order: int) -> dict[str, Any]:
     """Return the changes for the fewest elements of an order."""
-    if isinstance(scene, Scene):
+    if scene.is_column:
         return {"order": order, "elements_per_block": 1}
     return {"order": order, "size": _part(scene, ELEMENTS_IN_WAVE[order])}
 

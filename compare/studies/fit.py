@@ -15,7 +15,6 @@ from scipy.stats import t as student
 
 from jointwave.cases.errors import SceneError, StoppedError, require
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import Progress, applies
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.misfit.external import READ_CURVES, Curves
@@ -119,7 +118,7 @@ def planned(scene: AnyScene, free: Sequence[str], solver: str | None = None) -> 
 
 def _solver_of(scene: AnyScene, asked: str | None) -> str:
     """Return the solver of every trial; raises SceneError if it does not apply."""
-    short = isinstance(scene, Scene) and scene.block_count <= SHORT and row_of_blocks.applies(scene)
+    short = scene.is_column and scene.block_count <= SHORT and row_of_blocks.applies(scene)
     name = asked or (row_of_blocks.AXIAL.name if short else DEM.name)
     if not (answer := applies(name, scene)):
         raise SceneError(scene.where, "", None, f"{name} does not apply: {answer.reason}")

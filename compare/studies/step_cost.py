@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 from jointwave import cases
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import ENGINES, solve, solver
 from jointwave.compare.runs import timings
 from jointwave.compare.solvers.dem import DEM
@@ -67,7 +66,7 @@ def on_one_thread(scene: AnyScene) -> AnyScene:
 def with_every_effect(scene: AnyScene) -> AnyScene:
     """Return a scene of this kind with every effect and about as many rigid blocks: with few blocks
     the fixed cost of a step matters."""
-    if isinstance(scene, Scene):
+    if scene.is_column:
         count = min(scene.block_count, BLOCKS)
         return cases.load_variant(SCENES / "every-effect.toml", "", {"pillar.length": 0.5 * count})
     dem = solver(DEM.name)

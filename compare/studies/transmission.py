@@ -71,7 +71,7 @@ def transmission(
         if name not in (known := [EXACT, *names()]):
             allowed = f"must be of {', '.join(known)}"
             raise SceneError("transmission", "solvers", name, allowed)
-    if not isinstance(scene, RockMass):
+    if scene.is_column:
         raise SceneError(scene.where, "", None, f"{NONE}: it is a pillar")
     kind: Kind = "P" if incidence == "P" else "SV"
     joints, rows = _joints_of(scene, _period(scene, frequency)), list[list[float]]()

@@ -9,7 +9,6 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.effective_medium import tensor
 from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.evaluation import (
@@ -74,13 +73,13 @@ def moduli_of(found: SceneBody) -> np.ndarray:
         moduli[:, 0, along, 0] = stiffness[:, along, along]
         return moduli
     full, pairs = np.array([tensor(one) for one in stiffness]), stress_components(dim).values()
-    shown = [(1, 1)] if isinstance(found.scene, Scene) else [*pairs]
+    shown = [(1, 1)] if found.scene.is_column else [*pairs]
     return np.stack([full[:, i, j] for i, j in shown], axis=1)
 
 
 def prestress_of(scene: AnyScene) -> np.ndarray:
     """Return the stress at u = 0 [n], Pa, compression positive; zero without."""
-    if isinstance(scene, Scene):
+    if scene.is_column:
         return np.array([scene.prestress.normal if scene.prestress else 0.0])
     dim, given = scene.domain.dimension, scene.prestress
     stress = np.zeros((dim, dim)) if given is None else given.tensor
@@ -122,7 +121,7 @@ class RockRecorder(SnapshotRecorder):
         first of them."""
         time = result["time"].values[:: self.every]
         u, v, stress = (np.stack(x) for x in zip(*self.frames[: len(time)], strict=True))
-        if isinstance(self.found.scene, Scene):
+        if self.found.scene.is_column:
             stress = stress[:, :, 0]
         else:
             u = u - u[0]
@@ -134,7 +133,7 @@ class RockRecorder(SnapshotRecorder):
         """The block of each linear cell, int array; of a layer of a pillar that before its
         middle."""
         scene = self.found.scene
-        if isinstance(scene, Scene):
+        if scene.is_column:
             height = self.points[self.cells][..., self.points.shape[1] // 2].mean(axis=1)
             return np.searchsorted(calibrate(scene).contact_y, height) - 1
         return np.repeat(self.found.body.block, self.parts)

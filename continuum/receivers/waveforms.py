@@ -7,7 +7,6 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.pillar import extent_of
 from jointwave.continuum.stepping.arrays import Samples
 from jointwave.continuum.stepping.problem import Problem
@@ -25,7 +24,7 @@ def recorded(
     """Return the samples at these times, the first ones, as a result with attributes."""
     count, name = len(times), f"continuum-{about['model']}"
     terms, energy = ledger(scene, problem, samples, count)
-    if isinstance(scene, Scene):
+    if scene.is_column:
         if energy is not None:
             energy = extent_of(scene, problem.body) * energy
         waves = waveforms(problem, samples, count)

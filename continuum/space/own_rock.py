@@ -13,7 +13,6 @@ import ufl
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.effective_medium import PAIRS, tensor
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.model import Forms
 from jointwave.continuum.space.rock import Material, Rock, rock_of_cells
@@ -117,7 +116,7 @@ def refuse_own_rock(scene: AnyScene, forms: Forms, own: list[Material]) -> None:
     """Raise SceneError for what a scene takes from its own [rock], which a script has replaced."""
     if forms.damping is None and any(one.time_constant for one in own):
         _refuse(scene, "the scene's dashpots of rock need Forms.damping", "damping")
-    if not isinstance(scene, RockMass):
+    if scene.is_column:
         if {scene.ends.start, scene.ends.end} & {"quiet", "matched"}:
             _refuse(scene, "absorbing ends have the impedance of the scene's rock", "ends")
         return

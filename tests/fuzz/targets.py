@@ -90,7 +90,7 @@ def scene(data: bytes, folder: Path) -> str:
 def _examine(one: Scene | RockMass) -> None:
     warnings(one)
     scene_hash(one)
-    if not isinstance(one, Scene):
+    if not one.is_column:
         _examine_rock_mass(one)
         return
     calibrate(one)

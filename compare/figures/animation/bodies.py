@@ -11,7 +11,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 
-from jointwave.cases.schema.scene import Scene
+from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.figures.animation.settings import (
     PEAK,
     PRINCIPAL,
@@ -72,10 +72,10 @@ class Body(NamedTuple):
         return values.groupby(along.round(9)).mean().T
 
 
-def body_of(s: Snapshots, scene: object, settings: ViewSettings) -> Body:
+def body_of(s: Snapshots, scene: AnyScene, settings: ViewSettings) -> Body:
     """Return the body of snapshots; lines and sheets of a pillar have its thickness."""
     up, right = settings.up, np.array([1.0, 0.0, 0.0])
-    if isinstance(scene, Scene):
+    if scene.is_column:
         s, right = _solid(s, scene.pillar.side), np.array([0.0, 1.0, 0.0])
     axes = np.stack([right, np.cross(up, right), up], axis=1)
     thick = np.array([1.0, settings.stretch, settings.stretch])

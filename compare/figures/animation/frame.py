@@ -10,7 +10,6 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import label_of
 from jointwave.compare.figures.animation.bodies import (
     ABOVE,
@@ -51,7 +50,7 @@ class Frame:
         rc: dict[Any, Any] = RC | {"font.size": 10.0, "figure.figsize": SIZE, "figure.dpi": 100.0}
         with blank(SIZE[1], rc=rc) as self.figure:
             self.figure.suptitle("\n".join(self._title()), x=0.01, ha="left", parse_math=False)
-            if isinstance(scene, Scene):
+            if scene.is_column:
                 self._add_pillars()
             else:
                 axes = self.figure.subplots(1, len(found), sharey=True, squeeze=False)[0]

@@ -67,7 +67,7 @@ class ViewSettings(NamedTuple):
 
 def quantities_of(scene: AnyScene) -> dict[str, Quantity]:
     """Return what the colours can show of a scene, by name."""
-    return OF_PILLAR if isinstance(scene, Scene) else OF_ROCK_MASS
+    return OF_PILLAR if scene.is_column else OF_ROCK_MASS
 
 
 def settings_for(
@@ -83,7 +83,7 @@ def settings_for(
     south.
     """
     up, stretch, ours = np.eye(3)[2 if scene.in_space else 1], stretch_of(scene), SPEED
-    if isinstance(scene, Scene):
+    if scene.is_column:
         up, ours = _upwards(found), _quantity(scene, found)
     largest = min(_largest_scale(scene, s, stretch) for s in found.values())
     return ViewSettings(up, scale or max(1.0, round_down(largest)), stretch, quantity or ours)
@@ -91,7 +91,7 @@ def settings_for(
 
 def stretch_of(scene: AnyScene) -> float:
     """Return by how much the thickness of a thin pillar is drawn larger; 1 of a rock mass."""
-    if not isinstance(scene, Scene):
+    if not scene.is_column:
         return 1.0
     return max(1.0, THIN * scene.pillar.length / scene.pillar.side)
 
@@ -118,7 +118,7 @@ def _largest_scale(scene: AnyScene, s: Snapshots, stretch: float) -> float:
     """Return the largest exaggeration of displacements that keeps a scene recognisable."""
     moved = float(np.abs(s.displacement).max(axis=(0, 1)) @ [stretch, 1.0, stretch])
     limits = [(FARTHEST * float(np.ptp(s.points, axis=0).max()), moved)]
-    if isinstance(scene, Scene):
+    if scene.is_column:
         p = calibrate(scene)
         along = pd.DataFrame(s.displacement[:, s.cells, 1].mean(axis=2).T).groupby(s.block).mean()
         limits.append((CLOSER * p.spacing, -float(along.diff().min().min())))

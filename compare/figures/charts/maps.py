@@ -14,7 +14,6 @@ from matplotlib.ticker import MaxNLocator
 
 from jointwave.cases.errors import require
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.compare.figures.animation.bodies import colours_of
 from jointwave.compare.figures.animation.settings import SLIP, stretch_of
 from jointwave.compare.figures.body_maps import Map, difference, maps_of, scene_of
@@ -124,7 +123,7 @@ def _label(figure: Figure, axes: list[Axes], scene: AnyScene, time: float | None
     thicker = f"; thickness × {stretch:.2g}" * (stretch > 1.01)
     for ax in axes:
         ax.set(aspect=stretch, anchor="SW" if len(axes) > 1 else "S")
-        if isinstance(scene, Scene):
+        if scene.is_column:
             ax.set(xlabel=f"y (m){thicker}", yticks=[])
             ax.spines["left"].set_visible(False)
         else:

@@ -3,7 +3,6 @@ field."""
 
 import pandas as pd
 
-from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.engines import in_order
 from jointwave.compare.figures.body_maps import Map, maps_of
 from jointwave.compare.figures.charts.maps import draw_maps
@@ -23,7 +22,7 @@ def peak_velocities(name: str, comparisons: list[Comparison]) -> list[SceneFigur
     for k, (variant, one) in enumerate(zip(variant_names(comparisons), comparisons, strict=True)):
         results = [one.results[engine] for engine in in_order(one.results)]
         results = [result for result in results if "field_velocity" in result]
-        if isinstance(one.scene, RockMass) and results:
+        if not one.scene.is_column and results:
             maps = maps_of(one.scene, results, "ppv")
             title, stem = f"Peak particle velocity, {variant}", f"{name}-peak-velocity-{k}"
             drawn = draw_maps(maps, one.scene)

@@ -10,7 +10,6 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import in_order, label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading
 from jointwave.compare.figures.export import SceneFigure
@@ -74,7 +73,7 @@ def curves_of(comparison: Comparison) -> Curves:
             if (row != 0).any("time").all() and row["distance"].diff("receiver").min() > 0:
                 found[solution] = _measured(result, row)
     scene = comparison.scene
-    if found and isinstance(scene, Scene) and not scene.segments:
+    if found and scene.is_column and not scene.segments:
         frequency = next(iter(found.values()))[TRANSFER].index.values
         theory = dispersion_theory(scene, frequency)
         for rock in theory.rock.values:

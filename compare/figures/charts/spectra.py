@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading
 from jointwave.compare.figures.export import SceneFigure
@@ -43,7 +42,7 @@ def marks_of(panel: Panel) -> list[Frequency]:
     scene, (quantity, component, _) = panel.comparison.scene, panel.place
     periods = {one.period for one in scene.pulses if one.period}
     found, rate = [Frequency("load", 1 / period, "1/T of the load") for period in periods], 0.0
-    if isinstance(scene, Scene):
+    if scene.is_column:
         p = calibrate(scene)
         along = quantity in ("stress", "velocity") and component in ("", "y")
         if along or len(p.each) > 1:

@@ -62,7 +62,7 @@ def scene_figure(name: str, comparisons: list[Comparison], explode: float = 0.0)
 
 def sketch_of(scene: AnyScene, explode: float = 0.0) -> Sketch:
     """Return the sketch of a pillar or a rock mass."""
-    if isinstance(scene, Scene):
+    if scene.is_column:
         return pillar.sketch_of(scene)
     from jointwave.compare.figures.drawing import rock_mass, space  # import shapely
 
@@ -89,7 +89,7 @@ def _figure(scenes: dict[str, AnyScene], sketches: list[Sketch]) -> Figure:
             sketch.draw(ax)
             if len(scenes) > 1:
                 ax.set_title(f"({chr(97 + k)})  {words}")
-            if isinstance(scene, Scene):
+            if scene.is_column:
                 ax.set(yticks=[], ylabel=sketch.axes[1])
                 ax.spines["left"].set_visible(False)
             handles |= {artist.get_label(): artist for artist in ax.get_legend_handles_labels()[0]}

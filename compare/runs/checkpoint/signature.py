@@ -9,7 +9,6 @@ from typing import Any
 
 from jointwave import cases
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.cases.warnings import warnings
 from jointwave.compare.engines import solver
 from jointwave.results.dataset import scene_hash
@@ -62,8 +61,7 @@ def _scene(scene: AnyScene, name: str) -> str:
     left_out: dict[str, Any] = {"expect": True, "numerics": INDIFFERENT[solver(name).engine]}
     text = scene.model_dump_json(exclude=left_out)
     found = scene_hash(scene, text + json.dumps(warnings(scene)))
-    holds_it = scene.numerics.continuum if isinstance(scene, Scene) else scene.domain
-    mesh = holds_it.mesh_path
+    mesh = scene.mesh_path
     # An unreadable mesh is reported where it is used, with a message of its own.
     if mesh is None or not Path(mesh).is_file():
         return found

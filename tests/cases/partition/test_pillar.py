@@ -7,13 +7,12 @@ from jointwave import load_variants, shipped
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.partition.pillar import blocks_of_pillar
-from jointwave.cases.schema.scene import Scene
 
 
 def pillars():
     """Return every variant of the shipped scenes of pillars."""
     found = [scene for name in shipped() for scene in load_variants(name)]
-    return [one for one in found if isinstance(one, Scene)]
+    return [one for one in found if one.is_column]
 
 
 @pytest.mark.parametrize("scene", pillars(), ids=lambda one: f"{one.title} {one.name}")
