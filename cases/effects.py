@@ -33,7 +33,7 @@ def is_spatial(scene: Scene) -> bool:
 
 def effects(scene: AnyScene) -> list[Effect]:
     """Return every effect that this version knows of this kind of scene, in the order of cost."""
-    found = _of_pillar(scene) if isinstance(scene, Scene) else _of_rock_mass(scene)
+    found = _of_pillar(scene) if scene.is_column else _of_rock_mass(scene)
     return [Effect(name, bool(why), str(why or why_not)) for name, why, why_not in found]
 
 

@@ -5,6 +5,7 @@ from math import atan, degrees, inf, radians
 from typing import Any, NamedTuple
 
 from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.joint import SoftLayer
 
 #: Other units in which values are often given, and their factors to SI.
 Units = tuple[tuple[str, float], ...]
@@ -54,6 +55,7 @@ OF_JOINTS = {
     "tensile_strength": STRENGTH,
     "maximum_closure": CLOSURE,
 }
+OF_ALL = OF_ROCK | OF_JOINTS
 POISSON = ("equivalent_poisson", "intact_poisson")
 OF_PILLAR = {"length": LENGTH, "side": LENGTH, "block": LENGTH}
 OF_PRESTRESS = {"normal": ACTING, "xx": ACTING, "yy": ACTING, "zz": ACTING}
@@ -65,20 +67,18 @@ OVERDAMPED = 1.0  # damping ratio
 def implausible(scene: AnyScene) -> Iterator[str]:
     """Yield a line for each number that lies far outside rock's, or is rather in another unit."""
     tables: dict[str, tuple[Any, dict[str, Usual]]] = {"rock": (scene.rock, OF_ROCK)}
-    tables |= {key: (law, OF_JOINTS) for key, law in _laws(scene).items()}
-    tables["pillar"] = getattr(scene, "pillar", None), OF_PILLAR
-    for key in ("segments", "regions"):
-        several = getattr(scene, key, [])
-        tables |= {f"{key}[{i}]": (one, OF_ROCK | OF_JOINTS) for i, one in enumerate(several)}
+    tables |= {key: (law, OF_JOINTS) for key, law in scene.laws.items()}
+    for table, known in (("pillar", OF_PILLAR), ("segments", OF_ALL), ("regions", OF_ALL)):
+        tables |= {key: (one, known) for key, one in scene.entries(table)}
     for table, (holder, known) in tables.items():
         for key, usual in known.items():
             yield from of_value(f"{table}.{key}", getattr(holder, key, None), usual)
         for key in POISSON:
             if (value := getattr(holder, key, None)) and value < 0:
                 yield f"{table}.{key} = {value:g} is negative, which no known rock is"
-    for table, law in _laws(scene).items():
+    for table, law in scene.laws.items():
         yield from _of_law(table, law)
-        rest = law.under(scene.joints) if table.startswith("soft") else law  # type: ignore[union-attr]
+        rest = law.under(scene.joints) if isinstance(law, SoftLayer) else law  # type: ignore[union-attr]
         if law.friction_angle is not None and rest.tension is rest.tensile_strength is None:
             yield (
                 f"{table}.friction_angle without {table}.tension: the joint carries any tension; "
@@ -86,14 +86,6 @@ def implausible(scene: AnyScene) -> Iterator[str]:
             )
     yield from _of_sources(scene)
     yield from _of_prestress(scene)
-
-
-def _laws(scene: AnyScene) -> dict[str, Any]:
-    """Return the tables of a scene that hold a joint law."""
-    found: dict[str, Any] = {"joints": scene.joints} if hasattr(scene, "joints") else {}
-    for key in ("soft_layers", "joint_sets"):
-        found |= {f"{key}[{i}]": one for i, one in enumerate(getattr(scene, key, []))}
-    return found
 
 
 def of_value(key: str, value: float | None, usual: Usual, others: str = "rock's") -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from jointwave.cases.checks.shared import Wrong, of_damping, of_fracture, of_strength, within
+from jointwave.cases.checks.scene import Wrong, of_damping, of_fracture, of_strength, within
 from jointwave.cases.geometry.sets import in_order
 from jointwave.cases.partition.joints import plane_sets
 from jointwave.cases.schema.joint_set import JointSet

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from jointwave.cases.checks.shared import Wrong, within
+from jointwave.cases.checks.scene import Wrong, within
 from jointwave.cases.effects import active_effects
 from jointwave.cases.schema.joint import SoftLayer
 from jointwave.cases.schema.law_parts import PARTS

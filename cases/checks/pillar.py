@@ -3,28 +3,24 @@
 from collections.abc import Iterator
 
 from jointwave.cases.checks import numerics, segments
-from jointwave.cases.checks.shared import (
-    Rules,
+from jointwave.cases.checks.scene import (
     Wrong,
     of_damping,
     of_fracture,
-    of_quality,
     of_strength,
-    of_time,
     within,
 )
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.jointed_rock import equivalent_constants
 from jointwave.cases.partition.pillar import block_ends
 from jointwave.cases.plausible import INTACT, meant
-from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.tables import PAIRS, check_given_once
 
 
-def rules(scene: Scene) -> Rules:
+def rules(scene: Scene) -> list[Iterator[Wrong]]:
     """Return the rules of a pillar whose tables are each right."""
-    return (one(scene) for one in RULES)
+    return [one(scene) for one in RULES]
 
 
 def _of_layers(scene: Scene) -> Iterator[Wrong]:
@@ -118,29 +114,23 @@ def _of_support(scene: Scene) -> Iterator[Wrong]:
             yield f"ends.{key}", kind, allowed
 
 
-def _laws(scene: Scene, layers: list) -> dict[str, JointLaw]:
-    """Return the law of the joints and those of soft layers, by table."""
-    return {"joints": scene.joints} | {f"soft_layers[{i}]": one for i, one in enumerate(layers)}
-
-
 def _of_damping(scene: Scene) -> Iterator[Wrong]:
-    parts = {f"segments[{i}]": one for i, one in enumerate(scene.segments)}
-    for table, law in (_laws(scene, scene.soft_layers) | parts).items():
+    for table, law in [*scene.laws.items(), *scene.entries("segments")]:
         yield from within(table, of_damping(law, scene))
 
 
 def _of_strength(scene: Scene) -> Iterator[Wrong]:
     """Layers take what they do not give from the joints, so that these come first."""
-    for table, law in _laws(scene, scene.layers).items():
+    for table, law in zip(scene.laws, (scene.joints, *scene.layers), strict=True):
         yield from within(table, of_strength(law))
 
 
 def _of_fracture(scene: Scene) -> Iterator[Wrong]:
-    laws = _laws(scene, scene.layers)
-    if any(law.tensile_strength is not None for law in laws.values()):
+    laws = (scene.joints, *scene.layers)
+    if any(law.tensile_strength is not None for law in laws):
         p = calibrate(scene)
         stiffness = [p.regular_stiffness, *p.stiffness[p.soft]]
-        for (table, law), k in zip(laws.items(), stiffness, strict=True):
+        for table, law, k in zip(scene.laws, laws, stiffness, strict=True):
             yield from within(table, of_fracture(law, k, "K'_n"))
 
 
@@ -150,8 +140,6 @@ RULES = (
     _of_layers,
     _of_receivers,
     _of_rock,
-    of_quality,
-    of_time,
     _of_lever,
     _of_load,
     _of_support,

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import shapely
 
-from jointwave.cases.checks.shared import Wrong
+from jointwave.cases.checks.scene import Wrong
 from jointwave.cases.geometry.cell_complex import PARALLEL
 from jointwave.cases.geometry.measure import cell_moments
 from jointwave.cases.geometry.solids import taken_out

@@ -6,7 +6,7 @@ import numpy as np
 
 from jointwave.cases.checks.joint_sets import of_sets
 from jointwave.cases.checks.regions import of_regions
-from jointwave.cases.checks.shared import Rules, Wrong, of_quality, of_time, within
+from jointwave.cases.checks.scene import Wrong, within
 from jointwave.cases.geometry.cell_complex import GeometryError
 from jointwave.cases.geometry.sets import cut_by_sets
 from jointwave.cases.partition.joints import attitude, plane_sets
@@ -23,21 +23,14 @@ PARTNER |= {"front": "back", "back": "front"}
 BESIDE = 1e-6
 
 
-def rules(scene: RockMass) -> Rules:
+def rules(scene: RockMass) -> list[Iterator[Wrong]]:
     """Return the rules of a rock mass whose tables are each right."""
     try:
         shape = shape_of(scene.domain)
     except GeometryError as error:
         return [iter([(error.key, None, str(error))])]
-    loads = (within(f"loads[{i}]", _of_load(x, scene, shape)) for i, x in enumerate(scene.loads))
-    return [
-        of_sets(scene),
-        *(one(scene, shape) for one in OF_SHAPE),
-        of_time(scene),
-        of_quality(scene),
-        _of_support(scene, shape),
-        *loads,
-    ]
+    loads = (within(key, _of_load(one, scene, shape)) for key, one in scene.entries("loads"))
+    return [of_sets(scene), *(one(scene, shape) for one in OF_SHAPE), *loads]
 
 
 def _of_support(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
@@ -141,4 +134,4 @@ def _of_load(load: PlaneLoad, scene: RockMass, outline: Shape) -> Iterator[Wrong
             yield "between", load.between, "must be two points"
 
 
-OF_SHAPE = (of_regions, _of_cuts, _of_receivers, _of_boundaries, _of_waves)
+OF_SHAPE = (of_regions, _of_cuts, _of_receivers, _of_boundaries, _of_waves, _of_support)

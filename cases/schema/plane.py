@@ -1,13 +1,19 @@
 """The small tables of a rock mass: intact rock, boundaries, initial stress, receivers, numerics."""
 
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field, ValidationInfo, model_validator
 
 from jointwave.cases.schema.damping import Attenuating
+from jointwave.cases.schema.tables import (
+    BlockStepping,
+    ElementStepping,
+    Gravity,
+    Numerics,
+    Recording,
+)
 from jointwave.cases.schema.values import (
-    NonNegative,
     Number,
     Point,
     Poisson,
@@ -47,15 +53,13 @@ class Boundaries(Table):
         return [side for side, held in self if held in kinds]
 
 
-class GravityOfRock(Table):
+class GravityOfRock(Gravity):
     """A body force. Fixed and roller sides bear the weight, and quiet ones, which exert beside
     their dashpots what held sides would at rest: below the rock (within 45 degrees) held in all
     directions, beside it along their normal. A quiet side above the rock bears the in-situ stress
     alone."""
 
     direction: UnitVector = Field(default=[0.0, -1.0])  #: x, y, in space x, y, z and [0, 0, -1]
-    acceleration: NonNegative = 9.81  #: m/s2
-    static: bool = True  #: the scene starts in equilibrium; False: gravity acts suddenly at t = 0
 
     @model_validator(mode="before")
     @classmethod
@@ -101,42 +105,29 @@ class InSituStress(Table):
         return max(0.0, float(3 * high - low if excavated else high))
 
 
-class RecordOfRock(Table):
+class RecordOfRock(Recording):
     """The results that are recorded."""
 
     #: m, where velocity, displacement and stress are recorded; on a joint the mean of both sides
     points: list[Point] = Field(default_factory=list)
     #: m, points near joints: traction, gap and slip of the nearest joint
     joints: list[Point] = Field(default_factory=list)
-    interval: Positive | None = None  #: s; default: period / 200, or duration / 2000
-    fields: Positive | None = None  #: s between snapshots of the whole domain; absent: none
-    energy: bool = True  #: record the energy ledger
 
 
-class DemOfRock(Table):
+class DemOfRock(BlockStepping):
     """Time stepping of rigid blocks, and their size where intact rock is subdivided."""
 
     #: m, approximate block size: rock between joints is subdivided by joints of its own stiffness;
     #: absent: blocks are cut by the joint sets only; rock no wider than this is not cut
     block: Positive | None = None
-    step_fraction: Positive = 0.2  #: of the critical step
-    allow_unstable: bool = False  #: allow a step above the critical one
-    static_tolerance: Positive = 1e-8  #: out-of-balance force ratio of the static state
-    threads: Annotated[int, Field(ge=1, le=1024)] | None = None  #: absent: by the number of blocks
 
 
-class ContinuumOfRock(Table):
+class ContinuumOfRock(ElementStepping):
     """Discretisation and time stepping of the deformable rock."""
 
-    order: Annotated[int, Field(ge=1, le=4)] = 2  #: of the elements; at most 2 for triangles
     #: in the plane; absent: quadrilaterals where every block has four corners
     cell: Literal["quadrilateral", "triangle"] | None = None
     size: Positive | None = None  #: m, element size; absent: from the shortest wave
-    scheme: Literal["auto", "explicit", "implicit"] = "auto"  #: auto: whichever costs less
-    step_fraction: Positive = 0.5  #: explicit: of the critical step
-    steps_per_period: Positive = 200  #: implicit: of the shortest pulse, or a tenth of the duration
-    spectral_radius: Annotated[float, Field(ge=0, le=1)] = 0.9  #: implicit: at infinite frequency
-    allow_unstable: bool = False  #: allow an explicit step above the critical one
 
     @model_validator(mode="after")
     def _fits_dimension(self, info: ValidationInfo) -> "ContinuumOfRock":
@@ -144,11 +135,8 @@ class ContinuumOfRock(Table):
         return self
 
 
-class NumericsOfRock(Table):
+class NumericsOfRock(Numerics):
     """Numerical parameters; the defaults are chosen for accuracy."""
 
-    #: joints may move by more than 2 % of a block, and blocks meet others than their neighbours,
-    #: though contacts stay those of the start; else such a run stops
-    allow_large_motion: bool = False
-    dem: DemOfRock = DemOfRock()
-    continuum: ContinuumOfRock = ContinuumOfRock()
+    dem: DemOfRock = DemOfRock()  # type: ignore[assignment]
+    continuum: ContinuumOfRock = ContinuumOfRock()  # type: ignore[assignment]

@@ -172,45 +172,62 @@ class Time(Table):
     duration: Positive  #: s
 
 
-class Record(Table):
+class Recording(Table):
+    """When results are recorded, beside those of receivers."""
+
+    interval: Positive | None = None  #: s; default: period / 200, or duration / 2000
+    fields: Positive | None = None  #: s between snapshots of the whole body; absent: none
+    energy: bool = True  #: record the energy ledger
+
+
+class Record(Recording):
     """The results that are recorded."""
 
     stress: list[NonNegative] = Field(default_factory=list)  #: m, sections
     #: m, points of velocity and displacement; on a joint the mean of both sides
     velocity: list[NonNegative] = Field(default_factory=list)
-    interval: Positive | None = None  #: s; default: period / 200, or duration / 2000
-    fields: Positive | None = None  #: s between snapshots of the whole pillar; absent: none
-    energy: bool = True  #: record the energy ledger
 
 
-class DemNumerics(Table):
-    """Time stepping of the rigid blocks; the default step is for accuracy, not only stability."""
+class BlockStepping(Table):
+    """Time stepping of rigid blocks."""
 
-    step_fraction: Positive = 0.05  #: of the scheme's own critical step
-    #: fourth-order (PEFRL): four force evaluations per step, for axial motion without damping
-    scheme: Literal["leapfrog", "fourth-order"] = "leapfrog"
+    step_fraction: Positive = 0.2  #: of the critical step
     allow_unstable: bool = False  #: allow a step above the critical one
     static_tolerance: Positive = 1e-8  #: out-of-balance force ratio of the static state
     threads: Annotated[int, Field(ge=1, le=1024)] | None = None  #: absent: by the number of blocks
 
 
-class ContinuumNumerics(Table):
+class DemNumerics(BlockStepping):
+    """Time stepping of the rigid blocks; the default step is for accuracy, not only stability."""
+
+    step_fraction: Positive = 0.05  #: of the scheme's own critical step
+    #: fourth-order (PEFRL): four force evaluations per step, for axial motion without damping
+    scheme: Literal["leapfrog", "fourth-order"] = "leapfrog"
+
+
+class ElementStepping(Table):
+    """Order of the elements of the deformable rock, and its time stepping."""
+
+    order: Annotated[int, Field(ge=1, le=4)] = 2  #: at most 2 for triangles, tetrahedra
+    scheme: Literal["auto", "explicit", "implicit"] = "auto"  #: auto: whichever costs less
+    step_fraction: Positive = 0.5  #: explicit: of the critical step
+    steps_per_period: Positive = 200  #: implicit: of the shortest pulse, or a tenth of the duration
+    spectral_radius: Annotated[float, Field(ge=0, le=1)] = 0.9  #: implicit: at infinite frequency
+    allow_unstable: bool = False  #: allow an explicit step above the critical one
+
+
+class ContinuumNumerics(ElementStepping):
     """Discretisation and time stepping of the deformable rock."""
 
+    step_fraction: Positive = 0.2  #: explicit: of the critical step
     #: 1: bar; 2: plane stress; 3: square column; absent: the least that the scene needs
     dim: Annotated[int, Field(ge=1, le=3)] | None = None
-    order: Annotated[int, Field(ge=1, le=4)] = 2  #: of the elements; at most 2 for simplices
     cell: Literal["hexahedron", "simplex"] = "hexahedron"  #: quadrilateral and triangle in dim 2
     mass: Literal["lumped", "consistent"] = "lumped"  #: consistent: implicit simplices only
     #: absent: a wave crosses one in 1/100 of the shortest period at most, 1/25 in damped rock
     elements_per_block: Annotated[int, Field(ge=1, le=1000)] | None = None
     elements_across: Annotated[int, Field(ge=1, le=100)] = 1  #: in each direction of the section
     mesh: str | None = None  #: a gmsh file (.msh) of the pillar, with its rock and joints tagged
-    scheme: Literal["auto", "explicit", "implicit"] = "auto"  #: auto: whichever costs less
-    step_fraction: Positive = 0.2  #: explicit: of the critical step
-    steps_per_period: Positive = 200  #: implicit: of the load, or a tenth of the duration
-    spectral_radius: Annotated[float, Field(ge=0, le=1)] = 0.9  #: implicit: at infinite frequency
-    allow_unstable: bool = False  #: allow an explicit step above the critical one
 
     _mesh_path: Path | None = PrivateAttr(default=None)
 

@@ -5,13 +5,12 @@ No scene is refused: unusual values may be intended. `--strict` makes each line 
 
 from jointwave.cases.plausible import implausible
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.cases.warnings.pillar import warnings_of_pillar
 
 
 def warnings(scene: AnyScene) -> list[str]:
     """Return warnings of probable mistakes in a scene, one line each."""
-    if isinstance(scene, Scene):
+    if scene.is_column:
         found = warnings_of_pillar(scene)
     else:
         from jointwave.cases.warnings.rock_mass import warnings_in_plane  # with shapely

@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from jointwave.cases.loads import history_of
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import Pulse
-from jointwave.cases.schema.scene import Scene
 from jointwave.compare.figures.drawing import pillar
 from jointwave.compare.figures.drawing.sketch import LOAD, Sketch
 from jointwave.compare.figures.export import SceneFigure, blank
@@ -73,7 +72,7 @@ def sketch_of(scene: AnyScene, explode: float = 0.0) -> Sketch:
 
 def _figure(scenes: dict[str, AnyScene], sketches: list[Sketch]) -> Figure:
     """Draw pillars one below the other, rock masses in pairs, each with its pulse beside it."""
-    one = isinstance(next(iter(scenes.values())), Scene) or len(scenes) == 1
+    one = next(iter(scenes.values())).is_column or len(scenes) == 1
     pairs = 1 if one else 2
     rows = [sketches[k : k + pairs] for k in range(0, len(sketches), pairs)]
     width = WIDTH / pairs - PULSE - 0.9
