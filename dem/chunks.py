@@ -14,8 +14,6 @@ from jointwave.numerics.cache_lines import zeros
 
 LANES = 64  # contacts in a chunk
 LEAST = 16  # chunks of a tile: a step of one costs some 0.2 us beside its work
-DEEPEST, CACHE = 16, 3 << 19  # steps, and bytes of a core's own cache, that a pass takes
-OF_FREEDOM = 32  # bytes: its motion, inertia and force
 
 
 class Chunks(NamedTuple):
@@ -116,16 +114,3 @@ def marks(at: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     its row in the samples [2, n]."""
     row = np.argsort(at, kind="stable")
     return np.searchsorted(at[row], first), np.stack([at[row], row])
-
-
-def depth_of(chunks: Chunks, history: np.ndarray | None, freedoms: int, threads: int) -> int:
-    """Return how many steps are taken in one pass over the tiles: as many as a core's own cache
-    holds tiles, and as leave all threads something to do."""
-    count = max(1, len(chunks.pair))
-    whole = sum(x.nbytes for x in (chunks.pair, chunks.table, history) if x is not None)
-    sizes = whole / count * np.diff(chunks.first_chunk)
-    sizes += OF_FREEDOM * freedoms * np.diff(chunks.first_block)
-    depth = min(DEEPEST, int(CACHE / sizes.max()))
-    if threads > 1:
-        depth = min(depth, (len(sizes) - threads - 1) // (threads - 1))
-    return max(1, depth)

@@ -2,26 +2,31 @@
 
 A tile needs the forces of the contacts of the tile before it at the same step, and the blocks of
 the next one at the step before. So the tiles t, t - 1, t - 2, ... take the steps n, n + 1, n + 2,
-... while they are in the cache, and several threads follow one another through the rock mass, each
-some steps later. Every block does the same arithmetic in whatever order, so results are
-bit-identical for any number of threads.
+... while they are in the cache. Threads have parts of the tiles, as `dem.parts` has them.
 """
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from jointwave.dem.chunks import LANES, depth_of, marks
+from jointwave.dem.chunks import LANES, marks
 from jointwave.dem.kernel import step_for
 from jointwave.dem.model import KernelFlags, Model, Samples, State
 from jointwave.dem.motion import AFTER, SUMMED
+from jointwave.dem.parts import (
+    Part,
+    add_up,
+    divided,
+    flat,
+    part_of,
+    take_together,
+    work_for,
+)
 from jointwave.dem.rotation import free_motion
-from jointwave.numerics.atomic import give_way, peek, post
+from jointwave.dem.shaking import motion_of_walls
 from jointwave.numerics.borrowed import borrowed
-from jointwave.numerics.cache_lines import zeros
 from jointwave.numerics.denormals import flush_denormals, restore_denormals
 from jointwave.numerics.jit import jitted
 
@@ -104,15 +109,10 @@ def make_stepper(
     elif drive is None:
         drive = np.zeros((stages * most, len(held), f))
     walls = None if shake is None else motion_of_walls(state, shake, dt)
-    bands = -(-stages * most // depth_of(chunks, state.history, f, threads))
-    bands = max(1, bands + -bands % threads)  # as many for each thread
-    depth = max(1, -(-stages * most // bands))
-    widest = f * int(np.diff(chunks.first_block).max())
-    buffers = zeros((threads, form.buffer.before + widest))
-    ledgers = zeros((threads * depth, 2 * AFTER)) if form.ledger else None
-    progress = np.zeros(threads + 1, dtype=np.int64)
+    ends, depth = divided(chunks, state.history, f, threads)
+    bands = max(1, -(-stages * most // depth))
+    depth = max(1, -(-stages * most // bands))  # alike in all
     loop, inertia = loop_for(form), model.inertia.ravel()
-    force = np.zeros(inertia.size)
     first_place, places = marks(model.places, chunks.first_block)
     first_seen, seen = marks(chunks.place[model.watched], LANES * chunks.first_chunk)
     first_held = np.searchsorted(np.zeros(0) if held is None else held, chunks.first_block)
@@ -126,44 +126,36 @@ def make_stepper(
         None if own.tensor is None else np.linalg.inv(own.tensor),
         free_motion(own) if form.finite else None, dt, own.keep, own.local, own.stages,
     )  # fmt: skip
-    flat = state._replace(u=state.u.reshape(-1), v=state.v.reshape(-1))
+    size = form.buffer.before + f * int(np.diff(chunks.first_block).max())
+    works = [work_for(inertia.size, size, depth, form.ledger) for _ in ends[1:]]
+    whole = Part(ends[0], ends[-1], tiles, state, samples, works[0])
+    shares = zip(ends[:-1], ends[1:], works, strict=True)
+    parts = [part_of(whole, *one) for one in shares] if len(works) > 1 else []
 
     def take(stride: int, first: int, last: int, keep: float = own.keep) -> None:
         count = last - first
         if count > most:
             raise ValueError(f"{count} steps at a time, at most {most}")
-        progress[:] = 0
         if walls is not None and shake is not None:
             walls[: count + 1] = motion_of_walls(state, shake[:count], dt)
         damped = blocks._replace(keep=keep)
+        steps = stages * first, stages * last, depth
 
-        def share(thread: int) -> None:
-            span = (thread, stages * first, stages * last, stages * stride, depth)
-            work = (force, buffers[thread], ledgers, progress)
-            loop(between, damped, flat, samples, drive, walls, work, span)
+        def advance(part: Part, begin: int, end: int) -> None:
+            span = part.first, part.last, steps[0], begin, end, stages * stride, depth
+            table = between._replace(tiles=part.tiles)
+            loop(table, damped, flat(part.state), part.samples, drive, walls, part.work, span)
 
-        if threads == 1 or first == last:  # nothing to take: compiles
-            share(0)
+        if not parts or first == last:  # nothing to take: compiles
+            advance(whole, *steps[:2])
         else:
-            with ThreadPoolExecutor(threads) as pool:
-                list(pool.map(share, range(threads)))
+            take_together(whole, parts, model.walls, steps, advance)
+            add_up(whole, parts, slice(-(-first // stride), -(-last // stride)))
         if walls is not None:
             u, v = walls[count].reshape(2, -1, f)[:, 1:]
             state.u[-model.walls :], state.v[-model.walls :] = u, v
 
     return take
-
-
-def motion_of_walls(state: State, shake: np.ndarray, dt: float) -> np.ndarray:
-    """Return displacement and velocity of walls that move as `shake` says [steps + 1, 2,
-    freedoms (1 + walls)], before each step and after the last, none at first."""
-    (steps, walls, dim), f = shake.shape, state.u.shape[1]
-    found = np.zeros((steps + 1, 2, 1 + walls, f))
-    found[0, :, 1:] = state.u[-walls:], state.v[-walls:]
-    found[1:, 1, 1:, :dim] = shake
-    found[1:, 0, 1:, :dim] = dt * shake
-    found[:, 0] = found[:, 0].cumsum(axis=0)
-    return found.reshape(steps + 1, 2, -1)
 
 
 def widths_of(form: KernelFlags) -> tuple[int, ...]:
@@ -183,58 +175,50 @@ def loop_for(form: KernelFlags) -> Callable:
 
     @jitted
     def loop(chunks, blocks, state, samples, drive, walls, work, span):
-        """Take this thread's share of the steps first .. last - 1, in turn with the others.
+        """Take the steps begin .. end - 1 of the tiles first .. last - 1, in bands of `depth`.
 
-        Band B of `depth` steps belongs to thread B modulo their number; its diagonal k has tile
-        k - j at its step j. It enters one when band B - 1 has left the one that asks for the last
-        of its own steps at the next tile.
+        Diagonal k of a band has tile k - j at its step j. Of tiles beyond the first and the last,
+        those take a step on which later ones of the band depend; the band leaves these and their
+        neighbours with motion that is not theirs.
 
-        work : forces, zero, buffers, ledgers, and the diagonals that each thread has left behind,
-        as many for each band, with how many bands have closed their ledgers. span : thread, first,
-        last, stride, depth.
+        work : `parts.Work`. span : first, last, the first step in `drive` and `walls`, begin, end,
+        stride, depth.
         """
         setting = flush_denormals()
         chunks, blocks, state = borrowed(chunks), borrowed(blocks), borrowed(state)
         samples, drive, walls = borrowed(samples), borrowed(drive), borrowed(walls)
-        force, buffer, ledgers, progress = borrowed(work)
-        thread, first, last, stride, depth = span
-        tiles, threads, ledger = chunks.tiles.shape[1] - 1, progress.size - 1, None
-        diagonals = tiles + depth - 1
-        for band in range(thread, (last - first + depth - 1) // depth, threads):
-            n = first + band * depth
-            steps = depth if depth < last - n else last - n
-            for k in range(tiles + steps - 1):
-                if band > 0:
-                    ahead = k + depth + 1 if k + depth + 1 < diagonals else diagonals
-                    while peek(progress, (band - 1) % threads) < (band - 1) * diagonals + ahead:
-                        give_way()
-                from_step = k - tiles + 1 if k >= tiles else 0
-                for j in range(from_step, steps if steps < k + 1 else k + 1):
+        work = borrowed(work)
+        first, last, origin, begin, end, stride, depth = span
+        tiles, ledgers, ledger = chunks.tiles.shape[1] - 1, work.ledgers, None
+        for n in range(begin, end, depth):
+            steps = depth if depth < end - n else end - n
+            from_tile = first - steps if first > steps else 0
+            to_tile = last + steps if last + steps < tiles else tiles
+            for k in range(from_tile, to_tile + steps - 1):
+                for j in range(steps):
+                    t, later = k - j, steps - 1 - j
+                    if t < 0 or t < first - 1 - later or t >= tiles or t >= last + later:
+                        continue
                     if has_ledger:
-                        ledger = ledgers[thread * depth + j]
+                        ledger = ledgers[j if t >= first and t < last else depth]
                     s = (n + j) // stride if (n + j) % stride == 0 else -1
                     step(
-                        chunks, blocks, state, force, drive, walls, samples, buffer, ledger,
-                        k - j, n + j - first, s,
+                        chunks, blocks, state, work.force, drive, walls, samples, work.buffer,
+                        ledger, t, n + j - origin, s,
                     )  # fmt: skip
-                post(progress, thread, band * diagonals + k + 1)
-            while peek(progress, threads) < band:
-                give_way()
             if has_ledger:
                 for j in range(n, n + steps):
-                    one = ledgers[thread * depth + j - n]
+                    one = ledgers[j - n]
                     for term in range(state.sums.size):
-                        begin, before, after = term * LANES, 0.0, 0.0
-                        sampled, summed = j % stride == 0, begin in SUMMED
-                        end = begin + (widths[term] if sampled or summed else 0)
-                        for i in range(begin, end):  # always in this order
-                            before, after = before + one[i], after + one[AFTER + i]
+                        row, before, after = term * LANES, 0.0, 0.0
+                        sampled, summed = j % stride == 0, row in SUMMED
+                        for i in range(row, row + (widths[term] if sampled or summed else 0)):
+                            before, after = before + one[i], after + one[AFTER + i]  # in order
                             one[i], one[AFTER + i] = 0.0, 0.0
                         if sampled:
                             samples.energy[term, j // stride] = state.sums[term] + before
                         if summed:
                             state.sums[term] += before + after
-            post(progress, threads, band + 1)
         restore_denormals(setting)
 
     return loop

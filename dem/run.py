@@ -116,7 +116,7 @@ def plan(scene: AnyScene) -> Plan:
     kind, _ = modules(scene)
     blocks = kind.blocks_of(scene)
     time, critical = kind.clock_of(blocks)
-    threads = thread_count(scene.numerics.dem.threads, blocks.count)
+    threads = thread_count(scene.numerics.dem.threads, blocks.count, blocks.dim)
     return Plan(time, critical, blocks.inertia.size, threads)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from jointwave.cases.loads import history_of
 from jointwave.cases.schema.pulse import Pulse
+from jointwave.dem.model import State
 
 #: Of (steps): the velocity of every wall in each [n, walls, d], m/s.
 Shaking = Callable[[np.ndarray], np.ndarray]
@@ -50,3 +51,15 @@ def variation(velocity: np.ndarray) -> float:
     still = np.zeros_like(velocity[:1])
     steps = np.diff(velocity, axis=0, prepend=still, append=still)
     return float(np.sqrt((steps**2).sum(axis=(1, 2))).sum())
+
+
+def motion_of_walls(state: State, shake: np.ndarray, dt: float) -> np.ndarray:
+    """Return displacement and velocity of walls that move as `shake` says [steps + 1, 2,
+    freedoms (1 + walls)], before each step and after the last, none at first."""
+    (steps, walls, dim), f = shake.shape, state.u.shape[1]
+    found = np.zeros((steps + 1, 2, 1 + walls, f))
+    found[0, :, 1:] = state.u[-walls:], state.v[-walls:]
+    found[1:, 1, 1:, :dim] = shake
+    found[1:, 0, 1:, :dim] = dt * shake
+    found[:, 0] = found[:, 0].cumsum(axis=0)
+    return found.reshape(steps + 1, 2, -1)

@@ -20,9 +20,9 @@ from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
 from jointwave.results.snapshots import SnapshotRecorder
 
 BLOCK_STEPS_AT_ONCE = 20_000_000  # some 10 ms to 1 s: often enough for a progress bar
-ENOUGH_BLOCKS = 20_000  # from which a second thread gains more than synchronisation costs
+ENOUGH_BLOCKS = {1: 200_000, 2: 40_000, 3: 10_000}  # by dimension: from there on threads pay
 LOOKS = 20  # at a run, at least: blocks may move further than they can
-LEAST_STEPS = 64  # at least: pipelined threads need several
+LEAST_STEPS = 64  # at least: each thread copies its blocks before and after
 
 
 class Run(NamedTuple):
@@ -88,11 +88,11 @@ def refuse_beyond_bounds(
     raise stopped(scene, time, critical, seen)
 
 
-def thread_count(asked: int | None, blocks: int) -> int:
+def thread_count(asked: int | None, blocks: int, dim: int) -> int:
     """Return the threads to use: as requested, or one for few blocks and all cores for many."""
     if asked is not None:
         return asked
-    return _cores() if blocks >= ENOUGH_BLOCKS else 1
+    return _cores() if blocks >= ENOUGH_BLOCKS[dim] else 1
 
 
 def _cores() -> int:

@@ -20,7 +20,6 @@ PRIVATE = ("numba.core", "numba._", "numba.np", "llvmlite")
 #: may only shrink.
 COMPILER_INSIDE = {
     "numerics/denormals.py",
-    "numerics/atomic.py",
 }
 #: Settings that a library documents as such.
 SETTINGS = {"numba.config.CACHE_DIR"}

@@ -81,7 +81,7 @@ def prepared(scene: Scene, incident: None = None) -> BlockSystem:
         watched=reads.watched,
         walls=len(blocks.contacts.walls),
     )
-    threads = thread_count(scene.numerics.dem.threads, blocks.count)
+    threads = thread_count(scene.numerics.dem.threads, blocks.count, blocks.dim)
     return BlockSystem(
         blocks, time, critical, model, reads, loads, None, bears, moving, threads, static(blocks)
     )

@@ -61,7 +61,7 @@ def prepared(scene: RockMass, incident: IncidentField | None = None) -> BlockSys
         watched=receivers.watched,
         walls=len(blocks.contacts.walls),
     )
-    threads = thread_count(scene.numerics.dem.threads, blocks.count)
+    threads = thread_count(scene.numerics.dem.threads, blocks.count, blocks.dim)
     stress = 0.0 if blocks.prestress is None else np.abs(blocks.prestress).max()
     pressed = float(stress * blocks.cut.boundary.area.sum())
     static = Static(None, pressed, 40_000 + 40_000 * int(np.sqrt(blocks.count)))

@@ -3,9 +3,10 @@
 from copy import deepcopy
 from typing import Any
 
+import numpy as np
 import pytest
 
-from jointwave.dem import leapfrog
+from jointwave.dem import chunks, leapfrog, parts
 
 SHORT: dict[str, Any] = {
     "pillar__length": 8.0,
@@ -53,9 +54,31 @@ def plain(monkeypatch):
         "flush_denormals": lambda: 0,
         "restore_denormals": lambda old: None,
         "borrowed": lambda values: values,
-        "peek": lambda counters, i: counters[i],
-        "post": lambda counters, i, value: counters.__setitem__(i, value),
     }
     monkeypatch.setattr(leapfrog, "loop_for", in_python(leapfrog.loop_for))
     for key, stand_in in stand_ins.items():
         monkeypatch.setattr(leapfrog, key, stand_in)
+
+
+@pytest.fixture
+def narrow(monkeypatch):
+    """Divide blocks into as many tiles as they allow, so that threads share a few of them."""
+    monkeypatch.setattr(chunks, "LEAST", 1)
+    monkeypatch.setattr(parts, "THIN", 2)
+    monkeypatch.setattr(parts, "FEWEST", 2)
+
+
+@pytest.fixture
+def assert_alike():
+    """Return a function that compares results of different numbers of threads: every bit of what
+    moves and is carried, and the ledger, whose sums have another order."""
+
+    def compare(found, expected):
+        energy = expected.energy.values if "energy" in expected else np.zeros(1)
+        if energy.any():
+            assert np.abs(found.energy.values - energy).max() < 1e-13 * np.abs(energy).max()
+        assert found.drop_vars("energy", errors="ignore").equals(
+            expected.drop_vars("energy", errors="ignore")
+        )
+
+    return compare

@@ -77,11 +77,11 @@ def blocks_of(turned=None, finite=True, ledger=False, dashpots=0.0, held=None, *
     return model, turned.apply(places)
 
 
-def take(model, state, steps, drive=None, samples=None, stride=NEVER, threads=1):
+def take(model, state, steps, drive=None, samples=None, stride=NEVER):
     """Take the steps 1 .. steps, or 0 .. where they have samples."""
     first = 0 if samples else 1
     samples = samples or samples_for(model, 0)
-    march(model, state, samples, stride, (first, first + steps), drive, None, threads)
+    march(model, state, samples, stride, (first, first + steps), drive)
 
 
 def orientation(state):
@@ -245,17 +245,6 @@ def test_the_ledger_closes_to_second_order(law):
     taken = {"dashpots": 2, "held": 5}
     for name in law:
         assert energy[taken[name], -1] > 1e-2 * energy.max()
-
-
-def test_threads_change_no_bit():
-    """Of blocks that slide and turn."""
-    found = []
-    for threads in (1, 2):
-        model, _ = blocks_of(friction=0.3, dashpots=1e-5)
-        state = moving(model)
-        take(model, state, 500, threads=threads)
-        found.append(np.column_stack([state.u, state.v, state.turn]))
-    assert (found[0] == found[1]).all() and np.abs(found[0][:, 3:6]).max() > 1e-3
 
 
 def test_points_that_leave_the_other_face_carry_nothing():
