@@ -49,9 +49,9 @@ class IncidentField(Protocol):
 
 
 def in_components(tensor: np.ndarray) -> np.ndarray:
-    """Return the components of a symmetric tensor [d, d], in the order of a `WaveMotion`."""
-    _, first = np.unique(COMPONENT[len(tensor)], return_index=True)
-    return tensor.ravel()[first]
+    """Return the components of symmetric tensors [..., d, d], in the order of a `WaveMotion`."""
+    _, first = np.unique(COMPONENT[tensor.shape[-1]], return_index=True)
+    return tensor.reshape(*tensor.shape[:-2], -1)[..., first]
 
 
 @dataclass(frozen=True)

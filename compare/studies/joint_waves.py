@@ -21,6 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from jointwave.cases.material.rock import Values, elastic_rock
+from jointwave.cases.partition.joints import attitude
 from jointwave.cases.read import load
 from jointwave.cases.schema.plane import IntactRock
 from jointwave.cases.schema.rock_mass import RockMass
@@ -105,7 +106,7 @@ def amplitudes(scene: RockMass, velocity: np.ndarray) -> list[float]:
     wave, rock = scene.waves[0], elastic_rock(scene.rock)
     omega = 2 * pi / float(wave.period or nan)
     kind: Kind = "P" if wave.kind == "P" else "SV"
-    axes = axes_of(rock, kind, np.array(wave.direction), np.radians(scene.joint_sets[0].dip))
+    axes = axes_of(rock, kind, np.array(wave.direction), attitude(scene.joint_sets[0], 2)[0])
     p, across = axes.slowness, slownesses_across(rock, axes.slowness)
     waves = [int(np.argmax(axes.incident)), 2, 3, 0, 1]  # incident, reflected, transmitted
     modes = (polarisations(rock, p).reshape(4, 2) @ axes.rows)[waves]

@@ -1,7 +1,7 @@
 """A plane pulse among parallel joints, at many places together.
 
-Each layer contains four plane waves (`pulse`). A travelling wave is the same pulse everywhere in
-the layer, only delayed, so its amplitude is inverted once and read at each place by Lagrange's
+Each layer contains plane waves to and fro (`pulse`). A travelling wave is the same pulse everywhere
+in the layer, only delayed, so its amplitude is inverted once and read at each place by Lagrange's
 polynomial through 2 HALF samples. An evanescent one decays with the depth d as e^{i omega q d}: it
 is inverted at the depths of the places or, if there are many, at Chebyshev points, between which it
 is interpolated in d (Trefethen, Approximation Theory and Approximation Practice, 2013). The part
@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from jointwave.cases.incident import WaveMotion
 from jointwave.compare.exact.plane.inversion import FINE, QUICK, ROUGH, STEPS, Accuracy, inverse
 from jointwave.compare.exact.plane.pulse import Pulse, PulseStack, modes_of
 
@@ -34,9 +35,9 @@ TOGETHER = 32  # places at which an evanescent wave is found together
 class LayerWave:
     """One wave of one layer at the places where it is evaluated.
 
-    layer : counted along n. wave : of P+, SV+, P-, SV-. members : the places [k]. delays : of the
-    pulse at them [k], s. depths : those at which an evanescent wave is inverted [d], m, with their
-    weights `shares` [k, d] at the places; None for a travelling wave.
+    layer : counted along n. wave : of P+, SV+, P-, SV- or of SH+, SH-. members : the places [k].
+    delays : of the pulse at them [k], s. depths : those at which an evanescent wave is inverted
+    [d], m, with their weights `shares` [k, d] at the places; None for a travelling wave.
     """
 
     layer: int
@@ -48,8 +49,8 @@ class LayerWave:
 
 
 class Fields(NamedTuple):
-    """Motion at points, arrays [points, components, times], and bounds [points, components] on its
-    root-mean-square error: velocity (x, y) in m/s, stress (xx, yy, xy) in Pa, tension positive."""
+    """Velocity and stress of a `WaveMotion`, and bounds [points, components] on their
+    root-mean-square errors."""
 
     velocity: np.ndarray
     stress: np.ndarray
@@ -77,10 +78,10 @@ def motion(
     points: np.ndarray,
     times: np.ndarray,
     how: Accuracy = QUICK,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return velocity [m, 2, n] (m/s) and stress [m, 3, n] (Pa, tension positive).
+) -> WaveMotion:
+    """Return the motion at points and times.
 
-    pulse : at the origin, zero before 0 s. points : [m, 2], m; one on a joint belongs to the side
+    pulse : at the origin, zero before 0 s. points : [m, d], m; one on a joint belongs to the side
     from which the pulse comes. times : equally spaced, s.
     """
     t, places = np.asarray(times, dtype=float), np.atleast_2d(points) @ stack.axes.rows.T
@@ -104,7 +105,8 @@ def motion(
                     near = one.shares[k : k + TOGETHER] @ rows
                 part = _read(near[k % TOGETHER], offset, stride, len(t))
                 found[place] += mode.real * part.real - mode.imag * part.imag
-    return found[:, :2], float(stack.rocks[0].p_impedance) * found[:, 2:]
+    dim = places.shape[1]
+    return WaveMotion(found[:, :dim], float(stack.rocks[0].p_impedance) * found[:, dim:])
 
 
 def _highest(pulse: Pulse, t: np.ndarray) -> float:
@@ -116,25 +118,26 @@ def _highest(pulse: Pulse, t: np.ndarray) -> float:
 
 
 def _waves_of(stack: PulseStack, places: np.ndarray, highest: float) -> Iterator[LayerWave]:
-    """Yield the waves of all layers that contain places (t, n) [m, 2]."""
+    """Yield the waves of all layers that contain places (t, n, b) [m, d]."""
     axes, depths, evanescent = stack.axes, stack.depths, stack.is_evanescent
-    lead = stack.lead.real
+    lead, kinds = stack.lead.real, len(axes.kinds)
     layers = np.searchsorted(depths, places[:, 1])
     for layer in np.unique(layers):
         members, across = np.flatnonzero(layers == layer), stack.slownesses[layer]
-        x, z = places[members].T
+        x, z = places[members, :2].T
         there = z - depths[max(layer - 1, 0)], depths[min(layer, len(depths) - 1)] - z
-        for wave in range(4):
-            comes = layer > 0 or axes.incident[wave % 2] if wave < 2 else layer < len(depths)
+        for wave in range(2 * kinds):
+            kind, back = wave % kinds, wave // kinds
+            comes = layer < len(depths) if back else layer > 0 or axes.incident[kind]
             if not comes:
                 continue
-            late, way = lead + axes.slowness * x, there[wave // 2]
-            if evanescent and wave % 2 == 0:
+            late, way = lead + axes.slowness * x, there[back]
+            if evanescent and kind == 0:
                 yield LayerWave(
                     int(layer), wave, members, late, *_depths(way, highest * across[0].imag)
                 )
             else:
-                yield LayerWave(int(layer), wave, members, late + across[wave % 2].real * way)
+                yield LayerWave(int(layer), wave, members, late + across[kind].real * way)
 
 
 def _depths(way: np.ndarray, decay: float) -> tuple[np.ndarray, np.ndarray]:

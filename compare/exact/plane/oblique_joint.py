@@ -1,4 +1,4 @@
-"""P and SV waves at one linear-slip joint at any angle between two half-spaces of any rock.
+"""P, SV and SH waves at one linear-slip joint at any angle between half-spaces of any rock.
 
 Traction is continuous, [u_n] = tau_n / K_n and [u_s] = tau_s / K_s (Schoenberg, JASA 68, 1980);
 dashpots take K to K - i omega eta. Axes, polarisations and signs are those of `waves`: waves come
@@ -8,7 +8,8 @@ SV waves along +n in the rock before the joint, and those of the rock behind it 
     n (1 + R) = n' T,   u (1 + R) = (u' + i omega s' / K_s) T,
     s (1 - R) = s' T,   v (1 - R) = (v' + i omega n' / K_n) T,
 
-each equation with K divided by (K - i omega Z) / K. Amplitudes are those of particle velocity.
+each equation with K divided by (K - i omega Z) / K; of SH waves, whose traction s and velocity u
+are across the plane of incidence, those of u and s alone. Amplitudes are of particle velocity.
 Valid for every angle below 90 degrees and every K from 0 (free faces) to inf (welded; Zoeppritz
 1919, Aki & Richards, Quantitative Seismology, 2002, section 5.2.4).
 """
@@ -20,7 +21,7 @@ import numpy as np
 
 from jointwave.cases.material.rock import ElasticRock, Values
 from jointwave.compare.exact.plane.pulse import Axes, Layers
-from jointwave.compare.exact.plane.waves import face, is_evanescent
+from jointwave.compare.exact.plane.waves import KINDS, Kind, face, is_evanescent
 
 
 @dataclass(frozen=True)
@@ -39,13 +40,14 @@ def scattering(
     slowness: Values,
     omega: Values,
     behind: ElasticRock | None = None,
+    kinds: tuple[Kind, ...] = KINDS,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the matrices R and T, complex arrays [..., out, in] in the order P, SV.
+    """Return the matrices R and T, complex arrays [..., out, in] in the order of kinds.
 
     slowness : p along the joint, s/m, below 1/a for travelling P waves and below 1/b for SV.
     behind : the rock beyond the joint (default: the same).
     """
-    here, there = face(rock, slowness), face(behind or rock, slowness)
+    here, there = (face(one, slowness, kinds) for one in (rock, behind or rock))
     (moves_n, yields_n), (moves_s, yields_s) = (_weights(rock, joint, omega, k) for k in (0, 1))
     # Of waves along +n and -n before the joint, and along +n behind it; tractions over Z_p.
     unit = np.asarray(rock.p_impedance)[..., None]
@@ -56,10 +58,10 @@ def scattering(
     u_behind = moves_s * there.shear_velocity + yields_s * there.shear
     v_behind = moves_n * there.normal_velocity + yields_n * there.normal
     rows = *(n, n, n_behind), *(u, u, u_behind), *(s, -s, s_behind), *(v, -v, v_behind)
-    each = np.broadcast_arrays(*rows)
+    each = np.broadcast_arrays(*(rows if kinds == KINDS else rows[3:9]))
     incident, back, on = (np.stack(each[k::3], axis=-2) for k in range(3))
     found = np.linalg.solve(np.concatenate([-back, on], axis=-1), incident)
-    return found[..., :2, :], found[..., 2:, :]
+    return found[..., : len(kinds), :], found[..., len(kinds) :, :]
 
 
 def _weights(
@@ -80,14 +82,12 @@ def layers_at_once(rocks: Sequence[ElasticRock], first: Joint, axes: Axes) -> La
     these rocks: the limit of high frequencies, in which springs do not act. Where P is evanescent
     only the incident wave is real.
     """
-    down, up = np.zeros((2, len(rocks), 2))
+    down, up = np.zeros((2, len(rocks), len(axes.kinds)))
     down[0] = axes.incident
-    if not is_evanescent(rocks[0], axes.slowness):
+    if axes.kinds != KINDS or not is_evanescent(rocks[0], axes.slowness):
         springs = first.normal_stiffness, first.shear_stiffness
         K_n, K_s = (np.where(np.isinf(K), K, 0.0) for K in springs)
         bare = Joint(K_n, K_s, first.normal_viscosity, first.shear_viscosity)
-        acts = bool(bare.normal_stiffness or bare.normal_viscosity)
-        behind = rocks[1] if acts else rocks[0]
-        R, T = scattering(rocks[0], bare, axes.slowness, 1.0, behind)
+        R, T = scattering(rocks[0], bare, axes.slowness, 1.0, rocks[1], axes.kinds)
         up[0], down[1] = (R @ axes.incident).real, (T @ axes.incident).real
     return Layers(down, up)

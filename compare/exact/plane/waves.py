@@ -1,4 +1,4 @@
-"""Plane P and SV waves in isotropic rock in plane strain, incident on a plane face or joint.
+"""Plane P, SV and SH waves in isotropic rock, incident on a plane face or joint.
 
 Factor e^{-i omega t}; stress tension positive. The axes of the face are t along it and n across
 it, p is the slowness along t that all waves share (Aki & Richards, Quantitative Seismology, 2002,
@@ -8,8 +8,9 @@ waves along +n and -n have the polarisations (t, n)
     P+- = (a', +-c),   SV+ = (k, -s),   SV- = (k, s)
 
 so that a wave and its mirror image have the same amplitude. SV+ is its direction of travel rotated
-by a right angle from n to t. Beyond the critical angle c is imaginary, +i |c|: for Re(omega) > 0
-the P wave decays away from the face. For negative frequencies take complex conjugates.
+by a right angle from n to t. SH waves move along b, across t and n. Beyond the critical angle c is
+imaginary, +i |c|: for Re(omega) > 0 the P wave decays away from the face. For negative frequencies
+take complex conjugates.
 """
 
 from typing import Literal, NamedTuple
@@ -18,25 +19,27 @@ import numpy as np
 
 from jointwave.cases.material.rock import ElasticRock, Values
 
-Kind = Literal["P", "SV"]
+Kind = Literal["P", "SV", "SH"]
+#: Kinds of waves that a face turns into each other: in the plane of incidence, and across it.
 KINDS: tuple[Kind, ...] = ("P", "SV")
+ACROSS: tuple[Kind, ...] = ("SH",)
 
 
 class Face(NamedTuple):
-    """A face under unit waves (m/s) along +n: complex arrays [..., 2], P and SV.
+    """A face under unit waves (m/s) along +n: complex arrays [..., kinds].
 
     For waves along -n, `shear` and `normal_velocity` change sign.
     """
 
     normal: np.ndarray  # sigma_nn, Pa
-    shear: np.ndarray  # sigma_tn, Pa
+    shear: np.ndarray  # sigma_tn, of SH sigma_bn, Pa
     normal_velocity: np.ndarray
     shear_velocity: np.ndarray
 
 
 class PlaneMotion(NamedTuple):
     """Motion at m places, arrays [m, components, times], and bounds [m, components] on its error:
-    x, y of displacement (m) and velocity (m/s); xx, yy, xy of stress (Pa, tension positive)."""
+    displacement (m), velocity (m/s) and stress (Pa, tension positive), as of a `WaveMotion`."""
 
     displacement: np.ndarray
     velocity: np.ndarray
@@ -44,6 +47,11 @@ class PlaneMotion(NamedTuple):
     displacement_error: np.ndarray
     velocity_error: np.ndarray
     stress_error: np.ndarray
+
+
+def kinds_with(kind: Kind) -> tuple[Kind, ...]:
+    """Return the kinds of waves that a face turns one into, itself included."""
+    return KINDS if kind in KINDS else ACROSS
 
 
 def speed_of(rock: ElasticRock, kind: Kind) -> Values:
@@ -68,16 +76,23 @@ def is_evanescent(rock: ElasticRock, slowness: float) -> bool:
     return bool(np.abs(rock.p_speed * slowness) > 1)
 
 
-def slownesses_across(rock: ElasticRock, slowness: Values) -> np.ndarray:
-    """Return c/a and k/b (s/m), complex array [..., 2]."""
+def slownesses_across(
+    rock: ElasticRock, slowness: Values, kinds: tuple[Kind, ...] = KINDS
+) -> np.ndarray:
+    """Return c/a of P and k/b of S (s/m), complex array [..., kinds]."""
     c, k = cosines(rock, slowness)
-    return np.stack(np.broadcast_arrays(c / rock.p_speed, k / rock.s_speed), axis=-1)
+    found = np.stack(np.broadcast_arrays(c / rock.p_speed, k / rock.s_speed), axis=-1)
+    return found if kinds == KINDS else found[..., 1:]
 
 
-def face(rock: ElasticRock, slowness: Values) -> Face:
+def face(rock: ElasticRock, slowness: Values, kinds: tuple[Kind, ...] = KINDS) -> Face:
     """Return traction and velocity of unit waves along +n of slowness p (s/m) on a face."""
     c, k = cosines(rock, slowness)
     a, s = rock.p_speed * slowness, rock.s_speed * slowness
+    if kinds == ACROSS:
+        still = 0 * k[..., None]
+        shear = -np.multiply(rock.s_impedance, k)[..., None]
+        return Face(still, shear, still, still + 1)
     double = 1 - 2 * s * s  # cos 2 phi
     pairs = (
         (-rock.p_impedance * double, 2 * rock.s_impedance * s * k),
@@ -96,12 +111,12 @@ def polarisations(rock: ElasticRock, slowness: float) -> np.ndarray:
 
 
 def stress(rock: ElasticRock, slowness: np.ndarray, polarisation: np.ndarray) -> np.ndarray:
-    """Return the stress of unit plane waves (1 m/s) in any axes, Pa, array [..., 2, 2].
+    """Return the stress of unit plane waves (1 m/s) in any axes, Pa, array [..., d, d].
 
-    slowness, polarisation : arrays [..., 2], s/m and 1. The velocity is g f(t - s.x), the stress
+    slowness, polarisation : arrays [..., d], s/m and 1. The velocity is g f(t - s.x), the stress
     -(lambda (s.g) I + mu (s g + g s)) f.
     """
     sg = slowness[..., :, None] * polarisation[..., None, :]
     trace = np.trace(sg, axis1=-2, axis2=-1)[..., None, None]
     sheared = rock.shear_modulus * (sg + np.swapaxes(sg, -2, -1))
-    return -(rock.lame * trace * np.eye(2) + sheared)
+    return -(rock.lame * trace * np.eye(sg.shape[-1]) + sheared)

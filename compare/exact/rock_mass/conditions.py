@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.incident import across, in_components
-from jointwave.cases.partition.joints import attitude, direction_of
+from jointwave.cases.partition.joints import attitude
 from jointwave.cases.partition.regions import strata
 from jointwave.cases.partition.shape import SIDES, shape_of
 from jointwave.cases.schema.joint_set import JointSet
@@ -119,12 +119,6 @@ def normals_of(scene: RockMass) -> list[np.ndarray]:
     """Return unit normals [d] of the joint sets and of the boundaries of regions."""
     planes: list[JointSet | Region] = [*scene.joint_sets, *strata(scene.regions)]
     return [attitude(one, scene.domain.dimension)[0] for one in planes]
-
-
-def directions_of(scene: RockMass) -> list[np.ndarray]:
-    """Return unit vectors along the joint sets and the boundaries of regions, in the plane."""
-    dips = [*(one.dip for one in scene.joint_sets), *(one.dip for one in strata(scene.regions))]
-    return [direction_of(dip) for dip in dips]
 
 
 def along(one: np.ndarray, other: np.ndarray, sine: float = PARALLEL) -> bool:

@@ -11,7 +11,7 @@ about 0.5 s of CPU time, 1 s where P waves are evanescent.
 """
 
 from dataclasses import dataclass
-from itertools import pairwise, product
+from itertools import pairwise
 
 import numpy as np
 
@@ -24,13 +24,13 @@ from jointwave.cases.incident import (
     free_field,
     plane_wave,
 )
-from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.joints import attitude
 from jointwave.cases.partition.regions import strata
-from jointwave.cases.partition.shape import SIDES
+from jointwave.cases.partition.shape import SIDES, shape_of
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.plane import Boundaries
-from jointwave.cases.schema.region import REST
+from jointwave.cases.schema.region import REST, Region
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane import layer_pulses
 from jointwave.compare.exact.rock_mass import normal_incidence
@@ -38,21 +38,12 @@ from jointwave.compare.exact.rock_mass.conditions import (
     ALONG,
     PARALLEL,
     along,
-    directions_of,
     free_face,
+    normals_of,
 )
 from jointwave.compare.exact.rock_mass.effective_medium import medium_field
 from jointwave.compare.exact.rock_mass.normal_incidence import ClosingField
-from jointwave.compare.exact.rock_mass.sections import (
-    Section,
-    against,
-    poisson_at,
-    sections_of,
-)
 from jointwave.compare.exact.rock_mass.stack import JointStack, scatters_otherwise, stack_of
-
-#: Periodic sides, and the direction in which they repeat the rock.
-REPEATS = {"left": np.array([1.0, 0.0]), "bottom": np.array([0.0, 1.0])}
 
 
 @dataclass(frozen=True)
@@ -64,12 +55,15 @@ class StackField:
 
     def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
         stack, places = self.stack, np.asarray(points, dtype=float)
-        total = [np.zeros((len(places), count, len(times))) for count in (2, 3)]
+        dim = places.shape[1]
+        shapes = ((len(places), count, len(times)) for count in (dim, dim * (dim + 1) // 2))
+        total = [np.zeros(shape) for shape in shapes]
         for wave in self.waves if len(places) else ():
             from_wave = places - wave.through
-            found = layer_pulses.motion(wave.pulse.value, stack.met_by(wave), from_wave, times)
-            for sum_, part in zip(total, found, strict=True):
-                sum_ += part
+            for met in stack.met_by(wave):
+                found = layer_pulses.motion(wave.pulse.value, met, from_wave, times)
+                for sum_, part in zip(total, found, strict=True):
+                    sum_ += part
         return WaveMotion(*total)
 
 
@@ -80,11 +74,9 @@ def field_of(scene: RockMass) -> IncidentField:
     """
     if not scene.waves:
         return free_field(scene)
-    if scene.in_space:
-        return _field_in_space(scene)
     if normal_incidence.applies(scene):
         return ClosingField(scene)
-    planes = planes_of(scene)
+    planes = _planes_in_space(scene) if scene.in_space else planes_of(scene)
     waves = tuple(plane_wave(scene, one) for one in scene.waves)
     if planes.joint_sets or planes.regions:
         return StackField(stack_of(planes), waves)
@@ -95,47 +87,31 @@ def field_of(scene: RockMass) -> IncidentField:
     return FreeField(waves)
 
 
-def _field_in_space(scene: RockMass) -> IncidentField:
-    """Return the waves of a scene in space: in parallel planes those of their sections, else of
-    intact rock or of the effective medium of its joints; raises SceneError where joints that are
-    alone, other rock or sides send them back otherwise."""
-    axis, of = SIDES[3][: 6 + (scene.domain.given is not None)], scene.boundaries
-    sections = [] if against(scene) else sections_of(scene)
-    fields, in_planes = [field_of(one.scene) for one in sections], StackField | ClosingField
-    known = bool(sections) and all(isinstance(one, in_planes) for one in fields)
-    faces = [side for one in sections for side in one.faces]
-    back = [one for one in axis if getattr(of, one) in ("free", "fixed") and one not in faces]
-    quiet, why = [one for one in axis if getattr(of, one) == "quiet"], None
+def _planes_in_space(scene: RockMass) -> RockMass:
+    """Return a scene in space if all of its planes are a stack, else without them; raises
+    SceneError where joints that are alone, other rock or sides send waves back otherwise."""
+    sides, of = SIDES[3][: 6 + (scene.domain.given is not None)], scene.boundaries
+    known, face = scatters_otherwise(scene, leaves=False) is None, free_face(scene)
+    normals, shape = normals_of(scene), shape_of(scene.domain)
+    if not known or (face is not None and normals and not along(face.normal, normals[0])):
+        face = None
+
+    def in_stack(side: str) -> bool:
+        outward = (n for _, n in shape.faces_of(side))
+        return face is not None and any(n @ face.normal > 1 - PARALLEL for n in outward)
+
+    back = [x for x in sides if getattr(of, x) in ("free", "fixed") and not in_stack(x)]
+    quiet, why = [x for x in sides if getattr(of, x) == "quiet"], None
     if scene.regions and not known:
         why = "regions"
     elif not known and not all(one.spacing for one in scene.joint_sets):
         why = "joints that are alone"
-    elif any(axis.index(one) // 2 != axis.index(other) // 2 for one in back for other in quiet):
+    elif any(sides.index(one) // 2 != sides.index(other) // 2 for one in back for other in quiet):
         why = f"a side that sends them back, {back[0]}, beside quiet ones"
     if why:
         allowed = f"meet {why}: their field is not known in space yet"
         raise SceneError(scene.where, "waves", len(scene.waves), allowed)
-    if known:
-        return SectionsField(scene, tuple(zip(sections, fields, strict=True)))
-    return medium_field(scene) if scene.joint_sets else free_field(scene)
-
-
-@dataclass(frozen=True)
-class SectionsField:
-    """The waves of a scene in space as the fields of its sections."""
-
-    scene: RockMass
-    fields: tuple[tuple[Section, IncidentField], ...]
-
-    def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
-        places = np.asarray(points, dtype=float)
-        poisson = poisson_at(self.scene, places)
-        total = [np.zeros((len(places), count, len(times))) for count in (3, 6)]
-        for one, field in self.fields:
-            velocity, stress = field(places @ one.axes[:2].T, times)
-            total[0] += one.vectors(velocity)
-            total[1] += one.stresses(stress, poisson)
-        return WaveMotion(*total)
+    return scene if known else scene.model_copy(update={"joint_sets": [], "regions": []})
 
 
 def planes_of(scene: RockMass) -> RockMass:
@@ -152,20 +128,20 @@ def planes_of(scene: RockMass) -> RockMass:
         if (reason := scatters_otherwise(planes, leaves=False)) is not None:
             allowed = f"enter regions in which their field is not known: {reason}"
             raise SceneError(scene.where, "waves", len(scene.waves), allowed)
-        sets = [one for one in sets if along(direction_of(one.dip), directions_of(planes)[0])]
-    dips = [*(one.dip for one in layers), *(one.dip for one in sets)]
-    face, directions = free_face(scene), [direction_of(dip) for dip in dips]
-    runs_along = any(
-        along(np.array(wave.direction), one, ALONG) for wave in scene.waves for one in directions
-    )
+        sets = [one for one in sets if along(attitude(one, 2)[0], normals_of(planes)[0])]
+    face, cuts = free_face(scene), list[JointSet | Region]([*layers, *sets])
+    normals = [attitude(one, 2)[0] for one in cuts]
+    runs_along = any(abs(n @ one.direction) < ALONG for one in scene.waves for n in normals)
     sides = {side: "quiet" for side in scene.boundaries.sides("periodic")}
-    repeats = [axis for side, axis in REPEATS.items() if side in sides]
-    if face is not None and any(abs(face.normal @ one) > PARALLEL for one in directions):
+    repeats = [axis for axis, side in enumerate(("left", "bottom")) if side in sides]
+    if face is not None and not all(along(face.normal, n) for n in normals):
         if layers:
             sides = dict.fromkeys(Boundaries.model_fields, "quiet")
         else:
             sets = []
-    parallel = all(along(*pair) for pair in (*pairwise(directions), *product(directions, repeats)))
+    parallel = all(along(*pair) for pair in pairwise(normals)) and all(
+        abs(n[axis]) < PARALLEL for n in normals for axis in repeats
+    )
     if not layers and (runs_along or not parallel):
         sets = []
     if sets == scene.joint_sets and layers == scene.regions and not sides:

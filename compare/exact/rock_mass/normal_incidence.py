@@ -7,7 +7,7 @@ which waves leave. The stress along the front is nu / (1 - nu) of that across it
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.incident import WaveMotion, plane_wave
+from jointwave.cases.incident import WaveMotion, in_components, plane_wave
 from jointwave.cases.loads import history_of
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.schema.rock_mass import RockMass
@@ -16,8 +16,7 @@ from jointwave.compare.exact.joint.one_joint import around
 from jointwave.compare.exact.linear import bound
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass import stack_waves
-from jointwave.compare.exact.rock_mass.conditions import along, prestress_of
-from jointwave.compare.exact.rock_mass.sections import of_sections
+from jointwave.compare.exact.rock_mass.conditions import along
 from jointwave.compare.exact.rock_mass.stack import JointStack, stack_of
 from jointwave.compare.solvers.record import Answer, Rock, Solver, thin
 
@@ -27,8 +26,6 @@ def applies(scene: RockMass) -> Answer:
     if all(one.maximum_closure is None for one in scene.joint_sets):
         return Answer("no joint has closure: see oblique-joint")
     linear = [one.model_copy(update={"maximum_closure": None}) for one in scene.joint_sets]
-    if scene.in_space:
-        return of_sections(scene, applies)
     answer = stack_waves.holds(scene.model_copy(update={"joint_sets": linear}), one=True)
     if not answer:
         return answer
@@ -56,18 +53,18 @@ class ClosingField:
         stack, rock = stack_of(scene), elastic_rock(scene.rock)
         self.wave = plane_wave(scene, wave)
         self.share = float(rock.lame / (rock.p_impedance * rock.p_speed))
-        n, (xx, yy, xy) = self.wave.direction, prestress_of(scene)
+        n = self.wave.direction
         assert one.normal_stiffness and one.maximum_closure
         self.joint = ClosingJoint(
             y=float(n @ (stack.offsets[0] * stack.normal - self.wave.through)),
             stiffness=one.normal_stiffness,
             maximum=one.maximum_closure,
-            prestress=float(n @ np.array([[xx, xy], [xy, yy]]) @ n),
+            prestress=float(n @ scene.prestress.tensor @ n) if scene.prestress else 0.0,
         )
         self.impedance = float(rock.p_impedance)
         over = 1.0 if wave.quantity == "stress" else self.impedance
         self.load = history_of(wave, wave.amplitude * over)
-        extent = np.hypot(*np.ptp(np.array(scene.domain.corners), axis=0))
+        extent = np.linalg.norm(np.ptp(np.array(scene.domain.corners), axis=0))
         end = scene.time.duration + float(extent / self.wave.speed)
         self.passed = Passed(self.joint, self.impedance, self.load, end, tolerance=tolerance)
 
@@ -79,10 +76,10 @@ class ClosingField:
         return around(joint, self.wave.speed, self.passed, self.load, np.asarray(times), y)
 
     def stress(self, across: np.ndarray) -> np.ndarray:
-        """Return (xx, yy, xy) [m, 3, n], tension positive, from the stress on the fronts [m, n]."""
-        x, y = self.wave.direction
-        share = [self.share + (1 - self.share) * c for c in (x * x, y * y)]
-        return -across[:, None] * np.array([*share, (1 - self.share) * x * y])[:, None]
+        """Return stress [m, components, n], tension positive, from that on the fronts [m, n]."""
+        n, share = self.wave.direction, self.share
+        unit = share * np.eye(len(n)) + (1 - share) * np.outer(n, n)
+        return -across[:, None] * in_components(unit)[:, None]
 
     def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
         (there, _), (back, _) = self.waves(points, times)
@@ -93,7 +90,7 @@ class ClosingField:
 def _motion(
     scene: RockMass, stack: JointStack, places: np.ndarray, times: np.ndarray
 ) -> PlaneMotion:
-    """Return the motion at places [m, 2] (m), displacement relative to the start of the scene."""
+    """Return the motion at places [m, d] (m), displacement relative to the start of the scene."""
     found = []
     for tolerance in TOLERANCES:
         field = ClosingField(scene, tolerance)

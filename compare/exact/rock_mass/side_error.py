@@ -25,8 +25,8 @@ from jointwave.compare.exact.rock_mass.conditions import (
     ALONG,
     along,
     beyond_linear_law,
-    directions_of,
     free_face,
+    normals_of,
     prestress_of,
     reflecting_side,
 )
@@ -88,11 +88,11 @@ def side_error(scene: RockMass) -> SideError | None:
 def _oblique(scene: RockMass) -> list[Face]:
     """Return the faces of quiet sides but of those that all waves meet at normal incidence."""
     shape, found = shape_of(scene.domain), []
-    planes = directions_of(planes_of(scene))
+    planes = normals_of(planes_of(scene))
     for side in scene.boundaries.sides("quiet"):
         for corners, n in shape.faces_of(side):
             straight = all(along(np.array(w.direction), n, ALONG) for w in scene.waves)
-            if not straight or any(abs(n @ one) > ALONG for one in planes):
+            if not straight or not all(along(n, one, ALONG) for one in planes):
                 found.append((corners, n))
     return found
 

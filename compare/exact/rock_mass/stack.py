@@ -14,7 +14,7 @@ from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.incident import PlaneWave, plane_wave
 from jointwave.cases.material.rock import ElasticRock, elastic_rock
 from jointwave.cases.material.rock_mass import set_time_constants
-from jointwave.cases.partition.joints import direction_of
+from jointwave.cases.partition.joints import attitude
 from jointwave.cases.partition.regions import rocks_of, strata
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import TOLERANCE, shape_of
@@ -23,20 +23,19 @@ from jointwave.cases.schema.sources import Wave
 from jointwave.compare.exact.plane import parallel_joints
 from jointwave.compare.exact.plane.oblique_joint import Joint
 from jointwave.compare.exact.plane.pulse import PulseStack
-from jointwave.compare.exact.plane.waves import Kind, slownesses_across
+from jointwave.compare.exact.plane.waves import ACROSS, slownesses_across
 from jointwave.compare.exact.rock_mass.conditions import (
     ALONG,
-    PARALLEL,
     all_parallel,
     along,
     beyond_linear_rock,
-    directions_of,
     free_face,
-    prestress_of,
+    normals_of,
     reflecting_side,
 )
 
 BEGUN = 1e-6  #: of the duration: tolerated time for which a pulse has met a joint at t = 0
+FAINT = 1e-12  #: part of an S wave in or across its plane of incidence that counts as none
 
 
 @dataclass(frozen=True)
@@ -44,44 +43,41 @@ class JointStack:
     """Parallel joints in rock; welded boundaries of its regions are joints of infinite stiffness, a
     free face is one without stiffness.
 
-    rocks : of the layers, along the normal [N + 1]. direction : unit vector along the joints [2];
-    their normal is its left. offsets : of the joints along the normal from the origin, ascending,
-    m, [N]. joints : [N]. blocks : of the domain. has_face : whether one of them is a free face.
+    rocks : of the layers, along the normal [N + 1]. normal : unit vector across the joints [d].
+    offsets : of the joints along the normal from the origin, ascending, m, [N]. joints : [N].
+    blocks : of the domain. has_face : whether one of the joints is a free face.
     """
 
     rocks: list[ElasticRock]
-    direction: np.ndarray
+    normal: np.ndarray
     offsets: np.ndarray
     joints: list[Joint]
     blocks: Blocks
     has_face: bool = False
 
-    @property
-    def normal(self) -> np.ndarray:
-        """The unit vector across the joints [2]."""
-        return np.array([-self.direction[1], self.direction[0]])
-
-    @property
-    def dip(self) -> float:
-        """Angle of the joints from x, anticlockwise, rad."""
-        return float(np.arctan2(self.direction[1], self.direction[0]))
-
-    def met_by(self, wave: PlaneWave) -> PulseStack:
-        """Return the joints in the order in which a wave meets them, from its point `through`."""
-        kind: Kind = "P" if abs(wave.direction @ wave.polarisation) > 0.5 else "SV"
+    def met_by(self, wave: PlaneWave) -> list[PulseStack]:
+        """Return the joints in the order in which a wave meets them, from its point `through`: for
+        an S wave in space both parts, in its plane of incidence and across it."""
+        along_travel = abs(wave.direction @ wave.polarisation) > 0.5
+        kinds = ("P",) if along_travel else ("SV", *ACROSS)[: len(self.normal) - 1]
         offsets = self.offsets - wave.through @ self.normal
-        direction, dip = wave.direction, self.dip
-        return parallel_joints.stack_of(self.rocks, self.joints, kind, direction, dip, offsets)
+        by = self.normal, offsets, wave.polarisation
+        found = (
+            parallel_joints.stack_of(self.rocks, self.joints, kind, wave.direction, *by)
+            for kind in kinds
+        )
+        return [one for one in found if np.abs(one.axes.incident).max() > FAINT]
 
 
 def stack_of(scene: RockMass) -> JointStack:
-    """Return the stack of a scene whose joints, and free face, are parallel: of joints that are not
-    linear, as they are at first."""
+    """Return the stack of a scene whose joints are parallel, with a free face along them: of joints
+    that are not linear, as they are at first."""
     blocks, face = blocks_of_scene(scene), free_face(scene)
-    direction = next(iter(directions_of(scene)), None)
-    if direction is None:
+    normal = next(iter(normals_of(scene)), None)
+    if normal is None:
         assert face is not None
-        direction = np.array([face.normal[1], -face.normal[0]])
+        normal = face.normal
+    face = face if face is not None and along(face.normal, normal) else None
     contacts, etas = blocks.contacts, set_time_constants(scene)
     etas = np.zeros(len(scene.joint_sets)) if etas is None else etas
     laws = [
@@ -89,13 +85,12 @@ def stack_of(scene: RockMass) -> JointStack:
         for K_n, K_s, eta in zip(*stiffnesses(scene), etas, strict=True)
     ]
     laws.append(Joint(np.inf, np.inf))  # NO_SET's
-    normal, region = np.array([-direction[1], direction[0]]), blocks.body.region[contacts.blocks]
-    depths = contacts.ends[:, 0] @ normal
+    depths, region = contacts.centroid @ normal, blocks.body.region[contacts.blocks]
     order = np.argsort(depths)
     met = (contacts.joint_set != NO_SET) | (region[:, 0] != region[:, 1])
     order = order[met[order]]
     apart = np.diff(depths[order], prepend=-np.inf)  # an opening may cut a joint into parts
-    order = order[apart > TOLERANCE * np.ptp(blocks.outlines.corners, axis=0).max()]
+    order = order[apart > TOLERANCE * np.ptp(blocks.body.vertices, axis=0).max()]
     joints = [laws[k] for k in contacts.joint_set[order]]
     below, above = region[order].T
     swap = contacts.normal[order] @ normal < 0
@@ -109,18 +104,16 @@ def stack_of(scene: RockMass) -> JointStack:
         offsets = np.insert(offsets, at, face.offset * along_normal)
         joints.insert(at, Joint(0.0, 0.0))
         rocks.insert(at, rocks[at])
-    return JointStack(rocks, direction, offsets, joints, blocks, face is not None)
+    return JointStack(rocks, normal, offsets, joints, blocks, face is not None)
 
 
 def stiffnesses(scene: RockMass) -> np.ndarray:
     """Return the normal and the shear stiffness of each joint set [2, sets], Pa/m, in the initial
     stress: k (1 + sigma / k d_m)^2 of joints that stiffen as they close."""
-    xx, yy, xy = prestress_of(scene)
     found = []
     for one in scene.joint_sets:
-        x, y = direction_of(one.dip)
-        pressed = max(xx * y * y - 2 * xy * x * y + yy * x * x, 0.0)
-        K = one.normal_stiffness
+        n, K = attitude(one, scene.domain.dimension)[0], one.normal_stiffness
+        pressed = max(float(n @ scene.prestress.tensor @ n), 0.0) if scene.prestress else 0.0
         if K and one.maximum_closure is not None:
             K *= (1 + pressed / (K * one.maximum_closure)) ** 2
         found.append((K, one.shear_stiffness))
@@ -130,19 +123,21 @@ def stiffnesses(scene: RockMass) -> np.ndarray:
 def scatters_otherwise(scene: RockMass, leaves: bool = True) -> str | None:
     """Return why the incident waves and the joints do not form the field of a stack, None if they
     do; other loads and openings add to it. leaves : whether waves must leave through the sides."""
-    directions, face = directions_of(scene), free_face(scene)
-    if directions and face is not None and abs(face.normal @ directions[0]) > PARALLEL:
+    normals, face = normals_of(scene), free_face(scene)
+    if normals and face is not None and not along(face.normal, normals[0]):
         face = None
     outlined = len(strata(scene.regions)) < len(scene.regions)
+    filed = scene.in_space and scene.domain.given is not None
     reasons = [
+        (filed, "the domain is that of a file"),
         (outlined, "a region has an outline"),
-        (not directions and face is None, "there is no joint"),
+        (not normals and face is None, "there is no joint"),
         (not all_parallel(scene), "joints are not parallel"),
     ]
     for i, wave in enumerate(scene.waves):
-        runs_along = any(along(np.array(wave.direction), one, ALONG) for one in directions)
+        runs_along = any(abs(n @ np.array(wave.direction)) < ALONG for n in normals)
         reasons.append((runs_along, f"waves[{i}] travels along the joints"))
-        decays = bool(scene.regions and directions) and _decays(scene, wave)
+        decays = bool(scene.regions and normals) and _decays(scene, wave)
         reasons.append((decays, f"waves[{i}] has an evanescent wave in a region"))
     found = beyond_linear_rock(scene) if leaves else None
     found = found or next((why for there, why in reasons if there), None)
@@ -154,8 +149,9 @@ def scatters_otherwise(scene: RockMass, leaves: bool = True) -> str | None:
 
 def _decays(scene: RockMass, wave: Wave) -> bool:
     """Return whether a wave scattered at parallel boundaries decays away from them."""
-    incident, along = plane_wave(scene, wave), directions_of(scene)[0]
-    slowness = abs(incident.direction @ along) / incident.speed
+    incident, n = plane_wave(scene, wave), normals_of(scene)[0]
+    across = float(incident.direction @ n)
+    slowness = np.linalg.norm(incident.direction - across * n) / incident.speed
     return any(slowness * elastic_rock(one).p_speed >= 1 for one in rocks_of(scene))
 
 
@@ -182,9 +178,10 @@ def first_scattered(stack: JointStack, wave: PlaneWave) -> float:
     which it is generated.
     """
     n = stack.normal if wave.direction @ stack.normal > 0 else -stack.normal
-    t = np.array([-n[1], n[0]])
-    p, q = wave.direction @ t / wave.speed, wave.direction @ n / wave.speed
+    across = float(wave.direction @ n)
+    along = (wave.direction - across * n) / wave.speed
+    p, q = float(np.linalg.norm(along)), across / wave.speed
     least = min(slownesses_across(one, p).real.min() for one in stack.rocks)
-    places = stack.blocks.outlines.corners - wave.through
+    places = stack.blocks.body.vertices - wave.through
     first = ((stack.offsets * (n @ stack.normal)) - wave.through @ n).min()
-    return float((places @ t * p + q * first + least * np.abs(places @ n - first)).min())
+    return float((places @ along + q * first + least * np.abs(places @ n - first)).min())

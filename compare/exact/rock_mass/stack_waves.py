@@ -1,10 +1,11 @@
-"""Scenes of plane P and SV waves at one joint, or parallel ones, at any angle, at their receivers
+"""Scenes of plane P and S waves at one joint, or parallel ones, at any angle, at their receivers
 (`plane.oblique_joint`, `plane.parallel_joints`).
 
 Displacement is the same solution of the pulse's time integral; the opening and the slip of a joint
 are the jumps of displacement across it, and a point on a joint reads the mean of both sides. Where
 P waves are evanescent the motion begins before its cause: its part at t = 0 is not in the scene,
-which begins at rest, and is added to the error bound.
+which begins at rest, and is added to the error bound. In space an S wave is the sum of its parts in
+and across its plane of incidence, SV and SH.
 
 Valid for parallel linear joints, with dashpots or without, in undamped rock with sides through
 which waves leave, and any number of plane waves that meet them after the start (`stack`).
@@ -18,18 +19,18 @@ import xarray as xr
 
 from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.geometry.locate import contact_at, sides_at
-from jointwave.cases.incident import plane_wave
+from jointwave.cases.geometry.measure import frames
+from jointwave.cases.incident import COMPONENT, plane_wave
 from jointwave.cases.partition.shape import TOLERANCE
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.compare.exact.plane.layer_pulses import fields
+from jointwave.compare.exact.plane.layer_pulses import Fields, fields
 from jointwave.compare.exact.plane.waves import PlaneMotion
-from jointwave.compare.exact.rock_mass.conditions import beyond_waves, prestress_of
-from jointwave.compare.exact.rock_mass.sections import (
-    Records,
-    of_sections,
-    sections_of,
-    summed,
+from jointwave.compare.exact.rock_mass.conditions import (
+    PARALLEL,
+    beyond_waves,
+    normals_of,
+    prestress_of,
 )
 from jointwave.compare.exact.rock_mass.stack import JointStack, begun, scatters_otherwise, stack_of
 from jointwave.compare.solvers.record import Answer, Kind, Line, Rock, Solver, thin
@@ -46,17 +47,13 @@ DISTANCES = {
 BESIDE = 1e-13  #: relative to the domain's size: far above round-off, far below any wavelength
 
 
-#: Of (scene, stack, places [m, 2] (m), times (s)).
+#: Of (scene, stack, places [m, d] (m), times (s)).
 Motion = Callable[["RockMass", JointStack, np.ndarray, np.ndarray], PlaneMotion]
 
 
 def holds(scene: RockMass, one: bool) -> Answer:
     """Return whether a scene has plane waves at one joint or, if not `one`, at several."""
-    if reason := beyond_waves(scene):
-        return Answer(reason)
-    if scene.in_space:
-        return of_sections(scene, partial(holds, one=one))
-    if reason := scatters_otherwise(scene):
+    if reason := beyond_waves(scene) or scatters_otherwise(scene):
         return Answer(reason)
     stack = stack_of(scene)
     count = len(stack.joints) - stack.has_face
@@ -73,20 +70,10 @@ def holds(scene: RockMass, one: bool) -> Answer:
 
 def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Dataset:
     """Return the records of a scene's receivers; motion : in place of `motion_at`."""
-    if scene.in_space:
-        sections = sections_of(scene)
-        values, errors = summed(scene, sections, [_records(one.scene, motion) for one in sections])
-    else:
-        values, errors = _records(scene, motion)
-    return rock_mass_dataset(scene, name, sample_times(scene), values, errors=errors)
-
-
-def _records(scene: RockMass, motion: Motion | None) -> Records:
-    """Return the waveforms of the receivers of a scene in the plane, and their errors."""
-    stack, times = stack_of(scene), sample_times(scene)
-    joints, axes = joint_receivers(scene, stack)
+    stack, times, frame = stack_of(scene), sample_times(scene), frame_of(scene)
+    joints = joint_receivers(scene, stack)
     points, on_joint, beyond = point_receivers(scene, stack)
-    beside = _beside(stack) * axes[:, 0]
+    beside = _beside(stack) * frame[0]
     places = [points, beyond, joints - beside, joints + beside]
     found = (motion or motion_at)(scene, stack, np.concatenate(places), times)
     ends = np.cumsum([len(part) for part in places])[:-1]
@@ -95,45 +82,44 @@ def _records(scene: RockMass, motion: Motion | None) -> Records:
     )
     for one, other in zip(at_points, behind, strict=True):
         one[on_joint] = (one[on_joint] + other) / 2
-    pressed = prestress_of(scene)[:, None]
-    jump = axes @ (there.displacement - here.displacement)
-    traction = axes @ on_face(pressed - here.stress, axes[:, 0])
-    off, size = here.displacement_error + there.displacement_error, np.abs(axes)
-    slipped = (size @ off[..., None])[..., 0]
-    pulled = (size @ on_face(here.stress_error[..., None], size[:, 0]))[..., 0]
+    pressed, size = prestress_of(scene)[:, None], np.abs(frame)
+    jump = frame @ (there.displacement - here.displacement)
+    traction = frame @ on_face(pressed - here.stress, frame[0])
+    slipped = (here.displacement_error + there.displacement_error) @ size.T
+    pulled = on_face(here.stress_error[..., None], size[0])[..., 0] @ size.T
     values = {
         "velocity": at_points.velocity.swapaxes(1, 2),
         "displacement": at_points.displacement.swapaxes(1, 2),
         "stress": (pressed - at_points.stress).swapaxes(1, 2),
         "traction": traction.swapaxes(1, 2),
         "gap": jump[:, 0],
-        "slip": jump[:, 1],
+        "slip": jump[:, 1:].swapaxes(1, 2),
     }
     names = "velocity", "displacement", "stress"
     errors = {name: getattr(at_points, f"{name}_error") for name in names}
-    errors |= {"traction": pulled, "gap": slipped[:, 0], "slip": slipped[:, 1]}
-    return values, errors
+    errors |= {"traction": pulled, "gap": slipped[:, 0], "slip": slipped[:, 1:]}
+    if not scene.in_space:  # one slip
+        values["slip"], errors["slip"] = values["slip"][..., 0], errors["slip"][:, 0]
+    return rock_mass_dataset(scene, name, times, values, errors=errors)
 
 
 def motion_at(
     scene: RockMass, stack: JointStack, places: np.ndarray, times: np.ndarray
 ) -> PlaneMotion:
-    """Return the motion of all waves at places [m, 2] (m), relative to the start of the scene."""
-    m, n = len(places), len(times)
-    shapes = (m, 2, n), (m, 2, n), (m, 3, n), (m, 2), (m, 2), (m, 3)
-    total = [np.zeros(shape) for shape in shapes]
+    """Return the motion of all waves at places [m, d] (m), relative to the start of the scene."""
+    m, d, n = *places.shape, len(times)
+    c = d * (d + 1) // 2
+    total = [np.zeros(shape) for shape in ((m, d, n), (m, d, n), (m, c, n), (m, d), (m, d), (m, c))]
     for one in scene.waves if m else ():
         wave = plane_wave(scene, one)
-        met = stack.met_by(wave)
-        by_value, by_integral = (
-            fields(signal, met, places - wave.through, times)
-            for signal in (wave.pulse.value, wave.pulse.impulse)
-        )
         begin = wave.pulse.impulse(-wave.lateness(places))[:, None] * wave.polarisation
-        velocity, stress, v_error, s_error = by_value
+        free, parts = wave.motion(places, times[:1]), []
+        for signal in (wave.pulse.value, wave.pulse.impulse):
+            each = [fields(signal, met, places - wave.through, times) for met in stack.met_by(wave)]
+            parts.append(Fields(*(np.sum(x, axis=0) for x in zip(*each, strict=True))))
+        (velocity, stress, v_error, s_error), by_integral = parts
         moved = by_integral.velocity - begin[..., None]
         early = np.abs(moved[..., 0])
-        free = wave.motion(places, times[:1])
         v_early, s_early = (
             np.abs(x[..., 0] - y[..., 0])
             for x, y in ((velocity, free.velocity), (stress, free.stress))
@@ -147,9 +133,9 @@ def motion_at(
 def point_receivers(
     scene: RockMass, stack: JointStack
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the points of a scene [m, 2], those on a joint or a face moved into the first of their
+    """Return the points of a scene [m, d], those on a joint or a face moved into the first of their
     blocks, which are on a joint [m], and where those are on its other side."""
-    points = np.array(scene.record.points, dtype=float).reshape(-1, 2)
+    points = np.array(scene.record.points, dtype=float).reshape(-1, len(stack.normal))
     if not len(points):
         return points, np.zeros(0, dtype=bool), points
     apart = (points @ stack.normal)[:, None] - stack.offsets
@@ -163,29 +149,35 @@ def point_receivers(
     return np.where(near, here, points), on_joint, there[on_joint]
 
 
-def joint_receivers(scene: RockMass, stack: JointStack) -> tuple[np.ndarray, np.ndarray]:
-    """Return the places on joints [m, 2] (m) nearest to those given by a scene, and the axes there
-    [m, (n, s), 2]: the outward normal of the block with the smaller number, and its left."""
-    asked, contacts = np.array(scene.record.joints).reshape(-1, 2), stack.blocks.contacts
-    chosen = np.zeros(0, dtype=int)
-    if len(asked):
-        chosen = contact_at(stack.blocks, asked, len(scene.joint_sets))
-    (start, end), normal = contacts.ends[chosen].swapaxes(0, 1), contacts.normal[chosen]
-    way = end - start
-    share = ((asked - start) * way).sum(axis=1) / contacts.area[chosen] ** 2
-    axes = np.stack([normal, np.stack([-normal[:, 1], normal[:, 0]], axis=1)], axis=1)
-    return start + np.clip(share, 0, 1)[:, None] * way, axes
+def joint_receivers(scene: RockMass, stack: JointStack) -> np.ndarray:
+    """Return the places given by a scene [m, d] (m), each in the plane of the joint next to it."""
+    asked = np.array(scene.record.joints, dtype=float).reshape(-1, len(stack.normal))
+    if not len(asked):
+        return asked
+    chosen = contact_at(stack.blocks, asked, len(scene.joint_sets))
+    away = stack.blocks.contacts.centroid[chosen] - asked
+    return asked + (away @ stack.normal)[:, None] * stack.normal
+
+
+def frame_of(scene: RockMass) -> np.ndarray:
+    """Return the axes of the joints of a scene [d, d] as its records have them: the normal, and in
+    the plane its left, in space the strike and the line of dip of the one that points upwards, or
+    else to the north or the east."""
+    n = next(iter(normals_of(scene)), np.eye(scene.domain.dimension)[-1])
+    if not scene.in_space:
+        return np.array([n, [-n[1], n[0]]])
+    up = n * np.sign(n[np.flatnonzero(np.abs(n) > PARALLEL)[-1]])
+    return np.concatenate([up[None], *frames(up[None])])
 
 
 def on_face(stress: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Return the tractions [m, 2, n] of stresses [m, 3, n] on faces of unit normals [m, 2]."""
-    (xx, yy, xy), (n_x, n_y) = np.moveaxis(stress, 1, 0), normal.T[..., None]
-    return np.stack([xx * n_x + xy * n_y, xy * n_x + yy * n_y], axis=1)
+    """Return the tractions [m, d, n] of stresses [m, components, n] on a face of a unit normal."""
+    return np.einsum("mijn,j->min", stress[:, COMPONENT[len(normal)]], normal)
 
 
 def _beside(stack: JointStack) -> float:
     """Return the distance of a place beside a joint from it, m."""
-    return BESIDE * float(np.hypot(*np.ptp(stack.blocks.outlines.corners, axis=0)))
+    return BESIDE * float(np.linalg.norm(np.ptp(stack.blocks.body.vertices, axis=0)))
 
 
 def _solver(name: str, label: str, line: Line, one: bool) -> Solver:

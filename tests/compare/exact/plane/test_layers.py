@@ -124,7 +124,7 @@ def test_straight_on_they_are_a_bar_of_segments(kind):
     bar = Bar(40.0, tuple(parts), *joint, End(z[0]), End(z[1]))
     places = np.array([4.0, 20.0, 33.0])
     exact = transfer(bar, -1j * omega, places)[1] * 2 * z[0]
-    stack = parallel_joints.stack_of(rocks, joints, kind, np.array([0.0, 1.0]), 0.0, offsets)
+    stack = parallel_joints.stack_of(rocks, joints, kind, *[np.array([0.0, 1.0])] * 2, offsets)
     down, up = stack.layers(omega)
     k, lead = ["P", "SV"].index(kind), np.exp(1j * omega * stack.lead)
     found = []
@@ -140,7 +140,7 @@ def test_straight_on_they_are_a_bar_of_segments(kind):
 def test_amplitudes_in_layers_repeat_to_the_last_bit(directed):
     """Wherever in memory numpy puts what it multiplies: other arrays come and go in between."""
     rocks, joints, offsets = [SLAB, HARD, SOFT], [WELDED, Joint(8e9, 3e9)], [0.0, 6.0]
-    stack = parallel_joints.stack_of(rocks, joints, "P", directed(150), 0.3, offsets)
+    stack = parallel_joints.stack_of(rocks, joints, "P", directed(150), directed(-20), offsets)
     omega = np.linspace(1.0, 1e5, 5684) + 30j
     expected, random, others = stack.layers(omega), np.random.default_rng(1), []
     for _ in range(60):

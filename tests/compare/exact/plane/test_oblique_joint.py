@@ -55,6 +55,21 @@ def test_the_boundary_conditions_agree(referee, kind, damped):
         np.testing.assert_allclose(found[:, i], expected, rtol=0, atol=2e-11)
 
 
+@pytest.mark.parametrize("degrees", [0, 20, 45, 80])
+def test_sh_in_closed_form(degrees):
+    """T = 1 / (1 - i x), x = omega Z_s cos(phi) / 2 K_s, R = 1 - T: |T| = 1 / sqrt(1 + x^2)."""
+    rock, phi = ElasticRock(2600.0, 5000.0, 2900.0), np.radians(degrees)
+    omega, K, eta = np.array([10.0, 500.0, 4e3]), 3e9, 2e6
+    for law in (K, K - 1j * omega * eta):
+        found = coefficients("SH", phi, omega, rock, Joint(1e9, K, 1e5, eta if law is not K else 0))
+        x = omega * rock.s_impedance * np.cos(phi) / (2 * law)
+        np.testing.assert_allclose(found[1], 1 / (1 - 1j * x), rtol=1e-13)
+        np.testing.assert_allclose(found[0], 1 - found[1], rtol=0, atol=1e-13)
+        if law is K:
+            np.testing.assert_allclose(np.abs(found[1]), (1 + x**2) ** -0.5, rtol=1e-13)
+            np.testing.assert_allclose((np.abs(found) ** 2).sum(axis=0), 1.0, rtol=1e-13)
+
+
 @KINDS
 def test_energy_flux_sums_to_one(kind):
     """At round-off, evanescent P waves included; a dashpot takes a part."""

@@ -38,6 +38,19 @@ def test_normal_incidence_is_the_closed_form(rock, joint, kind, count, spacing):
     assert abs(own) == pytest.approx(expected, rel=1e-11)
 
 
+@pytest.mark.parametrize("degrees", [0, 30, 70])
+@pytest.mark.parametrize("count", [1, 2, 5, 40])
+def test_sh_is_the_bar_of_its_slowness_across(rock, joint, count, degrees):
+    """|T| by Chebyshev polynomials at kappa = 1 / cos(phi), spacings over the wavelength across."""
+    cos, apart = np.cos(np.radians(degrees)), 0.1 * rock.s_speed / 100
+    found = coefficients(
+        "SH", np.radians(degrees), OMEGA, rock, [joint] * count, [apart] * (count - 1)
+    )
+    expected = normal_incidence.transmission(count, 1 / cos, 0.1 * cos)
+    assert abs(found[1]) == pytest.approx(expected, rel=1e-11)
+    assert np.sum(np.abs(found) ** 2) == pytest.approx(1.0, abs=1e-11)
+
+
 @KINDS
 @pytest.mark.parametrize("count", [1, 2, 3, 6])
 def test_all_boundary_conditions_at_once_agree(referee, kind, count):

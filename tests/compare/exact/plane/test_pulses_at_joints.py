@@ -31,7 +31,8 @@ DIP = 0.3
 
 def at_joints(rock, joints, wave, pulse, dip, offsets, points, times):
     """Return the fields of a pulse at the origin; wave : its kind and direction."""
-    stack = parallel_joints.stack_of([rock] * (len(joints) + 1), joints, *wave, dip, offsets)
+    n = turned(dip)[1]
+    stack = parallel_joints.stack_of([rock] * (len(joints) + 1), joints, *wave, n, offsets)
     return fields(pulse, stack, np.asarray(points), times)
 
 

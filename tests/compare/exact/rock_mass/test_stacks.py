@@ -250,7 +250,7 @@ def test_unlike_sets_and_scattered_spacings_are_the_formula(rock_mass, joint, wa
         laws,
         "P",
         np.array([0.28, 0.96]),
-        np.radians(10),
+        np.array([-s, c]),
         offsets,
     )
     points = np.array(scene.record.points)

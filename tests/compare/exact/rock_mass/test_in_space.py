@@ -1,4 +1,4 @@
-"""Plane waves at parallel joints in space, as waves in the plane of their travel."""
+"""Plane waves at parallel joints in space: those of the plane, turned, and SH waves."""
 
 from math import atan2, degrees
 
@@ -13,7 +13,6 @@ TO_RIGHT, UP = np.array([-0.6, -0.8, 0.0]), np.array([0.0, 0.0, 1.0])  # x and y
 CENTRE = np.array([30.0, 30.0, 15.0])  # of the plane's [20, 15]
 QUIET = dict.fromkeys(("left", "right", "front", "back", "bottom", "top"), "quiet")
 NORTH = {"dip": 0.0, "through": [0.0, 0.0, 15.0]}
-ALONG = {"polarisation": [0.8, -0.6, 0.0]}  # across the plane
 
 
 def placed(place):
@@ -69,11 +68,17 @@ def test_waves_and_joint_of_a_vertical_plane_are_those_of_the_plane(in_space, wa
     assert np.allclose(slip, abs(flat.slip.values), rtol=0, atol=1e-7 * slip.max())
 
 
-def test_the_joint_obeys_its_law_in_its_own_frame(in_space, wave):
+@pytest.mark.parametrize(
+    "polarisation", [None, [0.0, 0.0, 1.0], [0.8, -0.6, 0.0], [0.3, 0.5, -0.2]]
+)
+def test_the_joint_obeys_its_law_in_its_own_frame(in_space, wave, polarisation):
     """Traction is minus the stiffness times the jump, across and along strike and dip, whatever the
-    two planes in which the waves travel."""
+    two planes in which the waves travel, and however S waves move rock."""
     _, scene = in_space([wave(direction=[0.28, 0.96], through=[20.0, -25.0])])
-    other = scene.waves[0].model_copy(update={"direction": [0.352, 0.0, 0.936]})
+    other = {"direction": [0.352, 0.0, 0.936]}
+    if polarisation:
+        other |= {"kind": "S", "polarisation": polarisation}
+    other = scene.waves[0].model_copy(update=other)
     scene = scene.model_copy(update={"waves": [*scene.waves, other]})
     found = solve("oblique-joint", scene)
     jump = np.concatenate([found.gap.values[..., None], found.slip.values], axis=2)
@@ -83,27 +88,66 @@ def test_the_joint_obeys_its_law_in_its_own_frame(in_space, wave):
     assert abs(expected).max(axis=(0, 1)).min() > 0.01 * size
 
 
-def test_the_field_on_sides_is_that_of_the_solution(in_space, wave):
-    waves = [wave(direction=[0.28, 0.96], through=[20.0, -25.0])]
-    _, scene = in_space(waves)
+@pytest.mark.parametrize("degrees", [0.0, 20.0, 50.0])
+@pytest.mark.parametrize("azimuth", [0.0, 65.0])
+def test_sh_in_closed_form(rock_mass, joint, wave, degrees, azimuth):
+    """A sine of the period T passes a horizontal joint as s, tau s' + s = v_I of
+    tau = Z_s cos(phi) / 2 K_s; v_I - s comes back. It moves rock along b alone, and stress along
+    the joint, sigma_xb, is that of the front, Z_s sin(phi) v."""
+    phi, turn, T = np.radians(degrees), np.radians(azimuth), 0.005
+    t, up = np.array([np.sin(turn), np.cos(turn), 0.0]), np.array([0.0, 0.0, 1.0])
+    n, b = np.sin(phi) * t + np.cos(phi) * up, np.cross(t, up)
+    sh = wave(kind="S", shape="sine", direction=[*n], polarisation=[*b], through=[10.0, 10.0, -5.0])
+    z = np.array([8.0, 22.0])
+    record = {"points": [[9.0, 7.0, 8.0], [9.0, 7.0, 22.0]], "joints": []}
+    scene = rock_mass(
+        domain={"size": [20.0, 20.0, 30.0]},
+        joint_sets=[joint(**NORTH)],
+        waves=[sh],
+        boundaries=QUIET,
+        record=record,
+    )
+    found = solve("oblique-joint", scene)
+    Z, c, w = 2500 * 8e6**0.5, 8e6**0.5, 2 * np.pi / T
+    tau = Z * np.cos(phi) / (2 * 4e9)
+
+    def came(s):
+        return np.where((s > 0) & (s < T), np.sin(w * s), 0.0)
+
+    def passed(s):
+        x = np.clip(s, 0, T)
+        y = np.sin(w * x) - w * tau * (np.cos(w * x) - np.exp(-x / tau))
+        return y * np.exp(-np.maximum(s - T, 0) / tau) / (1 + (w * tau) ** 2)
+
+    along = (np.array([[9.0, 7.0], [9.0, 7.0]]) - 10) @ t[:2] * np.sin(phi) / c
+    there, back = (along + (x + 5) * np.cos(phi) / c for x in (z, 2 * 15.0 - z))
+    times = found.time.values
+    expected = [came(times - there[0]) + came(times - back[0]) - passed(times - back[0])]
+    expected = 1e6 / Z * np.array([*expected, passed(times - there[1])])
+    moved = found.velocity.values
+    bound = found.velocity_error.values @ np.abs(b)
+    assert (np.sqrt(np.mean((moved @ b - expected) ** 2, axis=1)) <= bound + 1e-9).all()
+    assert abs(moved - (moved @ b)[..., None] * b).max() < 1e-9 and abs(expected).max() > 0.05
+    pressed = np.einsum("pnij,i,j->pn", tensors(found.stress.values), t, b)
+    assert np.allclose(pressed, Z * np.sin(phi) * expected, rtol=0, atol=2e3)
+
+
+@pytest.mark.parametrize("changes", [{}, {"kind": "S", "polarisation": [0.5, -0.6, 0.3]}])
+def test_the_field_on_sides_is_that_of_the_solution(in_space, wave, changes):
+    _, scene = in_space([wave(direction=[0.28, 0.96], through=[20.0, -25.0])])
+    one = scene.waves[0].model_copy(update=changes)
+    scene = scene.model_copy(update={"waves": [one]})
     exact = solve("oblique-joint", scene)
     velocity, stress = field_of(scene)(np.array(scene.record.points), exact.time.values)
     assert abs(velocity.swapaxes(1, 2) - exact.velocity.values).max() < 1e-8
     assert abs(stress.swapaxes(1, 2) + exact.stress.values).max() < 1e-8 * 1e6 * 10
 
 
-@pytest.mark.parametrize(
-    ("changes", "reason"),
-    [
-        ({"kind": "S", **ALONG}, "moves rock along the joints, across its plane of incidence"),
-        ({"direction": [0.8, -0.6, 0.0]}, "travels along the joints"),
-    ],
-)
-def test_other_waves_have_no_solution(in_space, wave, changes, reason):
+def test_waves_along_the_joints_have_no_solution(in_space, wave):
     _, scene = in_space([wave(direction=[0.28, 0.96], through=[20.0, -25.0])])
-    one = scene.waves[0].model_copy(update=changes)
+    one = scene.waves[0].model_copy(update={"direction": [0.8, -0.6, 0.0]})
     answer = applies("oblique-joint", scene.model_copy(update={"waves": [one]}))
-    assert answer.reason == f"waves[0] {reason}"
+    assert answer.reason == "waves[0] travels along the joints"
 
 
 @pytest.mark.parametrize("kind", ["P", "S"])
