@@ -100,6 +100,12 @@ class Complex:
         """Which facets lie between two cells, bool array [f]."""
         return (self.sides != OUTSIDE).all(axis=1)
 
+    @property
+    def in_rock(self) -> np.ndarray:
+        """Which facets lie between two cells of one region, bool array [f]."""
+        one, other = self.region[self.sides].T
+        return self.inner & (one == other)
+
     def halves(self, chosen: np.ndarray | slice = np.s_[:]) -> Halves:
         """Return the facets, or those that are chosen, once for each of their cells."""
         number = np.arange(len(self.sides))[chosen]
@@ -144,19 +150,30 @@ class Complex:
         with np.errstate(invalid="ignore"):
             return np.stack(sums, axis=1) / np.bincount(owner, minlength=number)[:, None]
 
-    def origins(self, half: Halves) -> np.ndarray:
-        """Return a vertex of the facet of each half [h, d], m."""
+    def extents(self, half: Halves, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the least and the largest value of each cell's vertices [count, ...], infinite of
+        one that has no half; x : of all vertices [v, ...]."""
+        cell, vertex = self.corners(half).T
+        begins = np.flatnonzero(np.diff(cell, prepend=-1))
+        low, high = (np.full((self.count, *x.shape[1:]), one) for one in (np.inf, -np.inf))
+        if len(begins):
+            low[cell[begins]] = np.minimum.reduceat(x[vertex], begins)
+            high[cell[begins]] = np.maximum.reduceat(x[vertex], begins)
+        return low, high
+
+    def places(self, half: Halves) -> np.ndarray:
+        """Return the distance of the plane of each half from the origin [h], m, along its normal
+        out of the cell."""
         first = half.facet
         for bound in reversed(self.bounds):
             first = bound[np.searchsorted(bound[:, 0], first), 1]
-        return self.vertices[first]
+        return (self.vertices[first] * half.outward).sum(axis=1)
 
     def depths(self, point: np.ndarray) -> np.ndarray:
         """Return how deep a point [d] lies in each cell [count], m; negative outside of it, and
         infinitely so of a cell that is not there."""
         half, depth = self.halves(), np.full(self.count, np.inf)
-        inward = ((self.origins(half) - point) * half.outward).sum(axis=1)
-        np.minimum.at(depth, half.cell, inward)
+        np.minimum.at(depth, half.cell, self.places(half) - half.outward @ point)
         return np.where(np.isinf(depth), -np.inf, depth)
 
     def removed(self, cells: np.ndarray, side: int) -> Complex:

@@ -71,12 +71,12 @@ class Planes:
         return 2 * at + near
 
 
-def one_plane(normal: np.ndarray, through: np.ndarray, cells: np.ndarray) -> Planes:
-    """Return a plane through a point that cuts some cells (bool array [cells]), of no set."""
+def one_plane(normal: np.ndarray, place: float, cells: np.ndarray) -> Planes:
+    """Return a plane that cuts some cells (bool array [cells]), of no set."""
     return Planes(
         normal=normal,
         family=np.where(cells, 0, -1),
-        places=np.array([through @ normal]),
+        places=np.array([place]),
         held=np.zeros((1, 2), np.int64),
         base=np.zeros(1, np.int64),
         joint_set=NO_SET,

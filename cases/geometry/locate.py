@@ -17,7 +17,7 @@ def tolerance_of(blocks: Blocks) -> float:
 def blocks_at(blocks: Blocks, points: np.ndarray) -> list[np.ndarray]:
     """Return the blocks that each point (float array [m, d], m) lies in or on, ascending."""
     half, beyond = blocks.body.halves(), tolerance_of(blocks)
-    reach = (blocks.body.origins(half) * half.outward).sum(axis=1) + beyond
+    reach = blocks.body.places(half) + beyond
     found = []
     for point in points:
         inside = np.ones(blocks.count, bool)

@@ -217,14 +217,11 @@ def frames(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def widths(body: Complex, half: Halves) -> np.ndarray:
     """Return the least width of each cell [count], m: over its facets, the distance of the vertex
     that is farthest inwards; infinite of a cell without facets."""
-    corners = body.corners(half)
-    first = np.searchsorted(corners[:, 0], np.arange(body.count + 1))
-    number = np.diff(first)[half.cell]
-    which = np.repeat(np.arange(len(number)), number)
-    at = np.arange(len(which)) - np.repeat(np.cumsum(number) - number, number)
-    x = body.vertices[corners[first[half.cell][which] + at, 1]]
-    depth = ((body.origins(half)[which] - x) * half.outward[which]).sum(axis=1)
-    deepest = np.maximum.reduceat(depth, np.cumsum(number) - number)
+    number = np.arange(len(half.cell))
+    pairs, which = composed(np.stack([number, half.cell], axis=1), body.corners(half))
+    depth = body.places(half)[which]
+    depth -= (body.vertices[pairs[:, 1]] * half.outward[which]).sum(axis=1)
+    deepest = np.maximum.reduceat(depth, np.flatnonzero(np.diff(which, prepend=-1)))
     found = np.full(body.count, np.inf)
     np.minimum.at(found, half.cell, deepest)
     return found

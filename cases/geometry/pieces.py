@@ -1,139 +1,126 @@
-"""Convex pieces that make a convex one, and pieces that are joined as long as they do."""
+"""Cells that make a convex one with a neighbour, and are joined to it."""
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.geometry.cell_complex import OUTSIDE, Complex
+from jointwave.cases.geometry.cell_complex import Complex
 from jointwave.cases.geometry.measure import cell_moments, facet_moments
+from jointwave.cases.geometry.relations import groups
+
+
+class Contact(NamedTuple):
+    """What two cells share: its area, m^(d-1), its normal [d] out of the first, and whether a joint
+    lies there that is kept where another contact will do."""
+
+    area: float
+    normal: np.ndarray
+    joint: bool
 
 
 class Piece(NamedTuple):
-    """A convex piece: vertices [n, d], m; outward normals [f, d] and distances [f] (m) from the
-    origin of the planes that bound it; volume, m^d, and surface, m^(d-1)."""
+    """A convex cell: its vertices [n, d], m; outward normals [f, d] and distances [f] (m) from the
+    origin of the planes that bound it; its volume over its surface, m; and, by their numbers, the
+    cells beside it that it may be joined to."""
 
     vertices: np.ndarray
     normals: np.ndarray
     places: np.ndarray
-    volume: float
-    surface: float
+    thickness: float
+    beside: dict[int, Contact]
+
+    def near(self) -> list[int]:
+        """Return the cells beside it, that across the largest face first, but those beyond joints
+        that are kept last."""
+        return sorted(self.beside, key=lambda k: (self.beside[k].joint, -self.beside[k].area, k))
 
     def without(self, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the normals and places of the planes but the one with a given normal."""
+        """Return the normals and places of the planes but those with a given normal."""
         kept = (self.normals != normal).any(axis=1)
         return self.normals[kept], self.places[kept]
 
 
-def fits(one: Piece, other: Piece, normal: np.ndarray, tolerance: float) -> bool:
-    """Return whether two pieces that touch at a plane make a convex one: each lies within the
-    other's other planes. normal : of the plane, out of the first."""
-    for piece, beyond, out in ((one, other, normal), (other, one, -normal)):
-        normals, places = piece.without(out)
-        if (beyond.vertices @ normals.T > places + tolerance).any():
-            return False
-    return True
+def pieces_of(
+    body: Complex, cells: np.ndarray, across: np.ndarray, kept: int = 0
+) -> dict[int, Piece]:
+    """Return some cells (bool array [count]) by their numbers.
 
-
-def united(one: Piece, other: Piece, normal: np.ndarray, area: float) -> Piece:
-    """Return two pieces that fit as one; normal, area : of the plane between them."""
-    (normals, places), (others, further) = one.without(normal), other.without(-normal)
-    return Piece(
-        np.concatenate([one.vertices, other.vertices]),
-        np.concatenate([normals, others]),
-        np.concatenate([places, further]),
-        one.volume + other.volume,
-        one.surface + other.surface - 2 * area,
-    )
-
-
-class Contact(NamedTuple):
-    """What two cells share: its area, m^(d-1), and its normal [d], out of the first."""
-
-    area: float
-    normal: np.ndarray
-
-
-Beside = dict[int, dict[int, Contact]]
-
-
-def pieces_of(body: Complex, cells: np.ndarray) -> tuple[dict[int, Piece], Beside]:
-    """Return some cells (bool array [count]) as pieces by their numbers, and the cells beside each
-    with what they share."""
-    half = body.beside(cells)
-    moments = facet_moments(body, half.facet)
-    area = moments.size
-    place = (body.origins(half) * half.outward).sum(axis=1)
-    volume = cell_moments(body, half, moments).size
-    corners = body.corners(half)
-    first = np.searchsorted(corners[:, 0], np.arange(body.count + 1))
-    found: dict[int, Piece] = {}
-    beside: Beside = {int(cell): {} for cell in np.flatnonzero(cells)}
-    order = np.argsort(half.cell, kind="stable")
-    for own in np.split(order, np.flatnonzero(np.diff(half.cell[order])) + 1):
-        cell = int(half.cell[own[0]])
-        x = body.vertices[corners[first[cell] : first[cell + 1], 1]]
-        found[cell] = Piece(
-            x, half.outward[own], place[own], float(volume[cell]), float(area[own].sum())
-        )
-        for k in own[half.across[own] != OUTSIDE]:
-            other = int(half.across[k])
-            before = beside[cell].get(other)
-            shared = float(area[k]) + (before.area if before else 0.0)
-            beside[cell][other] = Contact(shared, half.outward[k])
-    return found, beside
-
-
-class Joiner:
-    """Pieces that touch each other, joined if the result is convex.
-
-    pieces : by their cells. beside : of each, the pieces that it may be joined to.
+    across : of which facets the cells may be joined, bool array [f]. kept : joint sets, the first
+    ones, that are kept where that is possible.
     """
+    half, found = body.beside(cells), dict[int, Piece]()
+    moments, place, corners = facet_moments(body, half.facet), body.places(half), body.corners(half)
+    area, volume = moments.size, cell_moments(body, half, moments).size
+    joint = (body.joint_set >= 0) & (body.joint_set < kept)
+    first = np.searchsorted(corners[:, 0], np.arange(body.count + 1))
+    for own in groups(half.cell):
+        cell, beside = int(half.cell[own[0]]), dict[int, Contact]()
+        for k in own[across[half.facet[own]]]:
+            shared = Contact(float(area[k]), half.outward[k], bool(joint[half.facet[k]]))
+            _add(beside, int(half.across[k]), shared)
+        x = body.vertices[corners[first[cell] : first[cell + 1], 1]]
+        thickness = float(volume[cell] / area[own].sum())
+        found[cell] = Piece(x, half.outward[own], place[own], thickness, beside)
+    return found
 
-    def __init__(self, pieces: dict[int, Piece], beside: Beside, tolerance: float) -> None:
-        self.pieces, self.beside, self.tolerance = pieces, beside, tolerance
-        self.root = {cell: cell for cell in pieces}
 
-    def joined(self, count: int) -> np.ndarray:
-        """Join pieces, the thinnest first, each across the largest face that can be; return the
-        cell that each of `count` cells has become a part of."""
-        while any([self._join(cell) for cell in sorted(self.pieces, key=self._thinness)]):
-            pass
-        root = np.arange(count)
-        for cell in self.root:
-            root[cell] = self._root_of(cell)
-        return root
+def _add(beside: dict[int, Contact], other: int, more: Contact) -> None:
+    area, _, joint = beside.get(other, (0.0, None, False))
+    beside[other] = Contact(area + more.area, more.normal, joint or more.joint)
 
-    def _thinness(self, cell: int) -> tuple[float, int]:
-        return self.pieces[cell].volume / self.pieces[cell].surface, cell
 
-    def _join(self, cell: int) -> bool:
-        """Join a piece to a neighbour and return whether there is one that it fits."""
-        if cell not in self.pieces:
-            return False
-        near = self.beside[cell]
-        for other in sorted(near, key=lambda piece: (-near[piece].area, piece)):
-            if fits(self.pieces[cell], self.pieces[other], near[other].normal, self.tolerance):
-                self._absorb(cell, other)
-                return True
-        return False
+def fitting(
+    pieces: dict[int, Piece], cell: int, near: Iterable[int], tolerance: float
+) -> int | None:
+    """Return the first of some cells beside another that make a convex one with it, each within the
+    other's planes but the one between them; None where there is none."""
+    one = pieces[cell]
+    for k in near:
+        other, normal = pieces[k], one.beside[k].normal
+        for piece, (normals, places) in (
+            (other, one.without(normal)),
+            (one, other.without(-normal)),
+        ):
+            if (piece.vertices @ normals.T > places + tolerance).any():
+                break
+        else:
+            return k
+    return None
 
-    def _absorb(self, one: int, other: int) -> None:
-        shared = self.beside[one].pop(other)
-        piece = self.pieces.pop(other)
-        self.pieces[one] = united(self.pieces[one], piece, shared.normal, shared.area)
-        self.root[other] = one
-        for third, contact in self.beside.pop(other).items():
-            if third != one:
-                del self.beside[third][other]
-                before = self.beside[one].get(third)
-                area = contact.area + (before.area if before else 0.0)
-                self.beside[one][third] = Contact(area, contact.normal)
-                self.beside[third][one] = Contact(area, -contact.normal)
 
-    def _root_of(self, cell: int) -> int:
-        while self.root[cell] != cell:
-            cell = self.root[cell]
-        return cell
+def joined(
+    body: Complex, pieces: dict[int, Piece], order: Iterable[int], tolerance: float
+) -> tuple[Complex | None, list[int]]:
+    """Return a complex with some cells, in order, joined to the first one beside them that they
+    fit; None where none fits any. And the cells that fit none. Changes the pieces."""
+    root, stuck, count = np.arange(body.count), list[int](), len(pieces)
+    for cell in order:
+        if cell not in pieces:
+            continue
+        other = fitting(pieces, cell, pieces[cell].near(), tolerance)
+        if other is None:
+            stuck.append(cell)
+        else:
+            root[other] = cell
+            _unite(pieces, cell, other)
+    while (root[root] != root).any():
+        root = root[root]
+    return body.joined(root) if len(pieces) < count else None, stuck
+
+
+def _unite(pieces: dict[int, Piece], cell: int, gone: int) -> None:
+    """Make a piece one with another, which it fits."""
+    one, other = pieces[cell], pieces.pop(gone)
+    normal = one.beside.pop(gone).normal
+    planes = zip(one.without(normal), other.without(-normal), strict=True)
+    vertices = np.concatenate([one.vertices, other.vertices])
+    pieces[cell] = Piece(vertices, *map(np.concatenate, planes), one.thickness, one.beside)
+    for third, contact in other.beside.items():
+        if third != cell:
+            _add(one.beside, third, contact)
+        if third in pieces and third != cell:
+            _add(pieces[third].beside, cell, pieces[third].beside.pop(gone))
 
 
 def clipped(corners: np.ndarray, s: np.ndarray) -> np.ndarray:

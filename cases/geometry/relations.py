@@ -14,6 +14,12 @@ def ranges(first: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return np.arange(len(which)) + (first - np.cumsum(number) + number)[which], which
 
 
+def groups(x: np.ndarray) -> list[np.ndarray]:
+    """Return the places of each value in an array, of values that ascend."""
+    order = np.argsort(x, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(x[order])) + 1) if len(x) else []
+
+
 def composed(one: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the pairs (x, z) of all (x, y) of one relation and (y, z) of another, repeated where
     they have several y; and the row of the first relation that each comes from."""

@@ -1,5 +1,6 @@
 """Slivers: blocks too thin or too pointed, joined to a neighbour or refused."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -7,7 +8,7 @@ import numpy as np
 from jointwave.cases.geometry.cell_complex import Complex, Sliver
 from jointwave.cases.geometry.cut import cut, one_plane
 from jointwave.cases.geometry.measure import least_angles, widths
-from jointwave.cases.geometry.pieces import Beside, Piece, fits, pieces_of
+from jointwave.cases.geometry.pieces import fitting, joined, pieces_of
 
 #: Cuts of a sliver, at most: parts that made slivers of neighbours could pass round for ever.
 PARTS = 4
@@ -40,110 +41,55 @@ def without_slivers(
             return body
         thin = thin[np.argsort(width[thin], kind="stable")]
         most = most or body.count + PARTS * len(thin)
-
-        if not joins or body.count > most:
-            raise _refusal(body, limits, int(thin[0]), NO_FIT if joins else "")
-        found = _joined_to_neighbours(body, thin.tolist(), tolerance, kept)
-        if isinstance(found, int):
-            raise _refusal(body, limits, found, NO_FIT)
+        found, wrong = None, int(thin[0])
+        if joins and body.count <= most:
+            found, wrong = _joined(body, thin.tolist(), tolerance, kept)
+        if found is None:
+            cause = (
+                f"a block is {width[wrong]:.3g} m wide with an angle of {angle[wrong]:.3g} degrees,"
+                f" less than domain.least_width = {limits.width:.3g} m or domain.least_angle = "
+                f"{limits.angle:g}{NO_FIT if joins else ''}"
+            )
+            raise Sliver(body.centres(half)[wrong], cause)
         body = found
 
 
-def _refusal(body: Complex, limits: Limits, cell: int, more: str) -> Sliver:
-    half = body.beside(np.arange(body.count) == cell)
-    width, angle = widths(body, half)[cell], least_angles(body, half)[cell]
-    cause = (
-        f"a block is {width:.3g} m wide with an angle of {angle:.3g} degrees, less than "
-        f"domain.least_width = {limits.width:.3g} m or domain.least_angle = {limits.angle:g}{more}"
-    )
-    return Sliver(body.centres(half)[cell], cause)
-
-
-def _joined_to_neighbours(
+def _joined(
     body: Complex, thin: list[int], tolerance: float, kept: int
-) -> Complex | int:
-    """Return a complex with slivers joined, of those that touch only one at a time; where none can
-    be, with a part of one of them joined; else the first that fits nowhere."""
+) -> tuple[Complex | None, int]:
+    """Return a complex with slivers joined to neighbours; where none can be, with a part of one of
+    them joined. None, and the first that fits nowhere, where no part can be."""
     chosen = np.zeros(body.count + 1, bool)
     chosen[thin] = True
     chosen[body.sides[chosen[body.sides].any(axis=1)].ravel()] = True
-    pieces, beside = pieces_of(body, chosen[:-1])
-    order = _by_preference(body, beside, thin, kept)
-    root, used, stuck = np.arange(body.count), np.zeros(body.count, bool), []
-    for cell in thin:
-        near = order[cell]
-        if used[cell] or used[near].any():
-            continue
-        other = _fitting(pieces, cell, near, beside, tolerance)
-        if other is None:
-            stuck.append(cell)
-            continue
-        root[cell], used[cell] = other, True
-        used[near] = True
-    if used.any():
-        return body.joined(root)
+    pieces = pieces_of(body, chosen[:-1], body.in_rock, kept)
+    found, stuck = joined(body, pieces, thin, tolerance)
     slivers = set(thin)
-    for cell in stuck:
-        near = [other for other in order[cell] if other not in slivers]
-        parted = _parted(body, cell, near, tolerance)
-        if parted is not None:
-            return parted
-    return stuck[0]
+    for cell in stuck if found is None else ():
+        near = [other for other in pieces[cell].near() if other not in slivers]
+        if (found := _parted(body, cell, near, tolerance)) is not None:
+            break
+    return found, (stuck or thin)[0]
 
 
-def _by_preference(
-    body: Complex, beside: Beside, thin: list[int], kept: int
-) -> dict[int, list[int]]:
-    """Return the cells of the same rock beside each of some, that across the largest face first,
-    but those beyond joints of the first `kept` sets last."""
-    joint = body.sides[(body.joint_set >= 0) & (body.joint_set < kept)]
-    beyond = {frozenset(pair) for pair in joint.tolist()}
-    return {
-        cell: sorted(
-            (other for other in beside[cell] if body.region[other] == body.region[cell]),
-            key=lambda other: (
-                frozenset((cell, other)) in beyond,
-                -beside[cell][other].area,
-                other,
-            ),
-        )
-        for cell in thin
-    }
-
-
-def _fitting(
-    pieces: dict[int, Piece], cell: int, near: list[int], beside: Beside, tolerance: float
-) -> int | None:
-    """Return the first of some cells beside another that make a convex one with it."""
-    for other in near:
-        if fits(pieces[cell], pieces[other], beside[cell][other].normal, tolerance):
-            return other
-    return None
-
-
-def _parted(body: Complex, cell: int, near: list[int], tolerance: float) -> Complex | None:
+def _parted(body: Complex, cell: int, near: Sequence[int], tolerance: float) -> Complex | None:
     """Return a complex with a sliver cut along a face of a neighbour that ends at it, and a part
     joined to a neighbour; None where no such cut leaves one that fits."""
-    chosen = np.zeros(body.count, bool)
-    chosen[near] = True
-    half = body.beside(chosen)
-    own = body.vertices[body.corners(body.beside(np.arange(body.count) == cell))[:, 1]]
+    alone, chosen = np.arange(body.count) == cell, np.isin(np.arange(body.count + 1), near)
+    half = body.beside(chosen[:-1])
+    own = body.vertices[body.corners(body.beside(alone))[:, 1]]
+    place = body.places(half)
     for k in np.flatnonzero(half.across != cell):
-        s = (own - body.origins(half)[k]) @ half.outward[k]
+        s = own @ half.outward[k] - place[k]
         if s.min() > -tolerance or s.max() < tolerance:
             continue
-        plane = one_plane(half.outward[k], body.origins(half)[k], np.arange(body.count) == cell)
-        split = cut(body, plane, tolerance).body
-        touched = np.append(chosen, False)
-        touched[cell] = touched[-1] = True
-        pieces, beside = pieces_of(split, touched)
-        for part in (cell, body.count):
-            ends = sorted(
-                (other for other in beside[part] if other in near),
-                key=lambda other: -beside[part][other].area,
-            )
-            other = _fitting(pieces, part, ends, beside, tolerance)
-            if other is not None:
+        split = cut(body, one_plane(half.outward[k], place[k], alone), tolerance).body
+        parts = cell, body.count
+        cells = chosen | np.isin(np.arange(split.count), parts)
+        pieces = pieces_of(split, cells, split.in_rock)
+        for part in parts:
+            ends = [other for other in pieces[part].near() if other in near]
+            if (other := fitting(pieces, part, ends, tolerance)) is not None:
                 root = np.arange(split.count)
                 root[part] = other
                 return split.joined(root)

@@ -13,7 +13,8 @@ import shapely
 
 from jointwave.cases.geometry.cell_complex import NO_SET, Complex, Halves, NonConvex
 from jointwave.cases.geometry.cut import cut, one_plane
-from jointwave.cases.geometry.pieces import Joiner, clipped, pieces_of
+from jointwave.cases.geometry.pieces import clipped, joined, pieces_of
+from jointwave.cases.geometry.relations import groups
 
 STRAIGHT = 1e-9  #: sine of the angle below which a corner of a polygon turns nowhere
 ROCK = -1  #: in place of a region: rock outside all regions
@@ -117,9 +118,9 @@ def cut_into_regions(
         if isinstance(one, Solid):
             for face, normal in one.faces():
                 passed = _passed(body, body.region == ROCK, face, normal, tolerance)
-                body = cut(body, one_plane(normal, face[0], passed), tolerance).body
+                body = cut(body, one_plane(normal, face[0] @ normal, passed), tolerance).body
         else:
-            plane = one_plane(one.normal, one.through, body.region == ROCK)
+            plane = one_plane(one.normal, one.through @ one.normal, body.region == ROCK)
             body = cut(body, plane, tolerance).body
         inside = one.contains(body.centres()) & (body.region == ROCK)
         body = replace(body, region=np.where(inside, k, body.region))
@@ -136,7 +137,7 @@ def taken_out(body: Complex, solids: Sequence[tuple[Solid, int]], tolerance: flo
         for face, normal in solid.faces():
             passed = _passed(body, near, face, normal, tolerance)
             split = near & np.isin(whole, whole[passed])  # all of the block, to choose its pieces
-            found = cut(body, one_plane(normal, face[0], split), tolerance)
+            found = cut(body, one_plane(normal, face[0] @ normal, split), tolerance)
             body, near, whole = found.body, near[found.parent], whole[found.parent]
         gone = np.zeros(body.count, bool)
         at = np.flatnonzero(near)
@@ -164,14 +165,9 @@ def check_convex(body: Complex, solids: Sequence[tuple[Solid, int]]) -> None:
 
 def _near(body: Complex, half: Halves, corners: np.ndarray, tolerance: float) -> np.ndarray:
     """Return which of some cells' boxes meet that of some points [n, d], bool array [count]."""
-    cell, vertex = body.corners(half).T
-    near = np.zeros(body.count, bool)
-    begins = np.flatnonzero(np.diff(cell, prepend=-1))
-    x = body.vertices[vertex]
-    low, high = (f.reduceat(x, begins, axis=0) for f in (np.minimum, np.maximum))
+    low, high = body.extents(half, body.vertices)
     meets = (low <= corners.max(axis=0) + tolerance) & (high >= corners.min(axis=0) - tolerance)
-    near[cell[begins]] = meets.all(axis=1)
-    return near
+    return meets.all(axis=1)
 
 
 def _passed(
@@ -179,45 +175,33 @@ def _passed(
 ) -> np.ndarray:
     """Return which of some cells (bool array [count]) a convex face, float array [n, d], passes
     through, deeper than the tolerance."""
-    half, found = body.beside(cells), np.zeros(body.count, bool)
-    s = (body.vertices - face[0]) @ normal
-    cell, vertex = body.corners(half).T
-    low, high = np.full(body.count, np.inf), np.full(body.count, -np.inf)
-    np.minimum.at(low, cell, s[vertex])
-    np.maximum.at(high, cell, s[vertex])
+    half = body.beside(cells)
+    low, high = body.extents(half, (body.vertices - face[0]) @ normal)
     crossed = (low < -tolerance) & (high > tolerance) & _near(body, half, face, tolerance)
-    mine = np.flatnonzero(crossed[half.cell])
-    if not len(mine):
-        return found
-    mine = mine[np.argsort(half.cell[mine], kind="stable")]
-    place = (body.origins(half) * half.outward).sum(axis=1)
-    for own in np.split(mine, np.flatnonzero(np.diff(half.cell[mine])) + 1):
+    half, found = body.beside(crossed), np.zeros(body.count, bool)
+    place = body.places(half)
+    for own in groups(half.cell):
         part = face
         for k in own:
             if len(part):
                 part = clipped(part, place[k] - tolerance - part @ half.outward[k])
         if len(part) and np.ptp(part, axis=0).max() > tolerance:
-            found[half.cell[own[0]]] = True
+            found[half.cell[own]] = True
     return found
 
 
 def _through_rock(body: Complex) -> np.ndarray:
     """Return which facets are cuts through rock of one region, bool array [f]."""
-    one, other = body.region[body.sides].T
-    return (body.joint_set == NO_SET) & body.inner & (one == other)
+    return body.in_rock & (body.joint_set == NO_SET)
 
 
 def _rejoined(body: Complex, tolerance: float) -> Complex:
-    """Return a complex with pieces of a block of one rock joined as far as they stay convex."""
-    cuts = _through_rock(body)
-    if not cuts.any():
-        return body
-    held = np.append(np.zeros(body.count, bool), False)
-    held[body.sides[cuts].ravel()] = True
-    pieces, beside = pieces_of(body, held[:-1])
-    across = {tuple(pair) for pair in body.sides[cuts].tolist()}
-    for cell, others in beside.items():
-        for other in list(others):
-            if (cell, other) not in across and (other, cell) not in across:
-                del others[other]
-    return body.joined(Joiner(pieces, beside, tolerance).joined(body.count))
+    """Return a complex with pieces of a block of one rock joined as far as they stay convex, the
+    thinnest first, each across its largest face."""
+    found: Complex | None = body
+    while found is not None:
+        body, cuts = found, _through_rock(found)
+        pieces = pieces_of(body, np.isin(np.arange(body.count), body.sides[cuts]), cuts)
+        order = sorted(pieces, key=lambda cell: (pieces[cell].thickness, cell))
+        found = joined(body, pieces, order, tolerance)[0]
+    return body
