@@ -117,24 +117,19 @@ def blocks_of(body: Complex, tolerance: float, in_rows: bool = True) -> Blocks:
 
     tolerance : m, below which vertices lie in a line. in_rows : False numbers them as the cells.
     """
-    moments = facet_moments(body)
-    half = body.halves()
-    m = cell_moments(body, half, Moments(*(array[half.facet] for array in moments)))
+    moments, half = facet_moments(body), body.halves()
+    m = cell_moments(body, half, moments.of(half.facet))
     order = _in_rows(body, m) if in_rows else np.flatnonzero(m.size > 0)
     number = np.full(body.count + 1, OUTSIDE)
     number[order] = np.arange(len(order))
     body = replace(body, sides=number[body.sides], region=body.region[order], count=len(order))
-    inner, outer = np.flatnonzero(body.inner), np.flatnonzero(~body.inner)
-    i, j = np.sort(body.sides[inner], axis=1).T
-    key = np.stack([i, j, body.joint_set[inner]], axis=1)
-    contacts = _grouped(body, inner, key, moments, tolerance)
-    block, into = body.sides[outer].max(axis=1), body.sides[outer, 0] == OUTSIDE
-    key = np.stack(
-        [block, body.side[outer], body.plane[outer], body.joint_set[outer], into], axis=1
-    )
-    boundary = _grouped(body, outer, key, moments, tolerance)
-    own = Moments(*(array[order] for array in m))
-    return Blocks(body, own.size, own.centroid, own.second, contacts, boundary)
+    i, j = np.sort(body.sides, axis=1).T
+    key = np.stack([i, j, body.joint_set], axis=1)
+    contacts = _grouped(body, body.inner, key, moments, tolerance)
+    into = body.sides[:, 0] == OUTSIDE
+    key = np.stack([j, body.side, body.plane, body.joint_set, into], axis=1)
+    boundary = _grouped(body, ~body.inner, key, moments, tolerance)
+    return Blocks(body, *m.of(order), contacts, boundary)
 
 
 def _in_rows(body: Complex, m: Moments) -> np.ndarray:
@@ -148,47 +143,40 @@ def _in_rows(body: Complex, m: Moments) -> np.ndarray:
 
 
 def _grouped(
-    body: Complex, facets: np.ndarray, key: np.ndarray, moments: Moments, tolerance: float
+    body: Complex, chosen: np.ndarray, key: np.ndarray, moments: Moments, tolerance: float
 ) -> Facets:
-    """Return facets, those of one key (int array [m, n]) as one piece; moments : of all facets."""
-    first, group, order = _groups(key)
-    found = _united(body, facets, first, group, order, moments, tolerance)
-    size = outline_moments(found.outlines).size
-    apart = np.abs(size - found.area) > CONVEX * found.area
+    """Return some facets (bool array [f]), those of one key (int array [f, n]) as one piece."""
+    facets = np.flatnonzero(chosen)
+    first, group, order = _groups(key[facets])
+    found = _united(body, facets[first], facets[order], group, moments, tolerance)
+    apart = np.abs(outline_moments(found.outlines).size - found.area) > CONVEX * found.area
     if apart.any():  # what is left beside others of a face need not be convex, nor in one piece
-        own = np.empty(len(facets), np.int64)
-        own[order] = np.where(apart[group], order, -1)
-        first, group, order = _groups(np.column_stack([key, own]))
-        return _united(body, facets, first, group, order, moments, tolerance)
+        own = np.where(apart[group], order, -1)[np.argsort(order)]
+        first, group, order = _groups(np.column_stack([key[facets], own]))
+        return _united(body, facets[first], facets[order], group, moments, tolerance)
     return found
 
 
 def _united(
     body: Complex,
+    one: np.ndarray,
     facets: np.ndarray,
-    first: np.ndarray,
     group: np.ndarray,
-    order: np.ndarray,
     moments: Moments,
     tolerance: float,
 ) -> Facets:
-    """Return facets, those of one group as one piece; for groups see `_groups`."""
-    one = facets[first]
+    """Return facets, int array [m], those of one group (int array [m], in order) as one piece; one
+    : a facet of each group. moments : of all facets."""
     blocks = body.sides[one]
     turned = (blocks[:, 0] == OUTSIDE) | ((blocks[:, 1] != OUTSIDE) & (blocks[:, 0] > blocks[:, 1]))
-    blocks = np.where(turned[:, None], blocks[:, ::-1], blocks)
     normal = np.where(turned[:, None], -1.0, 1.0) * body.normals[body.plane[one]]
-    parts = Moments(*(array[facets[order]] for array in moments))
-    m = united(parts, group, len(first))
     return Facets(
-        blocks=blocks,
-        normal=normal,
-        area=m.size,
-        centroid=m.centroid,
-        second_moment=m.second,
+        np.where(turned[:, None], blocks[:, ::-1], blocks),
+        normal,
+        *united(moments.of(facets), group, len(one)),
         joint_set=body.joint_set[one],
         side=body.side[one],
-        outlines=outlines(body, facets[order], group, normal, tolerance),
+        outlines=outlines(body, facets, group, normal, tolerance),
     )
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.geometry.relations import composed, distinct, merged
+from jointwave.cases.geometry.relations import composed, distinct, merged, sums
 
 OUTSIDE = -1  #: in place of a cell: beyond the domain, or in an opening
 NO_SET = -1  #: in place of a joint set: the boundary, or a cut through intact rock
@@ -145,10 +145,10 @@ class Complex:
 
         pairs : int array [m, 2] of a thing and a vertex of it.
         """
-        owner, x = pairs[:, 0], self.vertices[pairs[:, 1]]
-        sums = [np.bincount(owner, weights=one, minlength=number) for one in x.T]
+        owner, vertex = pairs.T
         with np.errstate(invalid="ignore"):
-            return np.stack(sums, axis=1) / np.bincount(owner, minlength=number)[:, None]
+            times = np.bincount(owner, minlength=number)[:, None]
+            return sums(owner, self.vertices[vertex], number) / times
 
     def extents(self, half: Halves, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the least and the largest value of each cell's vertices [count, ...], infinite of

@@ -7,6 +7,7 @@ bounded by the (k-2)-cells of its own that lie in that plane, and shared by the 
 So a facet that one of its two cells is cut at is split for the other as well.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -43,27 +44,6 @@ class Planes:
     base: np.ndarray
     joint_set: int
 
-    @classmethod
-    def of_families(
-        cls,
-        normal: np.ndarray,
-        family: np.ndarray,
-        places: np.ndarray,
-        first: np.ndarray,
-        base: np.ndarray,
-        joint_set: int,
-        tolerance: float,
-    ) -> "Planes":
-        """Return planes by the places of each family, increasing, one family after the other;
-        first : int array [families + 1], of each family's in `places`."""
-        order = np.argsort(places, kind="stable")
-        new = np.diff(places[order], prepend=-np.inf) > tolerance
-        number = np.empty(len(places), np.int64)
-        number[order] = np.cumsum(new) - 1
-        of = np.repeat(np.arange(len(first) - 1), np.diff(first))
-        held = np.stack([of, number], axis=1)
-        return cls(normal, family, places[order][new], held, base, joint_set)
-
     def codes(self, s: np.ndarray, tolerance: float) -> np.ndarray:
         """Return the codes of places s, float array [n], m."""
         at = np.searchsorted(self.places, s - tolerance)
@@ -71,16 +51,29 @@ class Planes:
         return 2 * at + near
 
 
+def planes_of(
+    normal: np.ndarray,
+    family: np.ndarray,
+    each: Sequence[np.ndarray],
+    base: Sequence[int] | None = None,
+    joint_set: int = NO_SET,
+    tolerance: float = 0.0,
+) -> Planes:
+    """Return families of planes by the places of each, increasing; planes within the tolerance (m)
+    are one. base : 0 where absent. For the rest see `Planes`."""
+    places = np.concatenate(each)
+    order = np.argsort(places, kind="stable")
+    new = np.diff(places[order], prepend=-np.inf) > tolerance
+    number = np.empty(len(places), np.int64)
+    number[order] = np.cumsum(new) - 1
+    held = np.stack([np.repeat(np.arange(len(each)), list(map(len, each))), number], axis=1)
+    signed = np.zeros(len(each), np.int64) if base is None else np.array(base)
+    return Planes(normal, family, places[order][new], held, signed, joint_set)
+
+
 def one_plane(normal: np.ndarray, place: float, cells: np.ndarray) -> Planes:
     """Return a plane that cuts some cells (bool array [cells]), of no set."""
-    return Planes(
-        normal=normal,
-        family=np.where(cells, 0, -1),
-        places=np.array([place]),
-        held=np.zeros((1, 2), np.int64),
-        base=np.zeros(1, np.int64),
-        joint_set=NO_SET,
-    )
+    return planes_of(normal, np.where(cells, 0, -1), [np.array([place])])
 
 
 class Cut(NamedTuple):

@@ -6,13 +6,12 @@ over their facets.
 """
 
 from collections.abc import Sequence
-from math import factorial
 from typing import NamedTuple
 
 import numpy as np
 
 from jointwave.cases.geometry.cell_complex import Complex, Halves
-from jointwave.cases.geometry.relations import composed, distinct
+from jointwave.cases.geometry.relations import composed, distinct, sums
 
 
 class Moments(NamedTuple):
@@ -23,26 +22,23 @@ class Moments(NamedTuple):
     centroid: np.ndarray
     second: np.ndarray
 
+    def of(self, rows: np.ndarray) -> "Moments":
+        """Return those of some, int array."""
+        return Moments(self.size[rows], self.centroid[rows], self.second[rows])
+
 
 def facet_moments(body: Complex, facets: np.ndarray | None = None) -> Moments:
     """Return the moments of some facets, int array [n], or of all."""
     facets = np.arange(len(body.sides)) if facets is None else facets
-    number = len(facets)
-    if body.dim == 1:
-        simplices, which = body.vertices[facets][:, None], np.arange(number)
-    elif body.dim == 2:
-        simplices, which = (
-            body.vertices[body.bounds[0][:, 1].reshape(-1, 2)[facets]],
-            np.arange(number),
-        )
-    else:
-        pairs = composed(np.stack([np.arange(number), facets], axis=1), body.bounds[-1])[0]
-        ends = body.vertices[body.bounds[0][:, 1].reshape(-1, 2)[pairs[:, 1]]]
-        which, start = pairs[:, 0], np.flatnonzero(np.diff(pairs[:, 0], prepend=-1))
-        apex = ends[start, 0][which]
-        simplices = np.concatenate([ends, apex[:, None]], axis=1)
-    first = np.searchsorted(which, np.arange(number))
-    return _total(simplices, which, simplices[first, -1])
+    number, ends = np.arange(len(facets)), min(body.dim, 2)
+    pairs = np.stack([number, facets], axis=1)
+    for bound in reversed(body.bounds):
+        pairs = composed(pairs, bound)[0]
+    x, which = body.vertices[pairs[:, 1]].reshape(-1, ends, body.dim), pairs[::ends, 0]
+    first = np.searchsorted(which, number)
+    if body.dim == 3:  # triangles of an edge and the facet's first vertex
+        x = np.concatenate([x, x[first[which], :1]], axis=1)
+    return _of_simplices(x, which, x[first, -1])
 
 
 def cell_moments(
@@ -81,39 +77,25 @@ def united(parts: Moments, owner: np.ndarray, number: int) -> Moments:
 def _about_centroids(parts: Moments, owner: np.ndarray, about: np.ndarray) -> Moments:
     """Return the moments of things by the sizes of their parts, and these parts' first and second
     moments about a point of each thing [n, d], m."""
-    number = len(about)
-
-    def summed(values: np.ndarray) -> np.ndarray:
-        flat = values.reshape(len(values), int(np.prod(values.shape[1:]))).T
-        sums = [np.bincount(owner, weights=one, minlength=number) for one in flat]
-        return np.stack(sums, axis=1).reshape(number, *values.shape[1:])
-
-    whole = summed(parts.size)
+    whole, first, second = (sums(owner, one, len(about)) for one in parts)
     with np.errstate(invalid="ignore", divide="ignore"):
-        centre = summed(parts.centroid) / whole[:, None]
-    inner = summed(parts.second) - whole[:, None, None] * centre[:, :, None] * centre[:, None]
-    return Moments(whole, about + centre, inner)
+        centre = first / whole[:, None]
+    second = second - whole[:, None, None] * centre[:, :, None] * centre[:, None]
+    return Moments(whole, about + centre, second)
 
 
-def _total(x: np.ndarray, owner: np.ndarray, about: np.ndarray) -> Moments:
-    """Return the moments of things made of simplices x [m, k + 1, d] with their owners [m]; about :
-    a point of each thing [n, d], m."""
-    k = x.shape[1] - 1
+def _of_simplices(x: np.ndarray, owner: np.ndarray, about: np.ndarray) -> Moments:
+    """Return the moments of things made of points, segments or triangles x [m, k + 1, d] with their
+    owners [m]; about : a point of each thing [n, d], m."""
+    k, edges = x.shape[1] - 1, x[:, 1:] - x[:, :1]
+    size = np.linalg.norm(edges[:, 0], axis=1) if k else np.ones(len(x))
+    if k == 2:
+        size = np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1) / 2
     x = x - about[owner][:, None]
-    size, total = _sizes(x[:, 1:] - x[:, :1]), x.sum(axis=1)
+    total = x.sum(axis=1)
     second = np.einsum("mki,mkj->mij", x, x) + total[:, :, None] * total[:, None]
     second *= (size / ((k + 1) * (k + 2)))[:, None, None]
     return _about_centroids(Moments(size, size[:, None] * total / (k + 1), second), owner, about)
-
-
-def _sizes(edges: np.ndarray) -> np.ndarray:
-    """Return the length, area or volume of simplices with these edges [m, k, d] from a corner."""
-    _, k, dim = edges.shape
-    if k == dim:
-        return np.abs(np.linalg.det(edges)) / factorial(k)
-    if k == 2:
-        return np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1) / 2
-    return np.linalg.norm(edges[:, 0], axis=1) if k else np.ones(len(edges))
 
 
 class Outlines(NamedTuple):
@@ -144,7 +126,7 @@ def outline_moments(pieces: Outlines) -> Moments:
     owner = np.repeat(np.arange(len(size)), np.maximum(size - (dim - 1), 0))
     at = np.arange(len(owner)) - np.searchsorted(owner, owner)
     corners = [x[first[:-1][owner] + (at + k if k else 0)] for k in range(dim)]
-    return _total(np.stack(corners, axis=1), owner, x[first[:-1]])
+    return _of_simplices(np.stack(corners, axis=1), owner, x[first[:-1]])
 
 
 def outlines(
@@ -178,8 +160,7 @@ def around(x: np.ndarray, of: np.ndarray, normal: np.ndarray, tolerance: float) 
         order = np.lexsort([(x * along).sum(axis=1), of])
     elif dim == 3:
         one, other = frames(normal)
-        sums = np.stack([np.bincount(of, weights=each, minlength=number) for each in x.T], axis=1)
-        away = x - (sums / np.bincount(of, minlength=number)[:, None])[of]
+        away = x - (sums(of, x, number) / np.bincount(of, minlength=number)[:, None])[of]
         u, v = (away * one[of]).sum(axis=1), (away * other[of]).sum(axis=1)
         order = np.lexsort([np.arctan2(v, u), of])
     else:

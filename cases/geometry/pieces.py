@@ -113,9 +113,12 @@ def _unite(pieces: dict[int, Piece], cell: int, gone: int) -> None:
     """Make a piece one with another, which it fits."""
     one, other = pieces[cell], pieces.pop(gone)
     normal = one.beside.pop(gone).normal
-    planes = zip(one.without(normal), other.without(-normal), strict=True)
-    vertices = np.concatenate([one.vertices, other.vertices])
-    pieces[cell] = Piece(vertices, *map(np.concatenate, planes), one.thickness, one.beside)
+    (normals, places), (others, further) = one.without(normal), other.without(-normal)
+    pieces[cell] = one._replace(
+        vertices=np.concatenate([one.vertices, other.vertices]),
+        normals=np.concatenate([normals, others]),
+        places=np.concatenate([places, further]),
+    )
     for third, contact in other.beside.items():
         if third != cell:
             _add(one.beside, third, contact)

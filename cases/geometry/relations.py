@@ -36,6 +36,13 @@ def distinct(pairs: np.ndarray) -> np.ndarray:
     return np.stack(np.divmod(np.unique(pairs[:, 0] * width + pairs[:, 1]), width), axis=1)
 
 
+def sums(of: np.ndarray, x: np.ndarray, number: int) -> np.ndarray:
+    """Return the sums [number, ...] of rows x [m, ...], by what each is of, int array [m]."""
+    flat = x.reshape(len(x), int(np.prod(x.shape[1:]))).T
+    found = [np.bincount(of, weights=one, minlength=number) for one in flat]
+    return np.stack(found, axis=1).reshape(number, *x.shape[1:])
+
+
 def joined(pairs: np.ndarray, number: int) -> np.ndarray:
     """Return the group of each of a number of things that pairs connect."""
     one, other = np.reshape(pairs, (-1, 2)).T.astype(np.int64)

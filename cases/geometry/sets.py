@@ -7,7 +7,7 @@ from math import inf
 import numpy as np
 
 from jointwave.cases.geometry.cell_complex import Complex, GeometryError
-from jointwave.cases.geometry.cut import Planes, cut
+from jointwave.cases.geometry.cut import Planes, cut, planes_of
 
 #: Of the sets that one ends at, the signed number of the joint below each cell.
 Stops = dict[str, np.ndarray]
@@ -116,36 +116,37 @@ def _planes(
     if one.regions is not None:
         inside = np.isin(body.region, one.regions)
     if one.spacing is None:
-        return _single(body, one, index, family, inside, tolerance)
-    places, first, base = _spaced(body, one, family, parts, _shifts(one, stops, parts, sets))
-    family = np.where(inside, family, -1)
-    return Planes.of_families(one.normal, family, places, first, base, index, tolerance)
+        here = _part(body, one, f"joint_sets[{index}].through", family, inside, tolerance)
+        single = np.where(inside & (family == here), 0, -1)
+        return planes_of(one.normal, single, [np.array([one.normal @ one.through])], None, index)
+    low, high = np.full(len(parts), np.inf), np.full(len(parts), -np.inf)
+    least, most = body.extents(body.halves(), body.vertices @ one.normal)
+    np.minimum.at(low, family, least)
+    np.maximum.at(high, family, most)
+    origin = one.normal @ one.through + _shifts(one, stops, parts, sets)
+    each = [places_between(one, *part) for part in zip(parts, origin, low, high, strict=True)]
+    places, base = zip(*each, strict=True)
+    return planes_of(one.normal, np.where(inside, family, -1), places, base, index, tolerance)
 
 
-def _single(
+def _part(
     body: Complex,
     one: PlaneSet,
-    index: int,
+    key: str,
     family: np.ndarray,
     inside: np.ndarray,
     tolerance: float,
-) -> Planes:
-    """Return one plane, in the part of the rock that contains its point."""
+) -> int:
+    """Return the part of the rock that contains the point of a single plane."""
     depth = np.where(inside, body.depths(one.through), -np.inf)
-    cell, key = int(np.argmax(depth)), f"joint_sets[{index}].through"
+    cell = int(np.argmax(depth))
     if depth[cell] < -tolerance:
         of = "the domain" if one.regions is None else "its regions"
         raise GeometryError(one.through, f"must lie in {of}", key)
     if len(np.unique(family[depth > -tolerance])) > 1:
-        raise GeometryError(
-            one.through, f"must not lie on a joint of {', '.join(one.ends_at)}", key
-        )
-    here, first = (family == family[cell]) & inside, np.array([0, 1])
-    place = np.array([one.normal @ one.through])
-    family = np.where(here, 0, -1)
-    return Planes.of_families(
-        one.normal, family, place, first, np.zeros(1, np.int64), index, tolerance
-    )
+        cause = f"must not lie on a joint of {', '.join(one.ends_at)}"
+        raise GeometryError(one.through, cause, key)
+    return int(family[cell])
 
 
 def _shifts(one: PlaneSet, stops: Stops, parts: np.ndarray, sets: Sequence[PlaneSet]) -> np.ndarray:
@@ -161,39 +162,20 @@ def _shifts(one: PlaneSet, stops: Stops, parts: np.ndarray, sets: Sequence[Plane
     return shift * (one.spacing or 0.0)
 
 
-def _spaced(
-    body: Complex, one: PlaneSet, family: np.ndarray, parts: np.ndarray, shifts: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return equally spaced or scattered planes that cover every part: places, m, the first of each
-    part, and the signed number of that."""
-    assert one.spacing is not None
-    cell, vertex = body.corners(body.halves()).T
-    s = (body.vertices @ one.normal)[vertex]
-    low, high = np.full(len(parts), np.inf), np.full(len(parts), -np.inf)
-    np.minimum.at(low, family[cell], s)
-    np.maximum.at(high, family[cell], s)
-    origin = one.normal @ one.through + shifts
-    if not one.scatter:
-        base = np.floor((low - origin) / one.spacing).astype(np.int64)
-        count = np.ceil((high - origin) / one.spacing).astype(np.int64) - base + 1
-        first = np.append(0, np.cumsum(count))
-        which = np.repeat(np.arange(len(parts)), count)
-        k = base[which] + np.arange(first[-1]) - first[which]
-        return origin[which] + k * one.spacing, first, base
-    each = [_scattered(one, *each) for each in zip(parts, origin, low, high, strict=True)]
-    first = np.append(0, np.cumsum([len(place) for place, _ in each]))
-    base = np.array([number for _, number in each])
-    return np.concatenate([place for place, _ in each]), first, base
-
-
-def _scattered(
+def places_between(
     one: PlaneSet, part: np.ndarray, origin: float, low: float, high: float
 ) -> tuple[np.ndarray, int]:
-    """Return the places of planes from below `low` to above `high`, and the first one's number.
+    """Return the places of planes from below `low` to above `high`, m, and the signed number of the
+    first.
 
-    Spacings are uniformly distributed about their mean; those above and below the origin, and of
-    each part, are streams of their own, so that they do not depend on the domain's size.
+    Scattered spacings are uniformly distributed about their mean; those above and below the origin,
+    and of each part, are streams of their own, so that they do not depend on the domain's size.
     """
+    assert one.spacing is not None
+    if not one.scatter:
+        first = int(np.floor((low - origin) / one.spacing))
+        k = np.arange(first, int(np.ceil((high - origin) / one.spacing)) + 1)
+        return origin + k * one.spacing, first
     above = origin + _spacings(one, part, 0, high - origin)
     below = origin - _spacings(one, part, 1, origin - low)
     return np.concatenate([below[::-1], [origin], above]), -len(below)

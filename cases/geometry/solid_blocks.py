@@ -11,6 +11,7 @@ from scipy.spatial import ConvexHull, QhullError
 from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.geometry.measure import frames, without_straight
 from jointwave.cases.geometry.pieces import clipped
+from jointwave.cases.geometry.relations import sums
 from jointwave.cases.gmsh_file import MeshError
 
 GRAZING = 1e-12  # sine of the angle between planes below which they are parallel
@@ -163,8 +164,7 @@ def _volumes(x: np.ndarray, blocks: list, names: list[str], tolerance: float) ->
         raise MeshError(f"{names[block[part[k]]]} has a face that is not plane{near(x[loops[k]])}")
     if x.shape[1] == 2:
         return np.bincount(block, weights=np.abs(area[:, 2]))
-    sums = np.stack([np.bincount(part[loop], one) for one in corners.T], axis=1)
-    centre = sums / np.bincount(part[loop])[:, None]
+    centre = sums(part[loop], corners, len(parts)) / np.bincount(part[loop])[:, None]
     cones = (area * (corners[first] - centre[part])).sum(axis=1) / 3
     return np.bincount(block, weights=np.abs(np.bincount(part, weights=cones)))
 

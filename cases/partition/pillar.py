@@ -8,7 +8,7 @@ import numpy as np
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import Blocks, blocks_of
 from jointwave.cases.geometry.cell_complex import NO_SET, box
-from jointwave.cases.geometry.cut import Planes, cut
+from jointwave.cases.geometry.cut import cut, planes_of
 from jointwave.cases.geometry.sets import SPREAD
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.segment import Part
@@ -39,14 +39,7 @@ def blocks_of_pillar(
         raise SceneError(scene.where, "soft_layers", None, "are thicker than a block is long")
     low, high = np.full((2, dim), scene.pillar.side / 2) * [[-1], [1]]
     low[along], high[along] = y[0], y[-1]
-    planes = Planes(
-        normal=np.eye(dim)[along],
-        family=np.zeros(1, np.int64),
-        places=y[1:-1],
-        held=np.stack([np.zeros(len(y) - 2, np.int64), np.arange(len(y) - 2)], axis=1),
-        base=np.zeros(1, np.int64),
-        joint_set=0,
-    )
+    planes = planes_of(np.eye(dim)[along], np.zeros(1, np.int64), [y[1:-1]], joint_set=0)
     tolerance = TOLERANCE * float(np.diff(y).min())
     body = cut(box(low, high), planes, tolerance).body
     inner, joint_set = body.inner, body.joint_set.copy()

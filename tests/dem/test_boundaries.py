@@ -51,7 +51,7 @@ def polytope(dim):
     for normal in rng.normal(size=(3, dim)):
         normal /= np.linalg.norm(normal)
         through = middle + 0.8 * normal
-        body = cut(body, one_plane(normal, through, np.ones(body.count, bool)), 1e-9).body
+        body = cut(body, one_plane(normal, normal @ through, np.ones(body.count, bool)), 1e-9).body
     depth = body.depths(middle)
     return blocks_of(body.removed(depth < depth.max(), 1), 1e-9)
 

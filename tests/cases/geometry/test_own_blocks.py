@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import blocks_of
 from jointwave.cases.geometry.cell_complex import box
-from jointwave.cases.geometry.cut import Planes, cut
+from jointwave.cases.geometry.cut import cut, planes_of
 from jointwave.cases.geometry.measure import outline_moments
 from jointwave.cases.geometry.own_blocks import (
     complex_of_file,
@@ -31,15 +31,7 @@ TOLERANCE = 1e-9  # m
 def cut_by(body, normal, places, joint_set=0, cells=None):
     """Return a complex cut by planes at places along a normal, or some cells of it."""
     family = np.where(np.ones(body.count, bool) if cells is None else cells, 0, -1)
-    planes = Planes.of_families(
-        normal,
-        family,
-        np.array(places),
-        np.array([0, len(places)]),
-        np.zeros(1, int),
-        joint_set,
-        TOLERANCE,
-    )
+    planes = planes_of(normal, family, [np.array(places)], None, joint_set, TOLERANCE)
     return cut(body, planes, TOLERANCE).body
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from jointwave.cases.geometry.cell_complex import GeometryError, Sliver
 from jointwave.cases.geometry.locate import contact_at
-from jointwave.cases.geometry.sets import _scattered
+from jointwave.cases.geometry.sets import places_between
 from jointwave.cases.partition.joints import direction_of, plane_sets
 from jointwave.cases.partition.scene import blocks_of_domain as cut
 from jointwave.cases.partition.scene import least_width
@@ -279,9 +279,9 @@ def test_blocks_are_those_of_polygonize(sets):
     lines = [box.exterior]
     for one in sets:
         along, at = direction_of(one.dip), np.array(one.through)
-        places = [0.0] if one.spacing is None else np.arange(-40, 41) * one.spacing
-        if one.scatter:
-            places = _scattered(plane_sets([one])[0], np.array([0]), 0.0, -20.0, 20.0)[0]
+        places = [0.0]
+        if one.spacing is not None:
+            places, _ = places_between(plane_sets([one])[0], np.array([0]), 0.0, -20.0, 20.0)
         across = np.array([-along[1], along[0]])
         lines += [
             shapely.LineString([at + s * across - 40 * along, at + s * across + 40 * along])
