@@ -154,6 +154,7 @@ def first_order(
     alpha: float = 0.0,
     start: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None,
     one_sided: np.ndarray | None = None,
+    axes: csr_array | None = None,
 ) -> BlockSystem:
     """Return the first-order form of bodies.
 
@@ -167,9 +168,11 @@ def first_order(
     start : the blocks' displacement [n] and the contacts' forces [k] at first, gravity's
         acceleration [n] that is not in equilibrium with these.
     one_sided : contacts that carry no tension.
+    axes : from the motion of bodies, rotations about their principal axes, to that about those of
+        the contacts, sparse; None: they are the same.
     """
     (bodies, c), own = mass.shape, mass.ravel()
-    B = relative(contacts, bodies, c)
+    B = relative(contacts, bodies, c) if axes is None else relative(contacts, bodies, c) @ axes
     D, V = (resistance(contacts, x, c) for x in (contacts.springs, contacts.dashpots))
     q, f = np.flatnonzero(np.isfinite(own) & (own > 0)), np.flatnonzero(own == 0)
     (count, size), n, masses = B.shape, len(q), own[q]

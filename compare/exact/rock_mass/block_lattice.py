@@ -9,6 +9,8 @@ Valid for linear joints without dashpots that cut all of the rock into blocks, w
 that are quiet, free or periodic, and up to MOST_BLOCKS blocks.
 """
 
+from itertools import product
+
 import numpy as np
 import xarray as xr
 from scipy.sparse import bsr_array, csr_array
@@ -17,7 +19,7 @@ from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.incident import tractions
-from jointwave.cases.material.contact_points import bending, points_of
+from jointwave.cases.material.contact_points import bending
 from jointwave.cases.material.quiet_sides import impedances
 from jointwave.cases.material.rigid_blocks import rigid_joints, welds
 from jointwave.cases.partition.lattice import further_sets
@@ -35,7 +37,8 @@ from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.rock_mass import rock_mass_dataset
 
-MOST_BLOCKS = 1000
+MOST_BLOCKS = {2: 1000, 3: 500}  #: by the number of dimensions
+FREEDOMS = {2: 3, 3: 6}  #: of a block, by the number of dimensions
 IN_A_PERIOD = 400  #: samples of the field per period per period
 
 
@@ -44,7 +47,7 @@ def applies(scene: RockMass) -> Answer:
     held, sets = set(scene.boundaries.model_dump().values()), scene.joint_sets
     stuck = sorted(held - {None, "quiet", "free", "periodic"})
     gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
-    many = f"more than {MOST_BLOCKS:,} blocks"
+    most = MOST_BLOCKS[scene.domain.dimension]
     reasons = [
         (not scene.waves, "no wave enters"),
         (bool(scene.loads), "a load acts"),
@@ -59,8 +62,8 @@ def applies(scene: RockMass) -> Answer:
         (not scene.record.points, "no point is recorded"),
     ]
     reason = beyond_linear_rock(scene) or next((why for there, why in reasons if there), None)
-    if reason is None and block_count(scene.domain, sets) > MOST_BLOCKS:
-        reason = many
+    if reason is None and block_count(scene.domain, sets) > most:
+        reason = f"more than {most:,} blocks"
     return Answer(reason or "")
 
 
@@ -69,32 +72,42 @@ def solve(scene: RockMass) -> xr.Dataset:
     from scipy.interpolate import CubicSpline
 
     blocks, times = blocks_of_scene(scene, further_sets(scene)), sample_times(scene)
-    quiet = _quiet(scene, blocks)
+    quiet, edges = _quiet(scene, blocks)
     parts = zip(*_between_blocks(scene, blocks), quiet, strict=True)
     contacts = Contacts(*map(np.concatenate, parts))
     period = shortest_period(scene.waves)
     assert period is not None
     stride = 2 * int(np.ceil(scene.interval * IN_A_PERIOD / period / 2))
     fine = scene.interval / stride * np.arange(stride * (len(times) - 1) + 1)
-    freedoms, forces = _incident(scene, blocks, quiet, fine)
-    system = first_order(masses(scene, blocks), contacts)
-    system = system._replace(load=system.driven[:, freedoms].T)
-    points, found = reads(scene, blocks), []
+    freedoms, forces = _incident(scene, blocks, quiet, edges, fine)
+    (mass, axes), dim = masses(scene, blocks), scene.domain.dimension
+    system = first_order(mass, contacts, axes=axes)
+    system = system._replace(load=(system.driven @ axes.T)[:, freedoms].T)
+    points, found = reads(scene, blocks) @ axes, []
     for step, noise in ((1, 0.0), (2, NOISE)):
         loads = Loads(CubicSpline(fine[::step], forces[::step]), fine[::step])
         states = integrate(system, loads, times, noise=noise).states.T
         both = np.stack([points @ (x @ states) for x in (system.displacement, system.velocity)])
-        found.append(both.reshape(2, -1, 2, len(times)))
+        found.append(both.reshape(2, -1, dim, len(times)))
     names = ("displacement", "velocity")
     values = {name: x.swapaxes(1, 2) for name, x in zip(names, found[0], strict=True)}
     errors = {name: bound(*pair) for name, *pair in zip(names, *found, strict=True)}
     return rock_mass_dataset(scene, SOLVER.name, times, values, errors=errors)
 
 
-def masses(scene: RockMass, blocks: Blocks) -> np.ndarray:
-    """Return masses (kg) and moments of inertia (kg m2) of all blocks [N, 3], per m."""
-    polar = np.trace(blocks.second_moment, axis1=1, axis2=2)
-    return scene.rock.density * np.stack([blocks.volume, blocks.volume, polar], axis=1)
+def masses(scene: RockMass, blocks: Blocks) -> tuple[np.ndarray, csr_array]:
+    """Return masses (kg) and principal moments of inertia (kg m2) of all blocks [N, f], in the
+    plane per m; and what takes their freedoms, rotations about principal axes, to those about the
+    axes of the scene, sparse [N f, N f]."""
+    count, dim = blocks.centroid.shape
+    inertia = np.trace(blocks.second_moment, axis1=1, axis2=2)[:, None, None] * np.eye(1)
+    if dim == 3:
+        inertia = inertia * np.eye(3) - blocks.second_moment
+    moments, turn = np.linalg.eigh(inertia)
+    each = np.tile(np.eye(dim + len(turn[0])), (count, 1, 1))
+    each[:, dim:, dim:] = turn
+    axes = csr_array(bsr_array((each, np.arange(count), np.arange(count + 1))))
+    return scene.rock.density * np.hstack([np.tile(blocks.volume, (dim, 1)).T, moments]), axes
 
 
 def _between_blocks(scene: RockMass, blocks: Blocks) -> list[Contacts]:
@@ -104,7 +117,7 @@ def _between_blocks(scene: RockMass, blocks: Blocks) -> list[Contacts]:
     springs = np.stack([joints.normal, joints.shear], axis=1)
     bends = np.array([bending(one.point_rule, one.contact_points) for one in sets])
     across = [(one.contacts, one.shift) for one in across_periodic(scene, blocks)]
-    for facets, shift in [(blocks.contacts, np.zeros(2)), *across]:
+    for facets, shift in [(blocks.contacts, np.zeros(blocks.body.dim)), *across]:
         k, share = springs[facets.joint_set], bends[facets.joint_set]
         rock = facets.joint_set == NO_SET
         weld = facets.blocks[rock], facets.centroid[rock], facets.normal[rock]
@@ -115,46 +128,56 @@ def _between_blocks(scene: RockMass, blocks: Blocks) -> list[Contacts]:
     return parts
 
 
-def _quiet(scene: RockMass, blocks: Blocks) -> Contacts:
-    """Return the dashpots of the facets of quiet sides."""
+def _quiet(scene: RockMass, blocks: Blocks) -> tuple[Contacts, np.ndarray]:
+    """Return the dashpots of the facets of quiet sides, and orthogonal unit vectors in each, the
+    first along its first edge [c, d - 1, d]."""
     outer, held = blocks.boundary, scene.boundaries.model_dump()
     own = np.array([held.get(name) == "quiet" for name in shape_of(scene.domain).sides])[outer.side]
     impedance = np.zeros((len(own), 2))
     regions = blocks.body.region[outer.blocks[own, 0]]
     impedance[own] = impedances(scene, outer.normal[own], regions)
     found = contacts_of(blocks, outer, 0 * impedance, impedance)
-    return Contacts(*(x[own] for x in found))
+    corners, first, normal = *outer.outlines, outer.normal[own]
+    edge = (corners[first[:-1] + 1] - corners[first[:-1]])[own]
+    edge = edge / np.linalg.norm(edge, axis=1)[:, None]
+    edges = [edge] if normal.shape[1] == 2 else [edge, np.cross(normal, edge)]
+    return Contacts(*(x[own] for x in found)), np.stack(edges, axis=1)
 
 
 def _incident(
-    scene: RockMass, blocks: Blocks, quiet: Contacts, times: np.ndarray
+    scene: RockMass, blocks: Blocks, quiet: Contacts, edges: np.ndarray, times: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the freedoms [k] of blocks on quiet sides, and the forces on them [n, k], N and N m
-    per m, of the incident field at two Gauss points of each facet."""
-    x, weight = points_of("gauss", 2)
-    along = np.stack([-quiet.normal[:, 1], quiet.normal[:, 0]], axis=1) * quiet.area[:, None]
-    arm = (quiet.arm[:, :1] + (x - 0.5)[:, None] * along[:, None]).reshape(-1, 2)
-    block, impedance = np.repeat(quiet.blocks[:, 0], 2), np.repeat(quiet.dashpots, 2, axis=0)
-    place, normal = blocks.centroid[block] + arm, np.repeat(quiet.normal, 2, axis=0)
-    found = tractions(field_of(scene), place, normal, impedance, times)
-    pushes = np.outer(quiet.area, weight).ravel()[:, None, None] * carried(arm, 3)[:, :2]
+    """Return the freedoms [k] of blocks on quiet sides, and the forces on them [n, k], N and N m,
+    in the plane per m, of the incident field at points of each facet: those one standard deviation
+    of its area from its centroid along its edge and across, on a rectangle Gauss points."""
+    dim, area = quiet.normal.shape[1], quiet.area[:, None, None]
+    variance, axes = np.linalg.eigh(quiet.second / area)
+    deviation = (axes * np.sqrt(np.maximum(variance, 0.0))[:, None]) @ axes.swapaxes(1, 2)
+    signs = np.array(list(product((-1.0, 1.0), repeat=dim - 1)))
+    arm = (quiet.arm[:, :1] + signs @ edges @ deviation).reshape(-1, dim)
+    block, normal, impedance, share = (
+        np.repeat(x, len(signs), axis=0)
+        for x in (quiet.blocks[:, 0], quiet.normal, quiet.dashpots, area / len(signs))
+    )
+    found = tractions(field_of(scene), blocks.centroid[block] + arm, normal, impedance, times)
+    pushes = share * carried(arm, f := FREEDOMS[dim])[:, :dim]
     own, which = np.unique(block, return_inverse=True)
-    forces = np.zeros((len(own), len(times), 3))
+    forces = np.zeros((len(own), len(times), f))
     np.add.at(forces, which, np.einsum("npi,pij->pnj", found.values, pushes))
-    freedoms = (3 * own[:, None] + np.arange(3)).ravel()
+    freedoms = (f * own[:, None] + np.arange(f)).ravel()
     return freedoms, forces.swapaxes(0, 1).reshape(len(times), -1)
 
 
 def reads(scene: RockMass, blocks: Blocks) -> csr_array:
     """Return the matrix from the motion of all blocks to that of the points of a scene, sparse
-    [2 points, 3 N]; on joints the mean of the blocks there."""
-    points = np.array(scene.record.points)
+    [d points, f N]; on joints the mean of the blocks there."""
+    points, dim = np.array(scene.record.points), scene.domain.dimension
     sides = sides_at(blocks, points, len(scene.joint_sets))
     count = np.array(list(map(len, sides)))
     which, block = np.repeat(np.arange(len(points)), count), np.concatenate(sides)
-    parts = carried(points[which] - blocks.centroid[block], 3)[:, :2]
+    parts = carried(points[which] - blocks.centroid[block], FREEDOMS[dim])[:, :dim]
     parts = parts / count[which][:, None, None]
-    first, shape = np.append(0, np.cumsum(count)), (2 * len(points), 3 * blocks.count)
+    first, shape = np.append(0, np.cumsum(count)), (dim * len(points), FREEDOMS[dim] * blocks.count)
     return csr_array(bsr_array((parts, block, first), shape=shape))
 
 
@@ -162,10 +185,11 @@ SOLVER = Solver(
     name="block-lattice",
     rock=Rock.RIGID_BLOCKS,
     kinds=("rock mass",),
-    dimension=2,
-    label="rigid blocks in the plane, exact",
+    dimension=3,
+    in_space=True,
+    label="rigid blocks, exact",
     line=thin("#00349a", 9, (0, 9)),
     applies=applies,
     run=solve,
-    distances={Kind.NUMERICAL: {"dem": "time stepping of the rigid blocks in the plane"}},
+    distances={Kind.NUMERICAL: {"dem": "time stepping of the rigid blocks"}},
 )

@@ -8,30 +8,60 @@ from jointwave.compare.engines import applies, solve
 from jointwave.compare.exact.linear import twins
 
 LAW = {"normal_stiffness": 4e10, "shear_stiffness": 2e10}
-PERIODIC = {"left": "periodic", "right": "periodic"}
+
+
+#: Of each dimension: the joint sets as name, dip, dip direction and spacing, the domain, an oblique
+#: direction, and points in the first, the seventh and the last block of a column.
+SETS = {
+    2: [("bed", 0.0, None, 0.5), ("cross", 90.0, None, 1.0)],
+    3: [("bed", 0.0, None, 0.5), ("head", 90.0, 90.0, 1.0), ("wall", 90.0, 0.0, 0.75)],
+}
+SIZE = {2: [3.0, 6.0], 3: [3.0, 1.5, 6.0]}
+SLANT = {2: [0.28, 0.96], 3: [0.28, 0.576, 0.768]}
+PERIODIC = dict.fromkeys(("left", "right", "front", "back"), "periodic")
+
+
+@pytest.fixture(params=[2, 3], ids=["plane", "space"])
+def dim(request):
+    return request.param
 
 
 @pytest.fixture
-def blocks(rock_mass, joint):
-    """Return blocks of 1 m by 0.5 m in 3 m by 6 m and tables changed."""
+def blocks(rock_mass, joint, wave, dim):
+    """Return blocks of 1 m by 0.5 m in 3 m by 6 m, in space 0.75 m and 1.5 m wide, and tables
+    changed."""
     sets = [
-        joint(**LAW, name=name, dip=dip, spacing=spacing, through=[0.0, 0.0])
-        for name, dip, spacing in (("bed", 0.0, 0.5), ("cross", 90.0, 1.0))
+        joint(**LAW, name=name, dip=dip, spacing=spacing, through=[0.0] * dim)
+        | ({} if towards is None else {"dip_direction": towards})
+        for name, dip, towards, spacing in SETS[dim]
     ]
-    tables = {"joint_sets": sets, "domain": {"size": [3.0, 6.0]}, "time": {"duration": 0.02}}
-    record = {"points": [[1.5, 0.25], [0.5, 3.25], [1.5, 5.75]], "joints": []}
-    return lambda **changes: rock_mass(**{**tables, "record": record, **changes})
+    across = [0.4] * (dim - 2)
+    record = [[1.5, *across, 0.25], [0.5, *across, 3.25], [1.5, *across, 5.75]]
+    up = {"direction": [0.0] * (dim - 1) + [1.0]}
+    tables = {
+        "joint_sets": sets,
+        "domain": {"size": SIZE[dim]},
+        "time": {"duration": 0.02},
+        "waves": [wave(**up)],
+        "record": {"points": record, "joints": []},
+    }
+    sides = {} if dim == 2 else {"boundaries": {"front": "quiet", "back": "quiet"}}
+    return lambda **changes: rock_mass(**{**tables, **sides, **changes})
 
 
-def test_a_column_under_a_p_wave_is_the_chain(blocks):
+def test_a_column_under_a_p_wave_is_the_chain(blocks, dim):
     """12 blocks in a row with K' = 1 / (1/K + h/M) between them, M = 6e10 Pa, and dashpots rho c at
-    both ends. rho c^2 = C_yy of the medium: the inverse of the rock's compliance (lambda = 2e10 Pa)
-    with 1/(1 m K) along x and 1/(0.5 m K) along y. The wave of 1 MPa pushes the lowest with twice
-    its stress; the dashpot above takes it in."""
-    scene = blocks(boundaries=PERIODIC)
+    both ends. rho c^2 = C_zz of the medium: the inverse of the rock's compliance (lambda = 2e10 Pa)
+    with 1/(spacing K) along each axis. The wave of 1 MPa pushes the lowest with twice its stress;
+    the dashpot above takes it in."""
+    scene = blocks(
+        boundaries={k: v for k, v in PERIODIC.items() if dim == 3 or k in ("left", "right")}
+    )
     M, h, K, count = 6e10, 0.5, 4e10, 12
-    compliance = np.linalg.inv([[M, 2e10], [2e10, M]]) + np.diag([1 / K, 1 / (h * K)])
-    mass, Z, scale = 2500 * h, np.sqrt(2500 * np.linalg.inv(compliance)[1, 1]), 1e4
+    rock = np.full((dim, dim), 2e10) + 4e10 * np.eye(dim)
+    spacings = [1.0, *[0.75] * (dim - 2), h]
+    compliance = np.linalg.inv(rock) + np.diag([1 / (x * K) for x in spacings])
+    mass, Z, scale = 2500 * h, np.sqrt(2500 * np.linalg.inv(compliance)[-1, -1]), 1e4
     spring = 1 / (1 / K + h / M)
     L = 2 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
     L[0, 0] = L[-1, -1] = 1
@@ -46,31 +76,34 @@ def test_a_column_under_a_p_wave_is_the_chain(blocks):
     states[:, :count] /= scale
     for point, block in enumerate((0, 6, 11)):
         for name, column in (("displacement", block), ("velocity", count + block)):
-            expected, bound = states[:, column], found[f"{name}_error"][point, 1]
-            off = found[name][point, :, 1] - expected
+            expected, bound = states[:, column], found[f"{name}_error"][point, -1]
+            off = found[name][point, :, -1] - expected
             assert np.sqrt(np.mean(off**2)) <= bound < 1e-7 * np.abs(expected).max()
-        assert np.abs(found.velocity[point, :, 0]).max() < 1e-12
+        assert np.abs(found.velocity[point, :, :-1]).max() < 1e-12
 
 
-def test_oblique_waves_leave_through_quiet_sides(blocks, wave):
+def test_oblique_waves_leave_through_quiet_sides(blocks, wave, dim):
     """Long after a pulse of 5 ms next to nothing is left of the motion."""
-    direction = [0.28, 0.96]
-    found = solve(
-        "block-lattice", blocks(waves=[wave(direction=direction)], time={"duration": 0.04})
-    )
+    waves = [wave(direction=SLANT[dim])]
+    found = solve("block-lattice", blocks(waves=waves, time={"duration": 0.04}))
     v = np.abs(found.velocity).max(["point", "axis"]).values
     assert v[-100:].max() < 1e-3 * v.max() and v.max() > 0.05
     assert (found.velocity_error < 1e-7 * v.max()).all()
 
 
-def test_steps_of_the_engine_come_to_it_at_the_second_order(blocks, wave):
-    """An oblique wave on blocks with quiet sides all around: leapfrog is off by the square of its
-    step, in velocity and in displacement."""
-    off, steps, waves = [], [], [wave(direction=[0.28, 0.96])]
-    exact = solve("block-lattice", blocks(waves=waves))
+@pytest.mark.parametrize("dip", [0.0, 20.0])
+def test_steps_of_the_engine_come_to_it_at_the_second_order(blocks, wave, dim, dip):
+    """An oblique wave on boxes, and on blocks whose principal axes are oblique, with quiet sides
+    all around: leapfrog is off by the square of its step, in velocity and in displacement."""
+    off, steps, waves = [], [], [wave(direction=SLANT[dim])]
+    bed, *others = blocks().joint_sets
+    bed = bed.model_copy(update={"dip": dip, "dip_direction": 40.0 if dim == 3 else None})
+    sets = [one.model_dump(exclude_none=True) for one in (bed, *others)]
+    tables = {"waves": waves, "joint_sets": sets, "time": {"duration": 0.01}}
+    exact = solve("block-lattice", blocks(**tables))
     for fraction in (0.4, 0.1):
         numerics = {"dem": {"step_fraction": fraction}}
-        found = solve("dem", blocks(waves=waves, numerics=numerics))
+        found = solve("dem", blocks(**tables, numerics=numerics))
         steps.append(found.attrs["dt"])
         names = ("velocity", "displacement")
         off.append([float(abs(found[x] - exact[x]).max() / abs(exact[x]).max()) for x in names])
@@ -93,11 +126,16 @@ NO = [
 ]  # fmt: skip
 
 
+plane = pytest.mark.parametrize("dim", [2], indirect=True)
+
+
+@plane
 @pytest.mark.parametrize("changes, reason", NO)
 def test_it_says_why_it_does_not_hold(blocks, changes, reason):
     assert applies("block-lattice", blocks(**changes)).reason == reason
 
 
+@plane
 def test_it_holds_for_blocks_between_linear_joints_alone(blocks, joint, wave):
     def reason(**keys):
         bed = joint(**LAW | {"spacing": 0.5, "dip": 0.0, "through": [0.0, 1.0]} | keys)
