@@ -3,8 +3,7 @@
 import json
 from typing import Any
 
-from jointwave.compare.cli.frames import show_frame
-from jointwave.compare.cli.terminal import print_json, say, say_warnings, show_facts
+from jointwave.compare.cli.terminal import print_json, say, say_warnings, show_facts, show_frame
 from jointwave.compare.engines import ENGINES, in_words, label_of
 from jointwave.compare.figures.tables import alignment_frame, reading_frame
 from jointwave.compare.misfit.pairs import GIVEN, Comparison

@@ -7,8 +7,7 @@ from typing import Any
 import pandas as pd
 
 from jointwave.cases.size import spoken
-from jointwave.compare.cli.frames import show_frame
-from jointwave.compare.cli.terminal import print_json, progress, say
+from jointwave.compare.cli.terminal import print_json, progress, say, show_frame
 from jointwave.compare.runs.timings import each
 from jointwave.compare.studies.forecast import Run, forecasts
 from jointwave.compare.text import in_seconds

@@ -1,11 +1,12 @@
 """The program `jointwave`, what its commands take, and how they read scenes."""
 
+import inspect
 import os
 from collections.abc import Callable, Iterable, Sequence
 from enum import StrEnum
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import typer
 
@@ -55,32 +56,10 @@ SetOption = Annotated[
     list[str],
     typer.Option("--set", metavar="KEY=VALUE", help="Change a key in every variant; repeatable."),
 ]
-SweepOption = Annotated[
-    list[str],
-    typer.Option(
-        "--sweep",
-        metavar="KEY=VALUES",
-        help="Sweep a key over FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C; repeatable for all "
-        "combinations. Writes a folder for each point, and sweep.csv.",
-    ),
-]
-EnsembleOption = Annotated[
-    int,
-    typer.Option(
-        "--ensemble",
-        metavar="N",
-        min=0,
-        max=10_000,
-        help="Run N scenes with consecutive seeds of random joints: mean and percentiles of every "
-        "number (ensemble.csv) and waveform (NAME-ensemble.nc).",
-        show_default=False,
-    ),
-]
 VariantOption = Annotated[
     str | None,
     typer.Option(help="Only this variant ('': the base scene)."),
 ]
-OutOption = Annotated[Path, typer.Option(help="Folder for results.")]
 WithOption = Annotated[
     list[str],
     typer.Option(
@@ -97,13 +76,6 @@ DryOption = Annotated[
     typer.Option("--dry-run", help="Only print what would run, with its time and memory."),
 ]
 StrictOption = Annotated[bool, typer.Option("--strict", help="Treat warnings as errors.")]
-ResultsOption = Annotated[
-    Path | None,
-    typer.Option(
-        metavar="DIR",
-        help="Folder where results of the scene are read and stored (default: out/SCENE).",
-    ),
-]
 FreshOption = Annotated[
     bool, typer.Option("--fresh", help="Compute again what could be read from a folder.")
 ]
@@ -111,6 +83,95 @@ JsonOption = Annotated[bool, typer.Option("--json", help="Print machine-readable
 
 CORES = os.cpu_count() or 1
 RESULTS = Path("out")  # default folder of the results of all scenes, each in a folder of its name
+
+
+class SceneOptions(NamedTuple):
+    """A scene, its variant and its changed keys."""
+
+    scene: SceneArgument
+    changes: SetOption = []
+    variant: VariantOption = None
+    strict: StrictOption = False
+
+    def load(self, every: bool = True) -> list[AnyScene]:
+        """Return the variant that is named, warned of; without one all or, if not `every`, the
+        base scene."""
+        variant = self.variant if self.variant is not None or every else ""
+        return load(self.scene, self.changes, variant, self.strict)
+
+
+class SweepOptions(NamedTuple):
+    """Points of a sweep, members of an ensemble, and the processes that share them."""
+
+    swept: Annotated[
+        list[str],
+        typer.Option(
+            "--sweep",
+            metavar="KEY=VALUES",
+            help="Sweep a key over FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C; repeatable for all "
+            "combinations. Writes a folder for each point, and sweep.csv.",
+        ),
+    ] = []
+    members: Annotated[
+        int,
+        typer.Option(
+            "--ensemble",
+            metavar="N",
+            min=0,
+            max=10_000,
+            help="Run N scenes with consecutive seeds of random joints: mean and percentiles of "
+            "every number (ensemble.csv) and waveform (NAME-ensemble.nc).",
+            show_default=False,
+        ),
+    ] = 0
+    workers: WorkersOption = CORES
+
+
+class StoredOptions(NamedTuple):
+    """The folder that results are read from, and whether they are."""
+
+    results: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            help="Folder where results of the scene are read and stored (default: out/SCENE).",
+        ),
+    ] = None
+    fresh: FreshOption = False
+
+    def folder(self, scene: str, out: Path | None = None) -> Any:
+        """Return the `ResultFolder` of a scene; out : where it is, if not said otherwise."""
+        from jointwave.compare.runs.reuse import ResultFolder
+
+        return ResultFolder(results_of(scene, self.results or out), self.fresh)
+
+
+class PrintOptions(NamedTuple):
+    """What is printed: estimates in place of results, or JSON."""
+
+    dry: DryOption = False
+    as_json: JsonOption = False
+
+
+def command(work: Callable[..., None]) -> Callable[..., None]:
+    """Return a command of the program, in which each group of options above is its options."""
+    groups, flat = {}, list[inspect.Parameter]()
+    for own in inspect.signature(work).parameters.values():
+        if hasattr(own.annotation, "_fields"):
+            groups[own.name] = own.annotation
+            flat += inspect.signature(own.annotation).parameters.values()
+        else:
+            flat.append(own)
+
+    def run(**given: Any) -> None:
+        made = {name: of(*map(given.pop, of._fields)) for name, of in groups.items()}
+        work(**made, **given)
+
+    run.__name__, run.__doc__ = work.__name__, work.__doc__
+    by_name = [one.replace(kind=inspect.Parameter.KEYWORD_ONLY) for one in flat]
+    run.__signature__ = inspect.Signature(by_name)  # type: ignore[attr-defined]
+    run.__annotations__ = {one.name: one.annotation for one in flat}
+    return app.command()(run)
 
 
 def _print_version(wanted: bool) -> None:

@@ -6,83 +6,75 @@ from pathlib import Path
 
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli.forecast_view import show_forecasts
-from jointwave.compare.cli.frames import show_frame
-from jointwave.compare.cli.options import warn
-from jointwave.compare.cli.terminal import print_json, progress, say, show_facts
+from jointwave.compare.cli.options import PrintOptions, SceneOptions, SweepOptions, warn
+from jointwave.compare.cli.terminal import print_json, progress, say, show_frame
 from jointwave.compare.engines import Progress
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.runs.processes import started
 from jointwave.compare.runs.reuse import ResultFolder
+from jointwave.compare.studies.catalogue import Experiment
 from jointwave.compare.studies.forecast import Run, runs_of
 from jointwave.compare.studies.store import Pool, on_pool, plain
-from jointwave.compare.studies.study import load, shipped
 from jointwave.compare.studies.summary import Summary
-from jointwave.compare.studies.sweep import Sweep, Work, run
+from jointwave.compare.studies.sweep import Work, run, sweep_of
 from jointwave.compare.studies.sweep_table import summarise
 
 
-def show_studies(as_json: bool) -> None:
-    """Print the shipped studies: their names, titles and scenes."""
-    from jointwave.compare.studies.hard_cases import NAME, TITLE  # imports matplotlib
-    from jointwave.compare.studies.scattering import TITLES
+def run_and_show(one: Experiment, out: Path | None, workers: int, shown: PrintOptions) -> None:
+    """Show the summary of a study, or the estimates of its runs; of several MPI processes only the
+    first does.
 
-    facts = [{"study": k, "title": (one := load(k)).title, "scene": one.scene} for k in shipped()]
-    facts += [{"study": name, "title": title} for name, title in {NAME: TITLE, **TITLES}.items()]
-    print_json(facts) if as_json else show_facts({"studies": facts})
-
-
-def run_and_show(
-    label: str,
-    out: Path | None,
-    workers: int,
-    work: Callable[[Pool | None, Progress], Summary],
-    as_json: bool,
-) -> None:
-    """Show the summary returned by `work(pool, progress)`; of several MPI processes only the first
-    does.
-
-    label : of the progress bar. out : a folder, locked meanwhile; None writes nothing.
+    out : a folder, locked meanwhile; None writes nothing.
     """
+    if shown.dry:
+        others = {"diagrams": 1, "processes": workers * (workers > 1 and one.shares)}
+        show_forecasts(one.planned(), shown.as_json, others)
+        return
     processes = started()
-    with ExitStack() as held, progress(label) as advance:
+    with ExitStack() as held, progress(one.title) as advance:
         if out is not None:
             processes.by_first(lambda: held.enter_context(locked(out)))
-        found = on_pool(processes, workers, lambda pool: work(pool, advance))
+        found = on_pool(processes, workers, lambda pool: one.make(pool, advance))
     if found is not None:
-        show(found, as_json)
+        show(found, shown.as_json)
 
 
 def sweep(
-    asked: Sweep,
-    work: Work,
+    asked: SceneOptions,
+    sweeps: SweepOptions,
+    out: Path | None,
+    fresh: bool,
+    work_of: Callable[[list[AnyScene]], Work],
     solvers: Callable[[AnyScene], Iterable[str]],
-    workers: int,
-    dry: bool,
-    as_json: bool,
-    strict: bool = False,
+    shown: PrintOptions,
     parts: Iterable[str] = (),
 ) -> None:
-    """Run every case of a sweep and show its table; dry : only print estimates.
+    """Run every case of a sweep and show its table, or only estimates.
 
-    solvers : returns the names of a scene's solvers. strict : treat warnings as errors. parts :
-    what else each case does, see `show_forecasts`. Raises SceneError if all cases fail.
+    work_of : returns what is done with a case, for the scenes of all. solvers : returns the names
+    of a scene's solvers. parts : what else each case does, see `show_forecasts`. Raises SceneError
+    if all cases fail.
     """
-    warn(asked.scenes, strict)
-    if dry:
+    found = sweep_of(*asked[:3], sweeps.swept, out, sweeps.members, fresh)
+    work = work_of(found.scenes)
+    warn(found.scenes, asked.strict)
+    if shown.dry:
         runs: list[Run] = []
-        for case in asked.cases:
+        for case in found.cases:
             if case.scene is not None:
-                stored = ResultFolder(case.folder, asked.fresh)
+                stored = ResultFolder(case.folder, fresh)
                 runs += runs_of(solvers(case.scene), case.scene, stored, point=case.point)
-        failing = {case.point: case.message for case in asked.cases if case.scene is None}
-        others = {"processes": workers * (workers > 1)} | dict.fromkeys(parts, len(asked.scenes))
-        show_forecasts(runs, as_json, others, failing)
+        failing = {case.point: case.message for case in found.cases if case.scene is None}
+        others = {"processes": sweeps.workers * (sweeps.workers > 1)}
+        others |= dict.fromkeys(parts, len(found.scenes))
+        show_forecasts(runs, shown.as_json, others, failing)
         return
 
-    def done(pool: Pool | None, advance: Progress) -> Summary:
-        return summarise(asked, run(asked, work, pool, advance))
+    def done(pool: Pool | None, advance: Progress | None) -> Summary:
+        return summarise(found, run(found, work, pool, advance))
 
-    run_and_show(f"{len(asked.cases)} points", asked.out, workers, done, as_json)
+    one = Experiment(f"{len(found.cases)} points", list, done)
+    run_and_show(one, out, sweeps.workers, shown)
 
 
 def show(found: Summary, as_json: bool) -> None:

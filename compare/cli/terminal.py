@@ -9,14 +9,19 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from itertools import pairwise
 from math import inf
 from textwrap import fill
 from time import monotonic
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from jointwave.cases.errors import SceneError, printable
 from jointwave.cases.files import is_number
-from jointwave.compare.text import cell
+from jointwave.compare.engines import in_words
+from jointwave.compare.text import cell, table_cell
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 EVERY = "JOINTWAVE_PROGRESS"  # in the environment: s from one line to the next, 0 for none
 PIPE, UNFOLDED = 220, 10_000  # characters: of a pipe, which has no width, and of short cells
@@ -114,6 +119,25 @@ def show_table(columns: list[str], rows: list[list[str]]) -> None:
     for row in rows:
         table.add_row(*map(printable, row))
     _console(UNFOLDED if is_short else None).print(table, crop=False)
+
+
+def show_frame(table: "pd.DataFrame") -> None:
+    """Print a table, if it has rows; what labels them comes first, an outermost label once;
+    solutions and pairs of them are in words. Long labels stand above the rows that have them."""
+    if table.index.nlevels > 1 and max(map(len, map(str, table.index.unique(0)))) > LONGEST:
+        for heading, rows in table.groupby(level=0, sort=False):
+            say(str(heading))
+            show_frame(rows.droplevel(0))
+        return
+    named = table if table.index.names == [None] else table.reset_index()
+    columns = [*map(in_words, named.columns)]
+    cells = (map(table_cell, row, columns) for row in named.itertuples(False, None))
+    rows = [list(map(in_words, row)) for row in cells]
+    if table.index.nlevels > 1:
+        for before, row in reversed(list(pairwise(rows))):
+            row[0] = "" if row[0] == before[0] else row[0]
+    if rows:
+        show_table(columns, rows)
 
 
 def show_facts(facts: Mapping[str, Any], labels: Mapping[str, str] | None = None) -> None:

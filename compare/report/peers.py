@@ -55,8 +55,8 @@ def summarise(found: pd.DataFrame, folder: Path) -> Summary:
     failed = [f"{one.curve} ({one.solves}): {one.message}" for one in missing.itertuples()]
     machine = "; ".join(dict.fromkeys(filter(None, found.machine))) or "an unnamed machine"
     figure = save(_draw(done), folder, "peers", TITLE, found)
-    about = sentences(done), failed, figure.drawings, None, figure, "", LEGEND, machine
-    return Summary("peers", TITLE, _table(done), *about)
+    shown = _table(done), sentences(done), failed, figure.drawings
+    return Summary("peers", TITLE, *shown, figure=figure, legend=LEGEND, about=machine)
 
 
 def sentences(done: pd.DataFrame) -> list[str]:

@@ -16,25 +16,19 @@ from jointwave.compare.figures.snapshots import draw_snapshots
 from jointwave.compare.report import peers
 from jointwave.compare.runs.field_files import write_pvd
 from jointwave.compare.scenes import find
-from jointwave.compare.studies import effects, scattering
-from jointwave.compare.studies.effects_summary import summarise as summarise_effects
+from jointwave.compare.studies import effects, effects_summary, hard_cases
+from jointwave.compare.studies.catalogue import experiment
 from jointwave.compare.studies.forecast import Run
-from jointwave.compare.studies.hard_cases import make_study as make_hard_cases
-from jointwave.compare.studies.hard_cases import planned as planned_hard_cases
-from jointwave.compare.studies.scattering_summary import make_study as make_joints
+from jointwave.compare.studies.scattering import TITLES
 from jointwave.compare.studies.store import Pool
-from jointwave.compare.studies.study import load
 from jointwave.compare.studies.summary import Summary
 from jointwave.compare.studies.work_precision import REPORTED
-from jointwave.compare.studies.work_precision import planned as planned_of_study
-from jointwave.compare.studies.work_precision import run as run_study
-from jointwave.compare.studies.work_precision import summarise as summarise_study
 from jointwave.results.snapshots import snapshots_of
 
 APPENDIX = ("convergence", "uniform-chain")  # the studies of steps and elements alone
 BLOW = "beyond/eccentric-blow"  # the scene of the snapshots, and its changes
 SEEN = {"record.fields": 5e-3, "time.duration": 0.035, "record.energy": False}
-DIAGRAMS = len(scattering.TITLES) + len(REPORTED) + 3  # effects, hard cases, snapshots
+DIAGRAMS = len(TITLES) + len(REPORTED) + 3  # effects, hard cases, snapshots
 HARD = 0.5  # of the progress, where the hard cases are asked for
 
 
@@ -47,12 +41,11 @@ def sections(
     the first study.
     """
     folder = out / "studies"
-    for name in scattering.TITLES:
-        found = make_joints(name, folder, None, True, pool)
+    for name in TITLES:
+        found = experiment(name, folder, brief=True).make(pool, None)
         yield section("joints", found, f"jointwave study {name}")
     for i, name in enumerate(REPORTED, start=1):
-        study = load(name)
-        found = summarise_study(folder, name, study, run_study(study, folder / name, pool))
+        found = experiment(name, folder).make(pool, None)
         about = {"id": f"study-{name}", "appendix": name in APPENDIX}
         yield section("study", found, f"jointwave study {name}", **about)
         if i == 1 and others is not None:
@@ -60,25 +53,23 @@ def sections(
             yield section("peers", found, "make bench-peers", contents="Other codes")
         progress(HARD * i / (len(REPORTED) + 1))
     measured = effects.run(effects.reported(), out / "effects")
-    found = summarise_effects(out / "effects", measured)
+    found = effects_summary.summarise(out / "effects", measured)
     yield section("effects", found, "jointwave effects beyond/paper-effects", contents="Effects")
     progress(HARD)
     if hard:
-        found = make_hard_cases(folder, pool, lambda x: progress(HARD + (1 - HARD) * x))
-        yield section(
-            "hard", found, "jointwave study stability", contents="Hard cases", appendix=True
-        )
+        made = experiment(hard_cases.NAME, folder).make
+        found = made(pool, lambda x: progress(HARD + (1 - HARD) * x))
+        about = {"contents": "Hard cases", "appendix": True}
+        yield section("hard", found, f"jointwave study {hard_cases.NAME}", **about)
     yield _snapshots(out)
     progress(1.0)
 
 
 def planned(out: Path) -> list[Run]:
     """Return the runs of the sections, with the hard cases."""
-    folder = out / "studies"
-    of_joints = [scattering.planned(name, folder / name, True) for name in scattering.TITLES]
-    of_studies = [planned_of_study(load(name), folder / name) for name in REPORTED]
-    of_effects = effects.planned(effects.reported(), out / "effects")
-    return [*chain(*of_joints, *of_studies), *of_effects, *planned_hard_cases(folder)]
+    names = *TITLES, *REPORTED, hard_cases.NAME
+    studies = (experiment(name, out / "studies", brief=True).planned() for name in names)
+    return [*chain(*studies), *effects.planned(effects.reported(), out / "effects")]
 
 
 def section(kind: str, found: Summary, command: str, **more: Any) -> dict[str, Any]:
@@ -105,5 +96,6 @@ def _snapshots(out: Path) -> dict[str, Any]:
         "compression. Bending waves are slower and disperse, short waves ahead of long ones."
     )
     title, place = f"The pillar in motion. {scene.title}", file.relative_to(out).as_posix()
-    about = Summary("motion", title, pd.DataFrame(), [], [], [], None, drawn, note, about=place)
+    empty = pd.DataFrame(), (), (), ()
+    about = Summary("motion", title, *empty, figure=drawn, note=note, about=place)
     return section("motion", about, "", contents="The pillar in motion")

@@ -25,10 +25,9 @@ def summarise(folder: Path, found: pd.DataFrame) -> Summary:
     """Return the summary of `EffectRow`s; write effects.csv and the diagram into `folder`."""
     figure = save(draw(found), folder, NAME, TITLE)
     files = [write_csv(folder / f"{NAME}.csv", found), *figure.drawings]
-    said, about = sentences(found), "; ".join(_labels(found).unique())
-    facts = {"rows": found.to_dict("records"), "sentences": said, "files": list(map(str, files))}
-    shown = table(found)
-    return Summary(NAME, TITLE, shown, said, [], files, facts, figure, about=about, timed=True)
+    data, about = {"rows": found.to_dict("records")}, "; ".join(_labels(found).unique())
+    shown = table(found), sentences(found), (), files, data, figure
+    return Summary(NAME, TITLE, *shown, about=about, timed=True)
 
 
 def _labels(found: pd.DataFrame) -> pd.Series:

@@ -226,10 +226,9 @@ def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = 
     tables = {NAME: pd.DataFrame(rows, columns=HardRow._fields), f"{NAME}-map": cells}
     files = [write_csv(out / f"{name}.csv", table) for name, table in tables.items()]
     files.append(drawn.file("svg"))
-    said = sentences(rows, cells)
     failed = [f"{row.name}: {row.ended} {row.message}" for row in rows if not row.holds]
-    facts = {"rows": rows, "sentences": said, "files": list(map(str, files))}
-    return Summary(NAME, TITLE, table(rows), said, failed, files, facts, drawn, about=NOTE)
+    shown = table(rows), sentences(rows, cells), failed, files, {"rows": rows}, drawn
+    return Summary(NAME, TITLE, *shown, about=NOTE)
 
 
 def table(rows: list[HardRow]) -> pd.DataFrame:

@@ -41,9 +41,9 @@ INK = "#30363b"
 def make_study(
     name: str,
     out: Path,
-    progress: Progress | None = None,
     brief: bool = False,
     pool: Pool | None = None,
+    progress: Progress | None = None,
 ) -> Summary:
     """Run a study of TITLES; write its table and figure into `out`, its points into OUT/NAME/.
 
@@ -57,11 +57,10 @@ def make_study(
     rows, title = pd.DataFrame(found), TITLES[name]
     data = rows.rename_axis("row").to_xarray().assign_attrs(title=title, **machine())
     figure = save(draw(name, rows), out, name, title)
-    tables = write_csv(out / f"{name}.csv", rows), write_dataset(out / f"{name}.nc", data)
-    files, said = [*tables, *figure.drawings], sentences(rows)
-    facts = {"rows": rows.to_dict("records"), "sentences": said, "files": list(map(str, files))}
-    shown = table(name, rows)
-    return Summary(name, title, shown, said, [], files, facts, figure, NOTE, LEGEND, timed=True)
+    files = [write_csv(out / f"{name}.csv", rows), write_dataset(out / f"{name}.nc", data)]
+    numbers = [*files, *figure.drawings], {"rows": rows.to_dict("records")}, figure
+    shown = table(name, rows), sentences(rows), (), *numbers
+    return Summary(name, title, *shown, NOTE, LEGEND, timed=True)
 
 
 def table(name: str, rows: pd.DataFrame) -> pd.DataFrame:

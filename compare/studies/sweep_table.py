@@ -59,7 +59,7 @@ def summarise(asked: Sweep, rows: pd.DataFrame) -> Summary:
         [],
         [*(points + " " + failed.variant + ": " + failed.message)] if len(failed) else [],
         files,
-        facts | {"files": list(map(str, files))},
+        facts,
         legend=legend,
     )
 

@@ -89,18 +89,20 @@ def key(point: StudyPoint) -> str:
     return store_key(study, point.curve.model_dump(mode="json"), point.settings)
 
 
-def summarise(folder: Path, name: str, study: Study, rows: list[PointRow]) -> Summary:
-    """Return the summary of a study; write NAME.csv, NAME.nc and the diagram into `folder`."""
+def make_study(
+    study: Study, folder: Path, pool: Pool | None = None, progress: Progress | None = None
+) -> Summary:
+    """Run a study, saved in `folder`; write NAME.csv, NAME.nc and the diagram beside it."""
+    out, name, rows = folder.parent, folder.name, run(study, folder, pool, progress)
     table = judged(rows)
     written = table.assign(settings=table["settings"].map(json.dumps))
     data = written.rename_axis("point").to_xarray()
     data = data.assign_attrs(title=study.title, study=study.model_dump_json(), **machine())
-    csv, nc = folder / f"{name}.csv", folder / f"{name}.nc"
-    files = [write_csv(csv, written), write_dataset(nc, data)]
+    files = [write_csv(out / f"{name}.csv", written), write_dataset(out / f"{name}.nc", data)]
     figure = None
     if any(len(done(table, error, "work")) for error in ERRORS):
         costs = {k: words for k, words in COSTS.items() if study.timed or k != "seconds"}
-        figure = save(draw(name, table, costs), folder, name, study.title)
+        figure = save(draw(name, table, costs), out, name, study.title)
         files += figure.drawings
     failed = table[table["state"] == "failed"]
     return Summary(
@@ -110,7 +112,7 @@ def summarise(folder: Path, name: str, study: Study, rows: list[PointRow]) -> Su
         sentences(study, table),
         [f"{one.curve}, {_settings(one.settings)}: {one.message}" for one in failed.itertuples()],
         files,
-        {"rows": rows, "orders": orders(study, table), "files": [str(file) for file in files]},
+        {"rows": rows, "orders": orders(study, table)},
         figure,
         study.note,
         LEGEND if table["total"].notna().any() else "",

@@ -12,17 +12,7 @@ import typer
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli import terminal
-from jointwave.compare.cli.options import (
-    DryOption,
-    FreshOption,
-    ResultsOption,
-    SceneArgument,
-    SetOption,
-    StrictOption,
-    app,
-    load,
-    results_of,
-)
+from jointwave.compare.cli.options import DryOption, SceneOptions, StoredOptions, command
 from jointwave.compare.engines import label_of
 
 ScaleOption = Annotated[
@@ -38,29 +28,24 @@ MapOption = Annotated[
         "pillar, across: the velocity across its axis.",
     ),
 ]
-OneVariantOption = Annotated[str, typer.Option(help="Use this variant instead of the base scene.")]
 FRAMES, SECONDS = 201, 10.0
 
 
-@app.command()
+@command
 def animate(
-    scene: SceneArgument,
+    asked: SceneOptions,
+    stored: StoredOptions,
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help=".mp4 or .gif (default: SCENE.mp4).")
     ] = None,
     shown: MapOption = None,
-    variant: OneVariantOption = "",
-    changes: SetOption = [],
     scale: ScaleOption = None,
     frames: Annotated[
         int | None,
         typer.Option(min=2, max=5000, help=f"Frames (default: of record.fields, else {FRAMES})."),
     ] = None,
     seconds: Annotated[float, typer.Option(help="Duration of the film.")] = SECONDS,
-    results: ResultsOption = None,
-    fresh: FreshOption = False,
     dry: DryOption = False,
-    strict: StrictOption = False,
 ) -> None:
     """Animate the blocks and the wave of both engines as MP4 or GIF.
 
@@ -74,16 +59,15 @@ def animate(
     from jointwave.compare.figures.animation.video import write_video
     from jointwave.compare.runs import timings
     from jointwave.compare.runs.output import FILMS, check_out
-    from jointwave.compare.runs.reuse import ResultFolder
 
-    (one,) = load(scene, changes, variant, strict)
-    quantity, path = _quantity(one, shown), out or Path(f"{_name(scene, one)}.mp4")
+    (one,) = asked.load(every=False)
+    quantity, path = _quantity(one, shown), out or Path(f"{_name(asked, one)}.mp4")
     check_out(path, FILMS)
-    stored, interval = ResultFolder(results_of(scene, results), fresh), interval_of(one, frames)
+    folder, interval = stored.folder(asked.scene), interval_of(one, frames)
     if dry:
-        _show_forecast(one, interval, stored)
+        _show_forecast(one, interval, folder)
         return
-    frame = _frame(one, interval, (scale, quantity), stored)
+    frame = _frame(one, interval, (scale, quantity), folder)
     count = len(frame.time)
     with timings.measured("frames", one.kind, count), terminal.progress("pictures") as advance:
 
@@ -96,9 +80,10 @@ def animate(
     _say(path, frame)
 
 
-@app.command()
+@command
 def view(
-    scene: SceneArgument,
+    asked: SceneOptions,
+    stored: StoredOptions,
     out: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Write this .png, open no window."),
@@ -108,13 +93,8 @@ def view(
         typer.Option(metavar="T", help="Instant, s (default: the middle of the scene)."),
     ] = None,
     shown: MapOption = None,
-    variant: OneVariantOption = "",
-    changes: SetOption = [],
     scale: ScaleOption = None,
-    results: ResultsOption = None,
-    fresh: FreshOption = False,
     dry: DryOption = False,
-    strict: StrictOption = False,
 ) -> None:
     """Show a scene by both engines, displaced and coloured by the wave.
 
@@ -124,30 +104,27 @@ def view(
     writes an image of the snapshot nearest to T: one of record.fields, else one of 201.
     """
     _require_positive("--scale", scale)
-    from jointwave.compare.runs.reuse import ResultFolder
-
-    (one,) = load(scene, changes, variant, strict)
+    (one,) = asked.load(every=False)
     at, end = one.time.duration / 2 if time is None else time, one.time.duration
     if not 0 < at <= end:
         allowed = f"must be greater than 0 and at most time.duration = {end:g} s"
         raise SceneError("--time", "", None, f"{allowed}, not {at:g}")
-    quantity = _quantity(one, shown)
-    stored = ResultFolder(results_of(scene, results), fresh)
+    quantity, folder = _quantity(one, shown), stored.folder(asked.scene)
     if dry:
-        _show_forecast(one, interval_of(one), stored, 0)
+        _show_forecast(one, interval_of(one), folder, 0)
         return
     if out is None and _has_display() and find_spec("pyvista") is not None:
         from jointwave.compare.figures.animation.window import open_window
 
-        frame = _frame(one, interval_of(one), (scale, quantity), stored)
+        frame = _frame(one, interval_of(one), (scale, quantity), folder)
         open_window(frame, abs(frame.time - at).argmin())
         return
     from jointwave.compare.figures.export import write_drawing
     from jointwave.compare.runs.output import check_out
 
-    path = out or Path(f"{_name(scene, one)}.png")
+    path = out or Path(f"{_name(asked, one)}.png")
     check_out(path, (".png",))
-    frame = _frame(one, interval_of(one), (scale, quantity), stored)
+    frame = _frame(one, interval_of(one), (scale, quantity), folder)
     frame.show(abs(frame.time - at).argmin())
     write_drawing(path, frame.figure, one.title, {"savefig.dpi": "figure"})
     _say(path, frame)
@@ -209,9 +186,9 @@ def _require_positive(key: str, value: float | None) -> None:
         raise SceneError(key, "", None, f"must be a positive number, not {value:g}")
 
 
-def _name(scene: str, one: AnyScene) -> str:
+def _name(asked: SceneOptions, one: AnyScene) -> str:
     """Return what a scene's files are called where the user does not say."""
-    return "-".join([Path(scene).stem, *one.name.split()])
+    return "-".join([Path(asked.scene).stem, *one.name.split()])
 
 
 def _has_display() -> bool:

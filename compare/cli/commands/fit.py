@@ -10,26 +10,22 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli import terminal
 from jointwave.compare.cli.options import (
-    DryOption,
     Engine,
-    JsonOption,
     ModelOption,
-    SceneArgument,
-    SetOption,
-    StrictOption,
-    VariantOption,
+    PrintOptions,
+    SceneOptions,
     WithOption,
-    app,
-    load,
+    command,
     warn,
 )
 from jointwave.compare.engines import label_of
 from jointwave.compare.runs import jobs
 
 
-@app.command()
+@command
 def fit(
-    scene: SceneArgument,
+    asked: SceneOptions,
+    shown: PrintOptions,
     given: WithOption,
     free: Annotated[
         list[str],
@@ -44,12 +40,7 @@ def fit(
         typer.Option(help="dem: rigid blocks (default); continuum: rock; exact: exact solutions."),
     ] = None,
     model: ModelOption = None,
-    changes: SetOption = [],
-    variant: VariantOption = "",
     out: Annotated[Path | None, typer.Option(help="Folder for the table fit.csv.")] = None,
-    dry: DryOption = False,
-    strict: StrictOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Fit keys of a scene to measured waveforms by least squares.
 
@@ -76,19 +67,19 @@ def fit(
     from jointwave.compare.studies.fit import planned
     from jointwave.compare.studies.fit_keys import unit_of
 
-    (one,) = load(scene, changes, variant or "", strict)
+    (one,) = asked.load(every=False)
     curves = read_curves(given, [one])
-    warn([one], strict, lambda scene: doubts(curves, scene))
+    warn([one], asked.strict, lambda scene: doubts(curves, scene))
     solver = _solver(one, engine, model)
-    if dry:
-        show_forecasts([planned(one, free, solver)], as_json)
+    if shown.dry:
+        show_forecasts([planned(one, free, solver)], shown.as_json)
         return
     with terminal.progress(one.name or one.title) as advance:
         found = fitted(one, curves, free, solver, advance)
     files = [write_csv(out / "fit.csv", found.table.reset_index(), 12)] if out is not None else []
     values, waveforms = found.values.reset_index(), found.waveforms.astype({"place": str})
     values.insert(1, "unit", [unit_of(key, one) for key in values.key])
-    if as_json:
+    if shown.as_json:
         facts = {
             "title": one.title,
             "variant": one.name,
@@ -116,8 +107,10 @@ def fit(
     for note in found.notes:
         terminal.say(f"note: {note}")
     terminal.say("The intervals assume the model: jointwave compare shows how far models differ.")
-    arguments = ["jointwave", "compare", scene, "--variant", one.name]
-    arguments += [part for setting in [*changes, *found.settings] for part in ("--set", setting)]
+    arguments = ["jointwave", "compare", asked.scene, "--variant", one.name]
+    arguments += [
+        part for setting in [*asked.changes, *found.settings] for part in ("--set", setting)
+    ]
     arguments += [part for file in given for part in ("--with", file)]
     arguments += ["--align"] * ("clock" in found.values.index)
     terminal.say(f"compare: {shlex.join(arguments)}")

@@ -6,11 +6,11 @@ import typer
 
 from jointwave.cases.errors import SceneError
 from jointwave.compare.cli import terminal
-from jointwave.compare.cli.options import JsonOption, app
+from jointwave.compare.cli.options import JsonOption, command
 from jointwave.compare.scenes import shipped
 
 
-@app.command()
+@command
 def new(
     name: Annotated[str, typer.Argument(help="File name, with or without .toml.")],
     source: Annotated[
@@ -38,7 +38,7 @@ def new(
         terminal.say(f"wrote {path}")
 
 
-@app.command()
+@command
 def doctor(as_json: JsonOption = False) -> None:
     """Print what is installed, and check both engines.
 

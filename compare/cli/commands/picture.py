@@ -8,12 +8,12 @@ import typer
 
 from jointwave.cases.errors import SceneError
 from jointwave.compare.cli import terminal
-from jointwave.compare.cli.options import SetOption, StrictOption, VariantOption, app, load
+from jointwave.compare.cli.options import SetOption, StrictOption, VariantOption, command, load
 from jointwave.compare.engines import ENGINES
 from jointwave.compare.scenes import shipped
 
 
-@app.command()
+@command
 def picture(
     source: Annotated[
         str,

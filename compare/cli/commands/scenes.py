@@ -16,22 +16,16 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli import terminal
 from jointwave.compare.cli.options import (
-    CORES,
-    DryOption,
     Engine,
     EngineOption,
-    EnsembleOption,
     FreshOption,
     JsonOption,
     ModelOption,
-    SceneArgument,
-    SetOption,
-    StrictOption,
-    SweepOption,
-    VariantOption,
-    WorkersOption,
+    PrintOptions,
+    SceneOptions,
+    SweepOptions,
     app,
-    load,
+    command,
     results_of,
     warn,
 )
@@ -62,18 +56,16 @@ def list_scenes(as_json: JsonOption = False) -> None:
             terminal.say_wrapped(f"    variants: {'; '.join(one['variants'])}", " " * 6)
 
 
-@app.command()
+@command
 def run(
-    scene: SceneArgument,
+    asked: SceneOptions,
+    sweeps: SweepOptions,
+    shown: PrintOptions,
     engine: EngineOption = [Engine(DEM.engine)],
     model: ModelOption = None,
-    changes: SetOption = [],
-    variant: VariantOption = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for results (default: out/SCENE).")
     ] = None,
-    swept: SweepOption = [],
-    members: EnsembleOption = 0,
     every: Annotated[
         float,
         typer.Option(
@@ -87,10 +79,6 @@ def run(
         bool, typer.Option("--resume", help="Continue an interrupted run from its checkpoint.")
     ] = False,
     fresh: FreshOption = False,
-    workers: WorkersOption = CORES,
-    dry: DryOption = False,
-    strict: StrictOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Simulate a scene and write its results as NetCDF files.
 
@@ -114,51 +102,46 @@ def run(
     if fresh and resume:
         allowed = "computes anew what --resume would continue: give one of them"
         raise SceneError("--fresh", "", None, allowed)
-    out = results_of(scene, out)
+    out = results_of(asked.scene, out)
     wanted = jobs.wanted([e.value for e in engine], model or [])
-    if swept or members:
+    if sweeps.swept or sweeps.members:
         from jointwave.compare.cli.study_view import sweep
-        from jointwave.compare.studies.sweep import run_scene, sweep_of
-
-        cases_of = sweep_of(scene, changes, variant, swept, out, members, fresh)
-        work = partial(run_scene, runs=wanted)
+        from jointwave.compare.studies.sweep import run_scene
 
         def solvers(one: AnyScene) -> list[str]:
             return [job.name for job in jobs.plan([one], wanted, out)[0]]
 
-        sweep(cases_of, work, solvers, workers, dry, as_json, strict)
+        work = partial(run_scene, runs=wanted)
+        sweep(asked, sweeps, out, fresh, lambda _: work, solvers, shown)
         return
-    scenes = load(scene, changes, variant, strict)
-    asked, left_out = jobs.plan(scenes, wanted, out)
-    warn(scenes[:1], strict, lambda _: map(str, left_out))
-    if dry:
+    scenes = asked.load()
+    todo, left_out = jobs.plan(scenes, wanted, out)
+    warn(scenes[:1], asked.strict, lambda _: map(str, left_out))
+    if shown.dry:
         from jointwave.compare.cli.forecast_view import show_forecasts
         from jointwave.compare.runs.reuse import ResultFolder
         from jointwave.compare.studies.forecast import runs_of
 
         stored = ResultFolder(out, fresh)
-        found = [run for job in asked for run in runs_of([job.name], job.scene, stored)]
-        show_forecasts([run._replace(for_paraview=True) for run in found], as_json)
+        found = [run for job in todo for run in runs_of([job.name], job.scene, stored)]
+        show_forecasts([run._replace(for_paraview=True) for run in found], shown.as_json)
         return
     processes = started()
-    folders = {job.path.parent for job in asked}
+    folders = {job.path.parent for job in todo}
     settings = CheckpointSettings(every, resume, watched(), fresh)
-    with ExitStack() as held, terminal.progress(f"{len(asked)} runs") as advance:
+    with ExitStack() as held, terminal.progress(f"{len(todo)} runs") as advance:
         processes.by_first(lambda: held.enter_context(locked(out, *folders)))
-        done = runs.execute(asked, advance, processes, settings)
-    processes.by_first(lambda: run_view.show_runs(done, as_json))
+        done = runs.execute(todo, advance, processes, settings)
+    processes.by_first(lambda: run_view.show_runs(done, shown.as_json))
 
 
-@app.command()
+@command
 def explain(
-    scene: SceneArgument,
+    asked: SceneOptions,
     every: Annotated[
         bool,
         typer.Option("--all", help="Also absent effects and solutions that do not apply, and why."),
     ] = False,
-    changes: SetOption = [],
-    variant: VariantOption = None,
-    strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Print what a scene has, its time steps, and what can solve it.
@@ -170,6 +153,6 @@ def explain(
     from jointwave.compare.cli.explain import explanation
     from jointwave.compare.cli.explain_view import show_explanation
 
-    for one in load(scene, changes, variant or "", strict):
+    for one in asked.load(every=False):
         found = explanation(one)
         terminal.print_json(found) if as_json else show_explanation(found, every)

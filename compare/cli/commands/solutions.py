@@ -10,39 +10,31 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli import terminal
 from jointwave.compare.cli.options import (
-    CORES,
     DryOption,
     EngineOption,
-    EnsembleOption,
-    FreshOption,
-    JsonOption,
     ModelOption,
-    ResultsOption,
-    SceneArgument,
-    SetOption,
-    StrictOption,
-    SweepOption,
-    VariantOption,
+    PrintOptions,
+    SceneOptions,
+    StoredOptions,
+    SweepOptions,
     WithOption,
-    WorkersOption,
-    app,
-    load,
-    results_of,
+    command,
     warn,
 )
 
 
-@app.command()
+@command
 def compare(
-    scene: SceneArgument,
+    asked: SceneOptions,
+    sweeps: SweepOptions,
+    stored: StoredOptions,
+    shown: PrintOptions,
     every: Annotated[
         bool, typer.Option("--all", help="Also every misfit, and why other solutions do not apply.")
     ] = False,
     reads: Annotated[
         bool, typer.Option("--read", help="Also peak velocity, Arias intensity, spectra, speeds.")
     ] = False,
-    changes: SetOption = [],
-    variant: VariantOption = None,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for tables, curves, figure and, without --results, results."),
@@ -54,14 +46,6 @@ def compare(
     align: Annotated[
         bool, typer.Option("--align", help="Align each --with curve by cross-correlation.")
     ] = False,
-    swept: SweepOption = [],
-    members: EnsembleOption = 0,
-    workers: WorkersOption = CORES,
-    results: ResultsOption = None,
-    fresh: FreshOption = False,
-    dry: DryOption = False,
-    strict: StrictOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Solve a scene by all that applies; say how far apart, and why.
 
@@ -85,60 +69,56 @@ def compare(
     from jointwave.compare.cli.comparison_view import show_comparisons
     from jointwave.compare.misfit.ranking import applicable, deciding
     from jointwave.compare.runs import comparison
-    from jointwave.compare.runs.reuse import ResultFolder
 
-    if swept or members:
+    if sweeps.swept or sweeps.members:
         from jointwave.compare.cli.study_view import sweep
-        from jointwave.compare.studies.sweep import compare_scene, sweep_of
+        from jointwave.compare.studies.sweep import compare_scene
 
-        asked = sweep_of(scene, changes, variant, swept, out, members, fresh)
-        curves = _read_curves(given, asked.scenes, align, strict)
-        work = partial(compare_scene, spectral=spectral, curves=curves, align=align)
+        def work_of(scenes: list[AnyScene]) -> Any:
+            curves = _read_curves(given, scenes, align, asked.strict)
+            return partial(compare_scene, spectral=spectral, curves=curves, align=align)
+
         writes = ("distances", "tables")[: 1 if out is None else 2]
-        sweep(asked, work, applicable, workers, dry, as_json, strict, writes)
+        sweep(asked, sweeps, out, stored.fresh, work_of, applicable, shown, writes)
         return
-    scenes = load(scene, changes, variant, strict)
-    curves = _read_curves(given, scenes, align, strict)
-    stored = ResultFolder(results_of(scene, results or out), fresh)
-    shows_all = every or as_json or out is not None or bool(curves)
-    if dry:
+    scenes = asked.load()
+    curves = _read_curves(given, scenes, align, asked.strict)
+    folder = stored.folder(asked.scene, out)
+    shows_all = every or shown.as_json or out is not None or bool(curves)
+    if shown.dry:
         from jointwave.compare.cli.forecast_view import show_forecasts
         from jointwave.compare.studies.forecast import runs_of
 
         wanted = applicable if shows_all else deciding
-        runs = [run for one in scenes for run in runs_of(wanted(one), one, stored)]
+        runs = [run for one in scenes for run in runs_of(wanted(one), one, folder)]
         parts = {"distances": len(scenes) * shows_all, "tables": len(scenes) * bool(out)}
-        show_forecasts(runs, as_json, parts)
+        show_forecasts(runs, shown.as_json, parts)
         return
     found = []
     for one in scenes:
         with terminal.progress(one.name or one.title) as advance:
             if shows_all:
-                found.append(comparison.compare(one, curves, advance, align, spectral, stored))
+                found.append(comparison.compare(one, curves, advance, align, spectral, folder))
             else:
-                found.append(comparison.solved(one, deciding(one), advance, stored))
+                found.append(comparison.solved(one, deciding(one), advance, folder))
     if out is not None:
         from jointwave.compare.figures.comparison import write_comparisons
 
         write_comparisons(found, out)
-    show_comparisons(found, every, as_json, reads)
+    show_comparisons(found, every, shown.as_json, reads)
 
 
-@app.command()
+@command
 def figure(
-    scene: SceneArgument,
+    asked: SceneOptions,
+    stored: StoredOptions,
     out: Annotated[Path, typer.Option(help="Output file: .pdf, .svg or .png.")],
     engine: EngineOption = [],
     model: ModelOption = None,
-    changes: SetOption = [],
-    variant: VariantOption = None,
     given: WithOption = [],
     width: Annotated[float, typer.Option(min=60, max=1000, help="Width, mm.")] = 90.0,
     font_size: Annotated[float, typer.Option(min=4, max=40, help="Size of letters, pt.")] = 8.0,
-    results: ResultsOption = None,
-    fresh: FreshOption = False,
     dry: DryOption = False,
-    strict: StrictOption = False,
 ) -> None:
     """Draw the waveforms of a scene as a figure for a paper.
 
@@ -153,27 +133,26 @@ def figure(
     from jointwave.compare.misfit.ranking import applicable
     from jointwave.compare.runs import comparison, jobs
     from jointwave.compare.runs.output import check_out
-    from jointwave.compare.runs.reuse import ResultFolder
 
     check_out(out)
     rc = printed(width, font_size)
-    scenes = load(scene, changes, variant, strict)
+    scenes = asked.load()
     runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []
-    curves = _read_curves(given, scenes, False, strict)
-    stored, found = ResultFolder(results_of(scene, results), fresh), []
+    curves = _read_curves(given, scenes, False, asked.strict)
+    folder, found = stored.folder(asked.scene), []
     named = [[name for run in runs for name in jobs.names_of(*run, one)] for one in scenes]
     if dry:
         from jointwave.compare.cli.forecast_view import show_forecasts
         from jointwave.compare.studies.forecast import runs_of
 
         both = zip(scenes, named, strict=True)
-        wanted = [run for one, of in both for run in runs_of(of or applicable(one), one, stored)]
+        wanted = [run for one, of in both for run in runs_of(of or applicable(one), one, folder)]
         show_forecasts(wanted, False, {"figures": len(scenes)})
         return
     for one, names in zip(scenes, named, strict=True):
         with terminal.progress(one.name or one.title) as advance:
-            asked = {name: applies(name, one) for name in names} or applicable(one)
-            drawn = comparison.solved(one, asked, advance, stored)
+            answers = {name: applies(name, one) for name in names} or applicable(one)
+            drawn = comparison.solved(one, answers, advance, folder)
             drawn.besides += [align_curve(x, one, drawn.results, False) for x in curves]
             found.append(drawn)
     whole = waveforms.figure(found, width, font_size)
