@@ -1,5 +1,6 @@
 """Numbers as text, the same on the terminal and on the page."""
 
+from collections.abc import Callable, Iterable
 from math import isfinite
 from typing import Any
 
@@ -47,3 +48,9 @@ def cell(value: Any) -> str:
             return NONE
         return f"{value:.0f}" if value.is_integer() and abs(value) < 1e9 else f"{value:.4g}"
     return str(value)
+
+
+def span(values: Iterable[float], write: Callable[[float], str] = "{:.3g}".format) -> str:
+    """Return the least and the largest of some numbers, "1 to 3", or one where they read alike."""
+    ordered = sorted(values)
+    return " to ".join(dict.fromkeys(write(x) for x in (ordered[0], ordered[-1])))

@@ -14,35 +14,19 @@ TOLD_BELOW = ("fragments", "static_out_of_balance", "fields")
 def show_runs(done: Sequence[Done], as_json: bool) -> None:
     """Print what was run, what it cost and where it is."""
     say_warnings(f"{d.job.scene.name}: {d.ledger}".lstrip(": ") for d in done if d.ledger)
-    facts = [
-        {
-            "variant": one.job.scene.name,
-            "engine": one.job.name,
-            "steps": one.steps,
-            "seconds_stepping": one.seconds,
-            "energy_residual": one.residual,
-            "file": str(one.job.path),
-            "fragments": one.fragments,
-            "static_out_of_balance": one.out_of_balance,
-            "fields": [str(path) for path in one.fields],
-        }
-        for one in done
-    ]
     if as_json:
-        print_json(facts)
+        print_json([one.facts for one in done])
         return
-    rows = [{key: one[key] for key in one if key not in TOLD_BELOW} for one in facts]
-    for row in rows:
-        row["engine"] = label_of(str(row["engine"]))
-    show_facts({"runs": rows}, LABELS)
+    rows = [{key: x for key, x in one.facts.items() if key not in TOLD_BELOW} for one in done]
+    show_facts({"runs": [row | {"engine": label_of(row["engine"])} for row in rows]}, LABELS)
     for one in done:
-        name, pieces = one.job.scene.name or label_of(one.job.name), one.fragments
-        if one.out_of_balance is not None:
-            say(f"{name}: starts at rest, out-of-balance force ratio {one.out_of_balance:.1e}")
+        name, pieces = one.job.scene.name or label_of(one.job.name), one.facts["fragments"]
+        if (ratio := one.facts["static_out_of_balance"]) is not None:
+            say(f"{name}: starts at rest, out-of-balance force ratio {ratio:.1e}")
         if pieces is not None:
             say(f"{name}: {len(pieces) - 1 or 'no'} joints broke")
             show_facts({"fragments": pieces[1:] and pieces}, LABELS)
-        for path in one.fields:
+        for path in one.facts["fields"]:
             say(f"{name}: snapshots for ParaView, {path}")
-        if one.job.scene.record.fields is not None and not one.fields:
+        if one.job.scene.record.fields is not None and not one.facts["fields"]:
             say(f"{name}: no snapshots: the solution is known at the receivers only")

@@ -1,5 +1,6 @@
-"""Studies on the terminal: their progress, and their summary."""
+"""Studies and plans on the terminal: their progress, and their summary."""
 
+import shlex
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from pathlib import Path
@@ -7,17 +8,21 @@ from pathlib import Path
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli.forecast_view import show_forecasts
 from jointwave.compare.cli.options import PrintOptions, SceneOptions, SweepOptions, warn
-from jointwave.compare.cli.terminal import print_json, progress, say, show_frame
-from jointwave.compare.engines import Progress
+from jointwave.compare.cli.terminal import print_json, progress, say, show_frame, show_table
+from jointwave.compare.engines import Progress, label_of
 from jointwave.compare.runs.checkpoint.lock import locked
+from jointwave.compare.runs.jobs import options_of
 from jointwave.compare.runs.processes import started
 from jointwave.compare.runs.reuse import ResultFolder
 from jointwave.compare.studies.catalogue import Experiment
 from jointwave.compare.studies.forecast import Run, runs_of
+from jointwave.compare.studies.plan import Plan
+from jointwave.compare.studies.reference import Reference
 from jointwave.compare.studies.store import Pool, on_pool, plain
 from jointwave.compare.studies.summary import Summary
-from jointwave.compare.studies.sweep import Work, run, sweep_of
+from jointwave.compare.studies.sweep import Work, cases_of, run
 from jointwave.compare.studies.sweep_table import summarise
+from jointwave.compare.text import percent
 
 
 def run_and_show(one: Experiment, out: Path | None, workers: int, shown: PrintOptions) -> None:
@@ -55,25 +60,26 @@ def sweep(
     of a scene's solvers. parts : what else each case does, see `show_forecasts`. Raises SceneError
     if all cases fail.
     """
-    found = sweep_of(*asked[:3], sweeps.swept, out, sweeps.members, fresh)
-    work = work_of(found.scenes)
-    warn(found.scenes, asked.strict)
+    cases = cases_of(*asked[:3], sweeps.swept, out, sweeps.members)
+    scenes = [case.scene for case in cases if case.scene is not None]
+    work, keys = work_of(scenes), list(cases[0].settings)
+    warn(scenes, asked.strict)
     if shown.dry:
         runs: list[Run] = []
-        for case in found.cases:
+        for case in cases:
             if case.scene is not None:
                 stored = ResultFolder(case.folder, fresh)
                 runs += runs_of(solvers(case.scene), case.scene, stored, point=case.point)
-        failing = {case.point: case.message for case in found.cases if case.scene is None}
+        failing = {case.point: case.message for case in cases if case.scene is None}
         others = {"processes": sweeps.workers * (sweeps.workers > 1)}
-        others |= dict.fromkeys(parts, len(found.scenes))
+        others |= dict.fromkeys(parts, len(scenes))
         show_forecasts(runs, shown.as_json, others, failing)
         return
 
     def done(pool: Pool | None, advance: Progress | None) -> Summary:
-        return summarise(found, run(found, work, pool, advance))
+        return summarise(asked.scene, keys, out, run(cases, out, fresh, work, pool, advance))
 
-    one = Experiment(f"{len(found.cases)} points", list, done)
+    one = Experiment(f"{len(cases)} points", list, done)
     run_and_show(one, out, sweeps.workers, shown)
 
 
@@ -91,3 +97,39 @@ def show(found: Summary, as_json: bool) -> None:
         say(found.note)
     if found.files:
         say(f"written: {', '.join(map(str, found.files))}")
+
+
+def show_plan(one: Plan, path: str, changes: list[str]) -> None:
+    """Print the choice for a scene, with the command that runs it.
+
+    path, changes : of the scene, as the user gives them.
+    """
+    say(", ".join(filter(None, [one.scene.title, one.scene.name])))
+    why = "" if one.finest.settings else f" ({one.reason})"
+    say(f"modelling error: against {_named(one.finest)}{why}")
+    best, asked = one.chosen, percent(one.asked)
+    if best is None:
+        for reason in dict.fromkeys(one.skipped.values()):
+            say(f"skipped: {reason}")
+        say(f"{asked} % is not met: no engine's model is near enough to the finest physics in time")
+        return
+    say(f"numerical error: against {_named(best.reference)}, the engine's own model")
+    errors = [percent(x) for x in (best.numerical, best.modelling, best.misfit, one.misfit)]
+    columns = ["numerical", "modelling", "sum", "sum with smaller steps"]
+    columns = ["engine", *(f"{name} (%)" for name in columns), "stepping (s)"]
+    show_table(columns, [[label_of(best.elements.name), *errors, f"{best.seconds:.3g}"]])
+    chosen = ["jointwave", "run", path, "--variant", one.scene.name]
+    chosen += options_of(best.elements.name)
+    chosen += [part for text in [*changes, *best.options] for part in ("--set", text)]
+    say(shlex.join(chosen))
+    met = "the sum of errors meets" if one.is_met else "the nearest run, whose sum misses,"
+    say(f"{met} {asked} %; planning took {len(one.runs)} runs and {one.planning:.2g} s")
+
+
+def _named(reference: Reference) -> str:
+    """Describe the reference of errors, its accuracy, and its time limit."""
+    words = label_of(reference.name) + f" at {reference.settings}" * bool(reference.settings)
+    if reference.error:
+        words += f", accurate to {percent(reference.error)} %"
+    until = reference.result.attrs.get("known_until")
+    return words if until is None else f"{words}, valid until {float(until):.3g} s"

@@ -7,17 +7,25 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import ENGINES, applies, names
 from jointwave.compare.figures.charts.energy import energy
-from jointwave.compare.figures.charts.peak_velocities import peak_velocities
+from jointwave.compare.figures.charts.maps import peak_velocities
 from jointwave.compare.figures.charts.propagation import propagation
 from jointwave.compare.figures.charts.spacetime import diagrams_of, space_time
 from jointwave.compare.figures.charts.spectra import spectra
-from jointwave.compare.figures.charts.waveforms import waveforms
-from jointwave.compare.figures.drawing.scene import scene_figure
-from jointwave.compare.figures.export import SceneFigure
+from jointwave.compare.figures.charts.waveforms import (
+    STYLES,
+    by_solution,
+    draw_waveforms,
+    waveforms,
+)
+from jointwave.compare.figures.drawing.scene import scene_figure, sketch_of
+from jointwave.compare.figures.export import SceneFigure, blank
+from jointwave.compare.figures.receivers import Panel
 from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import own_exact
 from jointwave.compare.runs.reuse import NOWHERE, ResultFolder
+
+HEIGHT, WIDTHS = 3.2, (1.0, 1.3)  # inches of the lead, and shares of the scene and waveform
 
 
 def figures_of(
@@ -51,6 +59,21 @@ def _space_time(
         for shown in diagrams_of(comparison.scene, found)
     ]
     return figures[:1] + [one._replace(folded=True) for one in figures[1:]]
+
+
+def lead_figure(name: str, panel: Panel) -> SceneFigure:
+    """Return the scene of a panel beside the panel."""
+    with blank(HEIGHT) as figure:
+        left, right = figure.subplots(1, 2, width_ratios=WIDTHS)
+        sketch_of(panel.comparison.scene)._replace(size="").draw(left)
+        draw_waveforms(right, by_solution(panel))
+        right.set_xlabel("time (ms)")
+        handles = right.get_legend_handles_labels()
+        figure.legend(*handles, loc="outside lower center", ncols=4, handlelength=4.0)
+    title = f"{panel.comparison.scene.title}: {panel.heading}"
+    curves = panel.recorded.rename(columns=panel.column)
+    table = curves.rename_axis("time (s)").reset_index()
+    return SceneFigure(f"{name}-lead", title, STYLES, figure, table)
 
 
 SECTIONS, TIMES = 60, 240  # largest numbers of intervals between sections and between samples

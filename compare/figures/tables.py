@@ -1,12 +1,17 @@
-"""Tables of a comparison in SI: distances, readings of velocities, how curves were aligned."""
+"""Tables of a comparison in SI, and its files: distances, readings of velocities, how curves were
+aligned."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from jointwave.cases.records import Column
+from jointwave.compare.figures.charts.waveforms import draw_solutions
+from jointwave.compare.figures.export import save
+from jointwave.compare.figures.receivers import curve_table
 from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.pairs import Comparison, Row
 from jointwave.compare.misfit.places import Place, places_of
@@ -19,8 +24,11 @@ from jointwave.compare.readings import (
 )
 from jointwave.compare.readings.attenuation import sampling, waveforms
 from jointwave.compare.readings.recordings import dataset_of
+from jointwave.compare.runs import timings
+from jointwave.compare.runs.output import write_csv
 
 PERIODS, SHORTEST = 60, 8  # of oscillators: how many, and the shortest period in samples
+NAME = "comparison"  # of the files of a comparison
 READINGS = (
     "peak velocity (m/s)",
     "Arias intensity (m/s)",
@@ -132,3 +140,20 @@ def _quality(result: xr.Dataset, i: int) -> float:
     loudest = np.fft.rfftfreq(row.sizes["time"], sampling(row))[1 + size[1:].argmax()]
     Q = float(quality_factor(result, 0, i).quality.sel(frequency=loudest, method="nearest"))
     return Q if 0 < Q < np.inf else np.nan
+
+
+def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
+    """Write the figure and the tables of a scene's variants into a folder: comparison.csv with the
+    curves, comparison-misfits.csv, and where there are velocities or curves of others
+    comparison-readings.csv and comparison-alignment.csv."""
+    folder, scene = Path(out), comparisons[0].scene
+    with timings.measured("tables", scene.kind, len(comparisons)):
+        curves = curve_table(comparisons)
+        save(draw_solutions(comparisons), folder, NAME, scene.title, curves)
+        write_csv(folder / f"{NAME}-misfits.csv", distance_frame(comparisons))
+        for name, table in (
+            ("readings", reading_frame(comparisons)),
+            ("alignment", alignment_frame(comparisons)),
+        ):
+            if not table.empty:
+                write_csv(folder / f"{NAME}-{name}.csv", table)

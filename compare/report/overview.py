@@ -1,12 +1,12 @@
 """The first screen: how far apart the engines are on every scene, and what each costs."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from math import isnan
 
 from jointwave.compare.engines import ENGINES, label_of
 from jointwave.compare.report.scenes import SolvedScene
 from jointwave.compare.report.verdict import NOT_CHECKED
-from jointwave.compare.text import in_seconds, percent, times
+from jointwave.compare.text import in_seconds, percent, span, times
 
 FEW = 2  # references that are named
 CLOSE = 0.2  # the largest misfit that a solution is said to be within
@@ -27,9 +27,9 @@ def _sentence(engine: str, scenes: list[SolvedScene]) -> str:
         for kind, some in of_kind.items()
     ]
     costs = [one.costs[engine] for one in scenes]
-    cost = f"{_span(times, costs)} the time of the cheapest"
+    cost = f"{span(costs, times)} the time of the cheapest"
     if max(costs) == 1:
-        cost = f"the cheapest: {_span(in_seconds, (one.seconds[engine] for one in scenes))} a run"
+        cost = f"the cheapest: {span((one.seconds[engine] for one in scenes), in_seconds)} a run"
     return f"{ENGINES[engine].sentence} {' and '.join(apart)}; {cost}."
 
 
@@ -53,8 +53,3 @@ def _reference(name: str) -> str:
     label = label_of(name)
     exact = label.removesuffix(", exact")
     return label if exact == label else f"the exact {exact}"
-
-
-def _span(write: Callable[[float], str], values: Iterable[float]) -> str:
-    ordered = sorted(values)
-    return " to ".join(dict.fromkeys(write(x) for x in (ordered[0], ordered[-1])))

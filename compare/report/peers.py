@@ -13,6 +13,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.files import read_text
 from jointwave.compare.figures.export import blank, save
 from jointwave.compare.studies.summary import Summary
+from jointwave.compare.text import span
 
 PLACE = Path("out/peers/points.csv")  # where `make bench-peers` writes
 LARGEST_FILE = 1_000_000  # bytes; the table has a row for each run
@@ -63,15 +64,11 @@ def sentences(done: pd.DataFrame) -> list[str]:
     """Return for each other code how many times as long as ours it takes."""
     groups = done[done.stepping_over_ours.notna()].groupby("curve", sort=False)
     said = [
-        f"{curve} beside {rows.beside.iloc[0]}: stepping {_span(rows.stepping_over_ours)} times, "
-        f"whole process {_span(rows.whole_over_ours)} times as long, with equal mesh and step."
+        f"{curve} beside {rows.beside.iloc[0]}: stepping {span(rows.stepping_over_ours)} times, "
+        f"whole process {span(rows.whole_over_ours)} times as long, with equal mesh and step."
         for curve, rows in groups
     ]
     return said or ["No other code ran: there is nothing to compare with."]
-
-
-def _span(values: pd.Series) -> str:
-    return " to ".join(dict.fromkeys(f"{x:.3g}" for x in (values.min(), values.max())))
 
 
 def _table(done: pd.DataFrame) -> pd.DataFrame:

@@ -13,9 +13,14 @@ import pandas as pd
 from jointwave import cases
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.figures.export import Drawn, SceneFigure, save
-from jointwave.compare.figures.lead import lead_figure
 from jointwave.compare.figures.receivers import panels
-from jointwave.compare.figures.scene_figures import ALONG, along_pillar, figures_of, runs_along
+from jointwave.compare.figures.scene_figures import (
+    ALONG,
+    along_pillar,
+    figures_of,
+    lead_figure,
+    runs_along,
+)
 from jointwave.compare.figures.tables import distance_frame, reading_frame
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import applicable

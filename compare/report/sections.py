@@ -11,8 +11,8 @@ from jointwave import cases, dem
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import pillar_of
 from jointwave.compare.engines import Progress
+from jointwave.compare.figures.animation.frame import draw_snapshots
 from jointwave.compare.figures.export import save
-from jointwave.compare.figures.snapshots import draw_snapshots
 from jointwave.compare.report import peers
 from jointwave.compare.runs.field_files import write_pvd
 from jointwave.compare.scenes import find

@@ -25,23 +25,15 @@ STOPPED = ".stopped.nc"  # the end of the name of a partial result
 
 
 class Done(NamedTuple):
-    """One computed result with its cost.
+    """One computed result. ledger : the warning of an open energy ledger, "" without.
 
-    residual, ledger : how far its energy ledger is open, over the work, and the warning of that; ""
-        where it closes.
-    fragments : the pieces between broken joints, see `dem.fragments`; None if no joint can break.
-    out_of_balance : force ratio of the static state at its start; None without one.
-    fields : the files that show its snapshots; empty without snapshots.
+    facts : machine-readable; `fragments`, the pieces between broken joints, are None if no joint
+        can break, `static_out_of_balance` without a static state at the start. `fields` are files.
     """
 
     job: Job
-    steps: int
-    seconds: float
-    residual: float | None
     ledger: str
-    fragments: list[dict] | None
-    out_of_balance: float | None
-    fields: list[Path]
+    facts: dict[str, Any]
 
 
 def execute(
@@ -136,16 +128,18 @@ def _write(
 def _done(job: Job, keeper: RunCheckpointer, result: xr.Dataset) -> Done:
     """Write the snapshots of a result and return its facts; its checkpoints are removed."""
     has_ledger = "energy" in result
-    done = Done(
-        job=job,
-        steps=int(result.attrs.get("steps", 0)),
-        seconds=float(result.attrs.get("seconds_stepping", 0.0)),
-        residual=energy_residual(result) if has_ledger else None,
-        ledger=open_ledger(result) if has_ledger else "",
-        fragments=json.loads(result.attrs.get("fragments", "null")),
-        out_of_balance=result.attrs.get("static_out_of_balance"),
-        fields=_write_snapshots(job, result),
-    )
+    facts = {
+        "variant": job.scene.name,
+        "engine": job.name,
+        "steps": int(result.attrs.get("steps", 0)),
+        "seconds_stepping": float(result.attrs.get("seconds_stepping", 0.0)),
+        "energy_residual": energy_residual(result) if has_ledger else None,
+        "file": str(job.path),
+        "fragments": json.loads(result.attrs.get("fragments", "null")),
+        "static_out_of_balance": result.attrs.get("static_out_of_balance"),
+        "fields": list(map(str, _write_snapshots(job, result))),
+    }
+    done = Done(job, open_ledger(result) if has_ledger else "", facts)
     keeper.files.remove()
     return done
 

@@ -38,11 +38,7 @@ REPORTED = {
 }
 
 
-class Variant(NamedTuple):
-    """One variant of a scene, and the scene's name as its user knows it."""
-
-    name: str
-    scene: AnyScene
+Variant = tuple[str, AnyScene]  #: a scene's name as its user knows it, and one of its variants
 
 
 class EffectRow(NamedTuple):
@@ -72,7 +68,7 @@ class EffectRow(NamedTuple):
 
 def reported() -> list[Variant]:
     """Return the variants of the report's page."""
-    return [Variant(name, cases.load_variant(find(name), of)) for name, of in REPORTED.items()]
+    return [(name, cases.load_variant(find(name), of)) for name, of in REPORTED.items()]
 
 
 def run(wanted: list[Variant], folder: Path, progress: Progress | None = None) -> pd.DataFrame:
@@ -103,23 +99,25 @@ def planned(wanted: list[Variant], folder: Path) -> list[Run]:
 
 def key(one: Variant) -> str:
     """Return the key of a variant: a hash of everything that determines its rows."""
-    return store.key(one.name, one.scene.name, scene_hash(one.scene))
+    name, scene = one
+    return store.key(name, scene.name, scene_hash(scene))
 
 
 def measure(variant: Variant) -> list[EffectRow]:
     """Return the rows of a variant; raises the errors of `solve` for rigid blocks, and SceneError
     for a scene without effects."""
-    if not active_effects(variant.scene):
-        raise SceneError(variant.scene.where, "", None, "has no effect to leave out")
+    scene = variant[1]
+    if not active_effects(scene):
+        raise SceneError(scene.where, "", None, "has no effect to leave out")
     rows = _rows(variant, BLOCKS)
-    if applies(ROCK, variant.scene):
+    if applies(ROCK, scene):
         with suppress(*FAILURES):
             rows += _rows(variant, ROCK)
     return rows
 
 
 def _rows(variant: Variant, engine: str) -> list[EffectRow]:
-    scene = variant.scene
+    name, scene = variant
     result, without, found = solve(engine, scene), {}, {}
     for effect in active_effects(scene):
         about: dict[str, Any] = {}
@@ -139,7 +137,7 @@ def _rows(variant: Variant, engine: str) -> list[EffectRow]:
     for effect, less in zip(without, costs, strict=False):
         ns = own.ns - less.ns
         found[effect] |= {"ns": ns, "noise": own.noise + less.noise, "share": ns / own.ns}
-    of = variant.name, scene.title, scene.name, engine
+    of = name, scene.title, scene.name, engine
     everything = costs[-1].ns if full else nan
     return [
         EffectRow(*of, effect, own=own.ns, everything=everything, **about)

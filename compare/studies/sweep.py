@@ -23,7 +23,7 @@ from jointwave.cases.errors import InterruptedRun, SceneError
 from jointwave.cases.read import parse_override
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import Progress
-from jointwave.compare.figures.comparison import write_comparisons
+from jointwave.compare.figures.tables import write_comparisons
 from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.places import Place, places_of
 from jointwave.compare.runs import comparison
@@ -70,32 +70,16 @@ class Case(NamedTuple):
         return self.scene.name if self.scene else ""
 
 
-class Sweep(NamedTuple):
-    """A sweep of a scene: its name, all variants at every point, the folder, None writes nothing,
-    and whether to compute anew what it has."""
-
-    scene: str
-    cases: list[Case]
-    out: Path | None
-    fresh: bool = False
-
-    @property
-    def scenes(self) -> list[AnyScene]:
-        """The scenes of all cases that have one."""
-        return [case.scene for case in self.cases if case.scene is not None]
-
-
-def sweep_of(
+def cases_of(
     scene: str,
     changes: list[str],
     variant: str | None,
     given: list[str],
     out: Path | None,
     members: int = 0,
-    fresh: bool = False,
-) -> Sweep:
-    """Return the sweep of `--set`, `--variant`, `--sweep`, `--ensemble` and `--fresh`; raises
-    SceneError in one line, also if no point has a valid scene."""
+) -> list[Case]:
+    """Return all variants at every point of `--set`, `--variant`, `--sweep` and `--ensemble`;
+    raises SceneError in one line, also if no point has a valid scene."""
     fixed = dict(map(parse_override, changes))
     values = axes(given, list(fixed)) | ({MEMBER: [*range(1, members + 1)]} if members else {})
     path, found, errors = find(scene), [], []
@@ -111,7 +95,7 @@ def sweep_of(
             found += [Case(setting, folder, one) for one in scenes]
     if errors and len(errors) == len(found):
         raise errors[0]
-    return Sweep(scene, found, out, fresh)
+    return found
 
 
 def _scenes(path: Path, variant: str | None, changes: dict[str, Any]) -> list[AnyScene]:
@@ -128,25 +112,28 @@ def _folder(setting: dict[str, Any], number: int) -> str:
 
 
 def run(
-    asked: Sweep, work: Work, pool: Pool | None = None, progress: Progress | None = None
+    cases: list[Case],
+    out: Path | None,
+    fresh: bool,
+    work: Work,
+    pool: Pool | None = None,
+    progress: Progress | None = None,
 ) -> pd.DataFrame:
     """Return the table of a sweep, SI: the rows of all cases in order, with their keys, variant and
     folder, `state`, "done" or "failed", and the reason in `message`.
 
-    Completed cases are read from the folder, if their files are still there.
+    out : the folder; None writes nothing. Completed cases are read from it, if their files are
+    still there. fresh : compute them anew.
     """
-    points = asked.out and asked.out / "points"
-    saved: Store[Rows] = Store(Rows, points, _has_files, asked.fresh)
-    about, outcome = partial(_key, work=work), partial(_outcome, work=work, fresh=asked.fresh)
-    found = saved.compute(asked.cases, about, outcome, pool, progress, lambda one: _failed(DIED))
+    saved: Store[Rows] = Store(Rows, out and out / "points", _has_files, fresh)
+    about, outcome = partial(_key, work=work), partial(_outcome, work=work, fresh=fresh)
+    found = saved.compute(cases, about, outcome, pool, progress, lambda one: _failed(DIED))
     return pd.DataFrame(
         {key: _cell(value) for key, value in case.settings.items()}
-        | {
-            "variant": case.variant,
-            "folder": str(case.folder / case.variant if case.folder else ""),
-        }
+        | {"variant": case.variant}
+        | {"folder": str(case.folder / case.variant if case.folder else "")}
         | row
-        for case, rows in zip(asked.cases, found, strict=True)
+        for case, rows in zip(cases, found, strict=True)
         for row in rows
     )
 
@@ -193,13 +180,14 @@ def run_scene(
         raise left_out[0]
     for done in execute(jobs, lambda fraction: None, settings=settings):
         result = load_netcdf(done.job.path)
+        facts, residual = done.facts, done.facts["energy_residual"]
         about = {
             "engine": done.job.name,
-            "steps": done.steps,
+            "steps": facts["steps"],
             "freedoms": float(result.attrs.get("degrees_of_freedom", nan)),
-            "seconds": done.seconds,
-            "energy_residual": nan if done.residual is None else done.residual,
-            "file": str(done.job.path),
+            "seconds": facts["seconds_stepping"],
+            "energy_residual": nan if residual is None else residual,
+            "file": facts["file"],
         }
         nowhere = {"quantity": "", "y": nan, "peak": nan, "time_of_peak": nan}
         rows += [about | peak for peak in [*_peaks(result)] or [nowhere]]

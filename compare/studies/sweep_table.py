@@ -1,6 +1,7 @@
 """The summary of a sweep; of an ensemble also the statistics over its members."""
 
 import json
+from pathlib import Path
 from typing import Any
 
 import pandas as pd
@@ -14,7 +15,6 @@ from jointwave.compare.runs.output import write_csv
 from jointwave.compare.studies import ensemble
 from jointwave.compare.studies.ensemble import MEMBER
 from jointwave.compare.studies.summary import Summary
-from jointwave.compare.studies.sweep import Sweep
 
 #: Numbers at a receiver of a run, and of a pair of solutions, by the column that names them.
 NUMBERS = {
@@ -26,24 +26,25 @@ NUMBERS = {
 HEADINGS = {"time_of_peak": "time of peak (s)", "seconds": "stepping (s)", "delay": "delay (s)"}
 
 
-def summarise(asked: Sweep, rows: pd.DataFrame) -> Summary:
+def summarise(scene: str, keys: list[str], out: Path | None, rows: pd.DataFrame) -> Summary:
     """Return the summary of a sweep's table; write sweep.csv, and of an ensemble its statistics.
 
-    Raises SceneError if all cases have failed.
+    scene : its name. keys : that are swept. out : None writes nothing. Raises SceneError if all
+    cases have failed.
     """
     done, failed = rows[rows.state == "done"], rows[rows.state == "failed"]
     if done.empty:
         allowed = f"all {len(failed)} points fail: {failed.message.iloc[0]}"
-        raise SceneError(asked.scene, "", None, allowed)
-    files = [] if asked.out is None else [write_csv(asked.out / "sweep.csv", rows)]
+        raise SceneError(scene, "", None, allowed)
+    files = [] if out is None else [write_csv(out / "sweep.csv", rows)]
     facts = {"rows": _records(rows)}
-    by, keys = "pair" if "pair" in done else "engine", list(asked.cases[0].settings)
+    by = "pair" if "pair" in done else "engine"
     shown, numbers, legend = done, list(NUMBERS[by]), "All numbers are in sweep.csv."
     if MEMBER in keys:
         shown = ensemble.statistics(done, keys, numbers)
         facts["statistics"] = _records(shown)
-        if asked.out is not None:
-            files += ensemble.write(asked.out, shown, done, keys)
+        if out is not None:
+            files += ensemble.write(out, shown, done, keys)
         shown = shown[shown.number == numbers[0]]
         legend = f"{numbers[0]}: mean and percentiles over the members; all are in ensemble.csv."
         numbers = [*ensemble.STATISTICS, "members"]
@@ -54,7 +55,7 @@ def summarise(asked: Sweep, rows: pd.DataFrame) -> Summary:
     points = failed.agg(lambda row: ", ".join(f"{key}={row[key]}" for key in keys), axis=1)
     return Summary(
         "sweep",
-        asked.scene,
+        scene,
         _display(shown, by, [key for key in keys if key != MEMBER], numbers),
         [],
         [*(points + " " + failed.variant + ": " + failed.message)] if len(failed) else [],

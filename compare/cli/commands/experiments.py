@@ -38,12 +38,12 @@ def effects(
     """
     from jointwave.compare.cli.study_view import run_and_show
     from jointwave.compare.studies.catalogue import Experiment
-    from jointwave.compare.studies.effects import Variant, planned, run
+    from jointwave.compare.studies.effects import planned, run
     from jointwave.compare.studies.effects_summary import summarise
 
-    wanted = [Variant(asked.scene, one) for one in asked.load(every=False)]
+    wanted = [(asked.scene, one) for one in asked.load(every=False)]
 
-    title, runs = wanted[0].scene.title, partial(planned, wanted, out)
+    title, runs = wanted[0][1].title, partial(planned, wanted, out)
     one = Experiment(title, runs, lambda _, tell: summarise(out, run(wanted, out, tell)))
     run_and_show(one, out, 1, shown)
 
@@ -64,7 +64,7 @@ def plan(
 
     Runs from the cheapest one on, until one meets the misfit, and prints the command for that run.
     """
-    from jointwave.compare.cli.plan_view import show_plan
+    from jointwave.compare.cli.study_view import show_plan
     from jointwave.compare.studies import plan as plans
 
     for one in asked.load(every=False):

@@ -102,7 +102,7 @@ def compare(
             else:
                 found.append(comparison.solved(one, deciding(one), advance, folder))
     if out is not None:
-        from jointwave.compare.figures.comparison import write_comparisons
+        from jointwave.compare.figures.tables import write_comparisons
 
         write_comparisons(found, out)
     show_comparisons(found, every, shown.as_json, reads)

@@ -8,8 +8,10 @@ import numpy as np
 import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import label_of
 from jointwave.compare.figures.animation.bodies import (
     ABOVE,
@@ -19,17 +21,24 @@ from jointwave.compare.figures.animation.bodies import (
     body_of,
     colours_of,
 )
-from jointwave.compare.figures.animation.settings import PRINCIPAL, STRESS, ViewSettings
+from jointwave.compare.figures.animation.settings import (
+    PRINCIPAL,
+    STRESS,
+    ViewSettings,
+    settings_for,
+)
 from jointwave.compare.figures.animation.snapshots import SceneSnapshots
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.receivers import panels
 from jointwave.compare.figures.style import RC, style
 from jointwave.compare.figures.units import UNITS, unit_for
 from jointwave.compare.misfit.pairs import Comparison
+from jointwave.results.snapshots import Snapshots
 
 SIZE, PIXELS = (12.8, 7.2), (1280, 720)  # inches
 BODIES = 2.8  # inches of all pillars at most
 LETTERS = 85  # per line of the title
+HEAD, STRIP = 0.7, 0.95  # inches above snapshots, and of a pillar
 
 
 class Frame:
@@ -163,3 +172,25 @@ class Frame:
         ax.set(xlim=1e3 * self.time[[0, -1]], ylim=(-reach, reach))
         ax.set_ylabel(f"{first.place.named}\n({unit.name})")
         ax.set_xlabel(f"time (ms); at y = {first.place.at[0]:g} m")
+
+
+def draw_snapshots(name: str, scene: AnyScene, s: Snapshots) -> Figure:
+    """Return a figure of snapshots one below the other, with exaggerated displacements.
+
+    The pillar of instant i is the SVG group NAME-i.
+    """
+    settings = settings_for(scene, {"": s})
+    body = body_of(s, scene, settings)
+    colours = colours_of([body.values], settings.quantity.sign)
+    with blank(HEAD + STRIP * len(s.time)) as figure:
+        axes = figure.subplots(len(s.time), 1, squeeze=False)[:, 0]
+        for i, (ax, time) in enumerate(zip(axes, s.time, strict=True)):
+            view = BodyView(ax, body, colours, OBLIQUE)
+            view.show(i)
+            view.faces.set_gid(f"{name}-{i}")
+            ax.set(xticks=[], yticks=[], frame_on=False)
+            ax.set_ylabel(f"{1e3 * time:g} ms", rotation=0, ha="right", va="center")
+        axes[-1].set_xlabel(f"y to the right; {settings.caption}")
+        label = settings.quantity.label
+        figure.colorbar(colours, ax=axes, label=label, location="top", shrink=0.4, aspect=30)
+    return figure

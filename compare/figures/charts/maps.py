@@ -4,6 +4,7 @@ from textwrap import fill
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from matplotlib import rcParams
 from matplotlib.axes import Axes
@@ -14,13 +15,16 @@ from matplotlib.ticker import MaxNLocator
 
 from jointwave.cases.errors import require
 from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import in_order
 from jointwave.compare.figures.animation.bodies import colours_of
 from jointwave.compare.figures.animation.settings import SLIP, stretch_of
 from jointwave.compare.figures.body_maps import Map, difference, maps_of, scene_of
 from jointwave.compare.figures.charts.axes import LETTER
 from jointwave.compare.figures.drawing.sketch import ROCKS
-from jointwave.compare.figures.export import blank
+from jointwave.compare.figures.export import SceneFigure, blank
 from jointwave.compare.figures.style import DIFFERENCE, RC, SIZE, printed
+from jointwave.compare.figures.variants import variant_names
+from jointwave.compare.misfit.pairs import Comparison
 from jointwave.results.dataset import A_RESULT
 
 MANY = 3000  # faces above which they are an image in the drawing
@@ -29,6 +33,10 @@ TALLEST = 0.7  # height of a single map over the width of the figure
 BAR, TITLE, BESIDE = 0.9, 0.25, 0.7  # inches: of a colour bar, above a map, and beside it
 JOINT, WIDTH = "#333333", 60.0  # colour of joints; width (points) of all of them together
 SLIPPED = 1.6  # points, width of joints with the colour of their slip
+PEAKS = (
+    "The largest particle velocity of each cell, the mean of its nodes', over all snapshots "
+    "(record.fields): peaks between snapshots are missed."
+)
 
 
 def plot_map(
@@ -158,3 +166,28 @@ def _beyond(maps: list[Map], colours: ScalarMappable) -> str:
     share = sizes @ (np.abs(np.concatenate([one.values for one in maps])) > most) / sizes.sum()
     of = "length" if maps[0].quantity == SLIP else "area"
     return f"\n{100 * share:.2g} % of the {of} is beyond" if share else ""
+
+
+def peak_velocities(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
+    """Return the maps of peak velocity, one figure per variant; empty for a pillar, or without
+    snapshots of a whole field."""
+    found = []
+    for k, (variant, one) in enumerate(zip(variant_names(comparisons), comparisons, strict=True)):
+        results = [one.results[engine] for engine in in_order(one.results)]
+        results = [result for result in results if "field_velocity" in result]
+        if not one.scene.is_column and results:
+            maps = maps_of(one.scene, results, "ppv")
+            title, stem = f"Peak particle velocity, {variant}", f"{name}-peak-velocity-{k}"
+            drawn = draw_maps(maps, one.scene)
+            found.append(SceneFigure(stem, title, PEAKS, drawn, _table(maps), bool(k)))
+    return found
+
+
+def _table(maps: dict[str, Map]) -> pd.DataFrame:
+    """Return the middle of every cell with its peak velocity, SI."""
+    parts = [
+        pd.DataFrame({"engine": name, "x (m)": x, "y (m)": y, "peak velocity (m/s)": one.values})
+        for name, one in maps.items()
+        for x, y in [one.corners.mean(axis=1).T]
+    ]
+    return pd.concat(parts, ignore_index=True)

@@ -5,7 +5,7 @@ import pytest
 
 from jointwave.cases.read import load_tables
 from jointwave.compare.figures.body_maps import maps_of
-from jointwave.compare.figures.charts.peak_velocities import peak_velocities
+from jointwave.compare.figures.charts.maps import peak_velocities
 
 
 @pytest.fixture(scope="module")

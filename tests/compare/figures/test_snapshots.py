@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from jointwave.compare.figures.animation.frame import draw_snapshots
 from jointwave.compare.figures.export import save
-from jointwave.compare.figures.snapshots import draw_snapshots
 from jointwave.results.snapshots import snapshots
 from jointwave.results.subcells import CORNERS
 

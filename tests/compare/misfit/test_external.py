@@ -10,9 +10,9 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.schema.tables import Prestress
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.figures.charts.waveforms import draw_solutions
-from jointwave.compare.figures.comparison import write_comparisons
 from jointwave.compare.figures.export import DIGITS, write_csv
 from jointwave.compare.figures.receivers import curve_table, panels
+from jointwave.compare.figures.tables import write_comparisons
 from jointwave.compare.misfit.alignment import align_curve, distance_at, distances
 from jointwave.compare.misfit.external import doubts, read_curves
 from jointwave.compare.misfit.pairs import Comparison, measure_curves

@@ -12,7 +12,7 @@ from jointwave.cases.effects import active_effects
 from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.compare.studies import effects
 from jointwave.compare.studies.effect_removal import left_out
-from jointwave.compare.studies.effects import EffectRow, Variant, run
+from jointwave.compare.studies.effects import EffectRow, run
 from jointwave.compare.studies.effects_summary import draw, sentences, summarise, table
 from jointwave.compare.studies.step_cost import StepCost
 
@@ -37,7 +37,7 @@ def known(monkeypatch):
 
 @pytest.fixture
 def damped(pillar):
-    return Variant("a/b", pillar(joints__damping_ratio=0.05, time__duration=0.03))
+    return "a/b", pillar(joints__damping_ratio=0.05, time__duration=0.03)
 
 
 def test_effects_are_measured_by_leaving_them_out(damped, known, tmp_path):
@@ -46,8 +46,8 @@ def test_effects_are_measured_by_leaving_them_out(damped, known, tmp_path):
     assert set(found.loc["dem"].index) == {"dashpots", "energy ledger"}
     ledger, dashpots = found.loc["dem", "energy ledger"], found.loc["dem", "dashpots"]
     assert (ledger.misfit, ledger.steps) == (0, 1)
-    plain = dem.simulate(left_out(damped.scene, "dashpots"))["stress"].values
-    expected = relative_l2(plain, dem.simulate(damped.scene)["stress"].values)
+    plain = dem.simulate(left_out(damped[1], "dashpots"))["stress"].values
+    expected = relative_l2(plain, dem.simulate(damped[1])["stress"].values)
     assert dashpots.misfit == pytest.approx(expected) and expected > 0.01
     assert dashpots.steps > 1
     assert (dashpots.ns, dashpots.share) == (4.0, 4 / 7)
@@ -70,7 +70,7 @@ def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, known):
     """The wall that the load shakes; only rigid blocks have local damping."""
     load = {"shape": "sine", "amplitude": 0.1, "period": 0.01, "quantity": "velocity"}
     scene = pillar(ends__start="fixed", load=load, damping={"local": 0.1}, time__duration=0.01)
-    rows = {one.effect: one for one in effects.measure(Variant("a/b", scene))}
+    rows = {one.effect: one for one in effects.measure(("a/b", scene))}
     fixed, local = rows["fixed ends"], rows["local damping"]
     assert "is the motion of a base" in fixed.reason
     assert np.isnan([fixed.ns, fixed.share, fixed.misfit]).all()

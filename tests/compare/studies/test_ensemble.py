@@ -12,7 +12,7 @@ from jointwave import cases
 from jointwave.cases.errors import SceneError
 from jointwave.compare.scenes import find
 from jointwave.compare.studies.ensemble import PERCENTILES, STATISTICS
-from jointwave.compare.studies.sweep import sweep_of
+from jointwave.compare.studies.sweep import cases_of
 from jointwave.dem import simulate
 
 SCENE = "beyond/random-joints"
@@ -98,11 +98,11 @@ def test_misfits_and_waveforms_of_a_comparison(command, tmp_path):
 
 
 def test_a_rock_mass_shifts_the_seed_of_every_set():
-    asked = sweep_of("rock-mass/random-network", [], "", [], None, 2)
-    seeds = [[one.seed for one in case.scene.joint_sets] for case in asked.cases]
+    found = cases_of("rock-mass/random-network", [], "", [], None, 2)
+    seeds = [[one.seed for one in case.scene.joint_sets] for case in found]
     assert seeds == [[27, 671], [28, 672]]
 
 
 def test_a_scene_without_joints_at_random_has_no_members():
     with pytest.raises(SceneError, match=r"--ensemble: needs random joints: \[scatter\]"):
-        sweep_of("guo-li-2002/fig-03", [], "", [], Path("out"), 3)
+        cases_of("guo-li-2002/fig-03", [], "", [], Path("out"), 3)

@@ -9,7 +9,6 @@ import xarray as xr
 
 from jointwave import cases
 from jointwave.compare.scenes import find
-from jointwave.compare.studies.sweep import Case, Sweep
 from jointwave.compare.studies.sweep_table import summarise
 from jointwave.dem import simulate
 
@@ -106,8 +105,7 @@ def test_the_worst_waveform_of_each_pair_is_shown():
         | numbers
         for k in (1, 2, 3)
     ]
-    asked = Sweep("scene", [Case({"key": 3}, None, None)], None)
-    found = summarise(asked, pd.DataFrame(rows))
+    found = summarise("scene", ["key"], None, pd.DataFrame(rows))
     assert found.table.index.tolist() == [
         ("rigid blocks ~ rigid blocks, exact", "3", "stress 2 at [1, 2] m")
     ]
