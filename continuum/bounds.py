@@ -1,4 +1,4 @@
-"""How fast rock can become at most: no node can be faster than all forces together make it."""
+"""Bounds on the velocity of rock: no node is faster than all forces together make it."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Where points lie among blocks, in any dimension: in which of them, and at which contact."""
+"""Location of points among blocks, in any dimension: their block, or their contact."""
 
 from collections.abc import Iterator
 

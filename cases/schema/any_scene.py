@@ -1,4 +1,4 @@
-"""What pillars and rock masses share."""
+"""The common base of pillars and rock masses."""
 
 from typing import Any, ClassVar
 

@@ -1,1 +1,1 @@
-"""What acts on a body: forces, absorbing and held sides."""
+"""Loads and boundary conditions of a body: forces, absorbing and held sides."""

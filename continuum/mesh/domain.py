@@ -1,4 +1,4 @@
-"""What the facets of a scene's blocks are, and the cells that the blocks are divided into."""
+"""The facets of a scene's blocks, by kind, and the cells that the blocks are divided into."""
 
 from typing import NamedTuple
 

@@ -1,1 +1,1 @@
-"""What is read of a body: points, joints, sections, snapshots."""
+"""Receivers of a body: points, joints, sections, snapshots."""

@@ -1,4 +1,4 @@
-"""What a run has recorded as a result of its kind of scene."""
+"""The waveforms of a run as a result of its kind of scene."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""What differs between dolfinx 0.5 and 0.11, told apart by what they offer."""
+"""Differences between dolfinx 0.5 and 0.11, told apart by what they offer."""
 
 import inspect
 import os

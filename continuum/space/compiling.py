@@ -1,4 +1,4 @@
-"""What dolfinx compiles by a C compiler: forms, and in old versions elements."""
+"""Forms, and in old versions elements, that dolfinx compiles by a C compiler."""
 
 import fcntl
 import logging

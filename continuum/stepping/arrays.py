@@ -1,4 +1,4 @@
-"""What the kernel of explicit steps takes: constants, state, vectors to work in, and samples."""
+"""Arguments of the kernel of explicit steps: constants, state, work vectors, and samples."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""What rock of a constant quality factor remembers of its motion (`cases.material.constant_q`).
+"""Memory variables of rock of a constant quality factor (`cases.material.constant_q`).
 
 Of each relaxation mechanism the spring that is in series with a dashpot has an elongation e_l, a
 vector of freedoms with e_l' = v - omega_l e_l. Over a step of constant velocity that is exactly

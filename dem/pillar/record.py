@@ -1,4 +1,4 @@
-"""What is recorded of a pillar: waveforms at sections and points, fragments, snapshots."""
+"""Records of a pillar: waveforms at sections and points, fragments, snapshots."""
 
 from __future__ import annotations
 

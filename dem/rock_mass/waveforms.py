@@ -1,4 +1,4 @@
-"""What is recorded of rigid blocks, as `dem.receivers` and `dem.record` take it."""
+"""Receivers of rigid blocks, as `dem.receivers` and `dem.record` take them."""
 
 from __future__ import annotations
 
