@@ -23,7 +23,7 @@ from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.scene_type import pillar_of
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.bars import bar_of
-from jointwave.compare.exact.bar.transfer import Bar, RockFrom, end_of, transfer
+from jointwave.compare.exact.bar.transfer import Bar, end_of, transfer
 from jointwave.compare.exact.conditions import DAMPED, holds
 from jointwave.compare.scenes import AnySource, load
 
@@ -80,31 +80,13 @@ def _column(scene: Scene) -> tuple[Bar, float]:
     ]
     if not (answer := holds(scene, (*HELD, *DAMPED), *reasons)):
         raise SceneError(scene.where, "", None, f"cannot be deconvolved: {answer.reason}")
-    if not scene.is_uniform:
-        known = p.own_stiffness is not None
-        rock = bar_of(scene, resolved=known)
-        impedance = p.at_start.impedance
-        return replace(rock, start=end_of("quiet", impedance), end=end_of("free", 0.0)), impedance
-    modulus, compliance = _sheared(scene, p) if load.is_across else _stretched(p)
-    etas, impedance = p.joint_time_constant, p.shear_impedance if load.is_across else p.impedance
-    bar = Bar(
-        length=scene.pillar.length,
-        rocks=(RockFrom(0.0, p.density, modulus, p.time_constant or 0.0),),
-        joint_y=p.joint_y,
-        joint_compliance=compliance,
-        joint_time_constant=np.zeros_like(p.joint_y) if etas is None else etas,
-        start=end_of("quiet", impedance),
-        end=end_of("free", impedance),
-    )
-    return bar, impedance
-
-
-def _stretched(p: Properties) -> tuple[float, np.ndarray]:
-    """Return the modulus (Pa) and the compliance of every joint (m/Pa) along the axis: of intact
-    rock and joints or, if unknown, of the rock mass and what its joints add to it."""
-    if p.own_stiffness is None or p.intact_modulus is None:
-        return p.modulus, p.excess_compliance
-    return p.intact_modulus, 1 / p.own_stiffness
+    bar, impedance = bar_of(scene, resolved=p.own_stiffness is not None), p.at_start.impedance
+    if scene.is_uniform and load.is_across:
+        (rock,), impedance = bar.rocks, p.shear_impedance
+        modulus, compliance = _sheared(scene, p)
+        sheared = rock._replace(modulus=modulus)
+        bar = replace(bar, rocks=(sheared,), joint_compliance=compliance)
+    return replace(bar, start=end_of("quiet", impedance), end=end_of("free", impedance)), impedance
 
 
 def _sheared(scene: Scene, p: Properties) -> tuple[float, np.ndarray]:
