@@ -6,7 +6,8 @@ from matplotlib.collections import LineCollection, PolyCollection
 
 import jointwave as jw
 from jointwave.compare.figures.body_maps import difference, maps_of
-from jointwave.compare.figures.charts.maps import draw_maps
+from jointwave.compare.figures.charts.maps import draw_maps, peak_velocities
+from jointwave.compare.misfit.pairs import Comparison
 from jointwave.results.snapshots import snapshots_of
 
 SQUARES = {
@@ -72,6 +73,21 @@ def test_the_ppv_is_that_of_the_result(results):
     np.testing.assert_allclose(corners, s.points[s.cells, :2])
     assert list(bars) == ["peak particle velocity (m/s)"]
     assert axes["rigid blocks"].get_aspect() == 1.0
+
+
+def test_the_ppv_is_the_peak_of_each_block(results, ink):
+    """At the receiver that of its waveform: a peak of omega = 2 pi / T is missed by (omega dt)^2/8
+    at most between snapshots. Cells fill the domain; the page has their numbers."""
+    scene, blocks, _ = results
+    (found,) = maps_of(scene, [blocks], "ppv").values()
+    here = np.abs(found.corners.mean(axis=1) - [2.5, 2.5]).max(axis=1) < 0.5
+    missed = (2 * np.pi / 0.01 * scene.record.fields) ** 2 / 8
+    peak = np.hypot(*blocks.velocity.values[0].T).max()
+    assert found.values[here] == pytest.approx(peak, rel=2 * missed) and found.values.min() > 0.18
+    assert found.sizes.sum() == pytest.approx(24.0, rel=1e-12)
+    (shown,) = peak_velocities("wave", [Comparison(scene, {"dem": blocks})])
+    assert shown.table["peak velocity (m/s)"].max() == pytest.approx(0.2, rel=0.05)
+    assert ink(shown.figure) > 0.05
 
 
 def test_two_engines_share_a_scale_beside_their_difference(results):
