@@ -240,9 +240,9 @@ def test_page_shows_other_codes_beside_the_free_pillar(text):
 def test_page_shows_what_every_effect_costs_and_is_worth(text):
     """Every scene and effect of the section, in the table and in the diagram."""
     found = part(text, "effects")
-    for case in reported():
-        assert case.name in found
-        assert all(effect in found for effect in active_effects(case.scene))
+    for name, scene in reported():
+        assert name in found
+        assert all(effect in found for effect in active_effects(scene))
     assert "jointwave effects" in found and "with every effect" in found
 
 
