@@ -12,7 +12,7 @@ from jointwave.cases.records import Column
 from jointwave.compare.figures.charts.waveforms import draw_solutions
 from jointwave.compare.figures.export import save
 from jointwave.compare.figures.receivers import curve_table
-from jointwave.compare.figures.variants import variant_names
+from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.pairs import Comparison, Row
 from jointwave.compare.misfit.places import Place, places_of
 from jointwave.compare.readings import (
@@ -41,8 +41,7 @@ READINGS = (
 
 def rows_of(comparisons: list[Comparison]) -> list[tuple[str, Row]]:
     """Return every distance, with the name of its variant."""
-    named = zip(variant_names(comparisons), comparisons, strict=True)
-    return [(name, row) for name, comparison in named for row in comparison.rows]
+    return [(name, row) for name, comparison in named(comparisons) for row in comparison.rows]
 
 
 def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
@@ -83,7 +82,7 @@ def alignment_frame(comparisons: list[Comparison]) -> pd.DataFrame:
             "onto": beside.shift.onto if beside.shift else "",
             "correlation": beside.shift.correlation if beside.shift else None,
         }
-        for name, comparison in zip(variant_names(comparisons), comparisons, strict=True)
+        for name, comparison in named(comparisons)
         for beside in comparison.besides
     )
 
@@ -97,7 +96,7 @@ def reading_frame(comparisons: list[Comparison]) -> pd.DataFrame:
     """
     return pd.DataFrame(
         {"variant": name, "solution": solution, **row}
-        for name, comparison in zip(variant_names(comparisons), comparisons, strict=True)
+        for name, comparison in named(comparisons)
         for solution, result in _velocities(comparison)
         for row in _readings(result)
     )

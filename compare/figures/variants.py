@@ -14,6 +14,11 @@ def variant_names(comparisons: list[Comparison]) -> list[str]:
     return [name.replace("zeta ", "ζ = ") for name in names]
 
 
+def named(comparisons: list[Comparison]) -> list[tuple[str, Comparison]]:
+    """Return the comparisons, each with the name of its variant."""
+    return list(zip(variant_names(comparisons), comparisons, strict=True))
+
+
 def _base_name(base: AnyScene, variants: list[AnyScene]) -> str:
     if not base.is_column:
         return "base scene"

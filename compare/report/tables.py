@@ -7,7 +7,7 @@ import pandas as pd
 import xarray as xr
 
 from jointwave.compare.figures.tables import rows_of
-from jointwave.compare.figures.variants import variant_names
+from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.differences import STRESS, VELOCITY
 from jointwave.compare.misfit.pairs import Comparison, Row, meaning
 from jointwave.compare.report.verdict import EngineScore
@@ -119,7 +119,7 @@ def run_table(comparisons: list[Comparison]) -> pd.DataFrame:
             "stepping (s)": float(result.attrs["seconds_stepping"]),
             "energy residual": _residual(result),
         }
-        for variant, one in zip(variant_names(comparisons), comparisons, strict=True)
+        for variant, one in named(comparisons)
         for engine, result in one.results.items()
         if "steps" in result.attrs
     ]
@@ -137,7 +137,7 @@ def reason_table(comparisons: list[Comparison]) -> pd.DataFrame:
     columns = ["solution", "variants", "why it does not apply"]
     rows = [
         (solution, variant, reason)
-        for variant, one in zip(variant_names(comparisons), comparisons, strict=True)
+        for variant, one in named(comparisons)
         for solution, reason in one.reasons.items()
     ]
     alike = pd.DataFrame(rows, columns=columns).groupby(columns[::2], as_index=False)["variants"]

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from jointwave.cases.errors import require
 from jointwave.compare.engines import ENGINES
-from jointwave.compare.figures.variants import variant_names
+from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.differences import (
     STRESS,
     VELOCITY,
@@ -126,9 +126,10 @@ class EngineScore(NamedTuple):
 
 def engine_scores(comparisons: list[Comparison]) -> dict[str, EngineScore]:
     """Return where each engine stands that has run on some variant."""
-    named = list(zip(variant_names(comparisons), comparisons, strict=True))
     found = {
-        engine: tuple(score(engine, one, name) for name, one in named if engine in one.results)
+        engine: tuple(
+            score(engine, one, name) for name, one in named(comparisons) if engine in one.results
+        )
         for engine in ENGINES
     }
     return {engine: EngineScore(variants) for engine, variants in found.items() if variants}

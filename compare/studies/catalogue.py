@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from jointwave.compare.engines import Progress
-from jointwave.compare.studies import hard_cases, scattering, scattering_summary, work_precision
+from jointwave.compare.studies import hard_cases, scattering, work_precision
 from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.store import Pool
 from jointwave.compare.studies.study import load, shipped
@@ -34,7 +34,7 @@ def experiment(name: str, out: Path, brief: bool = False) -> Experiment:
         return Experiment(hard_cases.TITLE, partial(hard_cases.planned, out), make)
     if name in scattering.TITLES:
         planned = partial(scattering.planned, name, folder, brief)
-        make = partial(scattering_summary.make_study, name, out, brief)
+        make = partial(scattering.make_study, name, out, brief)
         return Experiment(scattering.TITLES[name], planned, make)
     study = load(name)
     planned = partial(work_precision.planned, study, folder)

@@ -29,11 +29,16 @@ from jointwave.compare.cli.options import (
     results_of,
     warn,
 )
+from jointwave.compare.engines import label_of
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.runs.checkpoint.signals import watched
 from jointwave.compare.runs.processes import started
 from jointwave.compare.scenes import find, shipped
 from jointwave.compare.solvers.dem import DEM
+
+LABELS = {"from_y": "from (m)", "to_y": "to (m)", "mass": "mass (kg)", "velocity": "velocity (m/s)"}
+LABELS |= {"seconds_stepping": "stepping (s)", "energy_residual": "energy residual (of the work)"}
+TOLD_BELOW = ("fragments", "static_out_of_balance", "fields")
 
 
 @app.command("list")
@@ -94,7 +99,6 @@ def run(
     processes. Finished points are not run again; failed ones are listed. --ensemble runs a
     scene with random joints for several seeds.
     """
-    from jointwave.compare.cli import run_view
     from jointwave.compare.runs import jobs
     from jointwave.compare.runs import run as runs
     from jointwave.compare.runs.checkpoint.resume import CheckpointSettings
@@ -132,7 +136,29 @@ def run(
     with ExitStack() as held, terminal.progress(f"{len(todo)} runs") as advance:
         processes.by_first(lambda: held.enter_context(locked(out, *folders)))
         done = runs.execute(todo, advance, processes, settings)
-    processes.by_first(lambda: run_view.show_runs(done, shown.as_json))
+    processes.by_first(lambda: show_runs(done, shown.as_json))
+
+
+def show_runs(done: list[Any], as_json: bool) -> None:
+    """Print what was run, what it cost and where it is; done : `runs.run.Done`."""
+    terminal.say_warnings(f"{d.job.scene.name}: {d.ledger}".lstrip(": ") for d in done if d.ledger)
+    if as_json:
+        terminal.print_json([one.facts for one in done])
+        return
+    facts = [one.facts | {"engine": label_of(one.job.name)} for one in done]
+    rows = [{key: x for key, x in one.items() if key not in TOLD_BELOW} for one in facts]
+    terminal.show_facts({"runs": rows}, LABELS)
+    for one in done:
+        name, pieces = one.job.scene.name or label_of(one.job.name), one.facts["fragments"]
+        if (ratio := one.facts["static_out_of_balance"]) is not None:
+            terminal.say(f"{name}: starts at rest, out-of-balance force ratio {ratio:.1e}")
+        if pieces is not None:
+            terminal.say(f"{name}: {len(pieces) - 1 or 'no'} joints broke")
+            terminal.show_facts({"fragments": pieces[1:] and pieces}, LABELS)
+        for path in one.facts["fields"]:
+            terminal.say(f"{name}: snapshots for ParaView, {path}")
+        if one.job.scene.record.fields is not None and not one.facts["fields"]:
+            terminal.say(f"{name}: no snapshots: the solution is known at the receivers only")
 
 
 @command

@@ -11,7 +11,7 @@ from jointwave.compare.figures.charts.axes import chart, set_heading, share
 from jointwave.compare.figures.export import SceneFigure
 from jointwave.compare.figures.style import TERMS, Style, style
 from jointwave.compare.figures.units import Unit, unit_for
-from jointwave.compare.figures.variants import variant_names
+from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.pairs import Comparison
 
 MOST = 480  # samples of a curve, and of the table
@@ -48,7 +48,7 @@ def ledgers_of(comparisons: list[Comparison]) -> pd.DataFrame:
     """
     parts = [
         _ledger(variant, engine, comparison.results[engine])
-        for comparison, variant in zip(comparisons, variant_names(comparisons), strict=True)
+        for variant, comparison in named(comparisons)
         for engine in in_order(comparison.results)
         if "energy" in comparison.results[engine]
     ]

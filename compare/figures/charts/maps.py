@@ -23,7 +23,7 @@ from jointwave.compare.figures.charts.axes import LETTER
 from jointwave.compare.figures.drawing.sketch import ROCKS
 from jointwave.compare.figures.export import SceneFigure, blank
 from jointwave.compare.figures.style import DIFFERENCE, RC, SIZE, printed
-from jointwave.compare.figures.variants import variant_names
+from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.results.dataset import A_RESULT
 
@@ -172,7 +172,7 @@ def peak_velocities(name: str, comparisons: list[Comparison]) -> list[SceneFigur
     """Return the maps of peak velocity, one figure per variant; empty for a pillar, or without
     snapshots of a whole field."""
     found = []
-    for k, (variant, one) in enumerate(zip(variant_names(comparisons), comparisons, strict=True)):
+    for k, (variant, one) in enumerate(named(comparisons)):
         results = [one.results[engine] for engine in in_order(one.results)]
         results = [result for result in results if "field_velocity" in result]
         if not one.scene.is_column and results:

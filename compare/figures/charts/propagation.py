@@ -14,7 +14,7 @@ from jointwave.compare.engines import in_order, label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading
 from jointwave.compare.figures.export import SceneFigure
 from jointwave.compare.figures.style import style
-from jointwave.compare.figures.variants import variant_names
+from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.readings import (
     dispersion,
@@ -49,8 +49,7 @@ Curves = dict[str, dict[str, pd.Series]]
 
 def propagation(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     """Return the figure of all variants with a row of receivers; empty if there is none."""
-    named = zip(variant_names(comparisons), comparisons, strict=True)
-    rows = {variant: curves for variant, one in named if (curves := curves_of(one))}
+    rows = {variant: curves for variant, one in named(comparisons) if (curves := curves_of(one))}
     if not rows:
         return []
     columns = {

@@ -15,7 +15,7 @@ from jointwave.compare.figures.drawing.sketch import LOAD, Sketch
 from jointwave.compare.figures.export import SceneFigure, blank
 from jointwave.compare.figures.style import WIDTH
 from jointwave.compare.figures.units import unit_for
-from jointwave.compare.figures.variants import variant_names
+from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.pairs import Comparison
 
 MOST = 4  # drawings per scene
@@ -46,7 +46,7 @@ def scene_figure(name: str, comparisons: list[Comparison], explode: float = 0.0)
     explode : how far blocks in space are moved apart, over their distance from the middle.
     """
     groups: dict[str, tuple[list[str], AnyScene, Sketch]] = {}
-    for words, comparison in zip(variant_names(comparisons), comparisons, strict=True):
+    for words, comparison in named(comparisons):
         scene, sketch = comparison.scene, sketch_of(comparison.scene, explode)
         seen = f"{[getattr(scene, key, None) for key in SEEN]} {sketch.table().to_csv()}"
         groups.setdefault(seen, ([], scene, sketch))[0].append(words)

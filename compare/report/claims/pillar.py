@@ -8,7 +8,7 @@ import pandas as pd
 from jointwave.cases.loads import load_history
 from jointwave.compare.exact.bar.bars import EQUIVALENT, JOINTED
 from jointwave.compare.exact.blocks import row_of_blocks
-from jointwave.compare.figures.variants import variant_names
+from jointwave.compare.figures.variants import named, variant_names
 from jointwave.compare.misfit.metrics import mean_period, misfit, relative_l2
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.report.claims import waves
@@ -49,7 +49,7 @@ def falls_with_distance(comparisons: list[Comparison]) -> tuple[str, bool]:
     """Each later passage of a damped pulse is lower."""
     found = {
         name: waves.signed_peaks(one).abs() / 1e6
-        for name, one in zip(variant_names(comparisons), comparisons, strict=True)
+        for name, one in named(comparisons)
         if one.scene.joints.damping_ratio
     }
     texts = [f"{variant}: {listed(peaks, '.3f')}" for variant, peaks in found.items()]

@@ -7,8 +7,14 @@ import pytest
 from jointwave.compare.engines import solve
 from jointwave.compare.studies import scattering as points
 from jointwave.compare.studies.joint_waves import amplitudes, scene_of
-from jointwave.compare.studies.scattering import JointsRow, joints_of, measure
-from jointwave.compare.studies.scattering_summary import WAVES, draw, make_study
+from jointwave.compare.studies.scattering import (
+    WAVES,
+    JointsRow,
+    draw,
+    joints_of,
+    make_study,
+    measure,
+)
 
 #: |R_p|, |R_s|, |T_p|, |T_s| of P at nu = 0.25, K_n = Z_p omega, K_s = Z_s omega, found by solving
 #: the four boundary conditions as they stand.
