@@ -1,10 +1,9 @@
 """Location of points among blocks, in any dimension: their block, or their contact."""
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from jointwave.cases.geometry.blocks import Blocks
+from jointwave.cases.geometry.relations import groups, joined
 
 SAME = 1e-9  #: of the size of all blocks: the distance below which places are one
 
@@ -32,21 +31,16 @@ def sides_at(blocks: Blocks, points: np.ndarray, sets: int) -> list[list[int]]:
 
     Of blocks that share a point without a joint between them it is the first.
     """
-    found = [set(here.tolist()) for here in blocks_at(blocks, points)]
+    found = blocks_at(blocks, points)
     near = rock_neighbours(blocks, sets) if any(len(here) > 1 for here in found) else {}
-    return [[min(side) for side in _joined(here, near)] for here in found]
+    return [_first_of_sides(here.tolist(), near) for here in found]
 
 
-def _joined(blocks: set[int], near: dict[int, list[int]]) -> Iterator[set[int]]:
-    """Yield blocks in groups that are joined by intact rock, that of the first block first."""
-    left = set(blocks)
-    while left:
-        side, reached = set(), [min(left)]
-        while reached:
-            side.add(block := reached.pop())
-            reached += (left - side).intersection(near.get(block, []))
-        left -= side
-        yield side
+def _first_of_sides(here: list[int], near: dict[int, list[int]]) -> list[int]:
+    """Return the first of each group of blocks, ascending, that are joined by intact rock."""
+    pairs = [(i, here.index(k)) for i, j in enumerate(here) for k in near.get(j, ()) if k in here]
+    group = joined(np.array(pairs, dtype=np.int64), len(here))
+    return [here[k] for k in np.sort(np.unique(group, return_index=True)[1])]
 
 
 def rock_neighbours(blocks: Blocks, sets: int) -> dict[int, list[int]]:
@@ -54,11 +48,9 @@ def rock_neighbours(blocks: Blocks, sets: int) -> dict[int, list[int]]:
     contacts, region = blocks.contacts, blocks.body.region
     through = ~contacts.of_joints(sets)
     through &= np.diff(region[contacts.blocks], axis=1)[:, 0] == 0
-    found: dict[int, list[int]] = {}
-    for i, j in contacts.blocks[through].tolist():
-        found.setdefault(i, []).append(j)
-        found.setdefault(j, []).append(i)
-    return found
+    pairs = contacts.blocks[through]
+    i, j = np.concatenate([pairs, pairs[:, ::-1]], axis=1).reshape(-1, 2).T  # both ways
+    return {int(i[own[0]]): j[own].tolist() for own in groups(i)}
 
 
 def contact_at(blocks: Blocks, points: np.ndarray, sets: int) -> np.ndarray:

@@ -1,6 +1,5 @@
 """Convex blocks of a file: the hulls of their corners, and what is between two of them."""
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -9,14 +8,14 @@ from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, QhullError
 
 from jointwave.cases.geometry.cell_complex import OUTSIDE
-from jointwave.cases.geometry.measure import frames, without_straight
+from jointwave.cases.geometry.measure import frames
 from jointwave.cases.geometry.pieces import clipped
 from jointwave.cases.geometry.relations import sums
+from jointwave.cases.geometry.solids import corners_of
 from jointwave.cases.gmsh_file import MeshError
 
 GRAZING = 1e-12  # sine of the angle between planes below which they are parallel
 AGAINST = -0.999  # cosine of the angle between normals of faces that may lie against each other
-CHUNK = 10_000_000  # heights of corners above faces that are compared at a time
 
 
 def near(x: np.ndarray) -> str:
@@ -84,65 +83,43 @@ class Piece(NamedTuple):
 def solids_of(x: np.ndarray, blocks: list, names: list[str], tolerance: float) -> list[Solid]:
     """Return the hulls of blocks by their parts, which these must fill; x : float array [v, d], m.
     Raises MeshError for a block whose parts do not, within the tolerance (m)."""
-    points = [x[np.unique([v for part in one for loop in part for v in loop])] for one in blocks]
-    size, more = _volumes(x, blocks, names, tolerance), ""
-    if x.shape[1] == 2:
-        rings = shapely.convex_hull([shapely.MultiPoint(one) for one in points])
-        volume, surface = shapely.area(rings), shapely.length(rings)
-    else:
-        hulls, more = [_hull(one) for one in points], ", or open, or has a face turned inwards"
-        volume, surface = np.array([(one.volume, one.area) if one else (0, 1) for one in hulls]).T
-    least = tolerance * surface
-    for wrong, cause in (
-        (volume <= least, "flat"),
-        (np.abs(volume - size) > least, f"not convex{more}"),
-    ):
-        if wrong.any():
-            k = int(wrong.argmax())
-            raise MeshError(f"{names[k]} is {cause}{near(points[k])}")
-    if x.shape[1] == 2:
-        return [_polygon(one, ring, tolerance) for one, ring in zip(points, rings, strict=True)]
-    return [_polyhedron(one, hull, tolerance) for one, hull in zip(points, hulls, strict=True)]
+    more = ", or open, or has a face turned inwards" if x.shape[1] == 3 else ""
+    found, sizes = list[Solid](), _volumes(x, blocks, names, tolerance)
+    for block, size, name in zip(blocks, sizes, names, strict=True):
+        points = x[np.unique([v for part in block for loop in part for v in loop])]
+        try:
+            hull = ConvexHull(points)
+        except (QhullError, ValueError):  # of points in a plane
+            hull = None
+        if hull is None or hull.volume <= tolerance * hull.area:
+            raise MeshError(f"{name} is flat{near(points)}")
+        if abs(hull.volume - size) > tolerance * hull.area:
+            raise MeshError(f"{name} is not convex{more}{near(points)}")
+        found.append(_solid(points, hull, tolerance))
+    return found
 
 
-def _hull(x: np.ndarray) -> ConvexHull | None:
-    """Return the hull of points in space; None of those in a plane."""
-    try:
-        return ConvexHull(x)
-    except (QhullError, ValueError):
-        return None
-
-
-def _polygon(x: np.ndarray, hull: shapely.Polygon, tolerance: float) -> Solid:
-    """Return a block in the plane, whose faces are the edges of its hull."""
-    ring = without_straight(*_ring(hull), tolerance).corners
-    ends = np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)
-    out = (ends[:, 1] - ends[:, 0])[:, ::-1] * [1.0, -1.0]
-    normals = out / np.hypot(*out.T)[:, None]
-    return Solid(x, list(ends), normals, (normals * ring).sum(axis=1))
-
-
-def _polyhedron(x: np.ndarray, hull: ConvexHull, tolerance: float) -> Solid:
-    """Return a block in space; triangles of its hull that lie in the plane of a larger one are a
-    part of that face."""
+def _solid(x: np.ndarray, hull: ConvexHull, tolerance: float) -> Solid:
+    """Return a block by its hull, whose simplices in the plane of a larger one are a part of that
+    face."""
     edges = np.diff(x[hull.simplices], axis=1).swapaxes(0, 1)
-    left, faces, planes = np.linalg.norm(np.cross(*edges), axis=1), [], []
+    size = edges[0] if x.shape[1] == 2 else np.cross(*edges)
+    left, faces, normals, places = np.linalg.norm(size, axis=1), [], [], []
     while left.any():
-        plane = hull.equations[left.argmax()]
-        on = np.abs(x @ plane[:3] + plane[3]) <= tolerance
+        *normal, below = hull.equations[left.argmax()]
+        n, on = np.array(normal), np.abs(x @ normal + below) <= tolerance
         left[on[hull.simplices].all(axis=1)] = 0.0
-        axes = np.concatenate(frames(plane[None, :3]))
-        ring = _ring(shapely.convex_hull(shapely.MultiPoint(x[on] @ axes.T)))[0]
-        faces.append(ring @ axes - plane[3] * plane[:3])
-        planes.append(plane)
-    return Solid(x, faces, np.array(planes)[:, :3], -np.array(planes)[:, 3])
-
-
-def _ring(polygon: shapely.Polygon) -> tuple[np.ndarray, np.ndarray]:
-    """Return the corners of a polygon [n, 2], counter-clockwise, and their range."""
-    around = shapely.get_exterior_ring(polygon)
-    x = shapely.get_coordinates(around)[:-1]
-    return x if shapely.is_ccw(around) else x[::-1], np.array([0, len(x)])
+        if len(n) == 2:
+            axes = np.array([[-n[1], n[0]]])
+            along = x[on] @ axes.T
+            ring = np.stack([along.min(axis=0), along.max(axis=0)])
+        else:
+            axes = np.concatenate(frames(n[None]))
+            ring = corners_of(shapely.convex_hull(shapely.MultiPoint(x[on] @ axes.T)))
+        faces.append(ring @ axes - below * n)
+        normals.append(n)
+        places.append(-below)
+    return Solid(x, faces, np.array(normals), np.array(places))
 
 
 def _volumes(x: np.ndarray, blocks: list, names: list[str], tolerance: float) -> np.ndarray:
@@ -174,8 +151,17 @@ def pieces_between(solids: list[Solid], names: list[str], tolerance: float) -> l
     Raises MeshError for blocks that overlap."""
     first = np.cumsum([0, *(len(one.faces) for one in solids)])
     found, left = list[Piece](), [[face] for one in solids for face in one.faces]
-    for i, j, k, m in _touching(solids, names, tolerance):
+    for i, j in _close(solids, tolerance):
         one, other = solids[i], solids[j]
+        above, beyond = (a.heights(b.corners).min(axis=0) for a, b in ((one, other), (other, one)))
+        if max(above.max(), beyond.max()) < -tolerance:
+            _check_apart(one, other, f"{names[i]} and {names[j]}", tolerance)
+        above, beyond = (np.where(h <= tolerance, h, -np.inf) for h in (above, beyond))
+        score = above[:, None] + beyond
+        score[one.normals @ other.normals.T > AGAINST] = -np.inf
+        k, m = divmod(int(score.argmax()), len(beyond))
+        if not np.isfinite(score[k, m]):
+            continue
         common, _ = other.split(one.faces[k], m, tolerance)
         if common is None or np.abs(other.heights(common)[:, m]).max() > 2 * tolerance:
             continue
@@ -185,52 +171,22 @@ def pieces_between(solids: list[Solid], names: list[str], tolerance: float) -> l
     return [*found, *(Piece(x, face, OUTSIDE) for face, own in enumerate(left) for x in own)]
 
 
-def _touching(
-    solids: list[Solid], names: list[str], tolerance: float
-) -> Iterator[tuple[int, int, int, int]]:
-    """Yield pairs of blocks i < j and their faces that lie against each other, at most one of a
-    pair. Raises MeshError where no plane lies between two."""
-    corners = _filled([one.corners for one in solids])
-    normals = _filled([one.normals for one in solids])
-    places = _filled([one.places for one in solids])
-    low, high = corners.min(axis=1), corners.max(axis=1)
+def _close(solids: list[Solid], tolerance: float) -> list[list[int]]:
+    """Return pairs of blocks i < j whose boxes touch in more than an edge, at most."""
+    low, high = (np.array([at(one.corners, axis=0) for one in solids]) for at in (np.min, np.max))
     tree = shapely.STRtree(shapely.box(*(low[:, :2] - tolerance).T, *(high[:, :2] + tolerance).T))
     pairs = tree.query(tree.geometries)
     meets = np.minimum(*high[pairs]) - np.maximum(*low[pairs])
     close = (meets >= -tolerance).all(axis=1) & ((meets <= tolerance).sum(axis=1) < 2)
-    pairs = pairs[:, close & (pairs[0] < pairs[1])]
-    for i, j in np.array_split(
-        pairs, 1 + pairs.shape[1] * normals[0].size * corners.shape[1] // CHUNK, axis=1
-    ):
-        heights = [
-            (normals[one] @ corners[other].swapaxes(1, 2)).min(axis=2) - places[one]
-            for one, other in ((i, j), (j, i))
-        ]
-        apart = np.max([(height >= -tolerance).any(axis=1) for height in heights], axis=0)
-        for k in np.flatnonzero(~apart):
-            _check_apart(solids, names, int(i[k]), int(j[k]), tolerance)
-        height, other = (np.where(one <= tolerance, one, -np.inf) for one in heights)
-        score = height[:, :, None] + other[:, None]
-        score[normals[i] @ normals[j].swapaxes(1, 2) > AGAINST] = -np.inf
-        best = score.reshape(len(i), normals.shape[1] ** 2).argmax(axis=1)
-        k, m = np.divmod(best, normals.shape[1])
-        for row in np.flatnonzero(np.isfinite(score[np.arange(len(i)), k, m])):
-            yield int(i[row]), int(j[row]), int(k[row]), int(m[row])
+    return pairs[:, close & (pairs[0] < pairs[1])].T.tolist()
 
 
-def _filled(arrays: list[np.ndarray]) -> np.ndarray:
-    """Return arrays as one, those that are shorter with their rows again."""
-    most = max(map(len, arrays))
-    return np.stack([np.resize(one, (most, *one.shape[1:])) for one in arrays])
-
-
-def _check_apart(solids: list[Solid], names: list[str], i: int, j: int, tolerance: float) -> None:
+def _check_apart(one: Solid, other: Solid, names: str, tolerance: float) -> None:
     """Raise MeshError where a ball fits into two blocks."""
-    one, other = solids[i], solids[j]
     normals, places = (np.concatenate([one[k], other[k]]) for k in (2, 3))
     low, size = one.corners.min(axis=0), float(np.ptp(one.corners, axis=0).max())
     planes = np.column_stack([np.ones(len(normals)), normals])
     heights = (places - normals @ low) / size  # the solver's accuracy is absolute
     ball = size * linprog([-1.0, *(0.0 * low)], planes, heights, bounds=(None, None)).x
     if ball[0] > tolerance:
-        raise MeshError(f"{names[i]} and {names[j]} overlap{near(low[None] + ball[1:])}")
+        raise MeshError(f"{names} overlap{near(low[None] + ball[1:])}")
