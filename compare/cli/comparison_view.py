@@ -101,10 +101,7 @@ def _facts(comparison: Comparison, reads: bool) -> dict[str, Any]:
             | {"out_of_bounds": list(one.broken)}
             for name, one in scores.items()
         },
-        "rows": [
-            r.facts | {"floor": r.floor, "faint": r.faint, "of_all": r.of_all}
-            for r in comparison.rows
-        ],
+        "rows": [row.facts for row in comparison.rows],
         "curves": alignment_frame([comparison]).to_dict("records"),
         "energy_residual": {k: energy_residual(r) for k, r in results.items() if "energy" in r},
         "does_not_apply": comparison.reasons,

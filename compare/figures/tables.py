@@ -28,6 +28,18 @@ from jointwave.compare.runs import timings
 from jointwave.compare.runs.output import write_csv
 
 PERIODS, SHORTEST = 60, 8  # of oscillators: how many, and the shortest period in samples
+#: Columns of distances, by their names in `Row.facts`.
+DISTANCES = {
+    "misfit": "relative L2",
+    "floor": "own error of the reference",
+    "faint": "faint",
+    "of_all": "of all motion",
+    "peak_ratio": "peak ratio",
+    "delay": "delay (s)",
+    "period_ratio": "period ratio",
+    "envelope": "envelope misfit",
+    "phase": "phase misfit",
+}
 NAME = "comparison"  # of the files of a comparison
 READINGS = (
     "peak velocity (m/s)",
@@ -46,25 +58,11 @@ def rows_of(comparisons: list[Comparison]) -> list[tuple[str, Row]]:
 
 def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
     """Return every distance of every pair at every receiver of every variant."""
-    return pd.DataFrame(
-        {
-            "kind": row.pair.kind,
-            "pair": f"{row.pair.one} ~ {row.pair.other}",
-            "variant": name,
-            "quantity": row.place.named,
-            **{f"{axis} (m)": at for axis, at in row.place.coordinates.items()},
-            "relative L2": row.distance.misfit,
-            "own error of the reference": row.floor,
-            "faint": row.faint,
-            "of all motion": row.of_all,
-            "peak ratio": row.distance.peak_ratio,
-            "delay (s)": row.distance.delay,
-            "period ratio": row.distance.period_ratio,
-            "envelope misfit": row.distance.envelope,
-            "phase misfit": row.distance.phase,
-        }
-        for name, row in rows_of(comparisons)
-    )
+    rows = [{"variant": v, "pair": row.solutions, **row.facts} for v, row in rows_of(comparisons)]
+    found = pd.DataFrame(rows)
+    axes = {axis: f"{axis} (m)" for axis in "xyz" if axis in found}
+    names = {**dict.fromkeys(("kind", "pair", "variant", "quantity")), **axes, **DISTANCES}
+    return found.reindex(columns=list(names)).rename(columns=axes | DISTANCES)
 
 
 def alignment_frame(comparisons: list[Comparison]) -> pd.DataFrame:

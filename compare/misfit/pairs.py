@@ -79,7 +79,13 @@ class Row(NamedTuple):
     def facts(self) -> dict[str, Any]:
         """Pair, place and distances, machine-readable."""
         where = {"quantity": self.quantity, **self.place.coordinates}
-        return {**self.pair._asdict(), **where, **self.distance._asdict()}
+        weight = {"floor": self.floor, "faint": self.faint, "of_all": self.of_all}
+        return {**self.pair._asdict(), **where, **self.distance._asdict(), **weight}
+
+    @property
+    def solutions(self) -> str:
+        """The names of both solutions, "one ~ other"."""
+        return f"{self.pair.one} ~ {self.pair.other}"
 
 
 @dataclass

@@ -9,11 +9,14 @@ import xarray as xr
 from jointwave.compare.figures.tables import rows_of
 from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.differences import STRESS, VELOCITY
-from jointwave.compare.misfit.pairs import Comparison, Row, meaning
+from jointwave.compare.misfit.pairs import Comparison, meaning
 from jointwave.compare.report.verdict import EngineScore
 from jointwave.compare.text import mean_and_worst
 from jointwave.results.dataset import energy_residual, open_ledger
 
+#: Columns of distances, in their order, with the factor of each.
+DISTANCES = {"relative L2 (%)": 100, "peak ratio": 1, "delay (ms)": 1e3, "period ratio": 1}
+DISTANCES |= {"envelope misfit (%)": 100, "phase misfit (%)": 100}
 MANY = 8  # columns: a table of more is transposed
 
 
@@ -56,7 +59,7 @@ def misfit_table(comparisons: list[Comparison]) -> pd.DataFrame:
     cells: dict[tuple[str, str, str], dict[str, float]] = {}
     for variant, row in shown:
         label = f"{variant}, {row.place.words} (%)" if several else f"{variant} (%)"
-        at = row.pair.kind, _pair(row), meaning(row.pair)
+        at = row.pair.kind, row.solutions, meaning(row.pair)
         cells.setdefault(at, {})[label] = 100 * row.distance.misfit
     names = ["kind", "pair", "cause of the difference"]
     table = pd.DataFrame(list(cells.values()), pd.MultiIndex.from_tuples(cells, names=names))
@@ -67,39 +70,21 @@ def misfit_table(comparisons: list[Comparison]) -> pd.DataFrame:
     return long.rename_axis(index="variant and receiver", columns=[None, None])
 
 
-def _pair(row: Row) -> str:
-    return f"{row.pair.one} ~ {row.pair.other}"
-
-
 def distance_table(comparisons: list[Comparison]) -> pd.DataFrame:
     """Return every distance of every pair at every receiver of every variant."""
     rows = [
-        {
-            "kind": row.pair.kind,
-            "variant": name,
-            "pair": _pair(row),
-            "receiver": row.place.words,
-            "relative L2 (%)": 100 * row.distance.misfit,
-            "peak ratio": row.distance.peak_ratio,
-            "delay (ms)": 1e3 * row.distance.delay,
-            "period ratio": row.distance.period_ratio,
-            "envelope misfit (%)": _percentage(row.distance.envelope),
-            "phase misfit (%)": _percentage(row.distance.phase),
-        }
+        {"kind": row.pair.kind, "variant": name, "pair": row.solutions, "receiver": row.place.words}
+        | {head: x and k * x for (head, k), x in zip(DISTANCES.items(), row.distance, strict=True)}
         for name, row in rows_of(comparisons)
     ]
     return _under(rows, "kind", "variant", "pair", "receiver")
-
-
-def _percentage(ratio: float | None) -> float | None:
-    return None if ratio is None else 100 * ratio
 
 
 def worst_misfits(comparisons: list[Comparison]) -> pd.Series:
     """Return by kind and pair the largest misfit over the variants, of the waveform that is
     furthest off, as `[expect]` bounds it."""
     rows = [
-        (row.pair.kind, _pair(row), 0.0 if row.faint else 100 * row.distance.misfit)
+        (row.pair.kind, row.solutions, 0.0 if row.faint else 100 * row.distance.misfit)
         for _, row in rows_of(comparisons)
     ]
     table = pd.DataFrame(rows, columns=["kind", "pair", "misfit"])

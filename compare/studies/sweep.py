@@ -228,6 +228,5 @@ def compare_scene(
     rows: Rows = []
     for row in found.rows:
         facts = {name: nan if x is None else x for name, x in row.facts.items()}
-        pair = f"{facts['one']} ~ {facts['other']}"
-        rows.append(facts | {"pair": pair, "faint": str(row.faint).lower()})
+        rows.append(facts | {"pair": row.solutions, "faint": str(row.faint).lower()})
     return rows
