@@ -1,6 +1,7 @@
-"""Keys of rock masses fitted to waveforms of points and joints: known values are found again."""
+"""Keys of rock masses fitted to waveforms of points and joints; which keys a scene has free."""
 
 import json
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -57,25 +58,35 @@ def test_known_values_are_found_to_round_off(solver, name, scene):
     assert found.values.value.to_dict() == pytest.approx(TRUE, rel=1e-6)
 
 
-def test_every_number_of_a_rock_mass_is_free_or_refused(scene):
-    """Keys of blocks, solution and recording are refused; a value that is set is read."""
-    free_tables = set()
+@pytest.fixture
+def column(pillar):
+    return pillar(soft_layers=[{"y": 20.0, "spacing_stiffness": 4e8}])
+
+
+@pytest.mark.parametrize(
+    ("kind", "free_tables"),
+    [
+        ("column", {"pillar", "rock", "joints", "soft_layers", "load"}),
+        ("scene", {"rock", "joint_sets", "waves"}),
+    ],
+)
+def test_every_number_of_a_scene_is_free_or_refused(kind, free_tables, request):
+    """With bounds within which the scene accepts it, and a value set as a file would set it; keys
+    of blocks, solution and recording are refused."""
+    scene, found = request.getfixturevalue(kind), set()
     for key, _ in keys(type(scene)):
-        here = key.replace("joint_sets.", "joint_sets.0.").replace("waves.", "waves.0.")
+        first, dot, rest = key.partition(".")
+        here = f"{first}.0{dot}{rest}" if isinstance(getattr(scene, first, None), list) else key
         try:
             (free,) = free_keys([f"{here}=0.3"], scene)
         except SceneError as error:
             assert "\n" not in str(error) and here in str(error)
             continue
-        assert free.low < 0.3 < free.high
-        free_tables.add(here.split(".")[0])
-        try:
-            set_here = changed(scene, {here: 0.3})
-        except SceneError:
-            continue
-        assert set_here != scene
-    assert {"rock", "joint_sets", "waves"} <= free_tables
-    assert not {"domain", "time", "numerics", "record"} & free_tables
+        assert free.low < 0.3 < free.high and free.value(free.unknown(0.31)) == pytest.approx(0.31)
+        found.add(first)
+        with suppress(SceneError):
+            assert changed(scene, {here: 0.3}) != scene
+    assert free_tables <= found and not {"domain", "time", "numerics", "record"} & found
 
 
 @pytest.mark.parametrize("key", ["joint_sets.0.dip", "numerics.dem.block"])
