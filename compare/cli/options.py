@@ -94,10 +94,17 @@ class SceneOptions(NamedTuple):
     strict: StrictOption = False
 
     def load(self, every: bool = True) -> list[AnyScene]:
-        """Return the variant that is named, warned of; without one all or, if not `every`, the
-        base scene."""
-        variant = self.variant if self.variant is not None or every else ""
-        return load(self.scene, self.changes, variant, self.strict)
+        """Return the variant that is named, with `--set` applied, warned of; without one all or, if
+        not `every`, the base scene."""
+        from jointwave.cases.read import parse_override
+
+        overrides = dict(parse_override(text) for text in self.changes)
+        if self.variant is None and every:
+            found = scenes.load_variants(self.scene, overrides)
+        else:
+            found = [scenes.load(self.scene, self.variant or "", overrides)]
+        warn(found, self.strict)
+        return found
 
 
 class SweepOptions(NamedTuple):
@@ -202,21 +209,6 @@ def root(
     if command not in ("run", "study") and started().comm is not None:
         allowed = f"jointwave {command} runs in one process; only run and study support mpiexec"
         raise SceneError("mpiexec", "", None, allowed)
-
-
-def load(
-    scene: str, changes: list[str], variant: str | None, strict: bool = False
-) -> list[AnyScene]:
-    """Return a file's variants, or the one that is named, with `--set` applied, warned of."""
-    from jointwave.cases.read import parse_override
-
-    overrides = dict(parse_override(text) for text in changes)
-    if variant is None:
-        found = scenes.load_variants(scene, overrides)
-    else:
-        found = [scenes.load(scene, variant, overrides)]
-    warn(found, strict)
-    return found
 
 
 def results_of(scene: str, given: Path | None = None) -> Path:

@@ -16,7 +16,6 @@ from jointwave.compare.cli.options import (
     StrictOption,
     WorkersOption,
     command,
-    load,
 )
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.scenes import shipped
@@ -128,7 +127,7 @@ def report(
     DIR.
     """
     for name in scenes or []:
-        load(name, [], None, strict)
+        SceneOptions(name, strict=strict).load()
     from jointwave.compare.cli.forecast_view import show_forecasts
     from jointwave.compare.report.report import build, planned
     from jointwave.compare.runs.reuse import ResultFolder

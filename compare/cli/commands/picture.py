@@ -8,7 +8,13 @@ import typer
 
 from jointwave.cases.errors import SceneError
 from jointwave.compare.cli import terminal
-from jointwave.compare.cli.options import SetOption, StrictOption, VariantOption, command, load
+from jointwave.compare.cli.options import (
+    SceneOptions,
+    SetOption,
+    StrictOption,
+    VariantOption,
+    command,
+)
 from jointwave.compare.engines import ENGINES
 from jointwave.compare.scenes import shipped
 
@@ -79,7 +85,7 @@ def picture(
         from jointwave.compare.figures.drawing.scene import scene_figure
         from jointwave.compare.misfit.pairs import Comparison
 
-        scenes = load(source, changes, variant, strict)
+        scenes = SceneOptions(source, changes, variant, strict).load()
         title = scenes[0].title
         if explode is not None and not scenes[0].in_space:
             raise SceneError("--explode", "", None, f"is of a scene in space, not of {source}")
