@@ -4,7 +4,7 @@ import numpy as np
 
 from jointwave.cases.spectrum import highest_frequency
 from jointwave.dem.build import carried
-from jointwave.dem.contacts import jumps_of, springs_of
+from jointwave.dem.contacts import springs_of
 from jointwave.dem.model import State
 from jointwave.dem.shaking import variation
 from jointwave.dem.system import BlockSystem
@@ -36,10 +36,17 @@ def highest_energy(system: BlockSystem, state: State) -> float:
 def motion_of_contacts(system: BlockSystem, state: State) -> np.ndarray:
     """Return gap and slips (m) at the centres of all contacts, and their rotation, in their frames
     [c, F]."""
-    met, u = system.blocks.contacts, state.u[system.blocks.contacts.blocks]
-    rotations = u.shape[2] - system.blocks.dim
-    of_i, of_j = (jumps_of(met.frame, arm, rotations) for arm in met.arm.swapaxes(0, 1))
-    return (of_j @ u[:, 1, :, None] - of_i @ u[:, 0, :, None])[..., 0]
+    met, dim, u = system.blocks.contacts, system.blocks.dim, state.u
+    motion, (i, j) = u @ system.blocks.onto, met.blocks.T
+    at, gradient = motion[:, :dim], motion[:, dim:].reshape(-1, dim, dim)
+    moved = at[j] - at[i]
+    if dim > 1:
+        moved += np.einsum("ca,cab->cb", met.arm[:, 1], gradient[j])
+        moved -= np.einsum("ca,cab->cb", met.arm[:, 0], gradient[i])
+    turned = u[j, dim:] - u[i, dim:]
+    if turned.shape[1] > 1:
+        turned = np.einsum("cab,cb->ca", met.frame, turned)
+    return np.hstack([np.einsum("cab,cb->ca", met.frame, moved), turned])
 
 
 def stored(system: BlockSystem, state: State) -> float:

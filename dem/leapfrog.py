@@ -161,10 +161,11 @@ def make_stepper(
 def widths_of(form: KernelFlags) -> tuple[int, ...]:
     """Return how many lanes of each term of the ledger there are, 0 of terms that are absent."""
     parts, held, lanes = form.parts, int(form.held), LANES
-    damped = int(form.mass_damping or form.local_damping)
+    damped = form.mass_damping or form.local_damping
     return (
-        1, lanes, lanes if parts.dashpots else damped, lanes * (form.points > 0 and form.dim > 1),
-        lanes * parts.softening, held, int(form.gravity), lanes if form.shaken else held,
+        lanes, lanes, lanes * (parts.dashpots or damped),
+        lanes * (form.points > 0 and form.dim > 1), lanes * parts.softening, held,
+        int(form.gravity), lanes if form.shaken else held,
     )  # fmt: skip
 
 

@@ -28,7 +28,7 @@ def motion_for(form: KernelFlags) -> Callable:
     damped, finite, matched = form.mass_damping or local_damping, form.finite, form.matched
     balanced = has_ledger and (damped or finite)  # by the forces of the step
     oblique, SPARE, BEFORE = form.oblique and not finite, form.buffer.spare, form.buffer.before
-    stages, composed = form.stages, form.stages > 1
+    stages, composed, AT_ONCE = form.stages, form.stages > 1, L - L % freedoms
 
     @formula
     def sprung(blocks, closure, r, a):
@@ -195,6 +195,31 @@ def motion_for(form: KernelFlags) -> Callable:
                     force[i + a] -= drag
 
     @formula
+    def account_motion(blocks, first, turn, u, v, before, inertia, force, kick, sampled, ledger):
+        """Enter the kinetic energy of blocks from `first` on, and what damping took of it."""
+        for begin in range(0, u.size, AT_ONCE):
+            block, own, m, push = (
+                first + begin // freedoms,
+                u[begin:],
+                inertia[begin:],
+                force[begin:],
+            )
+            now, then, turned = v[begin:], before[begin:], turn
+            if finite:
+                turned = turn[begin // freedoms :]
+            for c in range(min(AT_ONCE, u.size - begin)):
+                after, old, new = momentum(blocks, m, block, c, now), then[c], now[c]
+                if finite:
+                    old = rate(blocks, block, turned, own, then, c)
+                    new = rate(blocks, block, turned, own, now, c)
+                if damped:  # what is missing in the block's momentum
+                    lost = after - momentum(blocks, m, block, c, then) - kick * push[c]
+                    ledger[VISCOUS + c] -= 0.5 * lost * old
+                    ledger[VISCOUS + AFTER + c] -= 0.5 * lost * new
+                if sampled:
+                    ledger[KINETIC + c] += 0.5 * (old * after)
+
+    @formula
     def move(blocks, tiles, state, all_forces, drive, q, ledger, t, n, sampled):
         """Move the blocks of tile t in step or stage n of `drive`, and set their forces to zero."""
         begin, end = freedoms * tiles[BLOCK, t], freedoms * tiles[BLOCK, t + 1]
@@ -233,23 +258,12 @@ def motion_for(form: KernelFlags) -> Callable:
                     blocks, first, last, begin, v, force, before, drive, state, n, kick, ledger
                 )
             if damped or sampled:
-                kinetic, lost, lost_after = 0.0, 0.0, 0.0
-                for i in range(end - begin):
-                    after = momentum(blocks, inertia, tiles[BLOCK, t], i, v)
-                    old, new = before[i], v[i]
-                    if finite:
-                        old = rate(blocks, tiles[BLOCK, t], turn, u, before, i)
-                        new = rate(blocks, tiles[BLOCK, t], turn, u, v, i)
-                    if damped:  # what is missing in the block's momentum
-                        missing = after - momentum(blocks, inertia, tiles[BLOCK, t], i, before)
-                        missing -= kick * force[i]
-                        lost, lost_after = lost + missing * old, lost_after + missing * new
-                    kinetic += old * after
-                ledger[VISCOUS] -= 0.5 * lost
-                ledger[VISCOUS + AFTER] -= 0.5 * lost_after
-                if sampled:
-                    ledger[KINETIC] += 0.5 * kinetic
-                    ledger[GRAVITY] += potential
+                account_motion(
+                    blocks, tiles[BLOCK, t], turn, u, v, before, inertia, force, kick, sampled,
+                    ledger,
+                )  # fmt: skip
+            if sampled:
+                ledger[GRAVITY] += potential
         if balanced or oblique:
             force[:] = 0.0
         if matched:

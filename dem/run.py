@@ -14,7 +14,7 @@ from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.damping import NOT_OF_BLOCKS
 from jointwave.dem.bounds import highest_energy
-from jointwave.dem.leapfrog import march
+from jointwave.dem.leapfrog import make_stepper
 from jointwave.dem.model import Samples, State, samples_for, state_at_rest
 from jointwave.dem.pillar import record as pillar_record
 from jointwave.dem.pillar import system as pillar
@@ -58,7 +58,8 @@ def simulate(
     rest = start(system, state)
     monitor = guard(highest_energy(system, state))
     built = perf_counter()
-    step(system, state, samples, 0, 0)
+    step = stepper(system, state, samples)
+    step(0, 0)
     snapshots = reads.recorder(system, state)
     compiled = perf_counter()
 
@@ -85,12 +86,14 @@ def simulate(
         return found if snapshots is None else snapshots.add_to(found)
 
     def march_samples(first: int, last: int) -> None:
-        step(system, state, samples, first * time.stride, last * time.stride)
+        step(first * time.stride, last * time.stride)
         look(system, state, samples, monitor, first, last)
 
     def check(first: int, last: int) -> None:
-        speeds, t = _energies(system, state), last * time.stride * time.dt
-        refuse_beyond_bounds(scene, time, system.critical, monitor, speeds, system.blocks.centroid)
+        t = last * time.stride * time.dt
+        if monitor.found[0] >= 0:
+            speeds, places = _energies(system, state), system.blocks.centroid
+            refuse_beyond_bounds(scene, time, system.critical, monitor, speeds, places)
         reads.refuse_large_rotation(system, state, t)
         if matters(scene):
             refuse_large_motion(
@@ -129,17 +132,29 @@ def modules(scene: AnyScene) -> tuple[Any, Any]:
     return system, waveforms
 
 
-def step(system: BlockSystem, state: State, samples: Samples, first: int, last: int) -> None:
-    """Take the steps first .. last - 1, in batches whose forces fit in memory."""
-    model, loads = system.model, system.loads
-    width = model.form.stages * loads.onto.shape[1] * len(loads.rows)
-    size = max(1, MOST_OF_DRIVE // max(1, width))
-    for begin in range(first, max(last, first + 1), size):
-        end = min(begin + size, last)
-        steps = np.arange(begin, end)
-        drive = None if model.held is None else loads.drive(steps)
-        shake = None if system.shaking is None else system.shaking(steps)
-        march(model, state, samples, system.time.stride, (begin, end), drive, shake, system.threads)
+def stepper(system: BlockSystem, state: State, samples: Samples) -> Callable[[int, int], None]:
+    """Return a function that takes the steps first .. last - 1, in batches whose forces fit in
+    memory; with no step to take it compiles."""
+    model, loads, time, stages = system.model, system.loads, system.time, system.model.form.stages
+    width = stages * loads.onto.shape[1] * len(loads.rows)
+    size = min(max(1, MOST_OF_DRIVE // max(1, width)), time.stride * time.samples)
+    drive, shake = None, None
+    if model.held is not None:
+        drive = np.zeros((stages * size, len(loads.rows), model.form.freedoms))
+    if system.shaking is not None:
+        shake = np.zeros((size, model.walls, model.form.dim))
+    take = make_stepper(model, state, samples, size, drive, shake, system.threads)
+
+    def advance(first: int, last: int) -> None:
+        for begin in range(first, max(last, first + 1), size):
+            steps = np.arange(begin, min(begin + size, last))
+            if drive is not None:
+                drive[: stages * len(steps)] = loads.drive(steps)
+            if shake is not None:
+                shake[: len(steps)] = system.shaking(steps)
+            take(time.stride, begin, begin + len(steps))
+
+    return advance
 
 
 def look(

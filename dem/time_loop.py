@@ -73,14 +73,12 @@ def refuse_beyond_bounds(
     speed: np.ndarray,
     places: np.ndarray,
 ) -> None:
-    """Raise StoppedError where a guard has found a run out of its bounds.
+    """Raise StoppedError for a run that a guard has found out of its bounds.
 
     critical : step, s. speed : of each block [N], in any unit. places : of the blocks, y [N], or x
     and y [N, 2], m.
     """
     step, what, sound = guard.found.tolist()
-    if step < 0:
-        return
     at = places[int(np.nan_to_num(speed, nan=np.inf).argmax())].tolist()
     place = tuple(at) if isinstance(at, list) else at
     key = "numerics.dem.step_fraction"

@@ -205,13 +205,13 @@ def recorder(system: BlockSystem, state: State) -> BlockRecorder | None:
     return BlockRecorder(blocks.scene, blocks.properties, capture, mean_over)
 
 
-def moved_apart(system: BlockSystem, state: State) -> Moved:
+def moved_apart(system: BlockSystem, state: State) -> Moved | None:
     """Return the joint whose faces have slipped furthest at its centre; opening leaves faces as
-    large."""
-    p, moved = (
-        system.blocks.properties,
-        motion_of_contacts(system, state)[: system.blocks.count - 1],
-    )
+    large. None where motion is along the axis."""
+    if system.blocks.dim == 1:
+        return None
+    p, joints = system.blocks.properties, system.blocks.count - 1
+    moved = motion_of_contacts(system, state)[:joints]
     by = np.linalg.norm(moved[:, 1 : system.blocks.dim], axis=1)
     k = int(by.argmax())
     return Moved(k, k + 1, float(by[k]), p.side, (float(p.centre_y[k]),))
