@@ -138,10 +138,10 @@ def stepper(system: BlockSystem, state: State, samples: Samples) -> Callable[[in
     model, loads, time, stages = system.model, system.loads, system.time, system.model.form.stages
     width = stages * loads.onto.shape[1] * len(loads.rows)
     size = min(max(1, MOST_OF_DRIVE // max(1, width)), time.stride * time.samples)
-    drive, shake = None, None
+    drive, shake, shaking = None, None, system.shaking
     if model.held is not None:
         drive = np.zeros((stages * size, len(loads.rows), model.form.freedoms))
-    if system.shaking is not None:
+    if shaking is not None:
         shake = np.zeros((size, model.walls, model.form.dim))
     take = make_stepper(model, state, samples, size, drive, shake, system.threads)
 
@@ -150,8 +150,8 @@ def stepper(system: BlockSystem, state: State, samples: Samples) -> Callable[[in
             steps = np.arange(begin, min(begin + size, last))
             if drive is not None:
                 drive[: stages * len(steps)] = loads.drive(steps)
-            if shake is not None:
-                shake[: len(steps)] = system.shaking(steps)
+            if shake is not None and shaking is not None:
+                shake[: len(steps)] = shaking(steps)
             take(time.stride, begin, begin + len(steps))
 
     return advance
