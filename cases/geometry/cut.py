@@ -105,15 +105,14 @@ class _Work:
     sorted. codes : least and largest code of the vertices of each k-cell, int arrays [n, 2]; of
     those that are not cut the least is the larger. crossed : pairs (k-cell, plane) at which k-cells
     are split, sorted. parts : pairs (k-cell, part), those above these planes. vertices : float
-    arrays [n, d], m. into : of the rows of cells, 1 where the facet's normal points into the cell.
+    arrays [n, d], m.
     """
 
     def __init__(self, body: Complex, planes: Planes, tolerance: float) -> None:
         self.body, self.planes, dim = body, planes, body.dim
         half = body.halves(np.append(planes.family >= 0, False)[body.sides].any(axis=1))
-        order = np.argsort(half.cell, kind="stable")
-        top = np.stack([half.cell, half.facet], axis=1)[order]
-        self.into = (body.sides[top[:, 1], 1] == top[:, 0]).astype(np.int64)
+        top = np.stack([half.cell, half.facet], axis=1)
+        top = top[np.argsort(half.cell, kind="stable")]
         self.rows = [np.empty((0, 2), np.int64), *body.bounds, top]
         self.number = body.numbers()
         self.vertices = [body.vertices]
@@ -167,10 +166,7 @@ class _Work:
         rows[mine, 0] = np.where(slab == 0, owner, first + cross.index(owner, 0 * owner) + slab - 1)
         new = np.concatenate([np.stack([below, gained], axis=1), np.stack([above, gained], axis=1)])
         rows = np.concatenate([rows, new])
-        order = np.argsort(rows[:, 0], kind="stable")
-        self.rows[k] = rows[order]
-        if k == self.body.dim:
-            self.into = np.append(self.into, np.repeat([0, 1], len(cell)))[order]
+        self.rows[k] = rows[np.argsort(rows[:, 0], kind="stable")]
         code = 2 * plane + 1
         ends, last = np.append(code[1:], 0), np.append(begins[1:], True)
         ends, last = ends[: len(cell)], last[: len(cell)]
@@ -185,10 +181,8 @@ class _Work:
     def _replace_split(self, k: int) -> None:
         """Add the parts of split (k-1)-cells to the rows of the k-cells that they bound."""
         mine = np.isin(self.rows[k][:, 1], self.parts[k - 1][:, 0])
-        more, which = composed(self.rows[k][mine], self.parts[k - 1])
+        more = composed(self.rows[k][mine], self.parts[k - 1])[0]
         self.rows[k] = np.concatenate([self.rows[k], more])
-        if k == self.body.dim:
-            self.into = np.append(self.into, self.into[np.flatnonzero(mine)[which]])
 
     def _bound_gained(self, k: int, cross: Lookup) -> None:
         """Bound the (k-1)-cells that k-cells gain: by vertices' places, or by (k-2)-cells of their
@@ -236,18 +230,19 @@ class _Work:
         """Return the complex that is left."""
         body, planes, dim = self.body, self.planes, self.body.dim
         normals, plane, turned = body.with_normal(planes.normal)
-        split = self.parts[dim - 1][:, 0]
-        gained = self.number[dim - 1] - len(body.sides) - len(split)
-        cells, facets = self.rows[dim].T
-        sides = np.full((self.number[dim - 1], 2), OUTSIDE)
-        sides[: len(body.sides)] = body.sides
-        new = facets >= len(body.sides) + len(split)
-        sides[facets, np.where(new & turned, 1 - self.into, self.into)] = cells
+        split, (whole, above) = self.parts[dim - 1][:, 0], self.parts[dim].T
+        parent, gained = np.append(np.arange(body.count), whole), len(above)
 
         def of_facets(array: np.ndarray, value: int) -> np.ndarray:
             return np.concatenate([array, array[split], np.full(gained, value)])
 
-        parent = np.append(np.arange(body.count), self.parts[dim][:, 0])
+        cells, facets = self.rows[dim].T
+        into = of_facets(body.sides[:, 1], 0)[facets] == parent[cells]
+        new = facets - len(body.sides) - len(split)  # number of those that are gained
+        into[new >= 0] = (cells[new >= 0] == above[new[new >= 0]]) != turned
+        sides = np.full((self.number[dim - 1], 2), OUTSIDE)
+        sides[: len(body.sides)] = body.sides
+        sides[facets, into.astype(np.int64)] = cells
         found = Complex(
             vertices=np.concatenate(self.vertices),
             bounds=tuple(self.rows[1:dim]),

@@ -8,7 +8,8 @@ import shapely
 
 from jointwave.cases.geometry.blocks import Blocks, Facets
 from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError
-from jointwave.cases.geometry.measure import around, outline_moments
+from jointwave.cases.geometry.measure import Outlines, around, outline_moments
+from jointwave.cases.geometry.relations import sums
 
 SAME = 1e-9  #: of the domain's extent: lengths below which places on a side are one
 
@@ -24,87 +25,68 @@ def contacts_across(
     Raises GeometryError where rock faces no rock, a joint runs along one of the sides only, or ends
     at one of them only.
     """
-    joints, least = len(names), SAME * float(np.ptp(blocks.body.vertices, axis=0).max())
-    ends = [_Side(blocks, axis, k) for k in (1, 0)]
-    if not all(len(one.facets) for one in ends):
+    outer, joints, x = blocks.boundary, len(names), blocks.body.vertices
+    least, key = SAME * float(np.ptp(x, axis=0).max()), f"boundaries.{sides[0]}"
+    far, near = (_facets_at(blocks, axis, sign) for sign in (1, -1))
+    if not len(far) or not len(near):
         raise GeometryError(None, "is periodic, but the domain has no such side", "boundaries")
-    here, there = ends
-    i, j = shapely.STRtree(there.shapes).query(here.shapes, predicate="intersects")
-    shared = shapely.intersection(here.shapes[i], there.shapes[j])
-    wide = shapely.area(shared) > least * np.maximum(shapely.length(shared) / 4, 1)
+    here, there = (
+        np.array([_polygon(outer.outlines.of(k), axis) for k in one], dtype=object)
+        for one in (far, near)
+    )
+    i, j = shapely.STRtree(there).query(here, predicate="intersects")
+    shared = shapely.intersection(here[i], there[j])
+    wide = shapely.area(shared) > _sliver(shared, least)
     i, j, shared = i[wide], j[wide], shared[wide]
-    key = f"boundaries.{sides[0]}"
-    for one, which, name in ((here, i, sides[0]), (there, j, sides[1])):
-        left = shapely.area(one.shapes) - np.bincount(
-            which, weights=shapely.area(shared), minlength=len(one.shapes)
-        )
-        if (left > least * np.maximum(shapely.length(one.shapes) / 4, 1)).any():
-            at = blocks.boundary.centroid[one.facets[np.argmax(left)]]
+    for facets, shapes, which, name in ((far, here, i, sides[0]), (near, there, j, sides[1])):
+        left = shapely.area(shapes) - sums(which, shapely.area(shared), len(shapes))
+        if (left > _sliver(shapes, least)).any():
+            at = outer.centroid[facets[np.argmax(left)]]
             raise GeometryError(at, f"is periodic, but rock there faces none on the {name}", key)
-    own, beyond = (blocks.boundary.joint_set[e.facets[k]] for e, k in ((here, i), (there, j)))
-    sets = np.where(own == beyond, own, NO_SET)
+    pairs = np.stack([far[i], near[j]], axis=1)
+    own, beyond = outer.joint_set[pairs].T
     joint = ((own >= 0) & (own < joints)) | ((beyond >= 0) & (beyond < joints))
-    found = _facets(blocks, axis, here, there, (i, j), shared, sets)
+    normal = outer.normal[far[i]]
+    outlines = _outlines(shared, axis, float(x[:, axis].max()), normal)
+    m, sets = outline_moments(outlines), np.where(own == beyond, own, NO_SET)
     wrong = joint & (sets == NO_SET)
     if wrong.any():
         cause = "is periodic, but no joint of one set runs along both sides"
-        raise GeometryError(found.centroid[np.argmax(wrong)], cause, key)
+        raise GeometryError(m.centroid[np.argmax(wrong)], cause, key)
     _check_ends(blocks, axis, sides, shared[~joint], names, least)
-    return found
+    return Facets(outer.blocks[pairs, 0], normal, *m, sets, np.zeros(len(sets), np.int64), outlines)
 
 
-class _Side:
-    """One end of an axis: its boundary facets (int array), and these as polygons in the plane of
-    the other axes; in fewer dimensions with a width of 1 across what there is."""
-
-    def __init__(self, blocks: Blocks, axis: int, end: int) -> None:
-        x, outer = blocks.body.vertices[:, axis], blocks.boundary
-        self.place = float(x.max() if end else x.min())
-        normal = np.eye(blocks.body.dim)[axis] * (1 if end else -1)
-        along = outer.normal @ normal > 1 - 1e-12
-        near = np.abs(outer.centroid[:, axis] - self.place) <= SAME * np.ptp(x)
-        self.facets = np.flatnonzero(along & near)
-        corners = [np.delete(outer.outlines.of(k), axis, axis=1) for k in self.facets]
-        self.shapes = np.array([shape_of(one) for one in corners], dtype=object)
+def _sliver(shapes: np.ndarray, least: float) -> np.ndarray:
+    """Return the areas of shapes below which they are none, m2."""
+    return least * np.maximum(shapely.length(shapes) / 4, 1)
 
 
-def shape_of(corners: np.ndarray) -> shapely.Polygon:
-    """Return a piece of a side as a polygon; corners [n, d - 1], m."""
-    if corners.shape[1] == 2:
-        return shapely.Polygon(corners)
-    ends = corners[:, 0] if corners.shape[1] else np.array([0.0, 1.0])
+def _facets_at(blocks: Blocks, axis: int, sign: int) -> np.ndarray:
+    """Return the boundary facets at the high (1) or the low end (-1) of an axis, int array."""
+    x, outer = blocks.body.vertices[:, axis], blocks.boundary
+    off = np.abs(sign * outer.centroid[:, axis] - (sign * x).max())
+    along = sign * outer.normal[:, axis] > 1 - 1e-12
+    return np.flatnonzero(along & (off <= SAME * np.ptp(x)))
+
+
+def _polygon(corners: np.ndarray, axis: int) -> shapely.Polygon:
+    """Return a piece of a side, corners [n, d], m, in the plane of the other axes; in fewer
+    dimensions with a width of 1 across what there is."""
+    own = np.delete(corners, axis, axis=1)
+    if own.shape[1] == 2:
+        return shapely.Polygon(own)
+    ends = own[:, 0] if own.shape[1] else np.array([0.0, 1.0])
     return shapely.box(ends.min(), 0.0, ends.max(), 1.0)
 
 
-def _facets(
-    blocks: Blocks,
-    axis: int,
-    here: _Side,
-    there: _Side,
-    pairs: tuple[np.ndarray, np.ndarray],
-    shared: np.ndarray,
-    sets: np.ndarray,
-) -> Facets:
-    """Return overlaps of facets as contacts."""
-    outer, normal = blocks.boundary, blocks.boundary.normal[here.facets[pairs[0]]]
+def _outlines(shared: np.ndarray, axis: int, place: float, normal: np.ndarray) -> Outlines:
+    """Return pieces of a side, polygons as those of `_polygon`, by their corners around a normal
+    [n, d] of each."""
     corners, of = shapely.get_coordinates(shared, return_index=True)
-    own = np.unique(np.column_stack([of, corners[:, : blocks.body.dim - 1]]), axis=0)
-    x = np.insert(own[:, 1:], axis, here.place, axis=1)
-    outlines = around(x, own[:, 0].astype(np.int64), normal, 0.0)
-    m = outline_moments(outlines)
-    return Facets(
-        blocks=np.stack(
-            [outer.blocks[e.facets[k], 0] for e, k in zip((here, there), pairs, strict=True)],
-            axis=1,
-        ),
-        normal=normal,
-        area=m.size,
-        centroid=m.centroid,
-        second_moment=m.second,
-        joint_set=sets,
-        side=np.zeros(len(sets), np.int64),
-        outlines=outlines,
-    )
+    own = np.unique(np.column_stack([of, corners[:, : normal.shape[1] - 1]]), axis=0)
+    x = np.insert(own[:, 1:], axis, place, axis=1)
+    return around(x, own[:, 0].astype(np.int64), normal, 0.0)
 
 
 def _check_ends(
@@ -119,16 +101,16 @@ def _check_ends(
 
     rock : what the sides share without a joint there, polygons.
     """
-    x = blocks.body.vertices[:, axis]
-    traces = [_traces(blocks, axis, place, len(names), least) for place in (x.min(), x.max())]
     if not len(rock):
         return
+    x = blocks.body.vertices[:, axis]
+    traces = [_traces(blocks, axis, place, len(names), least) for place in (x.min(), x.max())]
     inner = shapely.buffer(shapely.box(*shapely.total_bounds(rock)), -least)
-    for one, beyond, name in ((0, 1, sides[1]), (1, 0, sides[0])):
-        for k, trace, at in traces[one]:
+    for one, beyond, name in zip(traces, traces[::-1], sides[::-1], strict=True):
+        for k, trace, at in one:
             middle = shapely.centroid(trace)
             amid = inner.contains(middle) and shapely.dwithin(rock, middle, least).any()
-            partners = [other for own, other, _ in traces[beyond] if own == k]
+            partners = [other for own, other, _ in beyond if own == k]
             if amid and not shapely.dwithin(partners, middle, least).any():
                 cause = (
                     f"is periodic, but a joint of {names[k]!r} ends there and not at the same "

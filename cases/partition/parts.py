@@ -11,28 +11,21 @@ from jointwave.cases.schema.sources import PlaneLoad
 BESIDE = 1e-6
 
 
-def covered(domain: Domain, load: PlaneLoad, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Return from where to where, of its length, a pressure acts on each edge of its side or its
-    opening, [n, 2]; both 0 where it does not. starts, ends : float arrays [n, 2], m."""
-    if load.between is None:
-        return np.tile([0.0, 1.0], (len(starts), 1))
+def covered(domain: Domain, load: PlaneLoad, ends: np.ndarray) -> np.ndarray:
+    """Return from where to where, of its length, a load between two points acts on each edge of its
+    side or its opening, [n, 2]; both 0 where it does not. ends : float array [n, 2, 2], m."""
     outline = shape_of(domain)
-    part, tolerance = np.zeros((len(starts), 2)), BESIDE * outline.size
+    part, tolerance = np.zeros((len(ends), 2)), BESIDE * outline.size
     for start, end in loaded_lines(outline, load):
         length = float(np.hypot(*(end - start)))
         if length <= tolerance:
             continue
         along = (end - start) / length
-        s, off = [], []
-        for points in (starts, ends):
-            s.append((points - start) @ along)
-            off.append(np.abs((points - start) @ [-along[1], along[0]]))
-        beside = np.maximum(*off) <= tolerance
-        low, high = np.maximum(np.minimum(*s), 0.0), np.minimum(np.maximum(*s), length)
-        meets = beside & (high - low > tolerance)
-        span = np.where(meets, s[1] - s[0], 1.0)
-        place = np.sort(np.stack([(low - s[0]) / span, (high - s[0]) / span], axis=1), axis=1)
-        part[meets] = place[meets]
+        s, off = (ends - start) @ along, np.abs((ends - start) @ [-along[1], along[0]])
+        low, high = np.maximum(s.min(axis=1), 0.0), np.minimum(s.max(axis=1), length)
+        meets = (off.max(axis=1) <= tolerance) & (high - low > tolerance)
+        place = (np.stack([low, high], axis=1) - s[:, :1])[meets] / np.diff(s, axis=1)[meets]
+        part[meets] = np.sort(place, axis=1)
     return part
 
 

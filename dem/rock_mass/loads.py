@@ -43,9 +43,10 @@ def _covered(
     scene: RockMass, blocks: Blocks, load: PlaneLoad, facets: np.ndarray
 ) -> tuple[np.ndarray, Outlines]:
     """Return those of some edges that a load acts on in part, and these parts of them."""
-    start, end = blocks.boundary.outlines.corners.reshape(-1, 2, 2)[facets].swapaxes(0, 1)
-    part = covered(scene.domain, load, start, end)
+    edges = blocks.boundary.ends[facets]
+    part = covered(scene.domain, load, edges)
     acts = part[:, 1] > part[:, 0]
+    start, end = edges[acts, :1], edges[acts, 1:]
     place = part[acts, :, None]
-    ends = start[acts, None] * (1 - place) + end[acts, None] * place
+    ends = start * (1 - place) + end * place
     return facets[acts], Outlines(ends.reshape(-1, 2), 2 * np.arange(acts.sum() + 1))
