@@ -313,8 +313,6 @@ def mpiexec():
 def _outside_mpi(environment):
     """Return an environment without what MPI left there, if it was started before the workers were:
     mpiexec would take itself for a part of it."""
-    if "PMIX_RANK" not in environment:
-        return environment
     return {k: v for k, v in environment.items() if not k.startswith(("OMPI_", "PMIX_"))}
 
 

@@ -17,7 +17,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.continuum.processes.partition import ranks_of_nodes
 from jointwave.continuum.processes.share import share_of
 from jointwave.continuum.space.fenicsx import MPI
-from jointwave.continuum.space.petsc import PETSc
+from jointwave.continuum.space.petsc import PETSc, shared_by
 from jointwave.continuum.stepping.explicit import leapfrog_for
 from jointwave.continuum.stepping.leapfrog import Leapfrog
 from jointwave.continuum.stepping.problem import Problem
@@ -44,7 +44,7 @@ class SharedLeapfrog(Leapfrog):
         place = self.whole(np.arange(self.product.size)).astype(np.int64)
         remote = np.stack([of_freedom, place], axis=1)[self._share.halo].astype(PETSc.IntType)
         leaves = np.arange(self.product.size, self.product.size + self.halo)
-        self._forest = PETSc.SF().create(comm)
+        self._forest = PETSc.SF().create(shared_by(comm))
         self._forest.setGraph(self.product.size, leaves.astype(PETSc.IntType), remote)
 
     @property

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix, diags
 
-from jointwave.continuum.space.petsc import PETSc
+from jointwave.continuum.space.petsc import PETSc, shared_by
 from jointwave.continuum.stepping.memory import memory_of
 from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.tractions import forces_for, history_at_rest, tangents_for
@@ -218,7 +218,7 @@ class Factors:
         matrix, n, self._comm = csr_matrix(matrix), matrix.shape[0], comm
         rank, size = (0, 1) if comm is None else (comm.rank, comm.size)
         self._rows = slice(n * rank // size, n * (rank + 1) // size)
-        own, on = matrix[self._rows], PETSc.COMM_SELF if comm is None else comm
+        own, on = matrix[self._rows], PETSc.COMM_SELF if comm is None else shared_by(comm)
         pattern = own.indptr.astype(PETSc.IntType), own.indices.astype(PETSc.IntType)
         sizes = own.shape[0], n
         given = PETSc.Mat().createAIJ((sizes, sizes), csr=(*pattern, own.data), comm=on)

@@ -14,6 +14,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.scenes import find
 from jointwave.continuum.run import simulate
+from jointwave.continuum.space.petsc import PETSc, shared_by
 from jointwave.continuum.stepping import product
 from tests.conftest import Checkpointer
 
@@ -95,6 +96,9 @@ def main(path: Path) -> None:
     comm = MPI.COMM_WORLD
     if comm.size == 3:
         product.CACHE = 0  # the product reads half of a matrix, as of large ones
+    first = PETSc.SF().create(shared_by(comm))
+    if comm.rank == 0:
+        first.destroy()  # as Python deletes objects earlier in one process than in another
     results = {name: simulate(one, comm=comm) for name, one in scenes().items()}
     keeper = Checkpointer(SAMPLES // 2)
     with pytest.raises(InterruptedRun):
