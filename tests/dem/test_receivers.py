@@ -372,7 +372,7 @@ def test_snapshots_show_whole_blocks_that_move_rigidly(dim):
 
 def test_snapshots_of_a_scene_in_space(tmp_path):
     """The faces of all bricks, as they move, with six stresses; displacement from the start on."""
-    (scene,) = load(WALL, {"record.fields": 0.2})
+    (scene,) = load(WALL, {"record.fields": 0.05})
     found = blocks_of_scene(scene)
     owner, _, pieces = found.faces(TOLERANCE)
     draw, count = np.random.default_rng(8).normal, found.count
