@@ -7,81 +7,106 @@ from collections.abc import Callable
 import numpy as np
 
 from jointwave.cases.incident import IncidentField
+from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.material.rock_mass import set_time_constants
 from jointwave.cases.material.strength import strength_of
 from jointwave.cases.partition.periodic import of_all
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
-from jointwave.continuum.loads.ends import bearing_ends
-from jointwave.continuum.loads.forces import loads_of, released, weight_of
-from jointwave.continuum.loads.sides import (
-    bearing_sides,
-    cells_behind,
-    held_sides,
-    quiet_sides,
-)
-from jointwave.continuum.pillar import in_time as pillar_in_time
-from jointwave.continuum.pillar import problem_of as pillar_problem
+from jointwave.continuum.joints import joint_law, resolved_joints
+from jointwave.continuum.loads.ends import load_on, quiet_ends
+from jointwave.continuum.loads.forces import Loads, pushes, released, waves_of, weight_of
+from jointwave.continuum.loads.sides import bearing_sides, cells_behind, held_sides, quiet_sides
 from jointwave.continuum.receivers.points import readings_of
+from jointwave.continuum.receivers.sections import readings_of_pillar
 from jointwave.continuum.scene import SceneBody
-from jointwave.continuum.space.model import Facets
+from jointwave.continuum.space.model import Body, Facets, directions
 from jointwave.continuum.space.own_rock import impedances_along
-from jointwave.continuum.stepping.problem import Problem
+from jointwave.continuum.space.rock import layers_of
+from jointwave.continuum.stepping.problem import Problem, Readings
 from jointwave.continuum.stepping.static import Rest, elastic_rest, holding, settled
 from jointwave.joints.law import Law, law, stiffest
 
 
-def law_of(found: SceneBody) -> Law | None:
-    """Return the law of a rock mass's joints, a column for each contact; None without joints."""
-    scene = found.scene
-    assert not scene.is_column
-    if found.body.joints is None:
-        return None
-    sets, which = scene.joint_sets, of_all(found.blocks, found.across, "joint_set")
-    which = np.clip(which, 0, len(sets) - 1)  # cuts through rock are no joints
-    normal, shear = (
-        np.array([getattr(one, key) for one in sets], dtype=float)[which]
-        for key in ("normal_stiffness", "shear_stiffness")
-    )
-    etas = set_time_constants(scene)
-    own = law(
-        normal,
-        None if etas is None else etas[which],
-        np.array([one.tension is not False for one in sets])[which],
-        shear_stiffness=shear,
-        **strength_of(sets, which).strengths(),
-    )
-    return own if own.maximum_closure is None else own._replace(rock_compliance=0.0)
+def with_law(found: SceneBody) -> tuple[Body, Law | None]:
+    """Return a body with the law of its joints, a column for each contact of a rock mass and for
+    each joint of a pillar that is resolved; None without joints."""
+    scene, body, joints = found.scene, found.body, found.body.joints
+    if joints is None:
+        return body, None
+    if scene.is_column:
+        p, shears = calibrate(scene), body.components > 1
+        resolved = resolved_joints(p, found.model, shears, tuple(layers_of(scene)))
+        number, column = np.unique(joints.column, return_inverse=True)
+        body = body._replace(joints=joints._replace(column=column.reshape(-1)))
+        own = joint_law(p, resolved, number, shears)
+    else:
+        sets, which = scene.joint_sets, of_all(found.blocks, found.across, "joint_set")
+        which = np.clip(which, 0, len(sets) - 1)  # cuts through rock are no joints
+        normal, shear = (
+            np.array([getattr(one, key) for one in sets], dtype=float)[which]
+            for key in ("normal_stiffness", "shear_stiffness")
+        )
+        etas = set_time_constants(scene)
+        own = law(
+            normal,
+            None if etas is None else etas[which],
+            np.array([one.tension is not False for one in sets])[which],
+            shear_stiffness=shear,
+            **strength_of(sets, which).strengths(),
+        )
+    return body, own if own.maximum_closure is None else own._replace(rock_compliance=0.0)
 
 
 def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
-    """Return the body of a scene and what acts on it all the time."""
+    """Return the body of a scene and what acts on it all the time.
+
+    Masses, forces and energies of a pillar in one and two dimensions are per unit area or
+    thickness; `receivers.sections.extent_of` turns them into those of the pillar.
+    """
+    body, own = with_law(found)
+    steady = [one for one in (weight_of(scene, body), released(scene, body)) if one is not None]
     if scene.is_column:
-        return pillar_problem(scene, found)
-    body, own = found.body, law_of(found)
-    stress = None if scene.prestress is None else scene.prestress.tensor
+        alpha, quiet = calibrate(scene).mass_damping, quiet_ends(scene, body, found.model)
+    else:
+        alpha, quiet = scene.damping.alpha, quiet_sides(scene, body, own_impedances(found))
+    return Problem(
+        body,
+        _readings(scene, found),
+        law=own,
+        stiffest=None if own is None else stiffest(own, scene),
+        stress=_prestress(scene, body),
+        alpha=alpha or 0.0,
+        mechanisms=mechanisms_of(scene, found.model),
+        steady=np.sum(steady, axis=0) if steady else None,
+        quiet=quiet,
+        held=held_sides(scene, body),
+    )
+
+
+def _prestress(scene: AnyScene, body: Body) -> np.ndarray | None:
+    """Return the stress at u = 0 [d, d], Pa; None without."""
+    if scene.prestress is None:
+        return None
+    if not scene.is_column:
+        return scene.prestress.tensor
+    return np.diag(np.where(np.array(directions(body)) == 1, scene.prestress.normal, 0.0))
+
+
+def _readings(scene: AnyScene, found: SceneBody) -> Readings:
+    """Return how the receivers of a scene read its body."""
+    if scene.is_column:
+        return readings_of_pillar(scene, found.body, found.materials, found.of_cell)
     moduli, lag = (
         np.array([getattr(one, name) for one in found.materials])[found.of_cell]
         for name in ("stiffness", "time_constant")
     )
     points, joints = (
-        np.array(places, dtype=float).reshape(-1, body.components)
+        np.array(places, dtype=float).reshape(-1, found.body.components)
         for places in (scene.record.points, scene.record.joints)
     )
-    steady = [one for one in (weight_of(scene, body), released(scene, body)) if one is not None]
-    return Problem(
-        body,
-        readings_of(body, moduli, points, joints, stress, lag),
-        law=own,
-        stiffest=None if own is None else stiffest(own, scene),
-        stress=stress,
-        alpha=scene.damping.alpha or 0.0,
-        mechanisms=mechanisms_of(scene, found.model),
-        steady=np.sum(steady, axis=0) if steady else None,
-        quiet=quiet_sides(scene, body, own_impedances(found)),
-        held=held_sides(scene, body),
-    )
+    return readings_of(found.body, moduli, points, joints, _prestress(scene, found.body), lag)
 
 
 def own_impedances(found: SceneBody) -> Callable[[Facets], np.ndarray] | None:
@@ -102,10 +127,15 @@ def in_time(
 ) -> Problem:
     """Return a problem with forces and motion that have a history, for the steps of a clock;
     incident : of the waves, in intact rock where absent."""
+    body = problem.body
     if scene.is_column:
-        return pillar_in_time(scene, problem, time)
-    forces = loads_of(scene, problem.body, time.dt, incident)
-    return problem._replace(forces=forces, held=held_sides(scene, problem.body, time))
+        pushed, waves = load_on(scene, body), None
+    else:
+        pushed, waves = pushes(scene, body), waves_of(scene, body, incident)
+    forces = None
+    if pushed or waves is not None:
+        forces = Loads(body.stiffness.shape[0], time.dt, pushed, waves)
+    return problem._replace(forces=forces, held=held_sides(scene, body, time))
 
 
 def at_rest(scene: AnyScene, problem: Problem) -> tuple[Problem, Rest | None, np.ndarray | None]:
@@ -116,8 +146,7 @@ def at_rest(scene: AnyScene, problem: Problem) -> tuple[Problem, Rest | None, np
     static, weight = gravity is not None and gravity.static, weight_of(scene, body)
     if weight is None and not scene.excavated:
         return problem, None, None
-    bears = bearing_ends(scene, body) if scene.is_column else bearing_sides(scene, body)
-    hold = holding(problem, bears)
+    hold = holding(problem, bearing_sides(scene, body))
     before, rest = problem, None
     if weight is not None and not static:  # it acts later
         before = problem._replace(steady=problem.steady - weight)

@@ -20,9 +20,9 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.joints import resolved_joints
-from jointwave.continuum.mesh.boxes import along_edges, box_corners, box_mesh, extents
+from jointwave.continuum.mesh.boxes import along_edges, box_mesh, boxes_of, extents
 from jointwave.continuum.mesh.conforming import Conforming
-from jointwave.continuum.mesh.domain import marks_of
+from jointwave.continuum.mesh.domain import Marks, marks_of
 from jointwave.continuum.mesh.given import ENDS, mesh_of_file
 from jointwave.continuum.mesh.periodic import facing, fitted, matching_facets, matching_vertices
 from jointwave.continuum.mesh.simplices import are_simplices, own_cells, simplex_mesh
@@ -65,13 +65,13 @@ def body_of(
 
     Raises SceneError where the scene cannot be cut or meshed as it asks for.
     """
+    numerics, key = scene.numerics.continuum, "numerics.continuum.cell"
     try:
-        if scene.is_column:
-            return _pillar(scene, model, rock, implicit, dimension_of(scene, dim))
-        return _rock_mass(scene, model, rock, implicit)
+        if not scene.is_column:
+            return _rock_mass(scene, model, rock, implicit)
+        return _pillar(scene, model, rock, implicit, dimension_of(scene, dim))
     except ImportError as error:
-        key = "numerics.continuum.cell"
-        raise SceneError(scene.where, key, scene.numerics.continuum.cell, str(error)) from None
+        raise SceneError(scene.where, key, numerics.cell, str(error)) from None
 
 
 def _rock_mass(scene: RockMass, model: str, rock: Rock | None, implicit: bool) -> SceneBody:
@@ -82,7 +82,8 @@ def _rock_mass(scene: RockMass, model: str, rock: Rock | None, implicit: bool) -
     across, dim = across_periodic(scene, blocks), blocks.body.dim
     blocks = replace(blocks, body=fitted(blocks.body, across))
     joint = of_all(blocks, across, "joint_set") >= 0
-    marks = marks_of(blocks, joint, shape_of(scene.domain).sides)
+    column = np.where(joint, np.arange(len(joint)), -1)
+    marks = marks_of(blocks, column, shape_of(scene.domain).sides)
     try:
         mesh = _mesh_of_rock_mass(scene, blocks, across)
         first = np.cumsum([len(blocks.contacts), *(len(one.contacts) for one in across)])
@@ -98,17 +99,18 @@ def _rock_mass(scene: RockMass, model: str, rock: Rock | None, implicit: bool) -
 
 def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) -> Conforming:
     body, numerics = blocks.body, scene.numerics.continuum
-    corners = None if numerics.cell == "triangle" else box_corners(body)
-    if numerics.cell == "quadrilateral" and corners is None:
+    boxes = None if numerics.cell == "triangle" else boxes_of(body)
+    if numerics.cell == "quadrilateral" and boxes is None:
         allowed = "not every block has four edges with one neighbour each"
         raise SceneError(scene.where, "numerics.continuum.cell", numerics.cell, allowed)
-    size = element_size(scene, corners is None)
+    size = element_size(scene, boxes is None)
     if np.isfinite(size):
         refuse_large_mesh(scene, blocks, size, body.dim)
-    if corners is not None:
-        wanted = np.maximum(1, np.ceil(extents(body, corners) / size * (1 - 1e-9))).astype(int)
+    if boxes is not None:
+        wanted = np.ceil(extents(body, boxes.corners) / size * (1 - 1e-9))
+        wanted = np.maximum(1, wanted).astype(int)
         like = matching_vertices(body, across)
-        return box_mesh(body, corners, along_edges(corners, wanted, like))
+        return box_mesh(body, boxes, along_edges(boxes.corners, wanted, like))
     _refuse_order(scene)
     if not np.isfinite(size) and are_simplices(body):
         return own_cells(body)
@@ -117,42 +119,34 @@ def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) ->
 
 
 def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool, dim: int) -> SceneBody:
-    """Return the body of a pillar in so many dimensions."""
-    if scene.numerics.continuum.mesh is not None:
-        return _pillar_of_file(scene, model, rock, implicit, dim)
-    components = 3 if dim == 1 and is_spatial(scene) else dim
-    p, numerics, layers = calibrate(scene), scene.numerics.continuum, materials.layers_of(scene)
-    blocks, along = blocks_of_pillar(scene, dim, layers), dim // 2
-    normal = blocks.boundary.normal[:, along]
+    """Return the body of a pillar in so many dimensions; columns of joints are their numbers."""
+    numerics, size = scene.numerics.continuum, 3 if dim == 1 and is_spatial(scene) else dim
+    layers = materials.layers_of(scene) if numerics.mesh is None else {}
+    resolved = resolved_joints(calibrate(scene), model, size > 1, tuple(layers)).number
+    if numerics.mesh is None:
+        blocks, marks = _blocks_of_pillar(scene, dim, layers, resolved)
+        each = np.append(elements_along(scene, model), np.ones(len(layers), int))
+        mesh = _mesh_of_pillar(scene, blocks, each, size)
+    else:
+        blocks, mesh, marks = mesh_of_file(scene, resolved, dim)
+    own = materials.pillar(scene, model, size, dim)
+    chosen = ChosenRock(scene, rock, own, blocks.body.region)
+    consistent = numerics.mass == "consistent" and implicit
+    flat = scene.motion.rotation == "none" and dim > 1
+    body = build_body(mesh, marks, numerics.order, chosen, size, consistent, flat=flat)
+    return SceneBody(scene, blocks, [], *chosen.found, body, model)
+
+
+def _blocks_of_pillar(
+    scene: Scene, dim: int, layers: dict[int, float], resolved: np.ndarray
+) -> tuple[Blocks, Marks]:
+    blocks = blocks_of_pillar(scene, dim, layers)
+    normal = blocks.boundary.normal[:, dim // 2]
     end = np.select([normal < -0.5, normal > 0.5], [0, 1], 2)
     blocks = replace(blocks, boundary=replace(blocks.boundary, side=end))
-    ones = np.ones(len(layers), int)
-    number = np.arange(p.block_count - 1)  # the joint of each contact, of a layer's two the same
-    number = np.repeat(number, 1 + np.isin(number, [*layers]))
-    joint = np.isin(number, resolved_joints(p, model, components > 1, tuple(layers)).number)
-    mesh = _mesh_of_pillar(scene, blocks, np.append(elements_along(scene, model), ones), components)
-    own = materials.pillar(scene, model, components, dim)
-    chosen = ChosenRock(scene, rock, own, blocks.body.region)
-    marks, consistent = marks_of(blocks, joint, ENDS), numerics.mass == "consistent" and implicit
-    flat = scene.motion.rotation == "none" and dim > 1
-    body = build_body(mesh, marks, numerics.order, chosen, components, consistent, flat=flat)
-    if body.joints is not None:
-        body = body._replace(joints=body.joints._replace(column=number[body.joints.column]))
-    return SceneBody(scene, blocks, [], *chosen.found, body, model)
-
-
-def _pillar_of_file(
-    scene: Scene, model: str, rock: Rock | None, implicit: bool, dim: int
-) -> SceneBody:
-    """Return the body of a pillar on a mesh of the user's, which is one block with joints in it."""
-    resolved, numerics = resolved_joints(calibrate(scene), model, True), scene.numerics.continuum
-    blocks, mesh, marks = mesh_of_file(scene, resolved.number, dim)
-    consistent = numerics.mass == "consistent" and implicit
-    own = materials.pillar(scene, model, dim, dim)
-    chosen = ChosenRock(scene, rock, own, blocks.body.region)
-    flat = scene.motion.rotation == "none"
-    body = build_body(mesh, marks, numerics.order, chosen, dim, consistent, flat=flat)
-    return SceneBody(scene, blocks, [], *chosen.found, body, model)
+    joint = np.arange(calibrate(scene).block_count - 1)
+    joint = np.repeat(joint, 1 + np.isin(joint, [*layers]))  # of a layer's two contacts the same
+    return blocks, marks_of(blocks, np.where(np.isin(joint, resolved), joint, -1), ENDS)
 
 
 def _mesh_of_pillar(scene: Scene, blocks: Blocks, each: np.ndarray, components: int) -> Conforming:
@@ -169,9 +163,9 @@ def _mesh_of_pillar(scene: Scene, blocks: Blocks, each: np.ndarray, components: 
         _refuse_order(scene)
         longest = blocks.volume / scene.pillar.side**faces / many
         return simplex_mesh(body, min(scene.pillar.side / across, longest.min()))
-    corners = box_corners(body)
-    assert corners is not None
-    return box_mesh(body, corners, _along(body, corners, many, across))
+    boxes = boxes_of(body)
+    assert boxes is not None
+    return box_mesh(body, boxes, _along(body, boxes.corners, many, across))
 
 
 def _refuse_order(scene: AnyScene) -> None:

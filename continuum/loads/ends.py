@@ -1,4 +1,4 @@
-"""The ends of a pillar: their loads, dashpots, walls, and what bears its weight.
+"""The ends of a pillar: their loads and dashpots.
 
 Absorbing ends carry dashpots: rho c along the pillar of the bar, whose sides are free, and across
 it of the S wave, of jointed rock as a whole. In jointed rock a matched end has half a joint in
@@ -11,27 +11,19 @@ from typing import Any
 import numpy as np
 import ufl
 from dolfinx import mesh
-from scipy.sparse import csr_matrix, diags
 
-from jointwave.cases.loads import base_steps, load_history
+from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.jointed_rock import JointedRock
-from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.loads.forces import Push, forces_on
-from jointwave.continuum.loads.sides import facets_on
+from jointwave.continuum.loads.sides import ENDS, facets_on
 from jointwave.continuum.space import compat
-from jointwave.continuum.space.model import Body
-from jointwave.continuum.stepping.problem import Dashpots, Held, Springs
+from jointwave.continuum.space.model import Body, directions
+from jointwave.continuum.stepping.problem import Dashpots, Springs
 from jointwave.joints.ends import HalfSpring, half_spring
 
-ENDS = ("start", "end")
 NEAR = 1e-9  # of the pillar: what is at an end
-
-
-def directions(body: Body) -> list[int]:
-    """Return the axes, x, y, z, of the components of a pillar's motion."""
-    return [1] if body.components == 1 else [0, 1, 2][: body.components]
 
 
 def load_on(scene: Scene, body: Body) -> list[Push]:
@@ -118,32 +110,3 @@ def half_springs(p: JointedRock, sprung: bool, components: int, dt: float) -> li
         p.time_constant or 0.0,
     )
     return [half_spring(2 * stiffness[k], eta, one, dt) for k, one in zip(along, z, strict=True)]
-
-
-def fixed_ends(scene: Scene, body: Body, time: Clock | None = None) -> Held | None:
-    """Return the freedoms of fixed ends, those of a shaken base with its motion; None without."""
-    freedom, direction = [], []
-    for place in ENDS:
-        if getattr(scene.ends, place) == "fixed":
-            node = np.unique(facets_on(body, [place]).node)
-            shaken = place == "start" and scene.shakes_base
-            given = np.array(scene.load.direction, dtype=float)[directions(body)] * shaken
-            freedom.append(body.components * node[:, None] + np.arange(body.components))
-            direction.append(np.tile(given, (len(node), 1)))
-    if not freedom:
-        return None
-    moved = None
-    if scene.shakes_base and time is not None:
-        moved = base_steps(scene.load, time.dt, time.steps + time.stride + 1).__getitem__
-    return Held(np.concatenate(freedom).ravel(), np.concatenate(direction).ravel(), moved)
-
-
-def bearing_ends(scene: Scene, body: Body) -> csr_matrix | None:
-    """Return the areas [freedoms, freedoms] of ends that bear the weight beside their dashpots, m2;
-    None without."""
-    places = [place for place, bears in zip(ENDS, scene.bears, strict=True) if bears]
-    if not places:
-        return None
-    facets, area = facets_on(body, places), np.zeros((len(body.x), body.components))
-    np.add.at(area, facets.node, facets.weight[:, None])
-    return csr_matrix(diags(area.ravel()))

@@ -56,10 +56,10 @@ def forces_on(body: Body, facets: Facets, traction: np.ndarray) -> np.ndarray:
     return found
 
 
-def released(scene: RockMass, body: Body) -> np.ndarray | None:
+def released(scene: AnyScene, body: Body) -> np.ndarray | None:
     """Return the force on every freedom by which walls of openings lose the prestress that what is
     excavated bore there, N; None where nothing is."""
-    if not scene.excavated or scene.prestress is None:
+    if scene.is_column or not scene.excavated or scene.prestress is None:
         return None
     walls = facets_on(body, [name for name in body.sides if name.startswith("opening")])
     return forces_on(body, walls, walls.normal @ scene.prestress.tensor)
@@ -195,14 +195,8 @@ class Waves:
         return (self.facets.weight[:, None] * found).reshape(len(times), -1)
 
 
-def loads_of(
-    scene: RockMass, body: Body, dt: float, incident: IncidentField | None
-) -> Loads | None:
-    """Return the forces of a scene that have a history; incident : of the waves, in intact rock
-    where absent."""
-    waves, found = None, pushes(scene, body)
-    if scene.waves and scene.boundaries.sides("quiet"):
-        waves = Waves(scene, body, incident or free_field(scene))
-    if not found and waves is None:
+def waves_of(scene: RockMass, body: Body, incident: IncidentField | None) -> Waves | None:
+    """Return the waves of a scene; incident : their field, in intact rock where absent."""
+    if not scene.waves or not scene.boundaries.sides("quiet"):
         return None
-    return Loads(body.stiffness.shape[0], dt, found, waves)
+    return Waves(scene, body, incident or free_field(scene))

@@ -14,13 +14,17 @@ from jointwave.cases.loads import base_steps
 from jointwave.cases.material.quiet_sides import borne, medium_impedances
 from jointwave.cases.partition.regions import region_at
 from jointwave.cases.sampling import Clock
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.pulse import Load
 from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.evaluation import nodes_of_cells
-from jointwave.continuum.space.model import Body, Facets
+from jointwave.continuum.space.model import Body, Facets, directions
 from jointwave.continuum.stepping.problem import Dashpots, Held
 
 INSIDE = 1e-7  # of a cell: how far inside it a field is asked for, lest it is beyond a joint
+ENDS = ("start", "end")  #: sides of a pillar that hold it or absorb waves
 #: Sides by the axis of their normal.
 AXIS = {
     2: {"left": 0, "right": 0, "bottom": 1, "top": 1},
@@ -91,37 +95,59 @@ def quiet_sides(
     return Dashpots(node, viscosity)
 
 
-def bearing_sides(scene: RockMass, body: Body) -> csr_matrix | None:
+def bearing_sides(scene: AnyScene, body: Body) -> csr_matrix | None:
     """Return the areas [freedoms, freedoms] of quiet sides that bear the weight beside their
     dashpots, m2; None without."""
-    facets = facets_on(body, scene.boundaries.sides("quiet"))
-    bears = facets.weight[:, None] * borne(scene, facets.normal)
-    if not bears.any():
+    if scene.is_column:
+        names = [name for name, bears in zip(ENDS, scene.bears, strict=True) if bears]
+        facets = facets_on(body, names)
+        tensors = facets.weight[:, None, None] * np.eye(body.components)
+    else:
+        facets = facets_on(body, scene.boundaries.sides("quiet"))
+        bears = facets.weight[:, None] * borne(scene, facets.normal)
+        tensors = along_and_across(facets.normal, bears)
+    if not tensors.any():
         return None
-    tensors, dim = along_and_across(facets.normal, bears), body.components
+    dim = body.components
     own = dim * facets.node[:, None] + np.arange(dim)
     row, column = np.repeat(own, dim, axis=1), np.tile(own, dim)
     return csr_matrix((tensors.ravel(), (row.ravel(), column.ravel())), body.stiffness.shape)
 
 
-def held_sides(scene: RockMass, body: Body, time: Clock | None = None) -> Held | None:
+def held_sides(scene: AnyScene, body: Body, time: Clock | None = None) -> Held | None:
     """Return the freedoms of fixed sides, with the motion of one that is shaken, and those normal
     to roller sides; None without any."""
-    dim, base = body.components, next(iter(scene.bases), None)
+    dim, base, shaken = body.components, *_base(scene)
     direction = np.full(body.stiffness.shape[0], np.nan)
-    for kind in ("fixed", "roller"):
-        for name in scene.boundaries.sides(kind):
-            node = np.unique(facets_on(body, [name]).node)
-            shaken = base is not None and base.side == name
-            given = np.array(base.direction) if shaken and base is not None else np.zeros(dim)
-            for c in range(dim) if kind == "fixed" else [AXIS[dim][name]]:
-                of = dim * node + c
-                direction[of] = np.where(np.isnan(direction[of]) | shaken, given[c], direction[of])
+    for name, axes in _held(scene, dim):
+        node, given = np.unique(facets_on(body, [name]).node), np.zeros(dim)
+        if base is not None and name == shaken:
+            given = np.array(base.direction, dtype=float)[directions(body)]
+        for c in axes:
+            of = dim * node + c
+            kept = ~np.isnan(direction[of]) & (name != shaken)
+            direction[of] = np.where(kept, direction[of], given[c])
     freedom = np.flatnonzero(~np.isnan(direction))
     if not freedom.size:
         return None
-    moved = None
+    steps = None
     if base is not None and time is not None:
-        steps = base_steps(base, time.dt, time.steps + time.stride + 1)
-        moved = steps.__getitem__
-    return Held(freedom, direction[freedom], moved)
+        steps = base_steps(base, time.dt, time.steps + time.stride + 1).__getitem__
+    return Held(freedom, direction[freedom], steps)
+
+
+def _held(scene: AnyScene, dim: int) -> list[tuple[str, list[int]]]:
+    """Return the sides that are held, and the components of their motion that are."""
+    every = list(range(dim))
+    if scene.is_column:
+        return [(name, every) for name in ENDS if getattr(scene.ends, name) == "fixed"]
+    fixed, rollers = (scene.boundaries.sides(kind) for kind in ("fixed", "roller"))
+    return [*((name, every) for name in fixed), *((name, [AXIS[dim][name]]) for name in rollers)]
+
+
+def _base(scene: AnyScene) -> tuple[Load | PlaneLoad | None, str | None]:
+    """Return the motion of a base, and its side; None without."""
+    if scene.is_column:
+        return (scene.load, ENDS[0]) if scene.shakes_base else (None, None)
+    base = next(iter(scene.bases), None)
+    return base, None if base is None else base.side

@@ -1,82 +1,79 @@
 """Blocks with the corners of a box in quadrilaterals or hexahedra, and intervals."""
 
-from itertools import combinations, product
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
 from jointwave.cases.geometry.cell_complex import GENERIC, Complex
-from jointwave.cases.geometry.relations import composed, distinct, joined, merged
+from jointwave.cases.geometry.relations import joined, merged
 from jointwave.continuum.mesh.conforming import BOXES, Conforming, facets_of
 
 ALIKE = 1e-9  # of the body: vertices of neighbours are one within it
 FLAT = 1e-3  # of a box of these edges: the volume below which its corners are in a line or plane
 
 
-def box_corners(body: Complex) -> np.ndarray | None:
-    """Return the corners of each cell in basix's order, vertices [count, 2^d]; None where some cell
-    is no box: it has another number of facets, edges or corners, or corners within an edge."""
-    half, dim = body.halves(), body.dim
-    pairs = np.stack([half.cell, half.facet], axis=1)
-    own = body.vertices_of(pairs)
-    edges = _edges(body, pairs)
-    sizes = (pairs, 2 * dim), (own, 2**dim), (edges, dim * 2 ** (dim - 1))
-    for one, number in sizes:
-        if (np.bincount(one[:, 0], minlength=body.count) != number).any():
-            return None
-    own = own[:, 1].reshape(body.count, -1)
-    beside = _neighbours(own, edges[:, 1:].reshape(body.count, -1, 2))
-    if (beside.sum(axis=2) != dim).any():
-        return None
-    found = np.take_along_axis(own, _ordered(body.vertices[own], beside), 1)
-    return None if _is_flat(body.vertices[found]) else found
+class Boxes(NamedTuple):
+    """Boxes in basix's order, alike in equal boxes: their corners, vertices [count, 2^d], and the
+    facets of the complex that are theirs, int array [count, 2 d].
 
-
-def _edges(body: Complex, pairs: np.ndarray) -> np.ndarray:
-    """Return the edges of cells, int array [m, 3] of a cell and two vertices; pairs : (cell,
-    facet)."""
-    if body.dim == 1:
-        cell, vertex = pairs[np.lexsort(pairs.T[::-1])].T
-        return np.column_stack([cell[::2], vertex.reshape(-1, 2)])
-    if body.dim == 3:
-        pairs = composed(pairs, body.bounds[1])[0]
-    pairs = distinct(pairs)
-    return np.column_stack([pairs[:, 0], body.bounds[0][:, 1].reshape(-1, 2)[pairs[:, 1]]])
-
-
-def _neighbours(own: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Return which corners edges join, bool array [n, corners, corners]; own : vertices of each box
-    in order [n, corners]. edges : vertices [n, edges, 2]."""
-    at = (own[:, None, None] < edges[..., None]).sum(axis=3)
-    found, box = np.zeros((*own.shape, own.shape[1]), bool), np.arange(len(own))[:, None]
-    found[box, at[..., 0], at[..., 1]] = found[box, at[..., 1], at[..., 0]] = True
-    return found
-
-
-def _ordered(x: np.ndarray, beside: np.ndarray) -> np.ndarray:
-    """Return the corners of boxes in basix's order, int array [n, 2^d], alike in equal boxes.
-
-    x : float array [n, 2^d, d], m. beside : which corners edges join, bool array [n, 2^d, 2^d].
     Corner k is from the first along axis i where bit i of k is set.
     """
-    box, (_, many, dim) = np.arange(len(x)), x.shape
-    found = np.empty(x.shape[:2], np.int64)
-    found[:, 0] = (x @ GENERIC[:dim]).argmin(axis=1)
-    axes = np.nonzero(beside[box, found[:, 0]])[1].reshape(-1, dim)
-    arms = np.take_along_axis(x, axes[..., None], 1) - x[box, found[:, 0]][:, None]
-    towards = arms @ GENERIC[::-1][:dim] / np.linalg.norm(arms, axis=2)
+
+    corners: np.ndarray
+    facets: np.ndarray
+
+
+def boxes_of(body: Complex) -> Boxes | None:
+    """Return the cells of a complex as boxes; None where some cell is none: it has another number
+    of facets or corners, corners within an edge, or no facet opposite each facet."""
+    half, dim = body.halves(), body.dim
+    facet = half.facet[np.argsort(half.cell, kind="stable")]
+    own = body.corners(half)
+    each = body.vertices_of(np.stack([np.arange(len(facet)), facet], axis=1))
+    sizes = (half.cell, 2 * dim), (own[:, 0], 2**dim), (each[:, 0], 2 ** (dim - 1))
+    if any((np.bincount(one) != number).any() for one, number in sizes):
+        return None
+    own, facet = own[:, 1].reshape(body.count, -1), facet.reshape(body.count, -1)
+    on = (own[:, None, :, None] == each[:, 1].reshape(*facet.shape, 1, -1)).any(axis=3)
+    apart = ~(on[:, :, None] & on[:, None]).any(axis=3)
+    if (apart.sum(axis=2) != 1).any():
+        return None
+    x = body.vertices[own]
+    first = (x @ GENERIC[:dim]).argmin(axis=1)
+    near = np.nonzero(np.take_along_axis(on, first[:, None, None], 2)[..., 0])[1].reshape(-1, dim)
+    far = np.take_along_axis(apart.argmax(axis=2), near, 1)
+    order = _axes(x, first, np.take_along_axis(on, far[..., None], 1))
+    near, far = (np.take_along_axis(one, order, 1) for one in (near, far))
+    bits = np.take_along_axis(on, far[..., None], 1)
+    corners = np.empty_like(own)
+    np.put_along_axis(corners, (1 << np.arange(dim)) @ bits, own, 1)
+    axis, end = _sides(BOXES[dim])
+    sides = np.where(end, far[:, axis], near[:, axis])
+    found = Boxes(corners, np.take_along_axis(facet, sides, 1))
+    return None if _is_flat(body.vertices[corners]) else found
+
+
+def _axes(x: np.ndarray, first: np.ndarray, beyond: np.ndarray) -> np.ndarray:
+    """Return the order of the axes of boxes, alike in equal ones and right-handed, int array
+    [n, d]; first : corner at which they begin. beyond : corners at their far ends, bool array
+    [n, d, 2^d]."""
+    alone, box = beyond & (beyond.sum(axis=1) == 1)[:, None], np.arange(len(x))
+    arms = np.take_along_axis(x, alone.argmax(axis=2)[..., None], 1) - x[box, first][:, None]
+    towards = arms @ GENERIC[::-1][: x.shape[2]] / np.linalg.norm(arms, axis=2)
     order = np.argsort(-towards, axis=1)
-    axes, arms = (np.take_along_axis(axes, order, 1), np.take_along_axis(arms, order[..., None], 1))
-    if dim > 1:
-        mirrored = np.linalg.det(arms) < 0
-        axes[mirrored, -2:] = axes[mirrored, -2:][:, ::-1]
-    found[:, 1 << np.arange(dim)] = axes
-    for i, j in combinations(range(dim), 2):
-        both = beside[box, axes[:, i]] & beside[box, axes[:, j]]
-        both[box, found[:, 0]] = False
-        found[:, (1 << i) + (1 << j)] = both.argmax(axis=1)
-    if dim == 3:
-        found[:, 7] = many * (many - 1) // 2 - found[:, :7].sum(axis=1)
-    return found
+    if x.shape[2] > 1:
+        mirrored = np.linalg.det(np.take_along_axis(arms, order[..., None], 1)) < 0
+        order[mirrored, -2:] = order[mirrored, -2:][:, ::-1]
+    return order
+
+
+def _sides(kind: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return the axis across each facet of a box, and the end of the axis that it is at, 0 or 1."""
+    corners = facets_of(kind)
+    bits = corners[..., None] >> np.arange(len(corners) // 2) & 1
+    axis = (np.ptp(bits, axis=1) == 0).argmax(axis=1)
+    return axis, bits[np.arange(len(axis)), 0, axis]
 
 
 def _is_flat(x: np.ndarray) -> bool:
@@ -119,11 +116,9 @@ def _parallel_edges(corners: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
     return [(corners[:, at[at & i == 0]], corners[:, at[at & i > 0]]) for i in axes]
 
 
-def box_mesh(body: Complex, corners: np.ndarray, counts: np.ndarray) -> Conforming:
-    """Return the mesh of boxes with `corners` [count, 2^d] and numbers of cells along their axes
-    [count, d]."""
-    kind, dim = BOXES[body.dim], body.dim
-    faces = _faces(body, corners, kind)
+def box_mesh(body: Complex, boxes: Boxes, counts: np.ndarray) -> Conforming:
+    """Return the mesh of boxes with numbers of cells along their axes [count, d]."""
+    kind, dim, (corners, faces) = BOXES[body.dim], body.dim, boxes
     x, cells, block, on, total = [], [], [], [], 0
     for count in np.unique(counts, axis=0):
         own = np.flatnonzero((counts == count).all(axis=1))
@@ -142,19 +137,6 @@ def box_mesh(body: Complex, corners: np.ndarray, counts: np.ndarray) -> Conformi
     return Conforming(kind, places[used], found, *parts)
 
 
-def _faces(body: Complex, corners: np.ndarray, kind: str) -> np.ndarray:
-    """Return the facet of the complex on each facet of boxes, in basix's order, [count, 2 d]."""
-    half = body.halves()
-    key = np.arange(len(half.cell))
-    pairs = body.vertices_of(np.stack([key, half.facet], axis=1))
-    vertex = pairs[:, 1].reshape(len(key), -1)
-    at = (corners[half.cell][:, None] == vertex[..., None]).argmax(axis=2).sum(axis=1)
-    sums = facets_of(kind).sum(axis=1)  # each facet has its own
-    found = np.empty((body.count, len(sums)), np.int64)
-    found[half.cell, np.searchsorted(sums, at)] = half.facet
-    return found
-
-
 def _grid(kind: str, count: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return a box in cells: the weights of its corners at each vertex [v, 2^d], vertices of cells
     [c, 2^d], and the facet of the box on each facet of cells [c, 2 d], or -1; all in basix's order
@@ -167,9 +149,6 @@ def _grid(kind: str, count: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndar
     cell = np.array(list(product(*map(range, count[::-1]))))[:, ::-1]
     stride = np.cumprod(np.append(1, count[:-1] + 1))
     cells = (cell[:, None] + bits) @ stride
-    facets, face = facets_of(kind), np.empty((len(cell), 2 * dim), np.int64)
-    for k, corners in enumerate(facets):
-        axis = np.flatnonzero(np.ptp(bits[corners], axis=0) == 0)[0]
-        end = bits[corners[0], axis]
-        face[:, k] = np.where(cell[:, axis] == end * (count[axis] - 1), k, -1)
+    axis, end = _sides(kind)
+    face = np.where(cell[:, axis] == end * (count[axis] - 1), np.arange(2 * dim), -1)
     return weights, cells, face

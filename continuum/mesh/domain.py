@@ -19,8 +19,8 @@ class Marks(NamedTuple):
     names: tuple[str, ...]
 
 
-def marks_of(blocks: Blocks, resolved: np.ndarray, names: tuple[str, ...]) -> Marks:
-    """Return the marks of the facets of blocks; resolved : which contacts are joints, bool [c].
+def marks_of(blocks: Blocks, columns: np.ndarray, names: tuple[str, ...]) -> Marks:
+    """Return the marks of the facets of blocks; columns : of each contact, -1 where it is no joint.
 
     names : of the sides that `blocks.boundary.side` numbers.
     """
@@ -29,8 +29,7 @@ def marks_of(blocks: Blocks, resolved: np.ndarray, names: tuple[str, ...]) -> Ma
     inner, outer = np.flatnonzero(body.inner), np.flatnonzero(~body.inner)
     own = _key(blocks, np.sort(body.sides[inner], axis=1), body.joint_set[inner])
     known = _key(blocks, contacts.blocks, contacts.joint_set)
-    contact = np.searchsorted(known, own)
-    column[inner] = np.where(resolved[contact], contact, -1)
+    column[inner] = columns[np.searchsorted(known, own)]
     side[outer] = blocks.boundary.side[_pieces(body, outer, blocks.boundary)]
     return Marks(column, side, names)
 

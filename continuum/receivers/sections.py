@@ -16,6 +16,8 @@ from numpy.polynomial import polynomial as poly
 from scipy.sparse import csr_matrix, diags, kron, vstack
 
 from jointwave.cases.material.effective_medium import tensor
+from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.loads.forces import pull_of
 from jointwave.continuum.receivers.points import motion_at, pieces_of, shares_of_pieces
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.build import SIMPLEX
@@ -29,12 +31,42 @@ from jointwave.continuum.space.evaluation import (
 )
 from jointwave.continuum.space.model import Body
 from jointwave.continuum.space.rock import Material
+from jointwave.continuum.stepping.problem import Readings
 
 NEAR = 1e-9  # of the pillar: when a section is on a joint
 COVERS = 1e-6  # of a section: what joints that it is on may leave uncovered
 PER_SIDE = 8  # Gauss points across a section that the mesh does not follow
 CURL = np.array([[[0, 0, 0], [0, 0, 1], [0, -1, 0]], [[0, 0, -1], [0, 0, 0], [1, 0, 0]],
                  [[0, 1, 0], [-1, 0, 0], [0, 0, 0]]])  # fmt: skip
+
+
+def extent_of(scene: Scene, body: Body) -> float:
+    """Return the factor from integrals over a body's mesh to those over the pillar, m2, m or 1."""
+    return float(scene.pillar.side ** (3 - body.x.shape[1]))
+
+
+def readings_of_pillar(
+    scene: Scene, body: Body, materials: list[Material], which: np.ndarray
+) -> Readings:
+    """Return how a pillar's receivers read its body: motion, then rotation; stress over sections,
+    that of rock by itself and that of joints among tractions. which : material of each cell."""
+    area = scene.pillar.area / extent_of(scene, body)
+    force = sections(body, materials, which, scene.record.stress)
+    constant = np.zeros(force.elastic.shape[0])
+    if scene.prestress is not None:
+        constant[:: body.components] = scene.prestress.normal
+    if scene.gravity is not None:
+        constant -= force.inertia @ pull_of(scene, body) / area
+    return Readings(
+        motion=points_on_axis(body, scene.record.velocity),
+        stress=force.elastic / area,
+        constant=constant,
+        traction=force.contact / area,
+        carried=np.zeros(force.contact.shape[0]),
+        jump=csr_matrix((0, force.contact.shape[1])),
+        viscous=None if body.damping is None else force.viscous / area,
+        inertia=force.inertia / area,
+    )
 
 
 class Sections(NamedTuple):

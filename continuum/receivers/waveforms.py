@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
-from jointwave.continuum.pillar import extent_of
+from jointwave.continuum.receivers.sections import extent_of
 from jointwave.continuum.stepping.arrays import Samples
 from jointwave.continuum.stepping.problem import Problem
 from jointwave.results.dataset import dataset

@@ -92,3 +92,8 @@ class Body(NamedTuple):
     def components(self) -> int:
         """Components of displacements at a node."""
         return self.stiffness.shape[0] // len(self.x)
+
+
+def directions(body: Body) -> list[int]:
+    """Return the axes, x, y, z, of the components of the motion of a pillar or in space."""
+    return [1] if body.components == 1 else [0, 1, 2][: body.components]

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from jointwave.continuum.pillar import extent_of
 from jointwave.continuum.plan import plan_of
+from jointwave.continuum.receivers.sections import extent_of
 from jointwave.continuum.space.evaluation import blocks_of_nodes
 from jointwave.continuum.stepping.leapfrog import Leapfrog
 from jointwave.continuum.stepping.problem import Held
