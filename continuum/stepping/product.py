@@ -97,10 +97,19 @@ def shared_by_blocks(
     place = np.empty(matrix.shape[0], dtype=np.int64)
     places = (number[:, None] * m + np.arange(m)) * LANES + lane[:, None]
     place[freedoms] = places.ravel()
-    table = Table(
-        own.indptr[: m + 1].astype(np.int64), column[0].astype(np.uint32), value[0].copy()
-    )
+    table = in_fours(own.indptr[: m + 1].astype(np.int64), column[0], value[0])
     return Product(SHARED, table, place, (-(-count // LANES)) * m * LANES)
+
+
+def in_fours(start: np.ndarray, column: np.ndarray, value: np.ndarray) -> Table:
+    """Return a matrix whose rows are filled up to multiples of four entries with zeros."""
+    count = np.diff(start)
+    filled = np.maximum(-(-count // 4), 1) * 4
+    first = np.append(0, filled.cumsum())
+    at = np.arange(len(column)) + np.repeat(first[:-1] - start[:-1], count)
+    columns, values = np.zeros(first[-1], np.uint32), np.zeros(first[-1])
+    columns[at], values[at] = column, value
+    return Table(first, columns, values)
 
 
 @cache
@@ -189,34 +198,27 @@ def half_for(dim: int) -> Callable[..., None]:
 
 
 def shared_for(dim: int) -> Callable[..., None]:
-    """Return the formula of the matrix that all blocks share."""
+    """Return the formula of the matrix that all blocks share, in fours of entries."""
 
     @formula
     def shared(table, x, product):
         start, column, value = table.start, table.column, table.value
-        own, m = np.empty(LANES), start.size - 1
+        m = start.size - 1
         for first in range(0, product.size - m * LANES + 1, m * LANES):
             tile = x[first : first + m * LANES]
             for i in range(m):
-                for c in range(LANES):
-                    own[c] = 0.0
-                k, end = start[i], start[i + 1]
-                while k + 4 <= end:  # sums are loaded and stored once for four entries
+                own = product[first + i * LANES : first + (i + 1) * LANES]
+                for k in range(start[i], start[i + 1], 4):  # sums are stored once for four
                     a, b, d, e = value[k], value[k + 1], value[k + 2], value[k + 3]
                     p = tile[np.int64(column[k]) * LANES :]
                     q = tile[np.int64(column[k + 1]) * LANES :]
                     r = tile[np.int64(column[k + 2]) * LANES :]
                     s = tile[np.int64(column[k + 3]) * LANES :]
-                    for c in range(LANES):
-                        own[c] -= (a * p[c] + b * q[c]) + (d * r[c] + e * s[c])
-                    k += 4
-                while k < end:
-                    a, p = value[k], tile[np.int64(column[k]) * LANES :]
-                    for c in range(LANES):
-                        own[c] -= a * p[c]
-                    k += 1
-                at = first + i * LANES
-                for c in range(LANES):
-                    product[at + c] = own[c]
+                    if k == start[i]:
+                        for c in range(LANES):
+                            own[c] = -((a * p[c] + b * q[c]) + (d * r[c] + e * s[c]))
+                    else:
+                        for c in range(LANES):
+                            own[c] -= (a * p[c] + b * q[c]) + (d * r[c] + e * s[c])
 
     return shared

@@ -169,7 +169,7 @@ import sys
 from mpi4py import MPI
 from jointwave.compare.cli import program
 from jointwave.compare.runs import processes
-from jointwave.continuum import pillar
+from jointwave.continuum import problem
 from jointwave.continuum.processes import leapfrog as shared
 
 def broken(*arguments, **named):
@@ -187,7 +187,7 @@ program.main()
     ("rank", "function", "error", "code", "words"),
     [
         (0, "shared.share_of", "MemoryError('of one')", 2, ["not enough memory: of one"]),
-        (1, "pillar.weight_of", "KeyError('bug')", 1, ["internal error, KeyError", "'bug'"]),
+        (1, "problem.weight_of", "KeyError('bug')", 1, ["internal error, KeyError", "'bug'"]),
     ],
 )
 def test_a_process_that_fails_alone_ends_all(
