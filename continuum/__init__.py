@@ -8,11 +8,12 @@ from jointwave.continuum.validity import applies
 if TYPE_CHECKING:
     from jointwave.continuum.run import simulate
     from jointwave.continuum.space.rock import Forms, anisotropic, elastic, isotropic
+    from jointwave.continuum.xdmf import write_xdmf
 
 #: What needs dolfinx, which is imported when it is first asked for, and where it is.
 MODULES = dict.fromkeys(("Forms", "anisotropic", "elastic", "isotropic"), "space.rock")
-MODULES |= {"simulate": "run"}
-__all__ = ["Forms", "anisotropic", "applies", "elastic", "isotropic", "simulate"]
+MODULES |= {"simulate": "run", "write_xdmf": "xdmf"}
+__all__ = ["Forms", "anisotropic", "applies", "elastic", "isotropic", "simulate", "write_xdmf"]
 
 
 def __getattr__(name: str) -> Any:

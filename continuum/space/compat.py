@@ -82,6 +82,12 @@ def cell_constants(domain: Any, values: np.ndarray) -> Any:
     return found
 
 
+def of_cells(domain: Any) -> Any:
+    """Return the space of scalars that are constant in each cell."""
+    make = fem.functionspace if hasattr(fem, "functionspace") else fem.FunctionSpace
+    return compiled(lambda: make(domain, ("DG", 0)))
+
+
 def constant(domain: Any, shape: tuple[int, ...], value: float = 0.0) -> Any:
     """Return a constant of UFL on a mesh, whose `value` can be changed."""
     return fem.Constant(domain, np.full(shape, value))
