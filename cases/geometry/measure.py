@@ -113,6 +113,11 @@ class Outlines(NamedTuple):
         return self.corners[self.first[k] : self.first[k + 1]]
 
 
+def outlines_of(pieces: Sequence[np.ndarray]) -> Outlines:
+    """Return pieces by the corners of each [n, d], m."""
+    return Outlines(np.concatenate(pieces), np.append(0, np.cumsum(list(map(len, pieces)))))
+
+
 def joined(parts: Sequence[Outlines]) -> Outlines:
     """Return the pieces of all parts, one part after the other."""
     sizes = np.concatenate([np.diff(one.first) for one in parts])

@@ -50,6 +50,10 @@ class Solid:
         ends = [(hull[::-1] + low, -self.axes[2]), (hull + high, self.axes[2])]
         return [*zip(sides, out, strict=True), *ends]
 
+    def points(self) -> np.ndarray:
+        """Return the corners of all faces, one face after the other [n, d], m."""
+        return np.concatenate([corners for corners, _ in self.faces()])
+
     @property
     def volume(self) -> float:
         """Volume, m^d."""
@@ -132,8 +136,7 @@ def taken_out(body: Complex, solids: Sequence[tuple[Solid, int]], tolerance: flo
     in convex parts along these faces."""
     whole = np.arange(body.count)  # the block that a cell is a part of
     for solid, side in solids:
-        corners = np.concatenate([face for face, _ in solid.faces()])
-        near = _near(body, body.halves(), corners, tolerance)
+        near = _near(body, body.halves(), solid.points(), tolerance)
         for face, normal in solid.faces():
             passed = _passed(body, near, face, normal, tolerance)
             split = near & np.isin(whole, whole[passed])  # all of the block, to choose its pieces
@@ -153,7 +156,7 @@ def check_convex(body: Complex, solids: Sequence[tuple[Solid, int]]) -> None:
         return
     at = body.vertices[body.vertices_of(np.array([[0, cuts[0]]]))[:, 1]]
     if solids:
-        corners = np.concatenate([face for solid, _ in solids for face, _ in solid.faces()])
+        corners = np.concatenate([solid.points() for solid, _ in solids])
         away = np.linalg.norm(at[:, None] - corners, axis=2).min(axis=0)
         at = corners[[np.argmin(away)]]
     raise NonConvex(

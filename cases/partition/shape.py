@@ -9,7 +9,7 @@ import shapely
 from jointwave.cases.geometry.blocks import Facets
 from jointwave.cases.geometry.cell_complex import Complex, GeometryError, box, polygon
 from jointwave.cases.geometry.locate import distance_from
-from jointwave.cases.geometry.measure import Outlines, cell_moments, outlines
+from jointwave.cases.geometry.measure import Outlines, cell_moments, outlines, outlines_of
 from jointwave.cases.geometry.solids import (
     ROCK,
     Solid,
@@ -75,12 +75,12 @@ class Shape:
 
     def sides_of(self, facets: Facets) -> np.ndarray:
         """Return the index in `sides` of facets of the outer boundary and of openings."""
-        outer = self._along(*facets.outlines)
+        outer = self._along(facets.outlines)
         return np.where(facets.side == 0, outer, len(SIDES[self.hull.dim]) - 1 + facets.side)
 
-    def _along(self, corners: np.ndarray, first: np.ndarray) -> np.ndarray:
-        """Return the index in `sides` of pieces of the outer boundary, as those of `Outlines`."""
-        found = np.full(len(first) - 1, 2 * self.hull.dim)
+    def _along(self, pieces: Outlines) -> np.ndarray:
+        """Return the index in `sides` of pieces of the outer boundary."""
+        (corners, first), found = pieces, np.full(len(pieces.first) - 1, 2 * self.hull.dim)
         for k, place in enumerate(np.stack([self.low, self.high], axis=1).ravel()):
             off = np.maximum.reduceat(np.abs(corners[:, k // 2] - place), first[:-1])
             found[off <= self.tolerance] = k
@@ -92,7 +92,7 @@ class Shape:
             return _faces(self.given, 1 + opening, self.tolerance)
         if opening is not None:
             return next(solid.faces() for solid, k in self.solids if k == 1 + opening)
-        along = self._along(*_outlines(self.faces))
+        along = self._along(outlines_of([corners for corners, _ in self.faces]))
         index = SIDES[self.hull.dim].index(side or "outline")
         return [self.faces[k] for k in np.flatnonzero(along == index)]
 
@@ -139,11 +139,6 @@ def shape_of(domain: Domain) -> Shape:
     return found
 
 
-def _outlines(faces: list[Face]) -> Outlines:
-    corners = [corners for corners, _ in faces]
-    return Outlines(np.concatenate(corners), np.append(0, np.cumsum([len(x) for x in corners])))
-
-
 def distance(point: np.ndarray, faces: list[Face]) -> float:
     """Return the distance of a point [d] from the nearest of some faces, m."""
     return min(distance_from(*face, point) for face in faces)
@@ -158,8 +153,7 @@ def _faces(body: Complex, side: int, tolerance: float) -> list[Face]:
 
 def _box(low: np.ndarray, high: np.ndarray) -> Solid:
     """Return a box in space by two opposite corners [3], m."""
-    base = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
-    return prism(base, 2, (low[2], high[2]))
+    return prism(shapely.get_coordinates(shapely.box(*low[:2], *high[:2])), 2, (low[2], high[2]))
 
 
 def _openings(domain: Domain) -> Iterator[tuple[str, Solid]]:
@@ -200,7 +194,7 @@ def _check_opening(shape: Shape, solid: Solid, key: str, names: list[str]) -> No
 
     names : of what is taken out already.
     """
-    corners = _corners(solid)
+    corners = solid.points()
     outside = np.array([shape.hull.depths(one).max() for one in corners]) < -shape.tolerance
     if outside.any():
         raise GeometryError(corners[outside][0], "must lie in the domain", key)
@@ -218,7 +212,7 @@ def _check_opening(shape: Shape, solid: Solid, key: str, names: list[str]) -> No
 
 def _common(shape: Shape, one: Solid, other: Solid) -> np.ndarray | None:
     """Return a place in both of two solids [d], m; None where they have none in common."""
-    low, high = ([at(_corners(solid), axis=0) for solid in (one, other)] for at in (np.min, np.max))
+    low, high = ([at(solid.points(), axis=0) for solid in (one, other)] for at in (np.min, np.max))
     if (np.maximum(*low) >= np.minimum(*high) - shape.tolerance).any():
         return None
     body = cut_into_regions(shape.hull, [one], shape.tolerance)
@@ -228,7 +222,3 @@ def _common(shape: Shape, one: Solid, other: Solid) -> np.ndarray | None:
     size = np.where(body.region == ROCK, 0.0, m.size)
     enough = size.sum() > TOLERANCE * min(one.volume, other.volume)
     return m.centroid[size.argmax()] if enough else None
-
-
-def _corners(solid: Solid) -> np.ndarray:
-    return np.concatenate([corners for corners, _ in solid.faces()])

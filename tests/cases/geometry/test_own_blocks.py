@@ -68,23 +68,11 @@ def random_blocks(dim, seed):
 
 def polygons(blocks):
     """Return the faces of each block by their corners, in the plane its one outline."""
+    cells = range(blocks.count)
+    if blocks.body.dim == 2:
+        return [[blocks.outlines.of(cell)] for cell in cells]
     of, _normal, outlines = blocks.faces(TOLERANCE)
-    loops = np.split(outlines.corners, outlines.first[1:-1])
-    if blocks.body.dim == 3:
-        return [
-            [x for x, k in zip(loops, of, strict=True) if k == cell] for cell in range(blocks.count)
-        ]
-    found = []
-    for cell in range(blocks.count):
-        x = np.unique(
-            np.round(
-                np.concatenate([one for one, k in zip(loops, of, strict=True) if k == cell]), 13
-            ),
-            axis=0,
-        )
-        away = x - x.mean(axis=0)
-        found.append([x[np.argsort(np.arctan2(away[:, 1], away[:, 0]))]])
-    return found
+    return [[outlines.of(face) for face in np.flatnonzero(of == cell)] for cell in cells]
 
 
 def in_space(x):
