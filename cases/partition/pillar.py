@@ -28,7 +28,8 @@ def blocks_of_pillar(
     the parts, without joints on either side.
     """
     y, along = block_ends(scene), dim // 2
-    law, region = _laws(scene, y), _regions(scene)
+    law, blocks = _laws(scene, y), [one.blocks for one in scene.parts]
+    region = np.repeat(np.arange(len(blocks)), blocks)
     for k, (joint, thickness) in enumerate(sorted((layers or {}).items())):
         at = joint + k + 1
         y = np.insert(y, at, y[at] - thickness / 2)
@@ -45,10 +46,6 @@ def blocks_of_pillar(
     inner, joint_set = body.inner, body.joint_set.copy()
     joint_set[inner] = law[body.sides[inner].min(axis=1)]
     return blocks_of(replace(body, joint_set=joint_set, region=region), tolerance, in_rows=False)
-
-
-def _regions(scene: Scene) -> np.ndarray:
-    return np.repeat(np.arange(len(scene.parts)), [one.blocks for one in scene.parts])
 
 
 def block_ends(scene: Scene) -> np.ndarray:

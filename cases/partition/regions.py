@@ -29,9 +29,7 @@ def rocks_of(scene: RockMass) -> list[IntactRock]:
 
 def rocks_beside(scene: RockMass, one: JointSet) -> list[IntactRock]:
     """Return the rocks that a joint set cuts."""
-    names = [*(region.name for region in scene.regions), REST]
-    rocks = zip(names, rocks_of(scene), strict=True)
-    return [rock for name, rock in rocks if not one.regions or name in one.regions]
+    return [each.rock for each in within(scene, [one]) if each.joint_sets]
 
 
 def within(scene: RockMass, sets: Sequence[JointSet]) -> list[RockMass]:
