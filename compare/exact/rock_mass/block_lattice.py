@@ -32,7 +32,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.blocks.events import NOISE, Loads, integrate
 from jointwave.compare.exact.blocks.system import Contacts, carried, contacts_of, first_order
 from jointwave.compare.exact.linear import bound
-from jointwave.compare.exact.rock_mass.conditions import beyond_linear_rock
+from jointwave.compare.exact.rock_mass.conditions import beyond
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.rock_mass import rock_mass_dataset
@@ -46,22 +46,16 @@ def applies(scene: RockMass) -> Answer:
     """Return whether only waves act, on blocks between linear joints."""
     held, sets = set(scene.boundaries.model_dump().values()), scene.joint_sets
     stuck = sorted(held - {None, "quiet", "free", "periodic"})
-    gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
     most = MOST_BLOCKS[scene.domain.dimension]
-    reasons = [
-        (not scene.waves, "no wave enters"),
-        (bool(scene.loads), "a load acts"),
-        (gravity, "gravity acts"),
-        (scene.prestress is not None, "the rock is prestressed"),
-        (bool(scene.regions), "regions differ in rock"),
+    reason = beyond(
+        scene,
+        ("waves", "openings"),
         (bool(stuck), f"a side is {' and '.join(stuck)}"),
         (scene.numerics.dem.block is not None, "intact rock is subdivided into blocks"),
         (not any(one.spacing for one in sets), "no joint set has a spacing"),
-        (any(one.damping_ratio for one in sets), "the joints are damped"),
         (any(one.time_scale is None for one in scene.waves), "a wave has no period"),
         (not scene.record.points, "no point is recorded"),
-    ]
-    reason = beyond_linear_rock(scene) or next((why for there, why in reasons if there), None)
+    )
     if reason is None and block_count(scene.domain, sets) > most:
         reason = f"more than {most:,} blocks"
     return Answer(reason or "")

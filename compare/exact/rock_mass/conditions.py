@@ -28,17 +28,28 @@ class Face(NamedTuple):
     offset: float
 
 
-def beyond_waves(scene: RockMass) -> str | None:
-    """Return what else than waves acts on a scene, or that none enters; None if only waves act on
-    rock without openings."""
+def beyond(scene: RockMass, held: tuple[str, ...], *against: tuple[bool, str]) -> str | None:
+    """Return the first reason why a solution for linear joints in undamped rock does not cover a
+    scene, None if it does.
+
+    held : physics that it covers, of the names below. against : other conditions that exclude it,
+    each with its reason.
+    """
     gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
-    reasons = [
-        (not scene.waves, "no wave enters"),
-        (bool(scene.loads), "a load acts"),
-        (gravity, "gravity acts"),
-        (bool(scene.domain.holes), "the domain has openings"),
-    ]
-    return next((why for there, why in reasons if there), None)
+    damped = any(one.damping_ratio for one in scene.joint_sets)
+    physics = {
+        "no waves": (not scene.waves, "no wave enters"),
+        "waves": (bool(scene.waves), "a wave enters"),
+        "loads": (bool(scene.loads), "a load acts"),
+        "gravity": (gravity, "gravity acts"),
+        "openings": (bool(scene.domain.holes), "the domain has openings"),
+        "prestress": (scene.prestress is not None, "the rock is prestressed"),
+        "regions": (bool(scene.regions), "regions differ in rock"),
+        "damped joints": (damped, "the joints are damped"),
+    }
+    reasons = (one for name, one in physics.items() if name not in held)
+    found = next((why for there, why in (*reasons, *against) if there), None)
+    return found or beyond_linear_rock(scene)
 
 
 def beyond_linear_rock(scene: RockMass) -> str | None:

@@ -30,8 +30,7 @@ from jointwave.cases.schema.sources import Wave
 from jointwave.compare.exact.rock_mass.conditions import (
     Face,
     all_parallel,
-    beyond_linear_rock,
-    beyond_waves,
+    beyond,
     free_face,
     prestress_of,
     reflecting_side,
@@ -127,16 +126,14 @@ def _sent_back(wave: MediumWave, C: np.ndarray, scene: RockMass, face: Face) -> 
 
 def applies(scene: RockMass) -> Answer:
     """Return whether the scene has waves in an effective medium only."""
-    reasons = [
+    face = None if scene.in_space else free_face(scene)
+    reason = beyond(
+        scene,
+        ("waves", "prestress"),
         (not scene.joint_sets, "there is no joint"),
-        (bool(scene.regions), "regions differ in rock"),
         (all_parallel(scene), "joints are parallel: see parallel-joints"),
         (any(one.spacing is None for one in scene.joint_sets), "a joint has no spacing"),
-        (any(one.damping_ratio for one in scene.joint_sets), "the joints are damped"),
-    ]
-    reason = beyond_waves(scene) or next((why for there, why in reasons if there), None)
-    face = None if scene.in_space else free_face(scene)
-    reason = reason or beyond_linear_rock(scene) or reflecting_side(scene, face)
+    ) or reflecting_side(scene, face)
     if reason is None:
         corners, waves = np.array(scene.domain.corners), medium_field(scene).waves
         if face is not None and len(waves) < 3 * len(scene.waves):

@@ -18,7 +18,7 @@ from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane.line_force import motion
 from jointwave.compare.exact.plane.waves import PlaneMotion
-from jointwave.compare.exact.rock_mass.conditions import beyond_linear_rock, prestress_of
+from jointwave.compare.exact.rock_mass.conditions import beyond, prestress_of
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.rock_mass import rock_mass_dataset
 
@@ -28,19 +28,16 @@ PARTS = 8
 
 def applies(scene: RockMass) -> Answer:
     """Return whether only forces act on rock without joints, and reach a receiver before echoes."""
-    held, gravity = scene.boundaries.model_dump().values(), scene.gravity
-    reasons = [
+    reason = beyond(
+        scene,
+        ("no waves", "loads", "openings", "prestress"),
         (bool(scene.joint_sets), "there are joints"),
-        (bool(scene.regions), "regions differ in rock"),
-        (bool(scene.waves), "a wave enters"),
         (not scene.loads, "no force acts"),
         (any(one.kind != "force" for one in scene.loads), "a load other than a force acts"),
-        (gravity is not None and bool(gravity.acceleration), "gravity acts"),
         (bool(shape_of(scene.domain).solids), "the domain is not convex, or has openings"),
-        ("periodic" in held, "a side is periodic"),
+        (bool(scene.boundaries.sides("periodic")), "a side is periodic"),
         (not scene.record.points, "no point is recorded"),
-    ]
-    reason = beyond_linear_rock(scene) or next((why for there, why in reasons if there), None)
+    )
     if reason is None and any(_jumps(one) for one in _histories(scene)):
         reason = "a force jumps, so that velocities at its arrivals are unbounded"
     if reason is None:

@@ -28,7 +28,7 @@ from jointwave.compare.exact.plane.layer_pulses import Fields, fields
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass.conditions import (
     PARALLEL,
-    beyond_waves,
+    beyond,
     normals_of,
     prestress_of,
 )
@@ -53,7 +53,8 @@ Motion = Callable[["RockMass", JointStack, np.ndarray, np.ndarray], PlaneMotion]
 
 def holds(scene: RockMass, one: bool) -> Answer:
     """Return whether a scene has plane waves at one joint or, if not `one`, at several."""
-    if reason := beyond_waves(scene) or scatters_otherwise(scene):
+    held = ("waves", "prestress", "regions", "damped joints")
+    if reason := beyond(scene, held) or scatters_otherwise(scene):
         return Answer(reason)
     stack = stack_of(scene)
     count = len(stack.joints) - stack.has_face

@@ -16,9 +16,9 @@ def coefficients(
 
 
 def energy_flux(incidence: Kind, angle: Values, rock: ElasticRock, found: np.ndarray) -> np.ndarray:
-    """Return the shares of the incident energy flux that R_p, R_s, T_p and T_s carry away from the
-    joint, array [4, ...]; evanescent waves carry none."""
+    """Return the shares of the incident energy flux that R_p, R_s and, at joints, T_p, T_s carry
+    away, array [2 or 4, ...]; evanescent waves carry none."""
     c, k = (x.real for x in cosines(rock, slowness_along(rock, incidence, angle)))
     carried = np.stack(np.broadcast_arrays(rock.p_impedance * c, rock.s_impedance * k))
     shares = carried / carried[KINDS.index(incidence)]
-    return np.abs(found) ** 2 * np.concatenate([shares, shares])
+    return np.abs(found) ** 2 * np.concatenate([shares, shares])[: len(found)]

@@ -1,4 +1,4 @@
-"""A harmonic wave at one joint, linear or one that slips: what passes and what returns."""
+"""A wave at one joint, linear or one that slips: what passes and what returns."""
 
 from math import asin, cos, pi, sin, sqrt
 
@@ -15,6 +15,14 @@ def coefficients(
     omega = np.asarray(omega)
     transmitted = 1 / (1 + 1j * omega * impedance / (2 * (stiffness + 1j * omega * viscosity)))
     return transmitted, transmitted - 1
+
+
+def relaxed_sine(times: np.ndarray, omega: float, end: float, tau: float) -> np.ndarray:
+    """Return s of tau s' + s = sin(omega t), 0 <= t <= end, 0 else, from rest at times (s): what
+    passes a joint with tau = Z / 2K, s."""
+    x = np.clip(times, 0, end)
+    s = np.sin(omega * x) - omega * tau * (np.cos(omega * x) - np.exp(-x / tau))
+    return s * np.exp(-np.maximum(times - end, 0) / tau) / (1 + (omega * tau) ** 2)
 
 
 def slip_coefficients(a: float) -> tuple[float, float, float]:

@@ -17,7 +17,6 @@ from jointwave.cases.material.rock import ElasticRock, Values
 from jointwave.compare.exact.plane.waves import (
     KINDS,
     Kind,
-    cosines,
     face,
     slowness_along,
 )
@@ -45,13 +44,6 @@ def reflection(
     shear, t = _weighed(w.shear, w.shear_velocity, rock.s_impedance, dashpots[1])
     rows, sides = (normal - n, t - shear), (-normal - n, -t - shear)
     return np.linalg.solve(*(np.stack(np.broadcast_arrays(*x), axis=-2) for x in (rows, sides)))
-
-
-def energy_flux(incidence: Kind, angle: Values, rock: ElasticRock, found: tuple) -> np.ndarray:
-    """Return the shares [2, ...] of the incident energy flux that r_p and r_s carry back."""
-    c, k = (x.real for x in cosines(rock, slowness_along(rock, incidence, angle)))
-    carried = np.stack(np.broadcast_arrays(rock.p_impedance * c, rock.s_impedance * k))
-    return np.abs(np.stack(found)) ** 2 * carried / carried[KINDS.index(incidence)]
 
 
 def _weighed(traction, velocity, impedance, dashpot: float) -> tuple[np.ndarray, np.ndarray]:

@@ -6,6 +6,7 @@ from numpy.polynomial.legendre import leggauss
 from scipy.special import erfc
 
 from closed_forms.oblique_joint import coefficients
+from closed_forms.one_joint import relaxed_sine
 from jointwave.compare.exact.plane import inversion, layer_pulses, parallel_joints
 from jointwave.compare.exact.plane.layer_pulses import fields
 from jointwave.compare.exact.plane.oblique_joint import Joint
@@ -137,13 +138,8 @@ def test_half_a_sine_in_closed_form(rock, eta):
     def half_sine(t):
         return np.where((t > 0) & (t < T), np.sin(w * t), 0.0)
 
-    def smooth(t):
-        x = np.clip(t, 0, T)
-        s = np.sin(w * x) - w * tau * (np.cos(w * x) - np.exp(-x / tau))
-        return s * np.exp(-np.maximum(t - T, 0) / tau) / (1 + (w * tau) ** 2)
-
     def passed(t):
-        return share * half_sine(t) + (1 - share) * smooth(t)
+        return share * half_sine(t) + (1 - share) * relaxed_sine(t, w, T, tau)
 
     joint, places = Joint(K, K, eta, eta), [[0.0, -20.0], [3.0, 20.0]]
     found = at_one_joint(rock, joint, ("P", [0, 1]), half_sine, 0.0, places, times)

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from closed_forms import oblique_joint
-from closed_forms.quiet_face import coefficients, energy_flux
+from closed_forms.oblique_joint import energy_flux
+from closed_forms.quiet_face import coefficients
 from jointwave.cases.material.rock import ElasticRock
 from jointwave.compare.exact.plane.oblique_joint import Joint
 from jointwave.compare.exact.plane.waves import cosines, slowness_along

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from closed_forms.one_joint import relaxed_sine
 from jointwave.cases.incident import plane_wave
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.engines import applies, solve
@@ -98,16 +99,11 @@ def test_normal_incidence_in_closed_form(rock_mass, joint, wave, zeta):
     Z, eta = 2500 * a, 2 * zeta * np.sqrt(2500 * 15 / K)
     tau, w = eta + Z / (2 * K), 2 * np.pi / T
 
-    def smooth(t):
-        x = np.clip(t, 0, T)
-        s = np.sin(w * x) - w * tau * (np.cos(w * x) - np.exp(-x / tau))
-        return s * np.exp(-np.maximum(t - T, 0) / tau) / (1 + (w * tau) ** 2)
-
     def came(t):
         return np.where((t > 0) & (t < T), np.sin(w * t), 0.0)
 
     def passed(t):
-        return 1e6 * (eta / tau * came(t) + (1 - eta / tau) * smooth(t))
+        return 1e6 * (eta / tau * came(t) + (1 - eta / tau) * relaxed_sine(t, w, T, tau))
 
     flat = joint(dip=0.0, damping_ratio=zeta)
     found = solve("oblique-joint", rock_mass(joint_sets=[flat], waves=[wave(shape="sine")]))
