@@ -106,27 +106,30 @@ def test_layers_met_at_a_slant_are_the_system_of_all_conditions(referee, kind):
     np.testing.assert_allclose(np.append(R[0][:, k], T[:, k]), expected, rtol=0, atol=1e-10)
 
 
-@pytest.mark.parametrize("kind", ["P", "SV"])
-def test_straight_on_they_are_a_bar_of_segments(kind):
+@pytest.mark.parametrize(("kind", "degrees"), [("P", 0), ("SV", 0), ("SH", 0), ("SH", 25)])
+def test_straight_on_they_are_a_bar_of_segments(kind, degrees):
     """The bar of the P-wave or the shear modulus in the Laplace variable s = -i omega, behind a
-    dashpot at both ends: velocity at one place in each layer, at round-off."""
+    dashpot at both ends: velocity at one place in each layer, at round-off. So are SH waves at a
+    slant, with the density rho cos^2(phi) of each layer: rho b cos(phi) and b / cos(phi)."""
     rocks, offsets = [SOFT, HARD, SLAB], np.array([10.0, 25.0])
     joints = [Joint(np.inf, np.inf), Joint(6e9, 3e9)]
     name, stiffness = ("p_speed", 6e9) if kind == "P" else ("s_speed", 3e9)
     omega = OMEGA * np.linspace(0.3, 3, 20) + 30j
     moduli = [one.density * getattr(one, name) ** 2 for one in rocks]
-    z = [one.density * getattr(one, name) for one in (rocks[0], rocks[-1])]
-    parts = [
-        RockFrom(y, one.density, modulus, 0.0)
-        for y, one, modulus in zip((0.0, 10.0, 25.0), rocks, moduli, strict=True)
+    sines = [
+        getattr(one, name) / getattr(SOFT, name) * np.sin(np.radians(degrees)) for one in rocks
     ]
+    density = [one.density * (1 - sine**2) for one, sine in zip(rocks, sines, strict=True)]
+    z = [np.sqrt(density[k] * moduli[k]) for k in (0, -1)]
+    parts = [RockFrom(*each, 0.0) for each in zip((0.0, 10.0, 25.0), density, moduli, strict=True)]
     joint = offsets[1:], np.array([1 / stiffness]), np.zeros(1)
     bar = Bar(40.0, tuple(parts), *joint, End(z[0]), End(z[1]))
     places = np.array([4.0, 20.0, 33.0])
     exact = transfer(bar, -1j * omega, places)[1] * 2 * z[0]
-    stack = parallel_joints.stack_of(rocks, joints, kind, *[np.array([0.0, 1.0])] * 2, offsets)
+    travel, n = np.array([np.sin(np.radians(degrees)), np.cos(np.radians(degrees))]), [0.0, 1.0]
+    stack = parallel_joints.stack_of(rocks, joints, kind, travel, np.array(n), offsets)
     down, up = stack.layers(omega)
-    k, lead = ["P", "SV"].index(kind), np.exp(1j * omega * stack.lead)
+    k, lead = stack.axes.kinds.index(kind), np.exp(1j * omega * stack.lead)
     found = []
     for layer, y in enumerate(places):
         q = stack.slownesses[layer, k]
