@@ -10,9 +10,14 @@ from scipy.sparse import csr_matrix
 
 from jointwave.continuum.space.evaluation import blocks_of_nodes
 from jointwave.continuum.space.model import JumpOperator
-from jointwave.continuum.stepping.problem import Dashpots, Forces, Problem, Readings, Springs
-
-OF_POINTS = ("traction", "jump")  # what receivers read of points
+from jointwave.continuum.stepping.problem import (
+    OF_POINTS,
+    Dashpots,
+    Forces,
+    Problem,
+    Readings,
+    Springs,
+)
 
 
 class Share(NamedTuple):

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.continuum.stepping.memory import Memory
+from jointwave.continuum.stepping.problem import Readings
 from jointwave.continuum.stepping.product import Table
 from jointwave.continuum.stepping.tractions import Points
 from jointwave.joints.law import LawFlags
@@ -65,25 +66,6 @@ class Quiet(NamedTuple):
     gain: np.ndarray
 
 
-class Receivers(NamedTuple):
-    """How receivers read the state.
-
-    motion, stress : of displacements; viscous : stress of the rate, where rock has dashpots;
-    inertia : stress of the acceleration, with mass-proportional damping, no rows without.
-    traction : of the forces of points. jump : of their jumps. constant, carried : stresses and
-    tractions at u = 0, Pa.
-    """
-
-    motion: Sparse
-    stress: Sparse
-    viscous: Sparse
-    inertia: Sparse
-    traction: Sparse
-    jump: Sparse
-    constant: np.ndarray
-    carried: np.ndarray
-
-
 class Constants(NamedTuple):
     """The constants of steps; what is absent is empty.
 
@@ -93,7 +75,7 @@ class Constants(NamedTuple):
     memory : of the rock. stiffness, damping : `product.Table`. jumps : B; points :
     `tractions.Points`. steady : float array [n], N. driven : int array [k], freedoms of forces with
     a history. fixed : int array [f], freedoms whose motion is given: direction [f] times what moves
-    in a step.
+    in a step. receivers : with `Sparse` matrices, empty ones of what is absent.
     """
 
     dt: float
@@ -111,7 +93,7 @@ class Constants(NamedTuple):
     quiet: Quiet
     fixed: np.ndarray
     direction: np.ndarray
-    receivers: Receivers
+    receivers: Readings
 
 
 class State(NamedTuple):

@@ -15,7 +15,6 @@ from jointwave.continuum.stepping.arrays import (
     Constants,
     Jumps,
     Quiet,
-    Receivers,
     Samples,
     Sparse,
     State,
@@ -24,7 +23,7 @@ from jointwave.continuum.stepping.arrays import (
 )
 from jointwave.continuum.stepping.explicit import leapfrog_for
 from jointwave.continuum.stepping.memory import memory_of
-from jointwave.continuum.stepping.problem import Dashpots, Problem, Readings
+from jointwave.continuum.stepping.problem import OF_POINTS, Dashpots, Problem, Readings
 from jointwave.continuum.stepping.product import ROWS, Product, Table, product_of, table_of
 from jointwave.continuum.stepping.tractions import history_at_rest
 from jointwave.numerics.cache_lines import zeros
@@ -245,19 +244,15 @@ def products_for_steps(body: Body) -> tuple[Product, Table]:
     return rows, table_of(body.damping, dim)
 
 
-def receivers(readings: Readings, place: np.ndarray) -> Receivers:
-    """Return readings as kernels take them."""
-    none = csr_matrix((0, readings.stress.shape[1]))
-    return Receivers(
-        motion=sparse(readings.motion, place),
-        stress=sparse(readings.stress, place),
-        viscous=sparse(none if readings.viscous is None else readings.viscous, place),
-        inertia=sparse(none if readings.inertia is None else readings.inertia, place),
-        traction=sparse(readings.traction),
-        jump=sparse(readings.jump),
-        constant=readings.constant,
-        carried=readings.carried,
-    )
+def receivers(readings: Readings, place: np.ndarray) -> Readings:
+    """Return readings with matrices as kernels take them, empty ones of what is absent."""
+    found: dict[str, Any] = {}
+    for name, value in readings._asdict().items():
+        if value is None:
+            value = csr_matrix((0, len(place)))
+        if isinstance(value, csr_matrix):
+            found[name] = sparse(value, None if name in OF_POINTS else place)
+    return readings._replace(**found)
 
 
 def samples_for(readings: Readings, samples: int, energy: bool) -> Samples:

@@ -84,6 +84,10 @@ class Readings(NamedTuple):
     inertia: csr_matrix | None = None
 
 
+#: What receivers read of points, not of freedoms.
+OF_POINTS = ("traction", "jump")
+
+
 class Problem(NamedTuple):
     """A body and what acts on it.
 
