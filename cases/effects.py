@@ -5,12 +5,12 @@ from typing import NamedTuple
 
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.joint import JointLaw
-from jointwave.cases.schema.law_parts import PARTS, LawPart
+from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 
 NO_SHEAR = "the joints carry no shear"
+ENDS = ("quiet", "matched", "fixed")
 SIDES = ("quiet", "fixed", "roller", "periodic")
 SLIPS = "friction_angle or cohesion is given"
 STICKS = "neither friction_angle nor cohesion"
@@ -33,7 +33,8 @@ def is_spatial(scene: Scene) -> bool:
 
 def effects(scene: AnyScene) -> list[Effect]:
     """Return every effect that this version knows of this kind of scene, in the order of cost."""
-    found = _of_pillar(scene) if scene.is_column else _of_rock_mass(scene)
+    own = _of_column(scene) if scene.is_column else _of_joint_sets(scene)
+    found = [*own, *_of_sides(scene), *_of_record(scene), *_of_rock(scene)]
     return [Effect(name, bool(why), str(why or why_not)) for name, why, why_not in found]
 
 
@@ -62,15 +63,12 @@ def bends(scene: Scene) -> bool:
     return is_spatial(scene) and scene.motion.rotation != "none" and not twists
 
 
-def _of_pillar(scene: Scene) -> Iterator[Called]:
+def _of_column(scene: Scene) -> Iterator[Called]:
     p, laws, random = calibrate(scene), [scene.joints, *scene.layers], scene.scatter
     source = "damping.rayleigh" if scene.damping.rayleigh else "damping_ratio"
     damped = p.joint_time_constant is not None
     yield "dashpots", damped and f"{source} is given", "no damping_ratio"
-    for part in PARTS:
-        if not part.along:
-            yield _of_part(part, laws)
-    parts, differ = len(p.each), len(p.soft)
+    parts, differ, cause = len(p.each), len(p.soft), off_axis(scene)
     yield "segments", parts > 1 and f"{parts} segments", "no [[segments]]"
     yield "scatter", random and f"seed {random.seed}", "no [scatter]"
     open_up = int((~p.tension).sum())
@@ -79,70 +77,57 @@ def _of_pillar(scene: Scene) -> Iterator[Called]:
     alike = "all joints are equal: scalars, no arrays" if p.is_uniform else "no soft layers"
     layers = differ and f"{differ} soft layer{'s' * (differ > 1)}"
     yield "joints that differ", layers, alike
-    for kind in ("quiet", "matched", "fixed"):
-        places = [f"ends.{end}" for end, held in scene.ends if held == kind]
-        yield f"{kind} ends", " and ".join(places), f"no end is {kind}"
-    yield from _of_record(scene)
-    cause, rotation = off_axis(scene), scene.motion.rotation
-    freedoms = 3 if rotation == "none" else 6
+    freedoms = 3 if scene.rotation == "none" else 6
     axial = "the load is axial and central: one degree of freedom per block"
     yield "spatial motion", cause and f"{cause}: {freedoms} degrees of freedom", axial
-    turns = f"motion.rotation = '{rotation}'" if cause else "the blocks do not rotate"
-    yield "finite rotation", cause and rotation == "finite" and turns, turns
+    turns = f"motion.rotation = '{scene.rotation}'" if cause else "the blocks do not rotate"
+    yield "finite rotation", cause and scene.rotation == "finite" and turns, turns
     slips = p.friction is not None or p.cohesion is not None
     yield "slip", cause and slips and SLIPS, STICKS if cause else NO_SHEAR
     for part in PARTS:
-        if part.along:
-            yield _of_part(part, laws) if cause else (part.name, None, NO_SHEAR)
-    yield from _of_body_forces(scene, p.mass_damping)
-    stress, shakes = scene.prestress, f"load.quantity = '{scene.load.quantity}'"
-    yield "prestress", stress and f"{stress.normal:.4g} Pa", "no [prestress]"
-    yield "shaken base", scene.shakes_base and shakes, shakes
+        if part.along and not cause:
+            yield part.name, None, NO_SHEAR
+        else:
+            yield part.name, any(map(part.of, laws)) and part.why(True), part.why(False)
 
 
-def _of_rock_mass(scene: RockMass) -> Iterator[Called]:
-    sets, boundaries, stress = scene.joint_sets, scene.boundaries, scene.prestress
-    ratios = (one.damping_ratio is not None for one in sets)
-    damped = _of_sets(scene, ratios, "damping_ratio is given")
+def _of_joint_sets(scene: RockMass) -> Iterator[Called]:
+    sets = scene.joint_sets
+
+    def of(has: Iterable[bool], why: str) -> str:
+        names = [one.name for one, there in zip(sets, has, strict=True) if there]
+        return f"{why}: {', '.join(names)}" if names else ""
+
+    damped = of((one.damping_ratio is not None for one in sets), "damping_ratio is given")
     whole = scene.damping.rayleigh and "damping.rayleigh is given"
     yield "dashpots", whole or damped, "no damping_ratio"
-    open_up = _of_sets(scene, (one.tension is False for one in sets), "tension = false")
     rubs = [one.friction_angle is not None for one in sets]
+    open_up = of((one.tension is False for one in sets), "tension = false")
     yield "no tension", open_up, _carries(any(rubs))
     slips = (rub or one.cohesion is not None for rub, one in zip(rubs, sets, strict=True))
-    yield "slip", _of_sets(scene, slips, SLIPS), STICKS
+    yield "slip", of(slips, SLIPS), STICKS
     for part in PARTS:
-        having = _of_sets(scene, map(part.of, sets), part.why(True))
-        yield part.name, having, part.why(False)
-    for kind in SIDES:
-        places = ", ".join(f"boundaries.{side}" for side in boundaries.sides(kind))
-        yield f"{kind} sides", places, f"no side is {kind}"
-    yield from _of_record(scene)
-    yield from _of_body_forces(scene, scene.damping.alpha)
-    keys = ("xx", "yy", "zz", "xy", "yz", "xz") if scene.in_space else ("xx", "yy", "xy")
-    words = stress and ", ".join(f"{key} {getattr(stress, key):.4g}" for key in keys)
-    words = words and words + " Pa" + scene.excavated * ", openings excavated"
-    yield "prestress", words, "no [prestress]"
+        yield part.name, of(map(part.of, sets), part.why(True)), part.why(False)
     waves, pushed = len(scene.waves), len(scene.pushes)
     yield "incident waves", waves and f"{waves} in [[waves]]", "no [[waves]]"
     yield "loads", pushed and f"{pushed} in [[loads]]", "no [[loads]]"
-    yield "shaken base", scene.bases and "a load of kind 'base'", "no base is shaken"
-
-
-def _of_part(part: LawPart, laws: list[JointLaw]) -> Called:
-    has = any(part.of(law) for law in laws)
-    return part.name, has and part.why(True), part.why(False)
-
-
-def _of_sets(scene: RockMass, has: Iterable[bool], why: str) -> str:
-    """Return why joint sets have an effect, and which; empty where none has."""
-    names = [one.name for one, there in zip(scene.joint_sets, has, strict=True) if there]
-    return f"{why}: {', '.join(names)}" if names else ""
 
 
 def _carries(slides: bool) -> str:
     """Return why no joint opens; slides : whether joints have friction, which bounds no tension."""
     return "every joint carries tension" + ", also with friction" * slides
+
+
+def _of_sides(scene: AnyScene) -> Iterator[Called]:
+    for kind in ENDS if scene.is_column else SIDES:
+        noun = "end" if scene.is_column else "side"
+        places = ", ".join(key for key, held in scene.sides.items() if held == kind)
+        yield f"{kind} {noun}s", places, f"no {noun} is {kind}"
+    if scene.is_column:
+        shakes, still = scene.shakes_base, f"load.quantity = '{scene.load.quantity}'"
+        yield "shaken base", shakes and still, still
+    else:
+        yield "shaken base", scene.bases and "a load of kind 'base'", "no base is shaken"
 
 
 def _of_record(scene: AnyScene) -> Iterator[Called]:
@@ -152,9 +137,10 @@ def _of_record(scene: AnyScene) -> Iterator[Called]:
     yield "field output", every and f"a snapshot every {every:g} s", "no record.fields"
 
 
-def _of_body_forces(scene: AnyScene, alpha: float | None) -> Iterator[Called]:
-    """Yield the effects on blocks themselves; alpha : of mass-proportional damping, 1/s."""
+def _of_rock(scene: AnyScene) -> Iterator[Called]:
+    """Yield the effects on blocks themselves."""
     local, quality, gravity = scene.damping.local, scene.rock.quality_factor, scene.gravity
+    alpha, stress = scene.damping.alpha, scene.prestress
     mass = alpha is not None and f"alpha = {alpha:.4g} 1/s"
     yield "mass damping", mass, "no mass_proportional, no rayleigh"
     yield "local damping", local and f"damping.local = {local:g}", "no damping.local"
@@ -164,3 +150,5 @@ def _of_body_forces(scene: AnyScene, alpha: float | None) -> Iterator[Called]:
     yield "constant Q", quality and band, "no rock.quality_factor"
     acts = gravity and ("static at the start" if gravity.static else "applied at t = 0")
     yield "gravity", acts, "no [gravity]"
+    words = stress and stress.words + scene.excavated * ", openings excavated"
+    yield "prestress", words, "no [prestress]"

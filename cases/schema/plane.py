@@ -97,6 +97,12 @@ class InSituStress(Table):
         )
         return np.array([x, y, z])
 
+    @property
+    def words(self) -> str:
+        """The stress in words."""
+        keys = ("xx", "yy", "xy") if self.zz is None else ("xx", "yy", "zz", "xy", "yz", "xz")
+        return ", ".join(f"{key} {getattr(self, key):.4g}" for key in keys) + " Pa"
+
     def largest(self, excavated: bool) -> float:
         """Return the largest principal stress s1, not below zero, or with the least one 3 s1 - s2
         at the wall of a circular opening (Kirsch), Pa; at corners of others it is more in places.

@@ -161,6 +161,11 @@ class Prestress(Table):
 
     normal: Number  #: Pa, compression positive
 
+    @property
+    def words(self) -> str:
+        """The stress in words."""
+        return f"{self.normal:.4g} Pa"
+
     def largest(self, excavated: bool) -> float:
         """Return its magnitude, Pa."""
         return abs(self.normal)
