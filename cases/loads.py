@@ -69,12 +69,6 @@ def step_means(
     return (after - before) / dt
 
 
-def until_it_ends(steps: np.ndarray) -> np.ndarray:
-    """Return what acts in each step [n] or [n, k], up to the last in which something does."""
-    acts = np.flatnonzero(steps.any(axis=tuple(range(1, steps.ndim))))
-    return steps[: acts[-1] + 1 if acts.size else 0]
-
-
 def with_load_itself(
     stress: np.ndarray, scene: Scene, sections: Interpolation, times: np.ndarray, dt: float
 ) -> np.ndarray:

@@ -7,7 +7,6 @@ the key of the scene that decides it. A run is refused where the sum is beyond `
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Any
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
@@ -63,33 +62,23 @@ def value_of(scene: AnyScene, key: str) -> object:
     return found
 
 
-def samples_of(scene: AnyScene) -> float:
-    """Return the number of samples of a scene."""
-    return scene.time.duration / scene.interval + 1
-
-
 def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
     """Return the memory of waveforms and ledger (bytes), written copies included.
 
     Raises SceneError where one of them would not fit a file.
     """
-    record: Any = scene.record
-    given: Any = scene
-    axes = 3 if spatial else 1
-    if scene.kind == "pillar":
-        across, of_point = max(axes - 1, 1), axes * (3 if spatial else 2)
-        rows = {
-            "record.velocity": (len(record.velocity), axes, of_point),
-            "record.stress": (len(record.stress), across, axes),
+    if scene.is_column:
+        axes = 3 if spatial else 1
+        of_place = {
+            "velocity": (axes, axes * (3 if spatial else 2)),
+            "stress": (axes - spatial, axes),
         }
     else:
-        dim = given.domain.dimension
+        dim = scene.domain.dimension
         stresses = dim * (dim + 1) // 2
-        rows = {
-            "record.points": (len(record.points), stresses, 2 * dim + stresses),
-            "record.joints": (len(record.joints), dim, 2 * dim),
-        }
-    samples = samples_of(scene)
+        of_place = {"points": (stresses, 2 * dim + stresses), "joints": (dim, 2 * dim)}
+    rows = {f"record.{k}": (len(getattr(scene.record, k)), *each) for k, each in of_place.items()}
+    samples = scene.time.duration / scene.interval + 1
     key, (places, most, _) = max(rows.items(), key=lambda row: row[1][0] * row[1][1])
     largest = 8 * samples * places * most
     if largest > LARGEST_VARIABLE:
@@ -101,7 +90,7 @@ def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
             f"at most {spoken(LARGEST_VARIABLE)} fit in a file",
         )
     count = sum(places * each for places, _, each in rows.values())
-    return COPIES * 8 * samples * (count + (LEDGER if record.energy else 0))
+    return COPIES * 8 * samples * (count + (LEDGER if scene.record.energy else 0))
 
 
 def load_bytes(scene: AnyScene, steps: float) -> float:

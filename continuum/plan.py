@@ -6,7 +6,7 @@ import logging
 from math import nan
 from typing import Any, NamedTuple
 
-from jointwave.cases.material.prestress import refuse_beyond_strength
+from jointwave.cases.material.rock_mass import refuse_beyond_strength
 from jointwave.cases.run_memory import load_bytes, refuse_beyond_memory, waveform_bytes
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.problem import problem_of

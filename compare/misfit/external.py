@@ -140,7 +140,7 @@ def _require_recorded(curves: Curves, scenes: Sequence[AnyScene]) -> None:
         return
     place, scene = next(iter(curves.waveforms)), scenes[0]
     if not hasattr(scene.record, place.key):
-        wanted = EXAMPLES if scene.kind == "pillar" else EXAMPLES_IN_PLANE
+        wanted = EXAMPLES if scene.is_column else EXAMPLES_IN_PLANE
         allowed = f"is not a receiver of a {scene.kind}; columns are named as {wanted}"
         raise SceneError(curves.file, str(place), None, allowed)
     held = ", ".join(place._replace(at=at).receiver for at in recorded(scene, place.key)) or "none"

@@ -125,7 +125,7 @@ def hard_cases() -> list[HardRow]:
         for scene in cases.load(find(name))
         for engine in ENGINES.values()
         for scheme in engine.schemes
-        if scene.kind == "pillar" or scheme in ("leapfrog", "explicit")
+        if scene.is_column or scheme in ("leapfrog", "explicit")
     ]
     short = [row for row in found if row[:2] == (SCENE, "") and row.scheme != "implicit"]
     return found + [row._replace(should=state) for row in short for state in (REFUSED, STOPPED)]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from jointwave.cases.incident import IncidentField, free_field
-from jointwave.cases.material.prestress import refuse_beyond_strength
 from jointwave.cases.material.quiet_sides import borne, impedances
+from jointwave.cases.material.rock_mass import refuse_beyond_strength
 from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes, waveform_bytes
 from jointwave.cases.sampling import Clock, clock
 from jointwave.cases.schema.pulse import shortest_period

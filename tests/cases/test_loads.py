@@ -19,7 +19,7 @@ from jointwave.cases.histories import (
     periodic,
     triangle,
 )
-from jointwave.cases.loads import base_steps, load_history, step_means, until_it_ends
+from jointwave.cases.loads import base_steps, load_history, step_means
 from jointwave.cases.records import read_history
 
 amplitudes = st.floats(-1e7, 1e7).filter(lambda a: abs(a) > 1.0)
@@ -126,23 +126,6 @@ def test_step_means_telescope_to_the_momentum(load, dt, count):
 def test_whole_cycles_leave_no_momentum(amplitude, period, cycles):
     load = Sine(amplitude, period, cycles)
     assert load.impulse(load.end) == pytest.approx(0, abs=1e-12 * abs(amplitude) * period)
-
-
-@pytest.mark.parametrize(
-    ("steps", "count"),
-    [
-        ([0.0, 2.0, 0.0, -1.0, 0.0, -0.0], 4),
-        ([0.0, np.nan], 2),
-        ([0.0, 0.0], 0),
-        ([], 0),
-        ([3.0], 1),
-    ],
-)
-def test_what_acts_ends_with_its_last_step(steps, count):
-    steps = np.array(steps)
-    np.testing.assert_array_equal(until_it_ends(steps), steps[:count])
-    several = np.column_stack([np.zeros_like(steps), steps])
-    np.testing.assert_array_equal(until_it_ends(several), several[:count])
 
 
 def test_sine_begins_in_compression():

@@ -27,7 +27,7 @@ def energy(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     largest = ledgers.filter(COLUMNS.values()).abs().max().max()
     if ledgers.empty or not largest:
         return []
-    unit = unit_for("J/m" if comparisons[0].scene.kind == "rock mass" else "J", largest)
+    unit = unit_for("J/m" if comparisons[0].scene.in_plane else "J", largest)
     worst = ledgers[RESIDUAL].abs().groupby(ledgers["engine"], sort=False).max()
     caption = (
         "Work of the load, and the energies that balance it. Below, on an axis of its own, the "

@@ -2,7 +2,7 @@
 
 import pytest
 
-from jointwave.cases.material.prestress import beyond_strength
+from jointwave.cases.material.rock_mass import beyond_strength
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.plane import InSituStress
 
