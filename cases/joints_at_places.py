@@ -10,9 +10,9 @@ from typing import Any
 from pydantic import ValidationError
 
 from jointwave.cases.errors import SceneError
+from jointwave.cases.loads import frequency_of
 from jointwave.cases.schema.pulse import Load
 from jointwave.cases.schema.tables import CONSTANTS, SPEEDS
-from jointwave.cases.spectrum import frequency_of
 
 BLOCKS = 40  # a wavelength of the load's highest frequency, where no block size is given
 WITHOUT_LOAD = 100  # blocks of the pillar where nothing acts

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from jointwave.cases.spectrum import highest_frequency
+from jointwave.cases.loads import highest_frequency
 from jointwave.dem.build import carried
 from jointwave.dem.contacts import springs_of
 from jointwave.dem.model import State

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from jointwave.cases.checks import numerics, segments
+from jointwave.cases.checks.division import of_discretisation, of_scheme, of_segments
 from jointwave.cases.checks.scene import (
     Wrong,
     of_damping,
@@ -135,7 +135,7 @@ def _of_fracture(scene: Scene) -> Iterator[Wrong]:
 
 
 RULES = (
-    segments.of_segments,
+    of_segments,
     _of_places,
     _of_layers,
     _of_receivers,
@@ -146,6 +146,6 @@ RULES = (
     _of_damping,
     _of_strength,
     _of_fracture,
-    numerics.of_discretisation,
-    numerics.of_scheme,
+    of_discretisation,
+    of_scheme,
 )

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from jointwave.cases.material.elastic import (
+from jointwave.cases.material.rock import (
     equivalent_modulus,
     joint_stiffness,
     modulus_from_speeds,

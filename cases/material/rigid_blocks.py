@@ -18,18 +18,17 @@ import numpy as np
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import NO_SET
+from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material import effective_medium
 from jointwave.cases.material.effective_medium import compliant, intact, joints_alone
-from jointwave.cases.material.elastic import shear_modulus
 from jointwave.cases.material.rigid_fit import nearest_stiffness
-from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.material.rock import elastic_rock, shear_modulus
 from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus
 from jointwave.cases.partition.joints import attitude
 from jointwave.cases.partition.lattice import by_direction
 from jointwave.cases.partition.regions import rocks_of, within
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.spectrum import LEAST_BLOCKS, highest_frequency
 
 #: Sine of the angle up to which a contact lies along joints.
 PARALLEL = 1e-9
@@ -207,7 +206,7 @@ def _against_blocks(scene: RockMass) -> str | None:
 
 def _drives_waves(scene: RockMass) -> bool:
     """Return whether something sends waves that are short against the domain."""
-    frequency, size = highest_frequency(scene), np.ptp(scene.domain.corners, axis=0).max()
+    frequency, size = highest_frequency(scene), scene.domain.extent.max()
     slowest = min(float(elastic_rock(one).s_speed) for one in rocks_of(scene))
     return frequency is not None and slowest < LEAST_BLOCKS * size * frequency
 

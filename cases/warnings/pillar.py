@@ -3,10 +3,10 @@
 from collections.abc import Callable, Iterator
 
 from jointwave.cases.effects import bends
+from jointwave.cases.loads import LEAST_BLOCKS, ShortestWave, shortest_wave
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.tables import Rock
-from jointwave.cases.spectrum import LEAST_BLOCKS, ShortestWave, shortest_wave
 from jointwave.cases.warnings.shared import (
     of_a_jump,
     of_arrivals,

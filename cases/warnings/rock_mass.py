@@ -10,6 +10,7 @@ from jointwave.cases.checks.rock_mass import GRAZING
 from jointwave.cases.geometry.cell_complex import PARALLEL
 from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.incident import plane_wave
+from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.joints import attitude
 from jointwave.cases.partition.parts import loaded_lines
@@ -20,7 +21,6 @@ from jointwave.cases.plausible import LENGTH, of_dip, of_value
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad, Wave
-from jointwave.cases.spectrum import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.warnings.shared import (
     of_a_jump,
     of_arrivals,
@@ -102,7 +102,7 @@ def _of_places(scene: RockMass) -> Iterator[str]:
         return  # where joints run, only the cuts know
     places = np.array(scene.record.joints).reshape(-1, dim)
     away = np.min([_away(one, places, corners) for one in sets], axis=0, initial=np.inf)
-    for k in np.flatnonzero(away > NEAR * np.ptp(corners, axis=0).max()):
+    for k in np.flatnonzero(away > NEAR * scene.domain.extent.max()):
         yield (
             f"record.joints[{k}] = {_at(places[k])} is {away[k]:.3g} m from the nearest joint, "
             "whose motion it records"
@@ -110,8 +110,8 @@ def _of_places(scene: RockMass) -> Iterator[str]:
 
 
 def _of_directions(scene: RockMass) -> Iterator[str]:
-    for i, one in enumerate(scene.regions):
-        yield from of_dip(f"regions[{i}].dip", one.dip)
+    for key, one in scene.entries("regions"):
+        yield from of_dip(f"{key}.dip", one.dip)
     for key in ("size", "outline"):
         for value in np.ravel(getattr(scene.domain, key) or []):
             yield from of_value(f"domain.{key}", abs(float(value)), LENGTH)
@@ -122,11 +122,11 @@ def _of_directions(scene: RockMass) -> Iterator[str]:
 
 def _of_half_a_load(scene: RockMass) -> Iterator[str]:
     """Say where the dashpots of a quiet side take half of a pressure on it."""
-    for i, load in enumerate(scene.loads):
+    for key, load in scene.entries("loads"):
         if load.kind == "pressure" and load.side is not None:
-            side, held = f"boundaries.{load.side}", getattr(scene.boundaries, load.side)
+            side = f"boundaries.{load.side}"
             instead = "one of the [[waves]] enters with its own amplitude"
-            yield from of_half(f"loads[{i}]", load.amplitude, side, held, instead)
+            yield from of_half(key, load.amplitude, side, scene.sides[side], instead)
 
 
 def _of_a_jump(scene: RockMass) -> Iterator[str]:
@@ -143,7 +143,7 @@ def _of_a_jump(scene: RockMass) -> Iterator[str]:
 
 def _of_times(scene: RockMass) -> Iterator[str]:
     fastest = max(float(elastic_rock(one).p_speed) for one in rocks_of(scene))
-    yield from of_pulses(scene, fastest / float(np.ptp(scene.domain.corners, axis=0).max()))
+    yield from of_pulses(scene, fastest / float(scene.domain.extent.max()))
 
 
 def _of_wavelength(scene: RockMass) -> Iterator[str]:
@@ -173,7 +173,7 @@ def _block_size(scene: RockMass) -> float | None:
     spacings = sorted(one.spacing for one in scene.joint_sets if one.spacing)
     if not spacings:
         return None
-    size, dim = float(np.ptp(scene.domain.corners, axis=0).max()), scene.domain.dimension
+    size, dim = float(scene.domain.extent.max()), scene.domain.dimension
     if len(scene.joint_sets) == 1 and not scene.loads:
         along = attitude(scene.joint_sets[0], dim)[1]
         if all(np.abs(along @ wave.direction).max() < GRAZING for wave in scene.waves):
@@ -248,7 +248,7 @@ def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
         if one.scatter or scene.domain.file_key or not len(points):
             continue
         near = _away(one, points, corners)
-        on = np.flatnonzero(near <= COINCIDENT * np.linalg.norm(np.ptp(corners, axis=0)))
+        on = np.flatnonzero(near <= COINCIDENT * scene.reach)
         if len(on) and (one.ends_at or one.regions):
             sides = sides_at(blocks_of_scene(scene), points[on], len(scene.joint_sets))
             on = on[[len(blocks) > 1 for blocks in sides]]

@@ -6,11 +6,11 @@ from math import nan
 import numpy as np
 
 from jointwave.cases.histories import Gabor, Ricker, Sine, periodic
+from jointwave.cases.loads import LEAST_BLOCKS, frequency_of
 from jointwave.cases.material.contact_points import lever
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import Joints
 from jointwave.cases.schema.pulse import Pulse
-from jointwave.cases.spectrum import LEAST_BLOCKS, frequency_of
 
 LEAST_LEVER = 0.75  # of contact points where a face opens, over half its width
 ONSET = 0.01  # of a load's peak: defines its beginning

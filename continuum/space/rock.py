@@ -18,8 +18,12 @@ from ufl import dx, grad, inner, sym
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.material.effective_medium import PAIRS, compliant, stiffness
-from jointwave.cases.material.elastic import shear_modulus, speeds_from_modulus
-from jointwave.cases.material.rock import ElasticRock, elastic_rock
+from jointwave.cases.material.rock import (
+    ElasticRock,
+    elastic_rock,
+    shear_modulus,
+    speeds_from_modulus,
+)
 from jointwave.cases.partition.regions import within
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.rock_mass import RockMass

@@ -7,8 +7,8 @@ import numpy as np
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.geometry.measure import joined
-from jointwave.cases.material.elastic import shear_modulus
 from jointwave.cases.material.rigid_blocks import welds
+from jointwave.cases.material.rock import shear_modulus
 from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus
 from jointwave.cases.partition.periodic import Across, across_periodic, of_all
 from jointwave.cases.partition.regions import ROCK, rocks_of

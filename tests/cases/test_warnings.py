@@ -11,8 +11,8 @@ from scipy.special import gammaincinv
 
 from jointwave import cases
 from jointwave.cases.errors import SceneError
+from jointwave.cases.loads import LEAST_BLOCKS, SHARE, highest_frequency, shortest_wave
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.spectrum import LEAST_BLOCKS, SHARE, highest_frequency, shortest_wave
 from jointwave.cases.warnings import warnings
 from jointwave.cases.warnings.pillar import MOST_REFLECTED
 from jointwave.compare.scenes import find, shipped_files

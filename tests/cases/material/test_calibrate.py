@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from jointwave.cases import load
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.material.elastic import (
+from jointwave.cases.material.rock import (
     equivalent_modulus,
     joint_stiffness,
     modulus_from_speeds,
