@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from jointwave.cases.checks.scene import Wrong, within
+from jointwave.cases.checks.rules import Wrong, within
 from jointwave.cases.effects import active_effects, off_axis
 from jointwave.cases.material.jointed_rock import equivalent_constants
 from jointwave.cases.partition.pillar import block_ends, welds

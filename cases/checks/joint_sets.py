@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import shapely
 
-from jointwave.cases.checks.scene import Wrong, of_damping, of_fracture, of_strength, within
+from jointwave.cases.checks.rules import Wrong, of_damping, of_fracture, of_strength, within
 from jointwave.cases.geometry.cell_complex import PARALLEL
 from jointwave.cases.geometry.measure import cell_moments
 from jointwave.cases.geometry.sets import in_order

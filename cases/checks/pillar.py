@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from jointwave.cases.checks.division import of_discretisation, of_scheme, of_segments
-from jointwave.cases.checks.scene import (
+from jointwave.cases.checks.rules import (
     Wrong,
     of_damping,
     of_fracture,

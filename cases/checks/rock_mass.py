@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from jointwave.cases.checks.joint_sets import of_regions, of_sets
-from jointwave.cases.checks.scene import Wrong, within
+from jointwave.cases.checks.rules import Wrong, within
 from jointwave.cases.geometry.cell_complex import GeometryError
 from jointwave.cases.geometry.sets import cut_by_sets
 from jointwave.cases.partition.joints import attitude, plane_sets

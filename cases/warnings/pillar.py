@@ -7,15 +7,7 @@ from jointwave.cases.loads import LEAST_BLOCKS, ShortestWave, shortest_wave
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.tables import Rock
-from jointwave.cases.warnings.shared import (
-    of_a_jump,
-    of_arrivals,
-    of_half,
-    of_lever,
-    of_pulses,
-    of_resolution,
-    onset,
-)
+from jointwave.cases.warnings.sources import Met, of_resolution, of_sources, onset
 
 POISSON = Rock.model_fields["intact_poisson"].default
 MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
@@ -28,7 +20,29 @@ def warnings_of_pillar(scene: Scene) -> list[str]:
     """Return warnings of probable mistakes in a pillar, one line each."""
     p = calibrate(scene)
     wave = shortest_wave(scene, p)
-    return [line for rule in RULES for line in rule(scene, p, wave)]
+    own = [line for rule in RULES for line in rule(scene, p, wave)]
+    return [*of_sources(scene, _met(scene, p)), *own]
+
+
+def _met(scene: Scene, p: Properties) -> Met:
+    load, fails = scene.load, bool(p.given) or not p.tension.all()
+    speed, begin = _fastest(scene, p), onset(load)
+    arrivals = (
+        (f"{key} = {y:g} m", begin + (y / speed if p.is_uniform else p.travel_time(y)))
+        for key in ("stress", "velocity")
+        for y in getattr(scene.record, key)
+    )
+    breaks = any(one.tensile_strength is not None for one in (scene.joints, *scene.layers))
+    opens = bends(scene) and (breaks or not p.tension.all())
+    return Met(
+        crossings=p.bar_speed / scene.pillar.length,
+        block=scene.pillar.block if fails else None,
+        speed=lambda _: p.shear_speed if load.is_across else p.bar_speed,
+        pressed={"load": "ends.start"} if load.quantity == "stress" else {},
+        instead="load.quantity = 'incident-stress' is the stress that enters",
+        arrivals=arrivals if load.amplitude else (),
+        opening={"joints": scene.joints} if opens else {},
+    )
 
 
 def _of_poisson(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
@@ -42,17 +56,6 @@ def _of_poisson(scene: Scene, p: Properties, wave: ShortestWave | None) -> Itera
     if given and rock.intact_modulus is None and rock.intact_poisson != POISSON:
         poisson = rock.intact_poisson
         yield f"rock.intact_poisson = {poisson:g} is not used: it needs rock.intact_modulus"
-
-
-def _of_times(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
-    yield from of_pulses(scene, p.bar_speed / scene.pillar.length)
-
-
-def _of_half_a_load(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
-    """Say where a dashpot takes half of a load."""
-    load, instead = scene.load, "load.quantity = 'incident-stress' is the stress that enters"
-    if load.quantity == "stress":
-        yield from of_half("load", load.amplitude, "ends.start", scene.ends.start, instead)
 
 
 def _of_wavelength(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
@@ -72,30 +75,6 @@ def _of_wavelength(scene: Scene, p: Properties, wave: ShortestWave | None) -> It
     if (count := scene.numerics.continuum.elements_per_block) is not None:
         gives, what = f"numerics.continuum.elements_per_block = {count} gives", "elements per"
         yield from of_resolution(gives, count * wave.blocks, f"{what} wavelength {where}")
-
-
-def _of_a_jump(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
-    """Warn of a step load on joints that can fail: behind its front a chain of blocks overshoots by
-    23 to 27 % (Airy's function), behind a rise over 40 blocks by at most 2 % up to 200 blocks on.
-    """
-    if scene.load.amplitude and (bool(p.given) or not p.tension.all()):
-        speed = p.shear_speed if scene.load.is_across else p.bar_speed
-        yield from of_a_jump("load", scene.load, scene.pillar.block, speed)
-
-
-def _of_arrivals(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
-    """Say which receivers the wave does not reach before the end of the scene."""
-    if wave is None:
-        return
-    begin, speed = onset(scene.load), _fastest(scene, p)
-    yield from of_arrivals(
-        scene,
-        (
-            (f"{key} = {y:g} m", begin + (y / speed if p.is_uniform else p.travel_time(y)))
-            for key in ("stress", "velocity")
-            for y in getattr(scene.record, key)
-        ),
-    )
 
 
 def _fastest(scene: Scene, p: Properties) -> float:
@@ -137,20 +116,9 @@ def _of_receivers_at_joints(
                 )
 
 
-def _of_contact_points(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
-    breaks = any(one.tensile_strength is not None for one in (scene.joints, *scene.layers))
-    if bends(scene) and (breaks or not p.tension.all()):
-        yield from of_lever("joints", scene.joints)
-
-
 RULES: tuple[Rule, ...] = (
     _of_poisson,
-    _of_times,
     _of_wavelength,
-    _of_a_jump,
-    _of_arrivals,
     _of_quiet_ends,
-    _of_half_a_load,
     _of_receivers_at_joints,
-    _of_contact_points,
 )

@@ -21,15 +21,7 @@ from jointwave.cases.plausible import LENGTH, of_dip, of_value
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad, Wave
-from jointwave.cases.warnings.shared import (
-    of_a_jump,
-    of_arrivals,
-    of_half,
-    of_lever,
-    of_pulses,
-    of_resolution,
-    onset,
-)
+from jointwave.cases.warnings.sources import Met, of_resolution, of_sources, onset
 
 NEAR = 0.05  # of the domain's size: distance of a receiver from the joint that it is meant for
 COINCIDENT = 1e-9  # of the domain's size: distance of two joints that are one
@@ -38,7 +30,33 @@ EARLY = 1e-6  # of the duration: by which a wave may seem to be early
 
 def warnings_in_plane(scene: RockMass) -> list[str]:
     """Return warnings of probable mistakes in a rock mass, one line each."""
-    return [line for rule in RULES for line in rule(scene)]
+    own = [line for rule in RULES for line in rule(scene)]
+    return [*of_sources(scene, _met(scene)), *own]
+
+
+def _met(scene: RockMass) -> Met:
+    keys, sets = ("friction_angle", "cohesion", "tensile_strength"), scene.entries("joint_sets")
+    fails = any(one.tension is False or any(getattr(one, k) for k in keys) for _, one in sets)
+    rock, acting = elastic_rock(scene.rock), list(_acting(scene).values())
+    arrivals = (
+        (f"{key}[{i}] = {_at(place)}", min(_arrival(scene, x, np.array(place)) for x in acting))
+        for key in ("points", "joints")
+        for i, place in enumerate(getattr(scene.record, key))
+    )
+    loads, opening = scene.entries("loads"), {} if scene.in_space else dict(sets)  # others in space
+    return Met(
+        crossings=_fastest(scene) / float(scene.domain.extent.max()),
+        block=(scene.numerics.dem.block or _block_size(scene)) if fails else None,
+        speed=lambda one: float(rock.s_speed if one.kind == "S" else rock.p_speed),
+        pressed={k: f"boundaries.{x.side}" for k, x in loads if x.kind == "pressure" and x.side},
+        instead="one of the [[waves]] enters with its own amplitude",
+        arrivals=arrivals if acting else (),
+        opening={k: x for k, x in opening.items() if x.tension is False or x.tensile_strength},
+    )
+
+
+def _fastest(scene: RockMass) -> float:
+    return max(float(elastic_rock(one).p_speed) for one in rocks_of(scene))
 
 
 def _acting(scene: RockMass) -> dict[str, Wave | PlaneLoad]:
@@ -120,32 +138,6 @@ def _of_directions(scene: RockMass) -> Iterator[str]:
         yield f"gravity.direction = {_at(scene.gravity.direction)} pulls upwards: {up} points up"
 
 
-def _of_half_a_load(scene: RockMass) -> Iterator[str]:
-    """Say where the dashpots of a quiet side take half of a pressure on it."""
-    for key, load in scene.entries("loads"):
-        if load.kind == "pressure" and load.side is not None:
-            side = f"boundaries.{load.side}"
-            instead = "one of the [[waves]] enters with its own amplitude"
-            yield from of_half(key, load.amplitude, side, scene.sides[side], instead)
-
-
-def _of_a_jump(scene: RockMass) -> Iterator[str]:
-    """Warn of steps where joints can slip, open or break."""
-    keys = ("friction_angle", "cohesion", "tensile_strength")
-    fails = [x for x in scene.joint_sets if x.tension is False or any(getattr(x, k) for k in keys)]
-    block, fastest = scene.numerics.dem.block or _block_size(scene), elastic_rock(scene.rock)
-    if not fails or block is None:
-        return
-    for table, pulse in _acting(scene).items():
-        speed = fastest.s_speed if pulse.kind == "S" else fastest.p_speed
-        yield from of_a_jump(table, pulse, block, float(speed))
-
-
-def _of_times(scene: RockMass) -> Iterator[str]:
-    fastest = max(float(elastic_rock(one).p_speed) for one in rocks_of(scene))
-    yield from of_pulses(scene, fastest / float(scene.domain.extent.max()))
-
-
 def _of_wavelength(scene: RockMass) -> Iterator[str]:
     """Say which blocks or elements are too large for the shortest wave: S at the highest frequency,
     into which joints turn part of any wave."""
@@ -201,16 +193,6 @@ def _of_parts(scene: RockMass) -> Iterator[str]:
                 )
 
 
-def _of_arrivals(scene: RockMass) -> Iterator[str]:
-    """Warn of receivers that no wave in intact rock reaches before the end of the scene."""
-    if not (sources := _acting(scene).values()):
-        return
-    for key in ("points", "joints"):
-        for i, place in enumerate(getattr(scene.record, key)):
-            at = min(_arrival(scene, pulse, np.array(place)) for pulse in sources)
-            yield from of_arrivals(scene, [(f"{key}[{i}] = {_at(place)}", at)])
-
-
 def _of_starts(scene: RockMass) -> Iterator[str]:
     """Warn of waves that are inside the domain before the scene begins, from rest."""
     corners = np.array(scene.domain.corners)
@@ -230,7 +212,7 @@ def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> flo
         lateness = plane_wave(scene, cast("Wave", pulse)).lateness(place[None])[0]
     else:
         away = _nearest(scene, cast("PlaneLoad", pulse), place)
-        lateness = away / max(float(elastic_rock(one).p_speed) for one in rocks_of(scene))
+        lateness = away / _fastest(scene)
     return onset(pulse) + float(lateness)
 
 
@@ -259,29 +241,12 @@ def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
             )
 
 
-def _of_contact_points(scene: RockMass) -> Iterator[str]:
-    """Warn once of contact points of joints that may open; in space they are others."""
-    if scene.in_space:
-        return
-    for i, one in enumerate(scene.joint_sets):
-        if one.tension is False or one.tensile_strength is not None:
-            found = list(of_lever(f"joint_sets[{i}]", one))
-            yield from found
-            if found:
-                return
-
-
 RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
     _of_joints_given_twice,
-    _of_half_a_load,
-    _of_a_jump,
     _of_places,
     _of_directions,
-    _of_times,
     _of_wavelength,
     _of_parts,
-    _of_arrivals,
     _of_points_on_joints,
     _of_starts,
-    _of_contact_points,
 )

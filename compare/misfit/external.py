@@ -21,7 +21,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.records import Column, Columns, read_columns
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.units import TIME, UNITS, split_unit
-from jointwave.cases.warnings.shared import look_like_milliseconds
+from jointwave.cases.warnings.sources import look_like_milliseconds
 from jointwave.compare.engines import names
 from jointwave.compare.misfit.external_netcdf import is_netcdf, read_netcdf
 from jointwave.compare.misfit.places import LABEL, QUANTITIES, Place, parsed, recorded, same

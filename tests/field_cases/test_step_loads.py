@@ -8,7 +8,7 @@ import pytest
 
 import jointwave as jw
 from jointwave.cases.warnings import warnings
-from jointwave.cases.warnings.shared import OF_A_RISE
+from jointwave.cases.warnings.sources import OF_A_RISE
 
 DENSITY, SPEED, BLOCK = 2670.0, 3464.0, 10.0
 NORMAL, STEP, DISTANCE = 120e6, 81.6e6, 0.40  # Pa, Pa of the wave, m

@@ -1,7 +1,9 @@
-"""Warnings that pillars and rock masses share, of pulses and contact points."""
+"""Warnings of loads and waves: when they act and arrive, and what they meet."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from itertools import islice
 from math import nan
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,16 +23,54 @@ STATIC = 100.0
 OF_A_RISE = 40  # blocks that the front of a load passes while it rises
 
 
-def of_pulses(scene: AnyScene, crossings: float) -> Iterator[str]:
-    """Say where loads or waves act outside the run, or their tables are not in seconds.
+class Met(NamedTuple):
+    """What the loads and waves of a scene meet.
 
-    crossings : of the rock by a wave in a second.
+    crossings : of the rock by a wave in a second. block : the size of blocks between joints that
+    can fail, m; None without. speed : of a pulse's wave, m/s. pressed : the side that a load acts
+    on as a stress, by its table. instead : what enters such a side whole. arrivals : receivers, and
+    when waves reach them, s. opening : joints that may open under bending, by their tables.
     """
+
+    crossings: float
+    block: float | None
+    speed: Callable[[Any], float]
+    pressed: Mapping[str, str]
+    instead: str
+    arrivals: Iterable[tuple[str, float]]
+    opening: Mapping[str, Any]
+
+
+def of_sources(scene: AnyScene, met: Met) -> Iterator[str]:
+    """Say where loads or waves act outside the run, or not as they are meant to."""
     end = scene.time.duration
     for table, pulse in scene.sources.items():
-        if pulse.amplitude:
-            frequency = frequency_of(pulse, end)
-            yield from _of_pulse(table, pulse, end, crossings / frequency if frequency else nan)
+        if not pulse.amplitude:
+            continue
+        frequency, held = frequency_of(pulse, end), scene.sides.get(met.pressed.get(table, ""))
+        yield from _of_pulse(table, pulse, end, met.crossings / frequency if frequency else nan)
+        if pulse.shape == "step" and met.block is not None:
+            yield (
+                f"{table}.shape = 'step': blocks of {met.block:.3g} m overshoot behind its front "
+                "by up to 27 %, and joints that slip, open or break do so too early: a load that "
+                f"rises in {OF_A_RISE * met.block / met.speed(pulse):.3g} s (a 'triangle' of long "
+                "decay, a 'table') overshoots by at most 2 %"
+            )
+        if held in ("quiet", "matched"):
+            yield (
+                f"{table}.amplitude = {pulse.amplitude:g} acts on the dashpot of "
+                f"{met.pressed[table]} = '{held}', too, which takes half: {pulse.amplitude / 2:g} "
+                f"enters; {met.instead}"
+            )
+    if scene.gravity is None or scene.gravity.static:  # else all falls
+        for receiver, at in met.arrivals:
+            if at >= end:
+                yield (
+                    f"record.{receiver} is reached at {at:.4g} s: after the end of the scene at "
+                    f"time.duration = {end:g} s"
+                )
+    levers = (line for table, joints in met.opening.items() for line in _of_lever(table, joints))
+    yield from islice(levers, 1)
 
 
 def _of_pulse(table: str, pulse: Pulse, end: float, crossings: float) -> Iterator[str]:
@@ -93,42 +133,10 @@ def look_like_milliseconds(time: np.ndarray, values: np.ndarray, end: float) -> 
     return bool(time[np.abs(values).argmax()] > end and LATE * end < last <= 1e3 * end)
 
 
-def of_a_jump(table: str, pulse: Pulse, block: float, speed: float) -> Iterator[str]:
-    """Say what a step does to joints that can fail, and the rise that blocks (m) need of waves of
-    this speed (m/s). table : of the scene that holds it."""
-    if pulse.shape == "step":
-        yield (
-            f"{table}.shape = 'step': blocks of {block:.3g} m overshoot behind its front by up to "
-            "27 %, and joints that slip, open or break do so too early: a load that rises in "
-            f"{OF_A_RISE * block / speed:.3g} s (a 'triangle' of long decay, a 'table') overshoots "
-            "by at most 2 %"
-        )
-
-
-def of_half(table: str, amplitude: float, side: str, held: str, instead: str) -> Iterator[str]:
-    """Say that the dashpots of a side take half of a load on it, and what would enter whole."""
-    if amplitude and held in ("quiet", "matched"):
-        yield (
-            f"{table}.amplitude = {amplitude:g} acts on the dashpot of {side} = '{held}', too, "
-            f"which takes half: {amplitude / 2:g} enters; {instead}"
-        )
-
-
 def of_resolution(gives: str, count: float, what: str, remedy: str = "") -> Iterator[str]:
     """Say that blocks or elements are too few in a wavelength."""
     if count < LEAST_BLOCKS:
         yield f"{gives} {count:.3g} {what}; at least {LEAST_BLOCKS:g} resolve it{remedy}"
-
-
-def of_arrivals(scene: AnyScene, arrivals: Iterable[tuple[str, float]]) -> Iterator[str]:
-    """Warn of receivers that waves reach (s) after the end of the scene, unless it falls."""
-    falls, end = scene.gravity is not None and not scene.gravity.static, scene.time.duration
-    for receiver, at in arrivals if not falls else ():
-        if at >= end:
-            yield (
-                f"record.{receiver} is reached at {at:.4g} s: after the end of the scene at "
-                f"time.duration = {end:g} s"
-            )
 
 
 def onset(pulse: Pulse) -> float:
@@ -155,7 +163,7 @@ def _wavelet(pulse: Pulse) -> Ricker | Gabor | None:
     return found
 
 
-def of_lever(table: str, joints: Joints) -> Iterator[str]:
+def _of_lever(table: str, joints: Joints) -> Iterator[str]:
     """Warn of contact points far from the edges of a face that may open under bending."""
     rule, count = joints.point_rule, joints.contact_points
     if (found := lever(rule, count)) < LEAST_LEVER:
