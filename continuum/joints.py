@@ -1,4 +1,4 @@
-"""The joints of a pillar that a model resolves, and their law."""
+"""The joints of a pillar that a model resolves."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.material.calibrate import Properties
-from jointwave.joints.law import Law, law
 from jointwave.joints.shear import UNLIMITED
 
 #: Over an ordinary joint: the stiffness of one that differs from it in strength alone, where the
@@ -64,18 +63,3 @@ def _fails(p: Properties, shears: bool) -> np.ndarray:
     elif shears and p.friction is not None:
         found = np.ones_like(found)
     return found
-
-
-def joint_law(p: Properties, joints: Resolved, joint: np.ndarray, shears: bool) -> Law:
-    """Return the law at points [q] of these joints, in its smallest form.
-
-    shears : whether the motion has components along the joints.
-    """
-    damping = joints.time_constant
-    return law(
-        joints.stiffness[joint],
-        None if damping is None else damping[joint],
-        p.tension[joint],
-        shear_stiffness=joints.shear_stiffness[joint] if shears else None,
-        **p.strengths(shears, joint),
-    )

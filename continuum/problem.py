@@ -14,7 +14,7 @@ from jointwave.cases.material.strength import strength_of
 from jointwave.cases.partition.periodic import of_all
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
-from jointwave.continuum.joints import joint_law, resolved_joints
+from jointwave.continuum.joints import resolved_joints
 from jointwave.continuum.loads.ends import load_on, quiet_ends
 from jointwave.continuum.loads.forces import Loads, pushes, released, waves_of, weight_of
 from jointwave.continuum.loads.sides import bearing_sides, cells_behind, held_sides, quiet_sides
@@ -38,24 +38,26 @@ def with_law(found: SceneBody) -> tuple[Body, Law | None]:
     if scene.is_column:
         p, shears = calibrate(scene), body.components > 1
         resolved = resolved_joints(p, found.model, shears, tuple(layers_of(scene)))
-        number, column = np.unique(joints.column, return_inverse=True)
+        which, column = np.unique(joints.column, return_inverse=True)
         body = body._replace(joints=joints._replace(column=column.reshape(-1)))
-        own = joint_law(p, resolved, number, shears)
+        normal, shear = resolved.stiffness, resolved.shear_stiffness if shears else None
+        etas, tension, strengths = resolved.time_constant, p.tension, p.strengths(shears, which)
     else:
         sets, which = scene.joint_sets, of_all(found.blocks, found.across, "joint_set")
         which = np.clip(which, 0, len(sets) - 1)  # cuts through rock are no joints
         normal, shear = (
-            np.array([getattr(one, key) for one in sets], dtype=float)[which]
+            np.array([getattr(one, key) for one in sets], dtype=float)
             for key in ("normal_stiffness", "shear_stiffness")
         )
-        etas = set_time_constants(scene)
-        own = law(
-            normal,
-            None if etas is None else etas[which],
-            np.array([one.tension is not False for one in sets])[which],
-            shear_stiffness=shear,
-            **strength_of(sets, which).strengths(),
-        )
+        etas, tension = set_time_constants(scene), np.array([i.tension is not False for i in sets])
+        strengths = strength_of(sets, which).strengths()
+    own = law(
+        normal[which],
+        None if etas is None else etas[which],
+        tension[which],
+        shear_stiffness=None if shear is None else shear[which],
+        **strengths,
+    )
     return body, own if own.maximum_closure is None else own._replace(rock_compliance=0.0)
 
 
