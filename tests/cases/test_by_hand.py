@@ -10,11 +10,11 @@ from math import exp, pi, sqrt
 import numpy as np
 import pytest
 
+from closed_forms.square_face import face_points
 from jointwave.cases import SceneError, load
 from jointwave.cases.histories import Recorded, Ricker, Sine, Step
 from jointwave.cases.loads import base_steps, load_history, step_means
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.material.contact_points import face_points
 from jointwave.cases.material.rock import modulus_from_speeds, speeds_from_modulus
 from jointwave.cases.records import read_history
 from jointwave.cases.sampling import clock, interpolation, sample_times

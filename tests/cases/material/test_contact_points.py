@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from jointwave.cases.material.contact_points import bending, face_points, lever, vertex_points
+from closed_forms.square_face import face_points
+from jointwave.cases.material.contact_points import bending, lever, vertex_points
 
 SIDE = 0.5
 RULES = ["midpoint", "gauss"]

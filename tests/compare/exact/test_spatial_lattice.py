@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from closed_forms import leapfrog
+from closed_forms.square_face import face_points
 from jointwave.cases.loads import load_history, step_means
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.material.contact_points import face_points
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.exact.blocks.pillar import bodies, system_of

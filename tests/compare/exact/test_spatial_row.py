@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from closed_forms import cantilever, leapfrog
+from closed_forms.square_face import face_points
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.material.contact_points import face_points
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.exact.blocks.pillar import bodies, system_of
 from jointwave.compare.exact.blocks.system import relative
