@@ -96,17 +96,18 @@ def coupled(masses: np.ndarray) -> bool:
     return bool((np.abs(apart) > 1e-12 * diagonal[:, -1, None, None]).any())
 
 
-def constants(blocks: RigidBlocks, dt: float) -> Blocks:
-    """Return the constants of the blocks for steps of dt, s."""
-    damping, tensor = blocks.scene.damping, blocks.masses[:, blocks.dim :, blocks.dim :]
+def constants(blocks: RigidBlocks, dt: float, masses: np.ndarray) -> Blocks:
+    """Return the constants of the blocks for steps of dt, s; masses : matrices of what moves [N, F,
+    F]."""
+    damping, tensor = blocks.scene.damping, masses[:, blocks.dim :, blocks.dim :]
     drag = 0.5 * dt * (damping.alpha or 0.0)
     return Blocks(
-        inertia=blocks.inertia,
+        inertia=np.ascontiguousarray(np.diagonal(masses, axis1=1, axis2=2)),
         dt=dt,
         keep=(1 - drag) / (1 + drag),
         local=damping.local or 0.0,
         gravity=blocks.gravity,
-        tensor=np.ascontiguousarray(tensor) if coupled(blocks.masses) else None,
+        tensor=np.ascontiguousarray(tensor) if coupled(masses) else None,
     )
 
 

@@ -47,11 +47,13 @@ class ChunkTable(NamedTuple):
 
 class BlockTable(NamedTuple):
     """Blocks as the kernel takes them: `model.Blocks`, with one over the inertia of each freedom,
-    numbers, matrices and springs of held blocks, places and rows of recorded ones [2, r], `back`,
-    the inverse of the tensor, and `free`, as `rotation.free_motion` has it."""
+    the mass that gravity pulls of each block, numbers, matrices and springs of held blocks, places
+    and rows of recorded ones [2, r], `back`, the inverse of the tensor, and `free`, as
+    `rotation.free_motion` has it."""
 
     inertia: np.ndarray
     inverse: np.ndarray
+    mass: np.ndarray
     held: Any
     matrices: Any
     springs: Any
@@ -113,6 +115,7 @@ def make_stepper(
     bands = max(1, -(-stages * most // depth))
     depth = max(1, -(-stages * most // bands))  # alike in all
     loop, inertia = loop_for(form), model.inertia.ravel()
+    mass = np.ascontiguousarray(own.inertia[:, 0] if own.mass is None else own.mass)
     first_place, places = marks(model.places, chunks.first_block)
     first_seen, seen = marks(chunks.place[model.watched], LANES * chunks.first_chunk)
     first_held = np.searchsorted(np.zeros(0) if held is None else held, chunks.first_block)
@@ -122,7 +125,7 @@ def make_stepper(
         len(chunks.place),
     )  # fmt: skip
     blocks = BlockTable(
-        inertia, 1.0 / inertia, held, matrices, springs, places, own.gravity, own.tensor,
+        inertia, 1.0 / inertia, mass, held, matrices, springs, places, own.gravity, own.tensor,
         None if own.tensor is None else np.linalg.inv(own.tensor),
         free_motion(own) if form.finite else None, dt, own.keep, own.local, own.stages,
     )  # fmt: skip

@@ -219,8 +219,9 @@ class Blocks(NamedTuple):
     inertia : float array [N, freedoms], mass (kg) and moments of inertia (kg m2). dt : s. keep :
     what mass-proportional damping leaves of a velocity in a step. local : Cundall's damping.
     gravity : float array [dim], m/s2. tensor : float array [N, 3, 3], kg m2, of inertia; None where
-    no rotations of a block have inertia in common. stages : kick and drift of each stage of a step
-    that is composed of them [stages, 2], s; None of leapfrog.
+    no rotations of a block have inertia in common. mass : of what gravity pulls [N], kg, where that
+    is not what moves; else None. stages : kick and drift of each stage of a step that is composed
+    of them [stages, 2], s; None of leapfrog.
     """
 
     inertia: np.ndarray
@@ -229,6 +230,7 @@ class Blocks(NamedTuple):
     local: float
     gravity: np.ndarray
     tensor: Any = None
+    mass: Any = None
     stages: Any = None
 
 

@@ -51,14 +51,14 @@ def motion_for(form: KernelFlags) -> Callable:
             closure[r, a] = spare[a]
 
     @formula
-    def add_forces(blocks, first, last, begin, u, v, force, inertia, before, drive, state, n):
+    def add_forces(blocks, first, last, begin, u, v, force, before, drive, state, n):
         """Add weight and external forces; return the potential energy of the weight, J."""
         potential = 0.0
         if gravity:
             for a in range(dim):
-                g = blocks.gravity[a]
-                for i in range(a, force.size, freedoms):
-                    weight = g * inertia[i]
+                g, mass = blocks.gravity[a], blocks.mass[begin // freedoms :]
+                for block in range(force.size // freedoms):
+                    i, weight = freedoms * block + a, g * mass[block]
                     force[i] += weight
                     potential -= weight * u[i]
         if held:
@@ -232,9 +232,7 @@ def motion_for(form: KernelFlags) -> Callable:
         before, pushed, turn = q[BEFORE:], 0.5 * kick * (1.0 + blocks.keep), state.turn
         if finite:
             turn = turn[tiles[BLOCK, t] : tiles[BLOCK, t + 1]]
-        potential = add_forces(
-            blocks, first, last, begin, u, v, force, inertia, before, drive, state, n
-        )
+        potential = add_forces(blocks, first, last, begin, u, v, force, before, drive, state, n)
         if oblique:
             advance_oblique(blocks, tiles[BLOCK, t], u, v, force, before, pushed, drift)
         else:

@@ -8,11 +8,14 @@ from math import ceil
 import numpy as np
 
 from jointwave.dem.boundaries import facets_on
+from jointwave.dem.build import constants
 from jointwave.dem.chunks import LANES, Chunks
+from jointwave.dem.columns import Columns
+from jointwave.dem.contacts import Contacts
 from jointwave.dem.leapfrog import make_stepper
 from jointwave.dem.loads import Loads, reactions
 from jointwave.dem.model import Model, State, held_by, samples_for, state_at_rest
-from jointwave.dem.stability import critical_time_step
+from jointwave.dem.stability import critical_time_step, squared_frequencies
 from jointwave.dem.static import (
     NEVER,
     STEP_FRACTION,
@@ -90,21 +93,34 @@ def still(resistance: np.ndarray, masses: np.ndarray) -> np.ndarray:
     return back.swapaxes(1, 2) @ axes @ axes.swapaxes(1, 2) @ root.swapaxes(1, 2)
 
 
+def _slowed(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
+    """Return by what to multiply the matrices of blocks so that all have the same critical step
+    [N, 1, 1]; a block without contacts keeps its mass."""
+    squared = squared_frequencies(contacts, columns, masses)
+    found = np.ones_like(squared)
+    np.divide(squared, squared.max(), out=found, where=squared > 0.0)
+    return found[:, None, None]
+
+
 class BlockRelaxation:
     """The blocks under their static forces: `dem.static.System`.
 
-    Damping and rates do not affect a static state: dashpots, also of quiet sides, and local
-    damping are zero, and friction is independent of rate. Quiet sides that bear the weight are
-    held: their blocks do not move as these do not let them. The kernel is that of the motion, so
-    that a first run compiles one, but where that is composed of stages. sticks : whether the weight
-    alone acts, and no joint opens, slips or breaks.
+    Every block has the mass that gives it the critical step of the stiffest: without time, only
+    weights and stiffness count, and no small block holds up the others (Underwood, see
+    `dem.static`). Damping and rates do not affect a static state: dashpots, also of quiet sides,
+    and local damping are zero, and friction is independent of rate. Quiet sides that bear the
+    weight are held: their blocks do not move as these do not let them. The kernel is that of the
+    motion, so that a first run compiles one, but where that is composed of stages. sticks : whether
+    the weight alone acts, and no joint opens, slips or breaks.
     """
 
     def __init__(self, system: BlockSystem, weighed: bool, sticks: bool = False) -> None:
         blocks, model, loads, static = system.blocks, system.model, system.loads, system.static
         columns = blocks.columns._replace(time_constants=None)
-        dt = STEP_FRACTION * critical_time_step(blocks.contacts, columns, blocks.masses, 0.0)
-        own, laws = model.blocks._replace(dt=dt, local=0.0), model.laws.copy()
+        masses = blocks.masses * _slowed(blocks.contacts, columns, blocks.masses)
+        dt = STEP_FRACTION * critical_time_step(blocks.contacts, columns, masses, 0.0)
+        own = constants(blocks, dt, masses)._replace(local=0.0, mass=blocks.inertia[:, 0])
+        laws = model.laws.copy()
         if not weighed:
             own = own._replace(gravity=np.zeros_like(own.gravity))
         laws[IN_MOTION] = 0.0
@@ -123,14 +139,14 @@ class BlockRelaxation:
             self.steady[np.searchsorted(rows, loads.rows)] = loads.steady
         # Of the velocities of blocks: what quiet sides that bear the weight resist them by.
         self.bearing, self.onto, self.rows = system.bearing @ loads.onto.T, loads.onto, loads.rows
-        nothing = np.zeros((len(rows), *blocks.masses.shape[1:]))
-        held = held_by(nothing, rows, blocks.masses, dt) if model.form.held else None
+        nothing = np.zeros((len(rows), *masses.shape[1:]))
+        held = held_by(nothing, rows, masses, dt) if model.form.held else None
         if held is not None and model.form.matched:
             held = held._replace(springs=np.zeros_like(model.held.springs))
         if weighed and held is not None:
             resistance = nothing.copy()
             resistance[np.searchsorted(rows, loads.rows)] = self.onto @ self.bearing
-            held.matrices[:, 1] = still(resistance, blocks.masses[rows])
+            held.matrices[:, 1] = still(resistance, masses[rows])
         form = model.form._replace(stages=1)
         self.model = model._replace(form=form, blocks=own, laws=laws, held=held)
         self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 0)
@@ -140,13 +156,14 @@ class BlockRelaxation:
         self._take = make_stepper(
             self.model, self.state, self.samples, most, self._drive, shake, system.threads
         )
-        self.mass = blocks.inertia.ravel()
+        self.mass = own.inertia.ravel()
         weight = float(np.linalg.norm(own.gravity) * blocks.inertia[:, 0].sum())
         self.scale = weight + (static.pressed if stress is not None else 0.0)
-        self.masses, self.centroid, self.most_steps = blocks.masses, blocks.centroid, static.steps
-        self.rotation = np.ones(blocks.masses.shape[1])
+        self.masses, self.centroid, self.most_steps = masses, blocks.centroid, static.steps
+        self.rotation = np.ones(masses.shape[1])
         if model.form.finite:  # whose state has momenta, and half the vectors of small rotations
-            self.masses, self.rotation[3:] = model.inertia[:, :, None] * np.eye(6), 2.0
+            self.masses = self.model.inertia[:, :, None] * np.eye(6)
+            self.rotation[3:] = 2.0
         if weighed and static.placed is not None:
             self.place(static.placed, blocks.scene.numerics.dem.static_tolerance)
 
@@ -209,10 +226,10 @@ class BlockRelaxation:
         """Set all velocities to zero."""
         self.state.v[:] = 0.0
 
-    def fastest(self, change: np.ndarray) -> tuple[str, float]:
-        """Return the block that moves farthest in a step, and how fast, m/s."""
+    def fastest(self, change: np.ndarray) -> str:
+        """Return the block that moves farthest."""
         dim = self.centroid.shape[1]
         moved = np.linalg.norm(change.reshape(self.count, -1)[:, :dim], axis=1)
         k = int(moved.argmax())
         place = ", ".join(f"{x:.4g}" for x in self.centroid[k].round(6) + 0.0)
-        return f"the block at [{place}]", float(moved[k]) / self.model.blocks.dt
+        return f"the block at [{place}]"

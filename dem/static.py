@@ -55,18 +55,17 @@ class System(Protocol):
     def stop(self) -> None:
         """Set all velocities to zero."""
 
-    def fastest(self, change: np.ndarray) -> tuple[str, float]:
-        """Return the block that moves farthest in a change of displacement, in words, and how
-        fast it would be if that took one step, m/s."""
+    def fastest(self, change: np.ndarray) -> str:
+        """Return the block that moves farthest in a change of displacement, in words."""
 
 
 class Rest(NamedTuple):
     """How a static state was reached: steps taken, largest unbalanced force over the scale; moving,
-    the block that moves ever farther and how fast, m/s, None where none does."""
+    the block that moves ever farther, None where none does."""
 
     steps: int
     ratio: float
-    moving: tuple[str, float] | None = None
+    moving: str | None = None
 
     @property
     def attributes(self) -> dict[str, Any]:
@@ -99,10 +98,9 @@ def _why(rest: Rest, tolerance: float, remedy: str) -> str:
             f"has not come to rest: out-of-balance ratio {rest.ratio:.1e} after {rest.steps} steps,"
             f" above numerics.dem.static_tolerance = {tolerance:.1e}: raise it to accept this state"
         )
-    block, speed = rest.moving
     return (
-        f"no static state: {block} moves on, at {speed:.2g} m/s after {rest.steps} steps of "
-        f"dynamic relaxation: it slides, tips or is unsupported; {remedy}"
+        f"no static state: {rest.moving} moves on after {rest.steps} steps of dynamic relaxation: "
+        f"it slides, tips or is unsupported; {remedy}"
     )
 
 
@@ -127,7 +125,7 @@ def relax(system: System, tolerance: float, most_steps: int) -> Rest:
         elif steps - begin > patience:
             first, second = at_half - at_begin, damped.u - at_half
             if _moves(first, second, at_begin - start, system.mass):
-                moving = system.fastest((damped.u - before) / STEPS_BETWEEN_LOOKS)
+                moving = system.fastest(damped.u - before)
         if ratio < 0.9 * best or steps - begin > patience:
             best, begin, at_begin = min(best, ratio), steps, damped.u
     system.stop()

@@ -66,7 +66,7 @@ def prepared(scene: Scene, incident: None = None) -> BlockSystem:
     moving = shaking(_base(blocks), blocks.contacts.walls, blocks.dim, time.dt)
     loads, dashpot, springs = held_blocks(blocks, ends_of(blocks, time.dt), moving, time)
     bears = bearing(blocks, loads.rows)
-    own, reads = constants(blocks, time.dt), sections_of(blocks)
+    own, reads = constants(blocks, time.dt, blocks.masses), sections_of(blocks)
     form = form_of(blocks, True, moving is not None, relaxed(scene))
     form = form._replace(in_row=True, matched=springs is not None)
     if loads.composed:

@@ -47,7 +47,7 @@ def prepared(scene: RockMass, incident: IncidentField | None = None) -> BlockSys
     holds = len(loads.rows) > 0 or scene.excavated
     form, own = (
         form_of(blocks, holds, moving is not None, relaxed(scene)),
-        constants(blocks, time.dt),
+        constants(blocks, time.dt, blocks.masses),
     )
     dashpot = loads.onto @ resistance @ loads.onto.T
     held = held_by(dashpot, loads.rows, blocks.masses, time.dt, own.keep)
