@@ -6,8 +6,7 @@ from math import copysign
 
 from jointwave.dem.chunks import LANES as L
 from jointwave.dem.model import KernelFlags
-from jointwave.dem.rotation import angular_momentum, three
-from jointwave.dem.turning import rate, turn_blocks
+from jointwave.dem.rotation import angular_momentum, rate, three, turn_blocks
 from jointwave.joints.formula import formula
 
 #: Rows of the tiles' table: their first chunk, block, held block, recorded block, watched contact.

@@ -6,6 +6,7 @@ depend on, one tile less in each step. What is found twice is found from the sam
 same order, so every bit of the motion is that of one thread.
 """
 
+import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier
@@ -22,6 +23,7 @@ ROWS = BLOCK, BLOCK, CHUNK, None, HELD, BLOCK  # of the tiles' table: what has t
 DEEPEST, CACHE = 16, 3 << 19  # steps, and bytes of a core's own cache, that a pass takes
 OF_FREEDOM = 32  # bytes: its motion, inertia and force
 THIN = 16  # tiles for each step between exchanges and each border
+ENOUGH_BLOCKS = {1: 200_000, 2: 40_000, 3: 10_000}  # by dimension: from there on threads pay
 FEWEST = 4  # tiles of a part: two would be stepped by both neighbours
 
 
@@ -171,3 +173,16 @@ def add_up(whole: Part, parts: list[Part], samples: slice) -> None:
         whole.state.sums[:] = sum(part.state.sums for part in parts)
         found = [part.samples.energy[:, samples] for part in parts]
         whole.samples.energy[:, samples] = sum(found)
+
+
+def thread_count(asked: int | None, blocks: int, dim: int) -> int:
+    """Return the threads to use: as requested, or one for few blocks and all cores for many."""
+    if asked is not None:
+        return asked
+    return _cores() if blocks >= ENOUGH_BLOCKS[dim] else 1
+
+
+def _cores() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -2,33 +2,39 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numba
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.errors import SceneError
+from jointwave.cases.errors import SceneError, StoppedError
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.damping import NOT_OF_BLOCKS
 from jointwave.dem.bounds import highest_energy
 from jointwave.dem.leapfrog import make_stepper
 from jointwave.dem.model import Samples, State, samples_for, state_at_rest
+from jointwave.dem.parts import thread_count
 from jointwave.dem.pillar import record as pillar_record
 from jointwave.dem.pillar import system as pillar
 from jointwave.dem.relaxation import start
 from jointwave.dem.system import BlockSystem
-from jointwave.dem.time_loop import Run, followed, refuse_beyond_bounds, thread_count, versions
-from jointwave.numerics.divergence import SPEED, Guard, audit, guard
+from jointwave.numerics.divergence import ENERGY, SPEED, Guard, audit, guard
+from jointwave.numerics.instability import Divergence, stopped
 from jointwave.numerics.small_motion import matters, refuse_large_motion
-from jointwave.numerics.time_loop import Checkpointer
+from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
 from jointwave.results.arrays import size_of
 
 if TYPE_CHECKING:
     from jointwave.cases.incident import IncidentField
 
+BLOCK_STEPS_AT_ONCE = 20_000_000  # some 10 ms to 1 s: often enough for a progress bar
+LOOKS = 20  # at a run, at least: blocks may move further than they can
+LEAST_STEPS = 64  # at least: each thread copies its blocks before and after
 MOST_OF_DRIVE = 2_000_000  # numbers: forces on held blocks in memory at a time
 
 
@@ -81,15 +87,15 @@ def simulate(
             seconds_setup=built - began,
             seconds_compile=compiled - built,
             seconds_stepping=perf_counter() - compiled,
-            versions=versions(),
+            versions=json.dumps({"numpy": np.__version__, "numba": numba.__version__}),
         )
         return found if snapshots is None else snapshots.add_to(found)
 
-    def march_samples(first: int, last: int) -> None:
+    def march(first: int, last: int) -> None:
+        if snapshots is not None:
+            snapshots.record_if_due(first)
         step(first * time.stride, last * time.stride)
         look(system, state, samples, monitor, first, last)
-
-    def check(first: int, last: int) -> None:
         t = last * time.stride * time.dt
         if monitor.found[0] >= 0:
             speeds, places = _energies(system, state), system.blocks.centroid
@@ -100,9 +106,14 @@ def simulate(
                 scene, "the rigid blocks", reads.moved_apart(system, state), t, first
             )
 
-    parts = (state, samples, monitor)
-    run = Run(time, system.blocks.count, march_samples, check, parts)
-    return followed(run, result, progress, snapshots, keeper)
+    steps = min(BLOCK_STEPS_AT_ONCE // system.blocks.count, time.steps // LOOKS)
+    chunk, parts = max(LEAST_STEPS, steps) // time.stride, (state, samples, monitor)
+    try:
+        run_in_chunks(time.samples, chunk, march, parts, progress, snapshots, keeper)
+    except StoppedError as error:  # with the part that is valid
+        error.result = result(error.samples)
+        raise
+    return result(time.samples)
 
 
 class Plan(NamedTuple):
@@ -180,3 +191,24 @@ def _energies(system: BlockSystem, state: State) -> np.ndarray:
     if system.model.form.finite:
         masses = np.hstack([masses[:, :3], np.full_like(masses[:, 3:], masses[:, 3:].max())])
     return (momenta / np.sqrt(masses) * np.abs(state.v[: len(masses)])).max(axis=1)
+
+
+def refuse_beyond_bounds(
+    scene: AnyScene,
+    time: Clock,
+    critical: float,
+    guard: Guard,
+    speed: np.ndarray,
+    places: np.ndarray,
+) -> None:
+    """Raise StoppedError for a run that a guard has found out of its bounds.
+
+    critical : step, s. speed : of each block [N], in any unit. places : of the blocks, y [N], or x
+    and y [N, 2], m.
+    """
+    step, what, sound = guard.found.tolist()
+    at = places[int(np.nan_to_num(speed, nan=np.inf).argmax())].tolist()
+    place = tuple(at) if isinstance(at, list) else at
+    key = "numerics.dem.step_fraction"
+    seen = Divergence("the rigid blocks", key, step, sound, what == ENERGY, place)
+    raise stopped(scene, time, critical, seen)

@@ -7,9 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from jointwave.cases.sampling import Clock
+from jointwave.dem.leapfrog import march
 from jointwave.dem.loads import Loads
-from jointwave.dem.model import Model
+from jointwave.dem.model import Model, Samples, State, samples_for
 from jointwave.dem.shaking import Shaking
+from jointwave.results.arrays import copied
 
 
 class Static(NamedTuple):
@@ -45,3 +47,15 @@ class BlockSystem(NamedTuple):
     shaking: Shaking | None
     threads: int
     static: Static
+
+    def sampled(
+        self, state: State, sample: int, places: np.ndarray, watched: np.ndarray
+    ) -> Samples:
+        """Return one sample of blocks [r] and contacts [w], by the step that it needs, on a copy of
+        the state."""
+        model, step = self.model._replace(places=places, watched=watched), sample * self.time.stride
+        found, steps = samples_for(model, 1), np.array([step])
+        drive = None if model.held is None else self.loads.drive(steps)
+        shake = None if self.shaking is None else self.shaking(steps)
+        march(model, copied(state), found, 1, (0, 1), drive, shake)
+        return found

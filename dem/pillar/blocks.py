@@ -9,15 +9,16 @@ import numpy as np
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.material.strength import strength_of
+from jointwave.cases.run_memory import refuse_beyond_memory
 from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.scene import Scene
 from jointwave.dem.build import RigidBlocks
 from jointwave.dem.columns import Columns
 from jointwave.dem.contacts import Contacts
-from jointwave.dem.pillar.size import refuse_too_many
 from jointwave.joints.law import law, stiffest
 
 ENDS = "start", "end"
+CUT = 400  # bytes of a block while a pillar is cut
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +45,7 @@ class BlocksOfPillar(RigidBlocks):
 
 def blocks_of(scene: Scene) -> BlocksOfPillar:
     """Return the rigid blocks of a pillar; raises SceneError for more than memory holds."""
-    refuse_too_many(scene)
+    refuse_beyond_memory(scene, {"pillar.block": CUT * scene.block_count})
     p, dim = calibrate(scene), 3 if is_spatial(scene) else 1
     axes, turns = ([0, 1, 2] if dim == 3 else [1]), dim == 3 and scene.motion.rotation != "none"
     gravity, stress = np.zeros(3), None

@@ -12,14 +12,12 @@ from jointwave.cases.loads import with_load_itself
 from jointwave.cases.sampling import Interpolation
 from jointwave.dem.bounds import motion_of_contacts
 from jointwave.dem.chunks import LANES
-from jointwave.dem.leapfrog import march
-from jointwave.dem.model import Samples, State, samples_for
+from jointwave.dem.model import Samples, State
 from jointwave.dem.pillar.fragments import with_fragments
 from jointwave.dem.pillar.snapshots import BlockFrame, BlockRecorder, spin_of
 from jointwave.dem.pillar.system import Sections
 from jointwave.dem.system import BlockSystem
 from jointwave.numerics.small_motion import Moved
-from jointwave.results.arrays import copied
 from jointwave.results.dataset import dataset
 from jointwave.results.rock_mass import TERMS
 
@@ -189,14 +187,10 @@ def recorder(system: BlockSystem, state: State) -> BlockRecorder | None:
     everywhere = Interpolation(nodes, nodes, np.zeros(len(nodes)))
     whole = np.arange(len(blocks.contacts.area))
     reads = Sections(everywhere, everywhere, nodes[:-1], whole)
-    model = system.model._replace(places=reads.places, watched=reads.watched)
 
     def capture(sample: int) -> BlockFrame:
-        """Return all blocks by a sample with the step that it needs, on a copy of the state."""
-        step = np.array([sample * time.stride])
-        shake = None if system.shaking is None else system.shaking(step)
-        found = samples_for(model, 1)
-        march(model, copied(state), found, 1, (0, 1), system.loads.drive(step), shake)
+        """Return all blocks at a sample."""
+        found = system.sampled(state, sample, reads.places, reads.watched)
         stress = sections_of(system, found, 1, everywhere, reads, sample)
         along = stress[:, 0] if blocks.dim == 1 else stress[:, 1, 0]
         return BlockFrame(along, found.displacement[..., 0], found.velocity[..., 0])

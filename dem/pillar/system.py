@@ -10,6 +10,12 @@ import numpy as np
 
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.run_memory import (
+    load_bytes,
+    refuse_beyond_memory,
+    snapshot_bytes,
+    waveform_bytes,
+)
 from jointwave.cases.sampling import Clock, Interpolation, clock, interpolation
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.tables import LEAN
@@ -18,16 +24,19 @@ from jointwave.dem.build import chunks, constants, form_of
 from jointwave.dem.composition import KICKS, stability_limit, table
 from jointwave.dem.loads import Loads, Pattern, Source
 from jointwave.dem.model import Model, held_by
+from jointwave.dem.parts import thread_count
 from jointwave.dem.pillar.blocks import BlocksOfPillar, blocks_of
 from jointwave.dem.pillar.ends import End, arm_of, ends_of
-from jointwave.dem.pillar.size import refuse_large
+from jointwave.dem.pillar.snapshots import CORNERS_OF_A_BLOCK
 from jointwave.dem.shaking import Base, Shaking, shaking
 from jointwave.dem.stability import critical_step_of_row
 from jointwave.dem.system import BlockSystem, Static
-from jointwave.dem.time_loop import thread_count
 from jointwave.joints.law import Law, parts_of, table_of
 from jointwave.joints.normal import gap_under
 
+#: Bytes a block, with its joint and all that makes them, in space and on an axis, and for each of
+#: the points with a history.
+OF_BLOCK, AXIAL, OF_POINT = 2000, 500, 60
 ENOUGH_BLOCKS = 2000  # of a row of equal ones, for its critical step
 
 
@@ -123,7 +132,14 @@ def clock_of(blocks: BlocksOfPillar) -> tuple[Clock, float]:
     limit = stability_limit() / 2 if is_composed(scene) else 1.0
     critical = limit * critical_step_of_row(*own, ends)
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
-    refuse_large(scene, time, form_of(blocks).points if blocks.dim > 1 else None)
+    spatial, points = blocks.dim > 1, form_of(blocks).points
+    parts = {
+        "pillar.block": (OF_BLOCK + OF_POINT * points if spatial else AXIAL) * blocks.count,
+        "record.interval": waveform_bytes(scene, spatial),
+        "numerics.dem.step_fraction": load_bytes(scene, time.steps + time.stride),
+        "record.fields": snapshot_bytes(scene, CORNERS_OF_A_BLOCK * blocks.count),
+    }
+    refuse_beyond_memory(scene, parts)
     return time, critical
 
 

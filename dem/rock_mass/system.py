@@ -4,24 +4,29 @@ from __future__ import annotations
 
 import numpy as np
 
+from jointwave.cases.geometry.blocks import Blocks
+from jointwave.cases.geometry.locate import blocks_at
+from jointwave.cases.geometry.measure import Outlines
 from jointwave.cases.incident import IncidentField, free_field
-from jointwave.cases.material.quiet_sides import borne, impedances
+from jointwave.cases.loads import velocity_of
+from jointwave.cases.material.quiet_sides import base_traction, borne, impedances
 from jointwave.cases.material.rock_mass import refuse_beyond_strength
+from jointwave.cases.partition.parts import covered
 from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes, waveform_bytes
 from jointwave.cases.sampling import Clock, clock
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.dem.boundaries import dashpots, facets_on, points_on
 from jointwave.dem.build import chunks, constants, form_of
-from jointwave.dem.loads import Loads, reactions
+from jointwave.dem.loads import Loads, Pattern, reactions
 from jointwave.dem.model import Model, held_by
+from jointwave.dem.parts import thread_count
 from jointwave.dem.rock_mass.blocks import BlocksOfRockMass, blocks_of, relaxed
-from jointwave.dem.rock_mass.loads import load_pattern
 from jointwave.dem.rock_mass.receivers import receivers_of
 from jointwave.dem.rock_mass.waves import incoming
 from jointwave.dem.shaking import Base, shaking
 from jointwave.dem.system import BlockSystem, Static
-from jointwave.dem.time_loop import thread_count
 from jointwave.joints.law import table_of
 
 #: Bytes a block, with its contacts and all that makes them, and for each of their points.
@@ -111,3 +116,39 @@ def held_blocks(
     row, bears = np.searchsorted(rows, quiet.block), borne(scene, quiet.normal)
     resistance, bearing = (dashpots(quiet, one, row, len(rows)) for one in (impedance, bears))
     return loads, resistance, bearing
+
+
+def load_pattern(
+    scene: RockMass, blocks: Blocks, sides: tuple[str, ...], load: PlaneLoad
+) -> Pattern:
+    """Return a pressure, a force or a compliant base of a scene; sides : the names of the blocks'
+    sides, in order."""
+    history = velocity_of(load, load.amplitude)
+    if load.kind == "force":
+        at = np.array(load.at)
+        block = blocks_at(blocks, at[None])[0][:1]
+        return Pattern(block, at - blocks.centroid[block], np.array([load.direction]), history)
+    facets, parts = facets_on(blocks, sides, [load.side or f"opening {load.opening}"]), None
+    if load.between is not None:
+        facets, parts = _covered(scene, blocks, load, facets)
+    points = points_on(blocks, facets, parts)
+    if load.kind == "base":
+        assert load.direction is not None
+        impedance = impedances(scene, points.normal, blocks.body.region[points.block])
+        traction = base_traction(points.normal, impedance, load.direction)
+    else:
+        traction = -points.normal
+    return Pattern(points.block, points.arm, points.area[:, None] * traction, history)
+
+
+def _covered(
+    scene: RockMass, blocks: Blocks, load: PlaneLoad, facets: np.ndarray
+) -> tuple[np.ndarray, Outlines]:
+    """Return those of some edges that a load acts on in part, and these parts of them."""
+    edges = blocks.boundary.ends[facets]
+    part = covered(scene.domain, load, edges)
+    acts = part[:, 1] > part[:, 0]
+    start, end = edges[acts, :1], edges[acts, 1:]
+    place = part[acts, :, None]
+    ends = start * (1 - place) + end * place
+    return facets[acts], Outlines(ends.reshape(-1, 2), 2 * np.arange(acts.sum() + 1))

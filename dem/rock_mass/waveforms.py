@@ -9,14 +9,12 @@ import xarray as xr
 
 from jointwave.cases.partition.shape import shape_of
 from jointwave.dem.bounds import motion_of_contacts
-from jointwave.dem.leapfrog import march
-from jointwave.dem.model import Samples, State, samples_for
+from jointwave.dem.model import Samples, State
 from jointwave.dem.rock_mass.receivers import Receivers, everywhere
 from jointwave.dem.rock_mass.record import jumps, mean_stress, quantities
 from jointwave.dem.rock_mass.snapshots import BlockFrame, BlockRecorder
 from jointwave.dem.system import BlockSystem
 from jointwave.numerics.small_motion import Moved, farthest, overlapping
-from jointwave.results.arrays import copied
 from jointwave.results.rock_mass import rock_mass_dataset
 
 
@@ -50,15 +48,10 @@ def recorder(system: BlockSystem, state: State) -> BlockRecorder | None:
     if scene.record.fields is None:
         return None
     receivers = everywhere(cut.volume, system.blocks.faces)
-    model = system.model._replace(places=receivers.places, watched=receivers.watched)
 
     def capture(sample: int) -> BlockFrame:
-        """Return all blocks by a sample with the step that it needs, on a copy of the state."""
-        step = sample * system.time.stride
-        drive = None if model.held is None else system.loads.drive(np.array([step]))
-        shake = None if system.shaking is None else system.shaking(np.array([step]))
-        found = samples_for(model, 1)
-        march(model, copied(state), found, 1, (0, 1), drive, shake)
+        """Return all blocks at a sample."""
+        found = system.sampled(state, sample, receivers.places, receivers.watched)
         outside = acting(system, receivers, found.velocity, sample)
         stress = mean_stress(receivers, found.contact, outside)
         slip = jumps(receivers, found.contact)

@@ -24,7 +24,7 @@ from jointwave.dem.boundaries import (
     resultants,
 )
 from jointwave.dem.loads import Loads, reactions
-from jointwave.dem.rock_mass.loads import load_pattern
+from jointwave.dem.rock_mass.system import load_pattern
 from jointwave.dem.rock_mass.waves import incoming
 from jointwave.dem.shaking import Base, shaking
 
