@@ -95,18 +95,21 @@ def still(resistance: np.ndarray, masses: np.ndarray) -> np.ndarray:
 
 def _slowed(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
     """Return by what to multiply the matrices of blocks so that all have the same critical step
-    [N, 1, 1]; a block without contacts keeps its mass."""
-    squared = squared_frequencies(contacts, columns, masses)
-    found = np.ones_like(squared)
-    np.divide(squared, squared.max(), out=found, where=squared > 0.0)
+    [N, 1, 1]; a block without contacts keeps its mass, and so do all where no wall holds them: they
+    come to rest about their common centre of mass."""
+    found, held = np.ones(len(masses)), contacts.blocks[:, 1] >= len(masses)
+    holding = columns.normal if contacts.frame.shape[1] == 1 else columns.shear
+    if (holding[contacts.column[held]] > 0.0).any():
+        squared = squared_frequencies(contacts, columns, masses)
+        np.divide(squared, squared.max(), out=found, where=squared > 0.0)
     return found[:, None, None]
 
 
 class BlockRelaxation:
     """The blocks under their static forces: `dem.static.System`.
 
-    Every block has the mass that gives it the critical step of the stiffest: without time, only
-    weights and stiffness count, and no small block holds up the others (Underwood, see
+    Where walls hold them, every block has the mass that gives it the critical step of the stiffest:
+    only weights and stiffness count, and no small block holds up the others (Underwood, see
     `dem.static`). Damping and rates do not affect a static state: dashpots, also of quiet sides,
     and local damping are zero, and friction is independent of rate. Quiet sides that bear the
     weight are held: their blocks do not move as these do not let them. The kernel is that of the
