@@ -4,7 +4,7 @@ import pytest
 
 from jointwave.cases.effects import active_effects, effects
 
-ALWAYS = ["quiet sides", "energy ledger", "incident waves"]
+ALWAYS = ["incident waves", "quiet sides", "energy ledger"]
 STILL = {"waves": [], "boundaries__bottom": "fixed"}
 BASE = {
     "kind": "base",

@@ -69,7 +69,7 @@ def test_a_scene_is_run_and_its_file_says_where_its_receivers_are(says, tmp_path
         assert found.velocity.point_x.values.tolist() == [20.0, 20.0]
         assert found.velocity.point_y.values.tolist() == [10.0, 30.0]
         assert found.traction.joint_point_y.values.tolist() == [20.0]
-        assert json.loads(found.effects) == ["quiet sides", "energy ledger", "incident waves"]
+        assert json.loads(found.effects) == ["incident waves", "quiet sides", "energy ledger"]
     says("run joint.toml --engine exact --out results --resume")
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from jointwave import cases
 from jointwave.compare.figures.animation.bodies import body_of
 from jointwave.compare.figures.animation.settings import (
     PRINCIPAL,
@@ -11,6 +12,7 @@ from jointwave.compare.figures.animation.settings import (
     VELOCITY,
     ViewSettings,
 )
+from jointwave.compare.scenes import find
 
 X, Z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 
@@ -95,6 +97,7 @@ def test_the_principal_stress_of_larger_size_in_the_plane_and_in_space(row):
     of_space = [stress[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))]
     flat = [2e6, 1e6, 0.0, 3e6, 0.0, 0.0]
     settings = ViewSettings(Z, 1.0, 1.0, PRINCIPAL)
-    space = body_of(row(1, "quad", stress=[[of_space], [flat]]), None, settings)
-    plane = body_of(row(1, "quad", stress=[[[0] * 3], [[2e6, 1e6, 3e6]]]), None, settings)
+    scene = cases.load_variant(find("rock-mass/one-joint"))
+    space = body_of(row(1, "quad", stress=[[of_space], [flat]]), scene, settings)
+    plane = body_of(row(1, "quad", stress=[[[0] * 3], [[2e6, 1e6, 3e6]]]), scene, settings)
     np.testing.assert_allclose(space.values[:, 0], [-5.0, plane.values[1, 0]], rtol=1e-12)
