@@ -23,7 +23,7 @@ ROWS = BLOCK, BLOCK, CHUNK, None, HELD, BLOCK  # of the tiles' table: what has t
 DEEPEST, CACHE = 16, 3 << 19  # steps, and bytes of a core's own cache, that a pass takes
 OF_FREEDOM = 32  # bytes: its motion, inertia and force
 THIN = 16  # tiles for each step between exchanges and each border
-ENOUGH_BLOCKS = {1: 200_000, 2: 40_000, 3: 10_000}  # by dimension: from there on threads pay
+ENOUGH_BLOCKS = {1: 200_000, 2: 40_000, 3: 40_000}  # by dimension: from there on threads pay
 FEWEST = 4  # tiles of a part: two would be stepped by both neighbours
 
 
