@@ -6,9 +6,9 @@ from jointwave import dem
 
 
 def test_a_long_row_takes_the_processors_that_it_may_use(monkeypatch, row):
-    """Those of this process, by default; a row of less than 10,000 blocks takes one."""
+    """Those of this process, by default; a row of less than 40,000 blocks takes one."""
     brief = {"time__duration": 2e-4, "record": {"stress": [2.0], "energy": False}}
-    long, short = row(pillar__length=5e3, **brief), row(pillar__length=4999.5, **brief)
+    long, short = row(pillar__length=2e4, **brief), row(pillar__length=19999.5, **brief)
     monkeypatch.setattr(os, "sched_getaffinity", {0: {2, 3, 5}}.__getitem__, raising=False)
     assert dem.simulate(long).threads == 3
     assert dem.simulate(short).threads == 1
