@@ -20,6 +20,7 @@ from jointwave.numerics.small_motion import (
     Moved,
     farthest,
     matters,
+    may_overlap,
     overlapping,
     refuse_large_motion,
 )
@@ -76,6 +77,8 @@ class Monitor:
         u = self.steps.u
         found = farthest_joint(self.found, u)
         if not self.scene.in_plane or (found is not None and found.by > LARGEST * found.size):
+            return found
+        if not may_overlap(self.found.blocks, u.reshape(-1, 2)):
             return found
         return overlapping(self.found.blocks, motion_of_blocks(self.found, u)) or found
 

@@ -74,11 +74,16 @@ def refuse_large_motion(
     raise error
 
 
+def may_overlap(cut: Blocks, moved: np.ndarray) -> bool:
+    """Return whether displacements [n, 2] (m), of blocks in the plane or of their points, differ
+    enough for blocks that do not touch to overlap."""
+    return bool(np.ptp(moved, axis=0).max() > OVERLAP / 2 * np.sqrt(cut.volume.min()))
+
+
 def overlapping(cut: Blocks, motion: np.ndarray) -> Moved | None:
     """Return two blocks in the plane that have no contact and overlap, by their displacements and
     rotations [n, 3]; None, and little done, where displacements differ too little for it."""
-    least = float(np.sqrt(cut.volume.min()))
-    if not np.ptp(motion[:, :2], axis=0).max() > OVERLAP / 2 * least:
+    if not may_overlap(cut, motion[:, :2]):
         return None
     import shapely
 
