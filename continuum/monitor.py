@@ -51,12 +51,12 @@ class Monitor:
         steps, stride = self.steps, self.time.stride
         if self.scene.record.energy and self.explicit:  # the ledger of implicit steps is not exact
             audit(self.guard, steps.samples.energy, first, last, stride)
-        speed = np.abs(steps.v).reshape(-1, self.found.body.components).max(axis=1)
+        speed = np.abs(steps.v)
         found, (limit,) = self.guard.found, self.guard.limit.view(np.float64)
         if found[0] < 0 and not speed.max(initial=0.0) <= limit:
             found[:] = last * stride, SPEED, first * stride - 1
         if found[0] >= 0:
-            raise self._diverged(speed)
+            raise self._diverged(speed.reshape(-1, self.found.body.components).max(axis=1))
         if matters(self.scene):
             t = last * stride * self.time.dt
             refuse_large_motion(self.scene, "the continuum", self._moved(), t, first)

@@ -77,7 +77,7 @@ def refuse_large_motion(
 def may_overlap(cut: Blocks, moved: np.ndarray) -> bool:
     """Return whether displacements [n, 2] (m), of blocks in the plane or of their points, differ
     enough for blocks that do not touch to overlap."""
-    return bool(np.ptp(moved, axis=0).max() > OVERLAP / 2 * np.sqrt(cut.volume.min()))
+    return max(map(np.ptp, moved.T)) > OVERLAP / 2 * float(np.sqrt(cut.volume.min()))
 
 
 def overlapping(cut: Blocks, motion: np.ndarray) -> Moved | None:
