@@ -7,7 +7,6 @@ from collections.abc import Callable
 from time import perf_counter
 from typing import Any
 
-import dolfinx
 import numba
 import numpy as np
 import xarray as xr
@@ -23,6 +22,7 @@ from jointwave.continuum.receivers.snapshots import RockRecorder
 from jointwave.continuum.receivers.waveforms import recorded
 from jointwave.continuum.scheme import Choice
 from jointwave.continuum.space.evaluation import kind_of
+from jointwave.continuum.space.fenicsx import dolfinx
 from jointwave.continuum.space.rock import Rock
 from jointwave.continuum.stepping.implicit import Implicit
 from jointwave.continuum.stepping.leapfrog import Leapfrog

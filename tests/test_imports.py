@@ -53,6 +53,31 @@ def test_the_inside_of_the_compiler_is_imported_by_few():
     assert found == COMPILER_INSIDE
 
 
+def test_dolfinx_and_what_it_loads_are_imported_in_one_place():
+    """pip's libraries find one another only in that order."""
+    loaded = ("dolfinx", "petsc4py", "mpi4py.MPI")
+    found = {
+        file
+        for file in FILES
+        if any(
+            f"{name}.".startswith(tuple(f"{one}." for one in loaded)) for name, _ in imported(file)
+        )
+    }
+    assert found == {
+        "continuum/space/fenicsx.py",
+        "continuum/space/petsc.py",
+        "compare/runs/processes.py",
+    }
+
+
+def test_no_array_is_asked_for_what_numpy_2_took_away():
+    gone = {"ptp", "itemset", "newbyteorder"}
+    for file in FILES:
+        for node in nodes(file):
+            if isinstance(node, ast.Attribute) and node.attr in gone:
+                assert ast.unparse(node.value) == "np", f"{file}:{node.lineno}"
+
+
 @pytest.mark.parametrize("package", PACKAGES)
 def test_no_attribute_of_a_library_is_replaced(package):
     for file in FILES:

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import ufl
-from dolfinx import mesh
 
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
@@ -19,6 +18,7 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.loads.forces import Push, forces_on
 from jointwave.continuum.loads.sides import ENDS, facets_on
 from jointwave.continuum.space import compat
+from jointwave.continuum.space.fenicsx import dolfinx
 from jointwave.continuum.space.model import Body, directions
 from jointwave.continuum.stepping.problem import Dashpots, Springs
 from jointwave.joints.ends import HalfSpring, half_spring
@@ -44,8 +44,8 @@ def on_start(body: Body) -> Any:
     are forces."""
     domain, y = body.mesh, float(body.sides["start"].place[0, 1])
     near, dim = NEAR * float(np.ptp(body.x[:, 1])), domain.topology.dim - 1
-    facets = mesh.locate_entities_boundary(domain, dim, lambda x: np.abs(x[1] - y) <= near)
-    tags = mesh.meshtags(domain, dim, np.sort(facets), np.ones(len(facets), np.int32))
+    facets = dolfinx.mesh.locate_entities_boundary(domain, dim, lambda x: np.abs(x[1] - y) <= near)
+    tags = dolfinx.mesh.meshtags(domain, dim, np.sort(facets), np.ones(len(facets), np.int32))
     ds = ufl.Measure("ds", domain=domain, subdomain_data=tags, subdomain_id=1)
     return ufl.inner(ufl.TrialFunction(body.space), ufl.TestFunction(body.space)) * ds
 

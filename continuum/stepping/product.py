@@ -87,11 +87,11 @@ def shared_by_blocks(
     m = dim * nodes[0]
     if own.nnz < matrix.nnz:  # of blocks that other processes have a part of
         return None
-    if np.diff(own.indptr).reshape(count, m).ptp(axis=0).any():
+    if np.ptp(np.diff(own.indptr).reshape(count, m), axis=0).any():
         return None
     column = own.indices.reshape(count, -1) - m * np.arange(count)[:, None]
     value = own.data.reshape(count, -1)
-    if column.ptp(axis=0).any() or np.ptp(value, axis=0).max() > SAME * np.abs(value).max():
+    if np.ptp(column, axis=0).any() or np.ptp(value, axis=0).max() > SAME * np.abs(value).max():
         return None
     number, lane = np.divmod(np.arange(count), LANES)
     place = np.empty(matrix.shape[0], dtype=np.int64)
