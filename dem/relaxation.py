@@ -6,6 +6,8 @@ from __future__ import annotations
 from math import ceil
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from jointwave.dem.boundaries import facets_on
 from jointwave.dem.build import constants
@@ -93,34 +95,39 @@ def still(resistance: np.ndarray, masses: np.ndarray) -> np.ndarray:
     return back.swapaxes(1, 2) @ axes @ axes.swapaxes(1, 2) @ root.swapaxes(1, 2)
 
 
-def _slowed(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
+def slowed(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
     """Return by what to multiply the matrices of blocks so that all have the same critical step
-    [N, 1, 1]; a block without contacts keeps its mass, and so do all where no wall holds them: they
-    come to rest about their common centre of mass."""
-    found, held = np.ones(len(masses)), contacts.blocks[:, 1] >= len(masses)
+    [N, 1, 1]; groups of blocks in contact that no wall holds keep their masses: they come to rest
+    about their common centre of mass."""
+    found, count, (i, j) = np.ones(len(masses)), len(masses), contacts.blocks.T
+    inner = j < count
+    graph = coo_array((np.ones(inner.sum()), (i[inner], j[inner])), shape=(count, count))
+    group = connected_components(graph, directed=False)[1]
     holding = columns.normal if contacts.frame.shape[1] == 1 else columns.shear
-    if (holding[contacts.column[held]] > 0.0).any():
+    walls = ~inner & (holding[contacts.column] > 0.0)
+    held = np.isin(group, group[i[walls]])
+    if held.any():
         squared = squared_frequencies(contacts, columns, masses)
-        np.divide(squared, squared.max(), out=found, where=squared > 0.0)
+        np.divide(squared, squared.max(), out=found, where=held & (squared > 0.0))
     return found[:, None, None]
 
 
 class BlockRelaxation:
     """The blocks under their static forces: `dem.static.System`.
 
-    Where walls hold them, every block has the mass that gives it the critical step of the stiffest:
-    only weights and stiffness count, and no small block holds up the others (Underwood, see
-    `dem.static`). Damping and rates do not affect a static state: dashpots, also of quiet sides,
-    and local damping are zero, and friction is independent of rate. Quiet sides that bear the
-    weight are held: their blocks do not move as these do not let them. The kernel is that of the
-    motion, so that a first run compiles one, but where that is composed of stages. sticks : whether
-    the weight alone acts, and no joint opens, slips or breaks.
+    Where a wall holds its group, a block has the mass that gives it the critical step of the
+    stiffest: only weights and stiffness count, and no small block holds up the others (Underwood,
+    see `dem.static`). Damping and rates do not affect a static state: dashpots, also of quiet
+    sides, and local damping are zero, and friction is independent of rate. Quiet sides that bear
+    the weight are held: their blocks do not move as these do not let them. The kernel is that of
+    the motion, so that a first run compiles one, but where that is composed of stages. sticks :
+    whether the weight alone acts, and no joint opens, slips or breaks.
     """
 
     def __init__(self, system: BlockSystem, weighed: bool, sticks: bool = False) -> None:
         blocks, model, loads, static = system.blocks, system.model, system.loads, system.static
         columns = blocks.columns._replace(time_constants=None)
-        masses = blocks.masses * _slowed(blocks.contacts, columns, blocks.masses)
+        masses = blocks.masses * slowed(blocks.contacts, columns, blocks.masses)
         dt = STEP_FRACTION * critical_time_step(blocks.contacts, columns, masses, 0.0)
         own = constants(blocks, dt, masses)._replace(local=0.0, mass=blocks.inertia[:, 0])
         laws = model.laws.copy()

@@ -144,3 +144,27 @@ def test_without_a_prestress_an_opening_costs_nothing(excavated):
     system, state = at_rest(excavated(prestress=None))
     assert not system.model.form.stressed and not state.u.any()
     assert "static_steps" not in simulate(excavated(prestress=None)).attrs
+
+
+def test_a_group_of_blocks_that_no_wall_holds_keeps_its_centre_of_mass(excavated, joint):
+    """A slot parts the rock: what is below stands on a wall, what is above comes to rest around an
+    opening of its own, under horizontal stress alone, which puts no force on the whole."""
+    slot, hole = ([[0, 2], [12, 2], [12, 3], [0, 3]], [[4, 5], [7, 5], [7, 7], [4, 7]])
+    dips = {"bed": (0.0, 1.0), "cross": (90.0, 1.5), "oblique": (60.0, 4.0)}
+    scene = excavated(
+        domain={"size": [12.0, 10.0], "openings": [slot, hole]},
+        joint_sets=[
+            joint(name=name, dip=dip, spacing=spacing, through=[0.3, 0.0])
+            for name, (dip, spacing) in dips.items()
+        ],
+        prestress={"xx": 4e6, "yy": 0.0, "xy": 0.0},
+        boundaries={"bottom": "fixed", "left": "free", "right": "free", "top": "free"},
+        record={"points": [[5.5, 9.4]], "joints": []},
+    )
+    system, state = at_rest(scene)
+    blocks = system.blocks
+    above = blocks.centroid[:, 1] > 2.5
+    moved, mass = state.u[: blocks.count, :2][above], blocks.inertia[above, 0]
+    assert np.abs(moved).max() > 1e-4
+    assert mass.max() > 10 * mass.min()
+    assert np.abs(mass @ moved).max() < 1e-12 * (mass @ np.abs(moved)).max()
