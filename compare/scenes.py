@@ -2,12 +2,13 @@
 
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from jointwave import cases
 from jointwave.cases.errors import SceneError, nearest, require
 from jointwave.cases.scene_type import AnyScene, pillar_of
 from jointwave.compare import engines as registry
+from jointwave.results.labels import PEAKS, QUANTITIES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,6 +19,22 @@ if TYPE_CHECKING:
 AnySource: TypeAlias = "AnyScene | str | PathLike[str] | dict[str, Any]"
 SHIPPED = Path(cases.__file__).parent
 MOST = 1000  # files of a folder that a name is looked for among
+
+
+class Bound(NamedTuple):
+    """What a key of [expect] bounds: the distance of two solutions, by name, the reference second;
+    of their worst waveform, or of one quantity or peak."""
+
+    one: str
+    other: str
+    of: str = ""
+
+
+def bound_of(key: str) -> Bound:
+    """Return what a key of [expect] bounds, "dem ~ lattice" or "dem ~ lattice: velocity"."""
+    pair, _, of = key.partition(": ")
+    one, _, other = pair.partition(" ~ ")
+    return Bound(one, other, of)
 
 
 def shipped_files() -> list[Path]:
@@ -106,12 +123,18 @@ def load_variants(
 
 
 def _checked(scene: Any) -> Any:
-    """Return a scene; raises SceneError where its [expect] names what is no solver."""
+    """Return a scene; raises SceneError where its [expect] names what is no solver, or no
+    quantity."""
     solvers = registry.names()
-    for pair in scene.expect:
-        if not set(pair.split(" ~ ")) <= set(solvers):
+    for key in scene.expect:
+        one, other, of = bound_of(key)
+        if not {one, other} <= set(solvers):
             allowed = f"must be 'a ~ b', two of {', '.join(solvers)}"
-            raise SceneError(scene.where, f"expect.{pair}", None, allowed)
+        elif of not in ("", *QUANTITIES, *PEAKS):
+            allowed = f"must end in ': ' and one of {', '.join((*QUANTITIES, *PEAKS))}"
+        else:
+            continue
+        raise SceneError(scene.where, f"expect.{key}", None, allowed)
     return scene
 
 

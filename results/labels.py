@@ -8,6 +8,17 @@ RECEIVERS = {
     "joint_point": ("joint_point_x", "joint_point_y", "joint_point_z"),
 }
 AXES = ("x", "y", "z")
+#: Quantities of one unit, whose amplitudes are compared with each other.
+UNITS = (
+    ("stress", "shear", "traction"),
+    ("velocity",),
+    ("displacement", "gap", "slip"),
+    ("rotation",),
+)
+QUANTITIES = tuple(quantity for unit in UNITS for quantity in unit)
+#: Peaks of a result, with the quantities that they are of.
+PPV, PEAK_STRESS = "PPV", "peak stress"
+PEAKS = {PPV: ("velocity",), PEAK_STRESS: ("stress", "shear")}
 
 #: By name: (long name, unit; "" if it is not a physical quantity).
 LABELS = {

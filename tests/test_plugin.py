@@ -94,6 +94,28 @@ def test_bound_that_is_not_met_prints_pair_misfit_bound_and_command_alone(run, p
     assert result.outlines[first + 2].startswith("===")
 
 
+@pytest.mark.parametrize(
+    ("of", "bound", "says"),
+    [
+        ("stress", 0.01, None),
+        ("velocity", 0.02, None),
+        ("PPV", 0.01, None),
+        ("stress", 1e-9, "misfit * of stress at 2 m exceeds the bound 1e-09"),
+        ("velocity", 1e-9, "misfit * of velocity at 2.25 m exceeds the bound 1e-09"),
+        ("PPV", 1e-9, "misfit * of PPV at 2.25 m exceeds the bound 1e-09"),
+        ("peak stress", 1e-9, "misfit * of peak stress at 2 m exceeds the bound 1e-09"),
+        ("rotation", 1.0, "no receiver of the scene records it"),
+        ("speed", 1.0, "must end in ': ' and one of *velocity*PPV, peak stress"),
+    ],
+)
+def test_a_bound_of_one_quantity_or_peak(run, of, bound, says):
+    text = scene(f"dem ~ lattice: {of}", bound)
+    result = run(scene=text.replace("stress = [2.0]", "stress = [2.0]\nvelocity = [2.25]"))
+    result.assert_outcomes(passed=says is None, failed=says is not None)
+    if says:
+        result.stdout.fnmatch_lines([f"*dem ~ lattice: {of}*: {says}*"])
+
+
 def test_a_scene_is_warned_of_and_refused_where_warnings_are_errors(run):
     """As `--strict` does; a scene that says what it means is neither."""
     late = scene().replace("period = 0.01", "period = 0.011")

@@ -21,11 +21,11 @@ from jointwave.cases.size import LIMIT, memory
 from jointwave.compare.engines import solve
 from jointwave.compare.exact.bar import images
 from jointwave.compare.misfit.external_netcdf import read_netcdf
-from jointwave.compare.misfit.places import COMPONENT_DIMENSIONS, QUANTITIES
+from jointwave.compare.misfit.places import COMPONENT_DIMENSIONS
 from jointwave.compare.report import peers
 from jointwave.compare.runs.output import read_kept
 from jointwave.compare.studies.measure import PointRow
-from jointwave.results.labels import RECEIVERS
+from jointwave.results.labels import QUANTITIES, RECEIVERS
 from jointwave.results.netcdf import load_netcdf
 
 AT_ONCE = 200e6  # bytes: what reading a scene of ten million blocks takes, not one run refused here

@@ -44,7 +44,10 @@ class RockMass(SceneBase):
     time: Time
     numerics: NumericsOfRock = NumericsOfRock()
     record: RecordOfRock
-    expect: dict[Pair, Positive] = {}  #: bounds on the relative L2 misfit of pairs
+    #: bounds on the relative L2 misfit of pairs, that of the worst waveform. `a ~ b: velocity`: of
+    #: the worst of one quantity of the results; `a ~ b: PPV`, `a ~ b: peak stress`: on the relative
+    #: difference of peaks, at the receiver where it is largest
+    expect: dict[Pair, Positive] = {}
     name: str = ""  #: of the variant; empty for the base scene
 
     kind: ClassVar[str] = "rock mass"

@@ -1,4 +1,4 @@
-"""Scene files as tests: each *.toml with an [expect] table, one test per variant and pair.
+"""Scene files as tests: each *.toml with an [expect] table, one test per variant and key.
 
 `pytest my-scenes/` collects them. This module is loaded by every pytest run of the environment, so
 it imports nothing heavy before a scene is met; any other TOML file is left alone.
@@ -7,6 +7,7 @@ it imports nothing heavy before a scene is met; any other TOML file is left alon
 import re
 import shlex
 from collections.abc import Iterator
+from math import isnan
 from pathlib import Path
 from typing import Any
 from warnings import warn
@@ -46,7 +47,7 @@ def _is_scene(path: Path) -> bool:
 
 
 class SceneFile(pytest.File):
-    """One scene file; its tests are the pairs of [expect] in each variant that they apply to.
+    """One scene file; its tests are the keys of [expect] in each variant that they apply to.
 
     results : by scene hash and name, while the tests of this file run.
     """
@@ -60,7 +61,7 @@ class SceneFile(pytest.File):
         self.results.clear()
 
     def collect(self) -> Iterator["PairItem"]:
-        """Yield the tests; one that fails for a file that is no scene, and for each pair that
+        """Yield the tests; one that fails for a file that is no scene, and for each key that
         applies to no variant."""
         from jointwave.cases import SceneError
         from jointwave.compare.scenes import load_variants
@@ -72,24 +73,24 @@ class SceneFile(pytest.File):
             return
         reasons: dict[str, list[str]] = {}
         for scene in scenes:
-            for pair, bound in scene.expect.items():
-                reason = _reason(pair, scene)
-                reasons.setdefault(pair, []).append(reason)
+            for key, most in scene.expect.items():
+                reason = _reason(key, scene)
+                reasons.setdefault(key, []).append(reason)
                 if not reason:
-                    name = f"{scene.name}: {pair}" if scene.name else pair
-                    yield PairItem.from_parent(self, name=name, scene=scene, pair=pair, bound=bound)
-        for pair, each in reasons.items():
+                    name = f"{scene.name}: {key}" if scene.name else key
+                    yield PairItem.from_parent(self, name=name, scene=scene, key=key, most=most)
+        for key, each in reasons.items():
             if all(each):
-                reason = f"{pair} does not apply to any variant: {each[0]}"
-                yield PairItem.from_parent(self, name=pair, reason=reason)
+                reason = f"{key} does not apply to any variant: {each[0]}"
+                yield PairItem.from_parent(self, name=key, reason=reason)
 
 
 class PairItem(pytest.Item):
-    """The misfit of one pair in one variant, compared with its bound."""
+    """The distance of one pair in one variant, compared with its bound."""
 
-    def __init__(self, *, scene=None, pair="", bound=0.0, reason="", **kwargs) -> None:
+    def __init__(self, *, scene=None, key="", most=0.0, reason="", **kwargs) -> None:
         super().__init__(**kwargs)
-        self.scene, self.pair, self.bound, self.reason = scene, pair, bound, reason
+        self.scene, self.key, self.most, self.reason = scene, key, most, reason
 
     def runtest(self) -> None:
         """Measure the pair; raises Misfit with all that the user needs to know."""
@@ -97,24 +98,28 @@ class PairItem(pytest.Item):
             raise Misfit(self.reason)
         from jointwave.cases.errors import SceneError, UnstableError
         from jointwave.cases.warnings import warnings
-        from jointwave.compare.misfit.metrics import worst
+        from jointwave.compare.misfit.differences import distance_of
+        from jointwave.compare.scenes import bound_of
         from jointwave.compare.solvers.incident import side_warnings
 
         for line in [*warnings(self.scene), *side_warnings(self.scene)]:
             warn(SceneWarning(f"{self.scene.where}: {line}"), stacklevel=1)
         try:
-            one, other = (self._solved(name) for name in self.pair.split(" ~ "))
+            bound = bound_of(self.key)
+            one, other = self._solved(bound.one), self._solved(bound.other)
         except (SceneError, UnstableError) as error:
-            raise Misfit(f"{self.pair}: {error}") from None
-        found = worst(one, other)
+            raise Misfit(f"{self.key}: {error}") from None
+        found = distance_of(bound.of, one, other)
         self.user_properties.append(("misfit", float(found.misfit)))
-        if not found.misfit <= self.bound:
-            far = f"misfit {found.misfit:.3g} of {found.where} exceeds the bound {self.bound:g}"
+        if isnan(found.misfit) and found.place is None:
+            raise Misfit(f"{self.key}: no receiver of the scene records it")
+        if not found.misfit <= self.most:
+            far = f"misfit {found.misfit:.3g} of {found.where} exceeds the bound {self.most:g}"
             command = ["compare", str(self.path), "--variant", self.scene.name, "--out", "misfit"]
-            raise Misfit(f"{self.pair}: {far}\n{shlex.join(['jointwave', *command])}")
-        if not found.judged <= self.bound:
+            raise Misfit(f"{self.key}: {far}\n{shlex.join(['jointwave', *command])}")
+        if not found.judged <= self.most:
             least = f"the reference's own error is {found.floor:.2g}; it can verify ten times that"
-            raise Misfit(f"{self.pair}: {least}; the bound is {self.bound:g}")
+            raise Misfit(f"{self.key}: {least}; the bound is {self.most:g}")
 
     def _solved(self, name: str):
         """Return a result; each engine runs once for the same scene of a file."""
@@ -138,8 +143,9 @@ class PairItem(pytest.Item):
         return self.path, None, self.name
 
 
-def _reason(pair: str, scene) -> str:
+def _reason(key: str, scene) -> str:
     from jointwave.compare.engines import applies
+    from jointwave.compare.scenes import bound_of
 
-    answers = {name: applies(name, scene) for name in pair.split(" ~ ")}
+    answers = {name: applies(name, scene) for name in bound_of(key)[:2]}
     return "; ".join(f"{name}: {answer.reason}" for name, answer in answers.items() if not answer)

@@ -2,8 +2,7 @@
 
 from typing import NamedTuple
 
-from jointwave.compare.misfit.places import QUANTITIES
-from jointwave.results.labels import label
+from jointwave.results.labels import QUANTITIES, label
 
 MULTIPLES = {"G": 1e9, "M": 1e6, "k": 1e3, "": 1.0, "m": 1e-3, "µ": 1e-6, "n": 1e-9}
 

@@ -5,6 +5,7 @@ largest principal stress, in magnitude, or in a section of a pillar the length o
 are of the motion less its static state, at the samples, over the components that both have.
 """
 
+from math import inf, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -16,13 +17,12 @@ from jointwave.compare.misfit.metrics import (
     pairings,
     shared_waveforms,
     static_state,
+    worst,
 )
-from jointwave.compare.misfit.places import UNITS, shown
+from jointwave.compare.misfit.places import Place, shown
 from jointwave.compare.misfit.weight import FAINT
+from jointwave.results.labels import PEAKS, QUANTITIES, UNITS
 from jointwave.results.stress import stress_components, tensors
-
-VELOCITY, STRESS = "PPV", "peak stress"
-_OF = {"velocity": VELOCITY, "stress": STRESS, "shear": STRESS}
 
 Position = tuple[float, ...]
 
@@ -42,9 +42,9 @@ def peak_differences(one: xr.Dataset, other: xr.Dataset) -> dict[str, PeakDiffer
     """Return the difference of two results by peak, "PPV" and "peak stress", of those that both
     have; the second is the reference."""
     found, shared = {}, pairings(one, other)
-    for name in (VELOCITY, STRESS):
+    for name, quantities in PEAKS.items():
         there: dict[Position, list[Pairing]] = {}
-        for pair in (p for p in shared if _OF.get(p.place.quantity) == name):
+        for pair in (p for p in shared if p.place.quantity in quantities):
             there.setdefault(pair.place.at, []).append(pair)
         ours = {at: _peak({p.place.component: p.one for p in some}) for at, some in there.items()}
         peaks = {
@@ -56,6 +56,25 @@ def peak_differences(one: xr.Dataset, other: xr.Dataset) -> dict[str, PeakDiffer
             at = max(off, key=lambda at: off[at])
             found[name] = PeakDifference(sum(off.values()) / len(off), off[at], at)
     return found
+
+
+def distance_of(what: str, one: xr.Dataset, other: xr.Dataset) -> Worst:
+    """Return the distance of two results that a bound of [expect] is of.
+
+    what : "" for the worst waveform, a quantity for the worst of its own, "PPV" or "peak stress"
+    for the receiver whose peaks differ most; its floor is that of the worst waveform behind it.
+    nan if the results share no waveform of it.
+    """
+    quantities = PEAKS.get(what, (what,) if what else QUANTITIES)
+    if what and not any(p.quantity in quantities for p, *_ in shared_waveforms(one, other)):
+        return Worst(nan)
+    found = worst(one, other, quantities)
+    if what not in PEAKS or found.place is None:
+        return found
+    peak = peak_differences(one, other).get(what)
+    if peak is None:  # the reference is at rest, the other is not
+        return Worst(inf, found.place)
+    return Worst(peak.worst, Place(what, "", peak.at), found.floor)
 
 
 def _peak(components: dict[str, np.ndarray]) -> float:

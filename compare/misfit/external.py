@@ -24,8 +24,9 @@ from jointwave.cases.units import TIME, UNITS, split_unit
 from jointwave.cases.warnings.sources import look_like_milliseconds
 from jointwave.compare.engines import names
 from jointwave.compare.misfit.external_netcdf import is_netcdf, read_netcdf
-from jointwave.compare.misfit.places import LABEL, QUANTITIES, Place, parsed, recorded, same
+from jointwave.compare.misfit.places import LABEL, Place, parsed, recorded, same
 from jointwave.compare.scenes import AnySource, load
+from jointwave.results.labels import QUANTITIES
 
 READ_CURVES = "curves of `read_curves`"  # what functions accept
 LEAST_SAMPLES = 3  # needed for a parabola through the peak of a correlation

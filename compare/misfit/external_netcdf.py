@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from jointwave.cases.records import Column, Columns, require_series
-from jointwave.compare.misfit.places import COMPONENT_DIMENSIONS, QUANTITIES, waveforms
-from jointwave.results.labels import RECEIVERS
+from jointwave.compare.misfit.places import COMPONENT_DIMENSIONS, waveforms
+from jointwave.results.labels import QUANTITIES, RECEIVERS
 from jointwave.results.netcdf import load_netcdf
 
 MAGIC = (b"CDF", b"\x89HDF")  # what NetCDF 3 and 4 begin with

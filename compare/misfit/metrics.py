@@ -6,6 +6,7 @@ that of the worst component that carries its quantity's motion at a receiver (`w
 function takes a waveform or result first and its reference second, equally sampled.
 """
 
+from collections.abc import Sequence
 from math import inf
 from typing import NamedTuple
 
@@ -13,9 +14,10 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.errors import SceneError, require
-from jointwave.compare.misfit.places import UNITS, Place, shown, waveforms
+from jointwave.compare.misfit.places import Place, shown, waveforms
 from jointwave.compare.misfit.weight import EXCITED, weigh
 from jointwave.results.dataset import A_RESULT
+from jointwave.results.labels import QUANTITIES, UNITS
 
 ALIKE = 1e-9  # of the duration, by which samples may lie apart
 JUDGED = 10.0  # times its own error: the smallest misfit that a reference can resolve
@@ -119,9 +121,11 @@ def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
     return worst(one, other).misfit
 
 
-def worst(one: xr.Dataset, other: xr.Dataset) -> Worst:
-    """Return the worst waveform of two results among those that carry the motion."""
-    found = [p.worst for p in pairings(one, other) if not p.faint]
+def worst(one: xr.Dataset, other: xr.Dataset, quantities: Sequence[str] = QUANTITIES) -> Worst:
+    """Return the worst waveform of two results among those that carry the motion, of some
+    quantities."""
+    of_them = (p for p in pairings(one, other) if p.place.quantity in quantities)
+    found = [p.worst for p in of_them if not p.faint]
     return max(found, key=lambda w: w.judged, default=Worst(0.0))
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
-from jointwave.results.labels import AXES, RECEIVERS
+from jointwave.results.labels import AXES, QUANTITIES, RECEIVERS
 from jointwave.results.rock_mass import JOINT_AXES
 from jointwave.results.stress import stress_components
 
@@ -41,14 +41,6 @@ COMPONENTS: dict[int, dict[str, tuple[str, ...]]] = {
         for dim, axes in JOINT_AXES.items()
     },
 }
-#: Quantities of one unit, whose amplitudes are compared with each other.
-UNITS = (
-    ("stress", "shear", "traction"),
-    ("velocity",),
-    ("displacement", "gap", "slip"),
-    ("rotation",),
-)
-QUANTITIES = tuple(quantity for unit in UNITS for quantity in unit)
 OF_SECTIONS, OF_JOINTS = ("stress", "shear"), ("traction", "gap", "slip")
 
 _NUMBER = r"[0-9.eE+-]+"

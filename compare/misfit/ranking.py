@@ -15,7 +15,7 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import ENGINES, applies, names, solver
 from jointwave.compare.exact.conditions import has_thick_layer
-from jointwave.compare.scenes import AnySource, load
+from jointwave.compare.scenes import AnySource, bound_of, load
 from jointwave.compare.solvers.record import Answer, Kind, Rock
 
 
@@ -105,7 +105,7 @@ def deciding(scene: AnyScene) -> dict[str, Answer]:
     for engine in (name for name in ENGINES if name in able):
         reference = reference_of(engine, able, scene)
         wanted |= {reference and reference.name, own_exact(engine, able, scene)}
-    wanted |= {name for pair in scene.expect for name in pair.split(" ~ ")}
+    wanted |= {name for key in scene.expect for name in bound_of(key)[:2]}
     return {name: answer for name, answer in answers.items() if name in wanted}
 
 

@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.compare.misfit.places import UNITS, Place
+from jointwave.compare.misfit.places import Place
+from jointwave.results.labels import UNITS
 
 CARRIES = 0.05  #: part of the motion from which a component decides a misfit
 FAINT = 0.01  #: part of the largest motion of a unit from which a receiver decides one

@@ -8,11 +8,11 @@ import xarray as xr
 
 from jointwave.compare.figures.tables import rows_of
 from jointwave.compare.figures.variants import named
-from jointwave.compare.misfit.differences import STRESS, VELOCITY
 from jointwave.compare.misfit.pairs import Comparison, meaning
 from jointwave.compare.report.verdict import EngineScore
 from jointwave.compare.text import mean_and_worst
 from jointwave.results.dataset import energy_residual, open_ledger
+from jointwave.results.labels import PEAKS
 
 #: Columns of distances, in their order, with the factor of each.
 DISTANCES = {"relative L2 (%)": 100, "peak ratio": 1, "delay (ms)": 1e3, "period ratio": 1}
@@ -32,7 +32,7 @@ def verdict_table(scores: dict[str, EngineScore]) -> pd.DataFrame:
             "variant": one.variant,
             "worst misfit (%)": 100 * one.total.judged,
             "at": one.total.where if one.against else "",
-            **{f"{name} (%)": mean_and_worst(one.peaks.get(name)) for name in (VELOCITY, STRESS)},
+            **{f"{name} (%)": mean_and_worst(one.peaks.get(name)) for name in PEAKS},
             "compared with": one.against,
             "which is a": one.meaning,
             "own error (%)": 100 * one.own.judged,

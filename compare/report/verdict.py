@@ -8,15 +8,16 @@ from jointwave.cases.errors import require
 from jointwave.compare.engines import ENGINES
 from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.differences import (
-    STRESS,
-    VELOCITY,
     PeakDifference,
+    distance_of,
     peak_differences,
     static_difference,
 )
 from jointwave.compare.misfit.metrics import Worst, worst
 from jointwave.compare.misfit.pairs import A_COMPARISON, Comparison
 from jointwave.compare.misfit.ranking import kind_of, own_exact, reference_of
+from jointwave.compare.scenes import bound_of
+from jointwave.results.labels import PEAK_STRESS, PPV
 
 
 class Verdict(NamedTuple):
@@ -45,7 +46,7 @@ class VariantScore(NamedTuple):
 
     own : misfit from the exact solution of the engine's own model. total : from the reference,
     `against`, empty where nothing has checked it independently; `reason` says what the reference
-    is, `meaning` what their distance is. broken : pairs of [expect] beyond their bound. peaks :
+    is, `meaning` what their distance is. broken : keys of [expect] beyond their bound. peaks :
     "PPV" and "peak stress" beside the reference's. static : of the two static states.
     """
 
@@ -81,7 +82,7 @@ class VariantScore(NamedTuple):
         """All of it, machine-readable; None where there is none."""
         peaks = {
             f"{short}_{part}": getattr(self.peaks.get(name), part, None)
-            for name, short in ((VELOCITY, "ppv"), (STRESS, "peak_stress"))
+            for name, short in ((PPV, "ppv"), (PEAK_STRESS, "peak_stress"))
             for part in PeakDifference._fields
         }
         return {
@@ -169,8 +170,11 @@ def _misfit(comparison: Comparison, one: str, other: str | None) -> Worst:
 
 
 def _broken(engine: str, comparison: Comparison) -> Iterable[str]:
-    """Yield the pairs of [expect] that an engine is first in and that lie beyond their bound."""
-    for pair, bound in comparison.scene.expect.items():
-        one, other = pair.split(" ~ ")
-        if one == engine and _misfit(comparison, one, other).misfit > bound:
-            yield pair
+    """Yield the keys of [expect] that an engine is first in and that lie beyond their bound."""
+    results = comparison.results
+    for key, most in comparison.scene.expect.items():
+        bound = bound_of(key)
+        if bound.one != engine or bound.other not in results:
+            continue
+        if not distance_of(bound.of, results[engine], results[bound.other]).misfit <= most:
+            yield key

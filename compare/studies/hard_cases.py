@@ -32,7 +32,7 @@ from jointwave.compare.figures.export import save
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.runs.output import write_csv
 from jointwave.compare.runs.timings import solved
-from jointwave.compare.scenes import find, shipped
+from jointwave.compare.scenes import bound_of, find, shipped
 from jointwave.compare.studies import store
 from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.hard_map import (
@@ -172,9 +172,9 @@ def _of_energy(scheme: str, scene: AnyScene, result: xr.Dataset) -> dict[str, An
 
 def _of_misfit(row: HardRow, scene: AnyScene, result: xr.Dataset) -> dict[str, Any]:
     """Return the misfit from the first exact solution that the scene expects and that applies."""
-    for pair, bound in scene.expect.items():
-        first, other = pair.split(" ~ ")
-        if first == row.engine and solver(other).exact and applies(other, scene):
+    for key, bound in scene.expect.items():
+        first, other, of = bound_of(key)
+        if first == row.engine and not of and solver(other).exact and applies(other, scene):
             if row.scheme == "implicit":  # nan for a jump, which has no shortest period
                 omega, end = 2 * pi / (shortest_period(scene.pulses) or nan), scene.time.duration
                 bound += (omega * end / result.attrs["steps"]) ** 2 / 6 * CUBES * omega * end
@@ -208,7 +208,8 @@ def planned(out: Path) -> list[Run]:
     for row in Store(HardRow, folder).missing(hard_cases(), key):
         with suppress(SceneError):
             scene = scene_of(row)
-            exact = (pair.split(" ~ ")[1] for pair in scene.expect if pair.startswith(row.engine))
+            bounds = (bound_of(key) for key in scene.expect)
+            exact = (one.other for one in bounds if one.one == row.engine and not one.of)
             names = [row.engine, *(one for one in exact if one not in ENGINES)][:2]
             solver(row.engine).prepare(scene)
             found += [Run("cases", scene, one) for one in names if applies(one, scene)]

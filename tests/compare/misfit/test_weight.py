@@ -1,10 +1,16 @@
 """Which components decide a misfit, on fields whose shares of the motion are known numbers."""
 
+from math import inf, nan
+
 import numpy as np
 import pytest
 import xarray as xr
 
-from jointwave.compare.misfit.differences import peak_differences, static_difference
+from jointwave.compare.misfit.differences import (
+    distance_of,
+    peak_differences,
+    static_difference,
+)
 from jointwave.compare.misfit.metrics import pairings, worst
 from jointwave.compare.misfit.places import Place
 from jointwave.compare.misfit.weight import weigh
@@ -106,6 +112,42 @@ def test_peaks_are_those_of_all_components_together():
     assert found["peak stress"][:2] == pytest.approx((0.05, 0.1))
     turned = points([[5, 0]], [[2.8, 0, 0]]), points([[3, 4]], [[2, 1, 1.2]])
     assert [one.worst for one in peak_differences(*turned).values()] == pytest.approx([0, 0])
+
+
+@pytest.mark.parametrize(
+    ("of", "distance", "where"),
+    [
+        ("", 0.5, "stress yy at [0, 0] m"),
+        ("stress", 0.5, "stress yy at [0, 0] m"),
+        ("velocity", 0.2, "velocity x at [1, 0] m"),
+        ("PPV", 0.1, "PPV at [0, 0] m"),
+        ("peak stress", 0.25, "peak stress at [0, 0] m"),
+        ("traction", nan, "nowhere"),
+    ],
+)
+def test_a_bound_is_of_the_worst_waveform_of_a_quantity_or_a_peak(of, distance, where):
+    """Waveforms of one quantity do not hide behind those of another, nor do its peaks."""
+    other = points([[0, 1], [0.6, 0.8]], [[2, 1, 0], [0, 1, 0]])
+    one = points([[0, 1.1], [0.72, 0.8]], [[2, 1.5, 0], [0, 1, 0]])
+    one["stress"][0, :, 0] *= 1.25
+    found = distance_of(of, one, other)
+    assert found.misfit == pytest.approx(distance, nan_ok=True) and found.where == where
+
+
+def test_a_peak_that_the_reference_does_not_have_is_within_no_bound():
+    """Where both stay at rest there is nothing to bound."""
+    moving, still = points(velocity=[[0, 1]]), points(velocity=[[0, 0]])
+    assert distance_of("PPV", moving, still).misfit == inf
+    assert distance_of("PPV", still, moving).misfit == 1
+    assert distance_of("PPV", still, still).misfit == 0
+
+
+def test_a_peak_is_known_no_better_than_its_reference():
+    """Ten times the reference's own error, of the waveforms that the peak is of."""
+    other = points(velocity=[[0, 1]])
+    other["velocity_error"] = (("point", "axis"), [[0.0, 0.02 * ROOT]])
+    found = distance_of("PPV", points(velocity=[[0, 1.1]]), other)
+    assert (found.misfit, found.judged) == pytest.approx((0.1, 0.2))
 
 
 def test_static_states_that_differ_are_named_apart_from_the_motion():

@@ -91,9 +91,12 @@ def test_of_a_reference_that_stands_still_nothing_is_known(compared):
 
 
 def test_a_bound_of_the_scene_that_is_not_met_outdoes_every_misfit(compared):
+    """A pair that was not run breaks none; a quantity that was not recorded does."""
     expect = {"dem ~ jointed-bar": 1e-4, "dem ~ lattice": 1.0, "dem ~ images": 1e-9}
+    expect |= {"dem ~ lattice: peak stress": 1e-4, "dem ~ lattice: velocity": 1.0}
     found = engine_scores([compared(expect, dem=0.002, jointed_bar=0.0, lattice=0.0)])
-    assert found["dem"].broken == ["dem ~ jointed-bar"]
+    broken = ["dem ~ jointed-bar", "dem ~ lattice: peak stress", "dem ~ lattice: velocity"]
+    assert found["dem"].broken == broken
     assert found["dem"].verdict.sign == "✗" and found["dem"].verdict.word == "out of bounds"
 
 
