@@ -177,7 +177,6 @@ def loop_for(form: KernelFlags) -> Callable:
     """Return the time loop of blocks with these effects; absent ones are not compiled."""
     step, has_ledger, widths = step_for(form), form.ledger, widths_of(form)
 
-    @jitted
     def loop(chunks, blocks, state, samples, drive, walls, work, span):
         """Take the steps begin .. end - 1 of the tiles first .. last - 1, in bands of `depth`.
 
@@ -225,4 +224,4 @@ def loop_for(form: KernelFlags) -> Callable:
                             state.sums[term] += before + after
         restore_denormals(setting)
 
-    return loop
+    return jitted(loop, form)

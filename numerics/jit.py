@@ -5,6 +5,7 @@ import logging
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from functools import cache, wraps
+from hashlib import sha256
 from pathlib import Path
 from threading import Timer
 from typing import Any
@@ -21,12 +22,17 @@ DIRECTORY = cache_directory(Path(__file__).resolve().parent.parent)
 mark_used(DIRECTORY)
 
 
-def jitted(function: Callable) -> Callable:
+def jitted(function: Callable, flags: Any = None) -> Callable:
     """Compile a kernel for the types of its arguments when it is first called with them.
 
     It is cached on disk, has IEEE arithmetic (fastmath would break bit-identity), and holds no
     lock of Python's, so that threads run side by side. What it closes over is constant.
+
+    flags : the constants that decide what it closes over, plain values in tuples. Each has a name
+    in the cache, so that several processes compile kernels of different flags at the same time.
     """
+    if flags is not None:
+        function.__qualname__ += f".{sha256(repr(flags).encode()).hexdigest()[:8]}"
     numba.config.CACHE_DIR = str(DIRECTORY)
     options = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
     kernel = numba.njit(**options)(function)

@@ -90,6 +90,7 @@ def save(
         write_csv(drawn.file("csv"), table, DIGITS)
     for path in drawn.drawings[: 3 if png else 2]:
         write_drawing(path, figure, title)
+        figure.set_layout_engine("none")  # the first has laid it out
     return drawn
 
 

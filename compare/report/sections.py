@@ -52,7 +52,7 @@ def sections(
             found = peers.summarise(others, folder)
             yield section("peers", found, "make bench-peers", contents="Other codes")
         progress(HARD * i / (len(REPORTED) + 1))
-    measured = effects.run(effects.reported(), out / "effects")
+    measured = effects.run(effects.reported(), out / "effects", pool=pool)
     found = effects_summary.summarise(out / "effects", measured)
     yield section("effects", found, "jointwave effects beyond/paper-effects", contents="Effects")
     progress(HARD)

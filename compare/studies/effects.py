@@ -7,7 +7,7 @@ in turn. The misfit is relative L2 from the engine's own result of the complete 
 from contextlib import suppress
 from math import nan
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import pandas as pd
 
@@ -23,8 +23,14 @@ from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies import store
 from jointwave.compare.studies.effect_removal import left_out
 from jointwave.compare.studies.forecast import Run
-from jointwave.compare.studies.step_cost import REPEATS, shortened, step_costs, with_every_effect
-from jointwave.compare.studies.store import FAILURES, Store, alone, reason_of
+from jointwave.compare.studies.step_cost import (
+    REPEATS,
+    cost_of_every_effect,
+    shortened,
+    step_costs,
+    with_every_effect,
+)
+from jointwave.compare.studies.store import FAILURES, Pool, Store, alone, reason_of
 from jointwave.results.dataset import scene_hash
 
 BLOCKS, ROCK = DEM.name, JOINTED_ROCK.name
@@ -39,6 +45,7 @@ REPORTED = {
 
 
 Variant = tuple[str, AnyScene]  #: a scene's name as its user knows it, and one of its variants
+Point = tuple[Variant, str]  #: a variant, and the engine that it is run in
 
 
 class EffectRow(NamedTuple):
@@ -71,75 +78,95 @@ def reported() -> list[Variant]:
     return [(name, cases.load_variant(find(name), of)) for name, of in REPORTED.items()]
 
 
-def run(wanted: list[Variant], folder: Path, progress: Progress | None = None) -> pd.DataFrame:
+def run(
+    wanted: list[Variant], folder: Path, progress: Progress | None = None, pool: Pool | None = None
+) -> pd.DataFrame:
     """Return the table of all effects, one `EffectRow` each; results are saved in `folder`.
 
-    Steps are timed: variants are run in this process, one after the other.
+    pool : leaves out the effects, and so compiles all kernels but that of every effect. Steps are
+    timed in this process, one variant after the other.
     """
     saved: Store[list[EffectRow]] = Store(list[EffectRow], folder)
+    unsaved: Store[list[EffectRow]] = Store(list[EffectRow], None)
+    points = [(one, engine) for one in wanted for engine in _engines(one)]
     with alone():
-        measured = saved.compute(wanted, key, measure, progress=progress)
+        left = saved.missing(points, key)
+        runs = unsaved.compute(left, key, measure, pool)
+        rows = dict(zip(map(key, left), runs, strict=True))
+        measured = saved.compute(
+            points, key, lambda point: timed(point, rows[key(point)]), progress=progress
+        )
     return pd.DataFrame([row for some in measured for row in some], columns=EffectRow._fields)
 
 
 def planned(wanted: list[Variant], folder: Path) -> list[Run]:
     """Return the runs of the variants that are not saved yet, and those that time their steps."""
-    left, found = Store(list[EffectRow], folder).missing(wanted, key), []
-    for name, scene in left:
-        for engine in (one for one in (BLOCKS, ROCK) if applies(one, scene)):
-            for effect in (None, *active_effects(scene)):
-                with suppress(*FAILURES):
-                    one = scene if effect is None else left_out(scene, effect)
-                    short = shortened(one, engine)
-                    found += [Run(name, one, engine), Run(name, short, engine, 1 + REPEATS)]
-        full = [] if scene.in_space else [shortened(with_every_effect(scene))]
-        found += [Run(name, one, BLOCKS, 1 + REPEATS) for one in full]
+    points = [(one, engine) for one in wanted for engine in _engines(one)]
+    found, whole = [], {}
+    for (name, scene), engine in Store(list[EffectRow], folder).missing(points, key):
+        for effect in (None, *active_effects(scene)):
+            with suppress(*FAILURES):
+                one = scene if effect is None else left_out(scene, effect)
+                short = shortened(one, engine)
+                found += [Run(name, one, engine), Run(name, short, engine, 1 + REPEATS)]
+        if engine == BLOCKS and not scene.in_space:
+            full = shortened(with_every_effect(scene))
+            whole[scene_hash(full)] = Run(name, full, BLOCKS, 1 + REPEATS)
+    return [*found, *whole.values()]
+
+
+def key(point: Point) -> str:
+    """Return the key of a variant in an engine: a hash of everything that determines its rows."""
+    (name, scene), engine = point
+    return store.key(name, scene.name, scene_hash(scene), engine)
+
+
+def _engines(one: Variant) -> list[str]:
+    return [engine for engine in (BLOCKS, ROCK) if engine == BLOCKS or applies(engine, one[1])]
+
+
+def measure(point: Point) -> list[EffectRow]:
+    """Return the rows of a variant in an engine, not yet timed; none for rock that cannot be run.
+
+    Raises the errors of `solve` for rigid blocks, and SceneError for a scene without effects.
+    """
+    (name, scene), engine = point
+    if not active_effects(scene):
+        raise SceneError(scene.where, "", None, "has no effect to leave out")
+    found = []
+    try:
+        result = solve(engine, scene)
+    except FAILURES:
+        if engine == BLOCKS:
+            raise
+        return []
+    for effect in active_effects(scene):
+        row = EffectRow(name, scene.title, scene.name, engine, effect)
+        try:
+            other = solve(engine, left_out(scene, effect))
+        except FAILURES as error:
+            found.append(row._replace(reason=reason_of(error)))
+        else:
+            steps = float(result.attrs["steps"] / other.attrs["steps"])
+            found.append(row._replace(misfit=misfit(other, result), steps=steps))
     return found
 
 
-def key(one: Variant) -> str:
-    """Return the key of a variant: a hash of everything that determines its rows."""
-    name, scene = one
-    return store.key(name, scene.name, scene_hash(scene))
-
-
-def measure(variant: Variant) -> list[EffectRow]:
-    """Return the rows of a variant; raises the errors of `solve` for rigid blocks, and SceneError
-    for a scene without effects."""
-    scene = variant[1]
-    if not active_effects(scene):
-        raise SceneError(scene.where, "", None, "has no effect to leave out")
-    rows = _rows(variant, BLOCKS)
-    if applies(ROCK, scene):
-        with suppress(*FAILURES):
-            rows += _rows(variant, ROCK)
-    return rows
-
-
-def _rows(variant: Variant, engine: str) -> list[EffectRow]:
-    name, scene = variant
-    result, without, found = solve(engine, scene), {}, {}
-    for effect in active_effects(scene):
-        about: dict[str, Any] = {}
-        try:
-            one = left_out(scene, effect)
-            other = solve(engine, one)
-        except FAILURES as error:
-            about["reason"] = reason_of(error)
-        else:
-            without[effect] = one
-            about["misfit"] = misfit(other, result)
-            about["steps"] = float(result.attrs["steps"] / other.attrs["steps"])
-        found[effect] = about
-    timed = engine == BLOCKS and not scene.in_space
-    full = [with_every_effect(scene)] if timed else []
-    own, *costs = step_costs([scene, *without.values(), *full], engine)
-    for effect, less in zip(without, costs, strict=False):
-        ns = own.ns - less.ns
-        found[effect] |= {"ns": ns, "noise": own.noise + less.noise, "share": ns / own.ns}
-    of = name, scene.title, scene.name, engine
-    everything = costs[-1].ns if full else nan
-    return [
-        EffectRow(*of, effect, own=own.ns, everything=everything, **about)
-        for effect, about in found.items()
-    ]
+def timed(point: Point, rows: list[EffectRow]) -> list[EffectRow]:
+    """Return the rows of a variant in an engine with the cost of their effects."""
+    (_, scene), engine = point
+    if not rows:
+        return []
+    without = {row.effect: left_out(scene, row.effect) for row in rows if not row.reason}
+    own, *costs = step_costs([scene, *without.values()], engine)
+    less = dict(zip(without, costs, strict=True))
+    whole = engine == BLOCKS and not scene.in_space
+    every = cost_of_every_effect(scene).ns if whole else nan
+    found = []
+    for row in rows:
+        row = row._replace(own=own.ns, everything=every)
+        if row.effect in less:
+            ns, noise = own.ns - less[row.effect].ns, own.noise + less[row.effect].noise
+            row = row._replace(ns=ns, noise=noise, share=ns / own.ns)
+        found.append(row)
+    return found

@@ -10,6 +10,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import ENGINES, solve, solver
 from jointwave.compare.runs import timings
 from jointwave.compare.solvers.dem import DEM
+from jointwave.results.dataset import scene_hash
 
 SCENES = Path(__file__).parent / "scenes"
 UNIT_STEPS = 1_000_000  # steps of one block or freedom in a timed run, about
@@ -75,3 +76,16 @@ def with_every_effect(scene: AnyScene) -> AnyScene:
     return cases.load_variant(
         SCENES / "every-effect-in-plane.toml", "", {"domain.size": [side, side]}
     )
+
+
+def cost_of_every_effect(scene: AnyScene) -> StepCost:
+    """Return the cost of a step of one block with every effect there is, in about as many blocks as
+    a scene has; it is measured once."""
+    full = with_every_effect(scene)
+    name = scene_hash(full)
+    if name not in _every_effect:
+        (_every_effect[name],) = step_costs([full])
+    return _every_effect[name]
+
+
+_every_effect: dict[str, StepCost] = {}

@@ -4,6 +4,7 @@ A point is saved as a JSON file whose name is a hash of everything that determin
 including the program. An interrupted study thus resumes, and a changed one starts afresh.
 """
 
+import gc
 import hashlib
 import json
 import os
@@ -147,12 +148,23 @@ def _parallel(
     run = Parallel(
         count, return_as="generator_unordered", pre_dispatch=count, batch_size=1, max_nbytes=None
     )
-    yield from run(delayed(_named)(*one, work, Path.cwd()) for one in points.items())
+    named = _named if count == 1 else _named_and_settled
+    yield from run(delayed(named)(*one, work, Path.cwd()) for one in points.items())
 
 
 def _named(name: str, point: P, work: Callable[[P], T], folder: Path) -> tuple[str, T]:
     os.chdir(folder)  # processes outlive a call, and remember the folder of the first one
     return name, work(point)
+
+
+def _named_and_settled(*about: Any) -> tuple[str, Any]:
+    """Do what `_named` does in a worker. What it leaves there, mostly of compiled kernels, stays:
+    joblib looks for garbage after each point, among a million objects of numba for half a second.
+    """
+    found = _named(*about)
+    gc.collect()
+    gc.freeze()
+    return found
 
 
 def on_executor(

@@ -222,7 +222,6 @@ def leapfrog_for(flags: StepFlags) -> Callable:
                 read(r.traction, w.drags, None, out.traction, n, 1.0)
             read(r.jump, w.jump, None, out.jump, n, 1.0)
 
-    @jitted
     def steps(c, s, w, out, drive, moves, span):
         """Take the steps first .. last - 1, with a sample at each that `stride` divides.
 
@@ -266,4 +265,4 @@ def leapfrog_for(flags: StepFlags) -> Callable:
                 relax(c.memory, s.v[: c.mass.size], s.elongation)
         restore_denormals(setting)
 
-    return steps
+    return jitted(steps, flags)

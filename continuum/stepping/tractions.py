@@ -162,11 +162,10 @@ def forces_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
     """Return the kernel of the forces of joints in a trial of an implicit step."""
     tractions = tractions_for(parts, dim, stressed)
 
-    @jitted
     def forces(points, dt, jump, moved, rate, before, after, force, drag):
         return tractions(points, dt, jump, moved, rate, before, after, force, drag)
 
-    return forces
+    return jitted(forces, (parts, dim, stressed))
 
 
 @cache
@@ -175,7 +174,6 @@ def tangents_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
     dashpots, remembers = parts.dashpots, has_history(parts)
     strained, tangent = strained_for(parts, dim), tangent_for(parts)
 
-    @jitted
     def tangents(points, dt, r, jump, rate, before, stiffness):
         """Set how each point resists displacement [points, d, d], N/m: minus the derivatives of
         its forces with its jump. r : rate factor, 1/s (`joints.tangent`)."""
@@ -199,4 +197,4 @@ def tangents_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
                 stiffness[q, 1, 2] = stiffness[q, 2, 1] = -w * found.xz
                 stiffness[q, 2, 2] = -w * found.zz
 
-    return tangents
+    return jitted(tangents, (parts, dim, stressed))

@@ -80,6 +80,25 @@ def test_one_process_at_a_time_compiles_a_function(tmp_path, monkeypatch):
     assert {path.suffix for path in tmp_path.rglob("*.nb?")} == {".nbi", ".nbc"}
 
 
+def test_kernels_of_different_flags_compile_at_the_same_time(tmp_path, monkeypatch):
+    """Each has a lock and files of its own; the same flags have the same in every process."""
+    monkeypatch.setattr(jit, "DIRECTORY", tmp_path)
+
+    def kernel(flags):
+        def shifted(x):
+            return x + flags[0]
+
+        return jitted(shifted, flags)
+
+    assert kernel((1.0, True))(1.0) == 2.0
+    (lock,) = tmp_path.glob("*.lock")
+    with lock.open("w") as other:
+        fcntl.flock(other, fcntl.LOCK_EX)
+        assert kernel((2.0, True))(1.0) == 3.0
+    assert kernel((1.0, True))(1.0) == 2.0
+    assert len([*tmp_path.glob("*.lock")]) == len([*tmp_path.rglob("*.nbc")]) == 2
+
+
 def test_what_takes_long_is_announced_once(monkeypatch, caplog):
     jit.announce.cache_clear()
     monkeypatch.setattr(jit, "WAIT", 0.0)

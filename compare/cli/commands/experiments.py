@@ -43,8 +43,8 @@ def effects(
     wanted = [(asked.scene, one) for one in asked.load(every=False)]
 
     title, runs = wanted[0][1].title, partial(planned, wanted, out)
-    one = Experiment(title, runs, lambda _, tell: summarise(out, run(wanted, out, tell)))
-    run_and_show(one, out, 1, shown)
+    one = Experiment(title, runs, lambda pool, tell: summarise(out, run(wanted, out, tell, pool)))
+    run_and_show(one, out, CORES, shown)
 
 
 @command

@@ -31,7 +31,7 @@ def known(monkeypatch):
         return [StepCost(KNOWN["dashpots" in k, "energy ledger" in k], 0.25) for k in kinds]
 
     monkeypatch.setattr(effects, "step_costs", costs)
-    monkeypatch.setattr(effects, "with_every_effect", lambda scene: scene)
+    monkeypatch.setattr(effects, "cost_of_every_effect", lambda scene: StepCost(40.0, 0.0))
     return scenes
 
 
@@ -52,6 +52,7 @@ def test_effects_are_measured_by_leaving_them_out(damped, known, tmp_path):
     assert dashpots.steps > 1
     assert (dashpots.ns, dashpots.share) == (4.0, 4 / 7)
     assert (ledger.ns, ledger.share, ledger.noise, ledger.own) == (3.0, 3 / 7, 0.5, 7.0)
+    assert ledger.everything == 40.0
     rock = found.loc["continuum-jointed", "dashpots"]
     assert rock.ns == 4.0 and 0.01 < rock.misfit < 1 and np.isnan(rock.everything)
 
@@ -60,7 +61,8 @@ def test_what_is_done_is_not_done_again(damped, known, tmp_path, monkeypatch):
     """NaN is read as such."""
     fractions: list[float] = []
     first = run([damped], tmp_path, fractions.append)
-    monkeypatch.setattr(effects, "measure", lambda *some: pytest.fail("measured again"))
+    for name in ("measure", "timed"):
+        monkeypatch.setattr(effects, name, lambda *some: pytest.fail("measured again"))
     again = run([damped], tmp_path)
     pd.testing.assert_frame_equal(first, again)
     assert fractions[-1] == 1
@@ -70,12 +72,13 @@ def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, known):
     """The wall that the load shakes; only rigid blocks have local damping."""
     load = {"shape": "sine", "amplitude": 0.1, "period": 0.01, "quantity": "velocity"}
     scene = pillar(ends__start="fixed", load=load, damping={"local": 0.1}, time__duration=0.01)
-    rows = {one.effect: one for one in effects.measure(("a/b", scene))}
+    point = ("a/b", scene), effects.BLOCKS
+    rows = {one.effect: one for one in effects.timed(point, effects.measure(point))}
     fixed, local = rows["fixed ends"], rows["local damping"]
     assert "is the motion of a base" in fixed.reason
     assert np.isnan([fixed.ns, fixed.share, fixed.misfit]).all()
     assert local.reason == "" and np.isfinite(local.ns)
-    assert {one.engine for one in rows.values()} == {"dem"}
+    assert effects.measure((("a/b", scene), effects.ROCK)) == []
 
 
 def row(effect, misfit, ns, share, steps=1.0, of=("set/one", "One", "", "dem"), **more):
@@ -137,7 +140,8 @@ def test_files_hold_every_number(tmp_path):
 
 
 def test_the_command_prints_a_scene_and_keeps_its_files(command, tmp_path, monkeypatch):
-    monkeypatch.setattr(effects, "measure", lambda *of: [row("energy ledger", 0, 3, 0.75)])
+    rows = [row("energy ledger", 0, 3, 0.75)]
+    monkeypatch.setattr(effects, "run", lambda *of: pd.DataFrame(rows))
     scene = ["effects", "guo-li-2002/fig-09", "--variant", "no tension"]
     said = command(*scene).out
     assert "energy ledger" in said and "10.0 % of 40 ns" in said

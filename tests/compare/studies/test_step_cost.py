@@ -50,6 +50,16 @@ def test_every_effect_is_measured_in_as_many_blocks(blocks, measured):
     assert with_every_effect(scene).block_count == measured
 
 
+def test_every_effect_is_measured_once(monkeypatch):
+    """For scenes of the same number of blocks."""
+    timed = []
+    monkeypatch.setattr(step_cost, "_every_effect", {})
+    monkeypatch.setattr(step_cost, "step_costs", lambda some: timed.extend(some) or [len(timed)])
+    scenes = [cases.load_variant(PILLAR, "", {"pillar.length": x}) for x in (20.0, 20.0, 30.0)]
+    assert [step_cost.cost_of_every_effect(one) for one in scenes] == [1, 1, 2]
+    assert [one.block_count for one in timed] == [40, 60]
+
+
 def test_every_effect_that_can_be_beside_others_is_there():
     """In a rock mass all but periodic and roller sides and, since blocks are rigid, a quality
     factor; in a pillar also but those that exclude others of it."""

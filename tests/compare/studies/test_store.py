@@ -1,5 +1,6 @@
 """The store of experiments: each point computed once, on any executor, saved as soon as done."""
 
+import gc
 import os
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
@@ -33,6 +34,11 @@ def dies(number):
     return square(number)
 
 
+def kept(number):
+    """Return how many objects a process no longer looks through for garbage."""
+    return Square(number, gc.get_freeze_count())
+
+
 def has(store, name):
     return (store.folder / f"{name}.json").is_file()
 
@@ -56,6 +62,13 @@ def test_points_are_computed_once_in_their_order(store):
     assert [one.square for one in first] == [9.0, 1.0, 9.0]
     assert [one.square for one in again] == [1.0, 9.0] and isnan(again[0].root)
     assert has(store, "1") and not has(store, "2")
+
+
+def test_workers_look_for_garbage_in_what_a_point_has_made_only():
+    """Not again among all that earlier ones have left; this process is as it was."""
+    here, points = gc.get_freeze_count(), {str(k): k for k in range(6)}
+    found = [one.square for _, one in in_processes(2, kept, points)]
+    assert sorted(found)[2] > 10_000 and gc.get_freeze_count() <= here
 
 
 def test_processes_and_executors_give_what_one_process_gives(tmp_path):
