@@ -1,13 +1,12 @@
 """The bars of `compare.exact.bar.transfer` over time, by inversion of their Laplace transforms.
 
-By FFT with an exponential window (Wilcox, Int. J. Elect. Eng. Educ. 15, 1978; Kausel & Roesset,
-JEM 118, 1992). Its errors and their bounds:
+By `compare.exact.inversion`, with s = -i omega. Its errors and their bounds:
 - A window of TAIL durations wraps the later motion, reduced by the factor WRAPPED, and amplifies
   round-off as much as the exponential window amplifies the end of the record.
 - The load's transform is that of its exact means over the fine steps, divided by the transform of
   such a step: sampling loses no digits except at the highest frequencies.
-- Frequencies end at pi/dt, tapered by exp(-36 (omega dt/pi)^8) so that no ringing grows under
-  the window. Smooth parts are unaffected; a kink's error is its change of slope times
+- Frequencies end at pi/dt, tapered so that no ringing grows under the window. Smooth parts are
+  unaffected; a kink's error is its change of slope times
   dt/(0.61 pi^2). The steps are finer than necessary where that is cheap. In undamped rock, kinks
   and jumps of the load travel to and fro in front of the first joint, which reflects them like a
   free end: this part is summed as `images`, and the rest, smoother by one order, is inverted.
@@ -16,7 +15,7 @@ twice the largest difference of the two within some fine steps of each sample.
 """
 
 from dataclasses import replace
-from math import ceil, log
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -30,10 +29,12 @@ from jointwave.cases.size import require
 from jointwave.compare.exact.bar.images import Front
 from jointwave.compare.exact.bar.transfer import Bar, End, nodes_of, transfer
 from jointwave.compare.exact.conditions import static_stress
+from jointwave.compare.exact.inversion import Window, taper, window_of
 from jointwave.results.dataset import dataset
 
 TAIL = 1.5
 WRAPPED = 1e-10
+NODE = 0.5  # of each bin: causal motion is real at omega = 0
 STEPS_PER_PERIOD = 1600
 STEPS_PER_DURATION = 20_000  # where the load has no period
 FINER = 4  # times, at most: errors of shipped scenes are below 1e-7 of their peaks
@@ -68,20 +69,16 @@ def bounded(
     `times` are equally spaced from 0; `period` (s) is that of the load, if it has one. The
     velocity on an interface is the mean of both sides.
     """
-    from scipy.fft import irfft  # of many rows in a third of numpy's time
     from scipy.ndimage import maximum_filter1d
 
     places, ahead_of = np.array([*stress_y, *velocity_y]), _front(bar, times[-1])
-    dt, stride, count = _fine_step(times, period, len(nodes_of(bar, places)) + 4 * len(places))
-    require(8.0 * count * (10 + 7 * len(places)), f"{count:,} instants of the load")
-    decay = -log(WRAPPED) / (count * dt)
-    t = dt * np.arange(count)
-    s = decay + 2j * np.pi * np.fft.rfftfreq(count, dt)
-    fraction, load_transform = s.imag * dt / np.pi, _transform(load, s, t, decay)
-    # Tapered towards the highest frequency by a filter of order 8 that is 1e-16 there.
-    entering = [
-        load_transform * np.exp(-36 * np.minimum(share * fraction, 1.5) ** 8) for share in (1, 2)
-    ]
+    dt, stride = _fine_step(times, period, len(nodes_of(bar, places)) + 4 * len(places))
+    count = ceil(TAIL * stride * len(times))
+    require(8.0 * count * (10 + 11 * len(places)), f"{count:,} instants of the load")
+    window = window_of(0.0, dt, stride, count, WRAPPED)
+    omega = window.omega(NODE)
+    s, transformed = -1j * omega, _transform(load, window)
+    entering = [transformed * taper(omega, share * dt) for share in (1, 2)]
     sigma, v = transfer(bar, s, places)
     sharp = [np.zeros((len(y), len(times))) for y in (stress_y, velocity_y, velocity_y)]
     if ahead_of is not None:
@@ -93,13 +90,13 @@ def bounded(
             for x, part in zip((sigma, v), transfer(rock, s, places[ahead]), strict=True)
         )
         sharp = front.waves(load, times, stress_y, velocity_y)
-    n, growth = len(stress_y), np.exp(decay * dt * stride * np.arange(len(times)))
+    n, every = len(stress_y), slice(0, stride * len(times))
     found, bounds = [], []
     for part, x in zip(sharp, (sigma[:n], v[n:], v[n:] / s), strict=True):
-        both = [irfft(x * one, count) for one in entering]
-        keep = slice(0, stride * len(times), stride)
-        smooth = both[0][:, keep] * growth
-        near = maximum_filter1d(np.abs(both[1] - both[0]), NEAR, axis=1)[:, keep] * growth
+        both = np.stack([x * one for one in entering])
+        fine, rough = window.motion(both, NODE, every).real
+        smooth = fine[:, ::stride]
+        near = maximum_filter1d(np.abs(rough - fine), NEAR, axis=1)[:, ::stride]
         off = np.sqrt(np.mean(near**2, axis=1))
         peak = max(np.abs(part).max(initial=0.0), np.abs(smooth).max(initial=0.0))
         found.append(part + smooth)
@@ -107,17 +104,17 @@ def bounded(
     return found, bounds
 
 
-def _transform(load: LoadHistory, s: np.ndarray, t: np.ndarray, decay: float) -> np.ndarray:
-    """Return the load's transform over the fine step, from its means, with exact jumps."""
-    dt, jumps = t[1], _jumps(load)
+def _transform(load: LoadHistory, window: Window) -> np.ndarray:
+    """Return the load's transform, from its means over the fine steps, with exact jumps."""
+    dt, t, s, jumps = window.step, window.times, -1j * window.omega(NODE), _jumps(load)
     edges = np.append(t, t[-1] + dt) - dt / 2
     impulse = load.impulse(edges)
     for at, jump in jumps:
         impulse = impulse - jump * np.maximum(edges - at, 0.0)
     step = np.sinh(s * dt / 2) / (s * dt / 2)
-    found = np.fft.rfft(np.diff(impulse) / dt * np.exp(-decay * t)) / step
+    found = window.transform(np.diff(impulse) / dt, NODE) / step
     for at, jump in jumps:
-        found += jump * np.exp(-s * at) / (s * dt)
+        found += jump * np.exp(-s * at) / s
     return found
 
 
@@ -161,18 +158,12 @@ def _front(bar: Bar, duration: float) -> tuple[Front, Bar] | None:
     return Front(length, z / first.density, z, start, end, enters, on_end), rock
 
 
-def _fine_step(times: np.ndarray, period: float | None, nodes: int) -> tuple[float, int, int]:
-    """Return the fine step (s), steps per sample, and steps in the window.
-
-    nodes : number of nodes computed at each instant.
-    """
-    from scipy.fft import next_fast_len
-
+def _fine_step(times: np.ndarray, period: float | None, nodes: int) -> tuple[float, int]:
+    """Return the fine step (s) and steps per sample; nodes : computed at each instant."""
     interval, duration = times[1] - times[0], times[-1]
     longest = duration / STEPS_PER_DURATION
     if period is not None:
         longest = period / STEPS_PER_PERIOD
     stride = ceil(interval / longest * (1 - 1e-9))
     stride *= max(1, min(FINER, int(CHEAP / (TAIL * stride * len(times) * nodes))))
-    count = ceil(TAIL * stride * len(times))
-    return interval / stride, stride, 2 * next_fast_len(ceil(count / 2))
+    return interval / stride, stride

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.incident import WaveMotion
-from jointwave.compare.exact.plane.inversion import FINE, QUICK, ROUGH, STEPS, Accuracy, inverse
+from jointwave.compare.exact.inversion import FINE, QUICK, ROUGH, STEPS, Accuracy, inverse
 from jointwave.compare.exact.plane.pulse import Pulse, PulseStack, modes_of
 
 HALF = 4  # samples on either side

@@ -7,7 +7,8 @@ from scipy.special import erfc
 
 from closed_forms.oblique_joint import coefficients
 from closed_forms.one_joint import relaxed_sine
-from jointwave.compare.exact.plane import inversion, layer_pulses, parallel_joints
+from jointwave.compare.exact import inversion
+from jointwave.compare.exact.plane import layer_pulses, parallel_joints
 from jointwave.compare.exact.plane.layer_pulses import fields
 from jointwave.compare.exact.plane.oblique_joint import Joint
 from jointwave.compare.exact.plane.waves import polarisations

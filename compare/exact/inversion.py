@@ -35,7 +35,10 @@ Function = Callable[[np.ndarray], np.ndarray]
 
 
 class Window(NamedTuple):
-    """Fine times (s) of a whole window, their step (s), steps per sample and the decay (1/s)."""
+    """Fine times (s) of a whole window, their step (s), steps per sample and the decay (1/s).
+
+    Frequencies omega (rad/s) are one in each bin of 2 pi / window, at the part `node` of it.
+    """
 
     times: np.ndarray
     step: float
@@ -46,6 +49,45 @@ class Window(NamedTuple):
     def bin_width(self) -> float:
         """Return 2 pi / window, rad/s."""
         return 2 * np.pi / (len(self.times) * self.step)
+
+    def omega(self, node: float, skip: int = 1) -> np.ndarray:
+        """Return the frequencies [k] of every `skip`-th time."""
+        count = -(-len(self.times) // skip) // 2
+        return self.bin_width * (np.arange(count) + node) + 1j * self.decay
+
+    def transform(self, signal: np.ndarray, node: float, skip: int = 1) -> np.ndarray:
+        """Return F(omega) [k] of a signal at every `skip`-th time."""
+        from scipy.fft import ifft  # of many rows in half of numpy's time
+
+        turn = self._turn(node)[::skip]
+        return skip * self.step * len(signal) * ifft(signal * turn)[: len(signal) // 2]
+
+    def motion(self, spectrum: np.ndarray, node: float, keep: slice) -> np.ndarray:
+        """Return (1/pi) int F H e^{-i omega t} d omega over the level path [..., n] of F H [..., k]
+        at the times `keep`."""
+        from scipy.fft import fft
+
+        found = fft(spectrum, n=len(self.times))[..., keep]
+        return self.bin_width / np.pi * found / self._turn(node)[keep]
+
+    def _turn(self, node: float) -> np.ndarray:
+        t = self.times - self.times[0]
+        return np.exp((1j * self.bin_width * node - self.decay) * t)
+
+
+def window_of(start: float, step: float, stride: int, least: float, wrapped: float) -> Window:
+    """Return the window of at least this many fine steps, in which later motion is reduced by the
+    factor `wrapped`."""
+    from scipy.fft import next_fast_len
+
+    count = 4 * next_fast_len(int(np.ceil(least / 4)))
+    decay = -np.log(wrapped) / (count * step)
+    return Window(start + step * np.arange(count), step, stride, float(decay))
+
+
+def taper(omega: np.ndarray, step: float) -> np.ndarray:
+    """Return the filter of order 8 that is 1e-16 at the highest frequency of a time step (s)."""
+    return np.exp(-36 * np.minimum(omega.real * step / np.pi, 1.5) ** 8)
 
 
 class Accuracy(NamedTuple):
@@ -70,49 +112,33 @@ def inverse(
     transfer : H [..., k] at complex omega [k] (rad/s). pulse : f, which no arrival precedes, taken
     as zero before the first of the times.
     """
-    window, skip, least = window_of(times, how.window), how.skip, how.least
+    n, skip = len(times), how.skip
+    stride = -(-STEPS // n)
+    step = (times[-1] - times[0]) / (n - 1) / stride
+    window = window_of(times[0], step, stride, how.window * stride * n, WRAPPED)
     signal = pulse(window.times)[::skip]
-    keep = slice(0, len(times) * window.stride, window.stride)
+    keep = slice(0, n * stride, stride)
     if causal:
-        return _level(transfer, signal, window, skip, 0.5, 0, least)[..., keep]
+        return _level(transfer, signal, window, how, 0.5, 0, keep)
     bins = (
-        weight * _level(transfer, signal, window, skip, node, SLOPE, least)[..., keep]
+        weight * _level(transfer, signal, window, how, node, SLOPE, keep)
         for node, weight in zip(*gauss(1.0, GAUSS), strict=True)
     )
     return sum(bins) + _climb(transfer, signal, window, skip, keep)
 
 
-def window_of(times: np.ndarray, size: float) -> Window:
-    """Return the window of `size` times the duration."""
-    from scipy.fft import next_fast_len
-
-    n = len(times)
-    stride = -(-STEPS // n)
-    step = (times[-1] - times[0]) / (n - 1) / stride
-    count = 4 * next_fast_len(int(np.ceil(size * stride * n / 4)))
-    decay = -np.log(WRAPPED) / (count * step)
-    return Window(times[0] + step * np.arange(count), step, stride, float(decay))
-
-
 def _level(
-    transfer, signal, window: Window, skip: int, node: float, first: int, least: float
+    transfer, signal, window: Window, how: Accuracy, node: float, first: int, keep: slice
 ) -> np.ndarray:
     """Return the integral over the level path from bin `first` on, with one point per bin, up to
     the frequency above which the spectrum is below `least` of its maximum."""
-    from scipy.fft import fft, ifft  # of many rows in half of numpy's time
-
-    t, step = window.times - window.times[0], skip * window.step
-    width = window.bin_width
-    omega = width * (np.arange(len(signal) // 2) + node) + 1j * window.decay
-    turn = np.exp(1j * omega[0] * t)
-    F = step * len(signal) * ifft(signal * turn[::skip])[: len(omega)]
-    F *= np.exp(-36 * (omega.real * step / np.pi) ** 8)
+    omega = window.omega(node, how.skip)
+    F = window.transform(signal, node, how.skip) * taper(omega, how.skip * window.step)
     size = np.abs(F)
-    last = max(int(np.flatnonzero(size >= least * size.max())[-1]), first) + 1
-    omega, F = omega[:last], F[:last]
-    spectrum = transfer(omega[first:]) * F[first:]
+    last = max(int(np.flatnonzero(size >= how.least * size.max())[-1]), first) + 1
+    spectrum = transfer(omega[first:last]) * F[first:last]
     padded = np.concatenate([np.zeros((*spectrum.shape[:-1], first)), spectrum], axis=-1)
-    return width / np.pi * fft(padded, n=len(t)) / turn
+    return window.motion(padded, node, keep)
 
 
 def _climb(transfer, signal, window: Window, skip: int, keep: slice) -> np.ndarray:
