@@ -40,7 +40,8 @@ EXACT = {
     "normal-incidence": "rock_mass.normal_incidence",
     "oblique-joint": "rock_mass.stack_waves",
     "parallel-joints": "rock_mass.stack_waves",
-    "line-force": "rock_mass.line_force",
+    "line-force": "rock_mass.point_force",
+    "point-force": "rock_mass.point_force",
     "effective-medium": "rock_mass.effective_medium",
     "block-lattice": "rock_mass.block_lattice",
 }

@@ -73,13 +73,11 @@ def stack(dim, count, cells, across=1, order=2, size=1.0, width=1.0, modulus=2.0
 
 def facet_weights(places, block, numbers, lengths, order):
     """Return the function of the areas that nodes stand for on facets normal to an axis."""
-    rule = basix.make_quadrature
+    degree, gll = max(2 * order - 1, 1), basix.QuadratureType.gll
     try:
-        at, weight = rule(basix.QuadratureType.gll, basix.CellType.interval, max(2 * order - 1, 1))
-    except TypeError:
-        at, weight = rule(
-            basix.CellType.interval, max(2 * order - 1, 1), rule=basix.QuadratureType.gll
-        )
+        at, weight = basix.make_quadrature(basix.CellType.interval, degree, rule=gll)
+    except TypeError:  # older: the rule comes first, and nothing has a name
+        at, weight = basix.make_quadrature(gll, basix.CellType.interval, degree)
 
     def along(axis):
         h = lengths[axis] / numbers[axis]

@@ -21,6 +21,7 @@ REFEREES = {
         "oblique-joint",
         "parallel-joints",
         "line-force",
+        "point-force",
         "normal-incidence",
     ),
     "continuum-equivalent": ("equivalent-bar", "images", "kelvin-voigt", "effective-medium"),

@@ -8,7 +8,7 @@ from jointwave.cases.errors import UnstableError
 from jointwave.cases.incident import FreeField, PlaneWave, plane_wave
 from jointwave.cases.loads import history_of
 from jointwave.compare.exact.rock_mass.field import field_of
-from jointwave.compare.exact.rock_mass.line_force import SOLVER as LINE_FORCE
+from jointwave.compare.exact.rock_mass.point_force import LINE as LINE_FORCE
 from jointwave.compare.exact.rock_mass.stack_waves import ONE_JOINT
 from jointwave.continuum import simulate
 from jointwave.results.arrays import copied, fill

@@ -1,10 +1,11 @@
-"""Scenes of line forces in rock without joints (`plane.line_force`).
+"""Scenes of forces at points of rock without joints (`plane.point_force`), of lines in the plane.
 
 Valid for any forces that do not jump, in undamped rock without joints and openings, with any
 supports of the sides: up to `known_until`, the earliest arrival at a receiver of a P wave reflected
 by a side, the rock acts as unbounded.
 """
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.compare.exact.plane.line_force import motion
+from jointwave.compare.exact.plane.point_force import motion
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass.conditions import beyond, prestress_of
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
@@ -24,6 +25,7 @@ from jointwave.results.rock_mass import rock_mass_dataset
 
 #: Pieces of a Ricker wavelet, each smooth enough for the points of one integral.
 PARTS = 8
+IN_PLANE = "is for a rock mass in space, not for one in the plane"
 
 
 def applies(scene: RockMass) -> Answer:
@@ -42,7 +44,7 @@ def applies(scene: RockMass) -> Answer:
         reason = "a force jumps, so that velocities at its arrivals are unbounded"
     if reason is None:
         points = np.array(scene.record.points)
-        reach = min(np.hypot(*(points - np.array(one.at)).T).min() for one in scene.loads)
+        reach = min(distances(points, one.at).min() for one in scene.loads)
         if not reach > 0:
             reason = "a receiver lies on a force"
         elif known_until(scene) <= reach / float(elastic_rock(scene.rock).p_speed):
@@ -68,20 +70,24 @@ def solve(scene: RockMass) -> xr.Dataset:
     errors = {name: getattr(found, f"{name}_error") for name in values}
     known = known_until(scene)
     until: dict[str, Any] = {"known_until": known} if known < times[-1] else {}
-    return rock_mass_dataset(scene, SOLVER.name, times, values, errors=errors, **until)
+    name = (POINT if scene.in_space else LINE).name
+    return rock_mass_dataset(scene, name, times, values, errors=errors, **until)
 
 
 def known_until(scene: RockMass) -> float:
     """Return the earliest arrival of a side's reflection at a receiver, by its mirror image, s."""
-    outline, points = shape_of(scene.domain), np.array(scene.record.points)
-    first = np.inf
-    for side, normals in outline.normals().items():
-        for (start, _), normal in zip(outline.edges(side), normals, strict=True):
-            for load in scene.loads:
-                at = np.array(load.at)
-                image = at + 2 * ((start - at) @ normal) * normal
-                first = min(first, np.hypot(*(points - image).T).min())
+    shape, points, first = shape_of(scene.domain), np.array(scene.record.points), np.inf
+    for corners, normal in (face for side in shape.normals() for face in shape.faces_of(side)):
+        for load in scene.loads:
+            at = np.array(load.at)
+            image = at + 2 * ((corners[0] - at) @ normal) * normal
+            first = min(first, distances(points, image).min())
     return float(first / elastic_rock(scene.rock).p_speed)
+
+
+def distances(points: np.ndarray, place: Any) -> np.ndarray:
+    """Return the distances of points [m, d] from a place [d], m."""
+    return np.linalg.norm(points - np.array(place), axis=1)
 
 
 def _histories(scene: RockMass) -> list[LoadHistory]:
@@ -103,7 +109,7 @@ def _breaks(history: Sine | Ricker | Gabor | Recorded) -> list[float]:
     return [*np.linspace(0, history.end, parts + 1), np.inf]
 
 
-SOLVER = Solver(
+LINE = Solver(
     name="line-force",
     rock=Rock.JOINTED,
     kinds=("rock mass",),
@@ -116,4 +122,11 @@ SOLVER = Solver(
         Kind.NUMERICAL: {"continuum-jointed": "elements and time stepping of the rock"},
         Kind.MODELLING: {"dem": "rigid instead of deformable blocks"},
     },
+)
+POINT = replace(
+    LINE,
+    name="point-force",
+    in_space=True,
+    label="point force, exact",
+    applies=lambda scene: applies(scene) if scene.in_space else Answer(IN_PLANE),
 )

@@ -1,15 +1,19 @@
-"""A line force in plane strain: Hankel functions, statics, balance of momentum, closed forms."""
+"""Forces at a point, of a line and in space: harmonic and static ones, balance of momentum."""
 
 import numpy as np
 import pytest
 from scipy.special import hankel1
 
 from jointwave.cases.material.rock import ElasticRock
-from jointwave.compare.exact.plane import line_force
-from jointwave.compare.exact.plane.line_force import motion
+from jointwave.compare.exact.plane import point_force
+from jointwave.compare.exact.plane.point_force import motion
+from jointwave.results.stress import tensors
 
 ROCK = ElasticRock(2600.0, 5800.0, 3800.0)
 PLACES = np.array([[12.0, 5.0], [-3.0, 20.0], [0.5, -0.2], [0.0, -40.0]])
+IN_SPACE = np.array([[12.0, 5.0, -4.0], [-3.0, 20.0, 1.0], [0.5, -0.2, 0.1], [0.0, 0.0, -40.0]])
+BY_DIMENSION = pytest.mark.parametrize("places", [PLACES, IN_SPACE], ids=["line", "point"])
+OBLIQUE = {2: np.array([0.6, 0.8]), 3: np.array([0.48, 0.6, -0.64])}
 FREQUENCY, DELAY = 200.0, 0.0145
 
 
@@ -107,55 +111,113 @@ def test_hankel_functions_agree():
             assert np.abs(values - expected).max() < 3e-8 * np.abs(expected).max()
 
 
-def test_stress_is_hookes_law_of_the_displacement():
+STEPS = np.array([-2, -1, 1, 2])
+WEIGHTS = np.array([1, -8, 8, -1]) / 12
+
+
+def around(place, h):
+    """Return the places at STEPS of h (m) along each axis, which come last [d steps, d]."""
+    return np.array([place + s * h * axis for axis in np.eye(len(place)) for s in STEPS])
+
+
+@BY_DIMENSION
+def test_stress_is_hookes_law_of_the_displacement(places):
     """Gradients by differences of fourth order over 1 cm: (k h)^4 / 30 at the wave fronts, and
     what the place 0.54 m away has beyond it, (h / r)^4."""
-    h, times = 0.01, np.linspace(0, 0.04, 301)
-    steps = np.array([-2, -1, 1, 2])
-    weights = np.array([1, -8, 8, -1]) / (12 * h)
-    direction = np.array([0.6, 0.8])
-    found = of_gaussian(direction, PLACES, times)
-    for m, place in enumerate(PLACES):
-        around = [place + s * h * axis for axis in np.eye(2) for s in steps]
-        u = of_gaussian(direction, np.array(around), times).displacement.reshape(2, 4, 2, -1)
-        (xx, xy), (yx, yy) = np.einsum("s,ksit->ikt", weights, u)
-        dilation = ROCK.lame * (xx + yy)
-        mu = ROCK.shear_modulus
-        expected = [dilation + 2 * mu * xx, dilation + 2 * mu * yy, mu * (xy + yx)]
-        assert np.abs(found.stress[m] - expected).max() < 1e-6 * np.abs(expected).max()
+    h, times, dim = 0.01, np.linspace(0, 0.04, 301), places.shape[1]
+    found = of_gaussian(OBLIQUE[dim], places, times)
+    for m, place in enumerate(places):
+        u = of_gaussian(OBLIQUE[dim], around(place, h), times).displacement
+        gradient = np.einsum("s,ksit->ikt", WEIGHTS / h, u.reshape(dim, 4, dim, -1))
+        strain = (gradient + gradient.swapaxes(0, 1)) / 2
+        dilation = np.einsum("ij,t->ijt", np.eye(dim), np.trace(strain))
+        expected = ROCK.lame * dilation + 2 * ROCK.shear_modulus * strain
+        stress = np.moveaxis(tensors(found.stress[m].T), 0, -1)
+        assert np.abs(stress - expected).max() < 1e-6 * np.abs(expected).max()
 
 
-def test_momentum_of_the_rock():
-    """rho v' = div sigma away from the line, by differences."""
-    h, dt = 0.05, 2e-5
+@BY_DIMENSION
+def test_momentum_of_the_rock(places):
+    """rho v' = div sigma away from the force, by differences."""
+    h, dt, dim = 0.05, 2e-5, places.shape[1]
     times = dt * np.arange(2000)
-    steps = np.array([-2, -1, 1, 2])
-    weights = np.array([1, -8, 8, -1]) / 12
-    for place in PLACES[[0, 1]]:
-        around = [place + s * h * axis for axis in np.eye(2) for s in steps]
-        s = of_gaussian([1, 0], np.array(around), times).stress.reshape(2, 4, 3, -1)
-        d = np.einsum("s,ksit->ikt", weights / h, s)
-        force = np.array([d[0, 0] + d[2, 1], d[2, 0] + d[1, 1]])[:, 2:-2]
-        v = of_gaussian([1, 0], place, times).velocity[0]
-        rate = sum(w / dt * v[:, 2 + n : 1998 + n] for w, n in zip(weights, steps, strict=True))
+    for place in places[[0, 1]]:
+        found = of_gaussian(np.eye(dim)[0], around(place, h), times).stress.swapaxes(1, 2)
+        stress = tensors(found).reshape(dim, 4, -1, dim, dim)
+        force = np.einsum("s,kstik->it", WEIGHTS / h, stress)[:, 2:-2]
+        v = of_gaussian(np.eye(dim)[0], place, times).velocity[0]
+        rate = sum(w / dt * v[:, 2 + n : 1998 + n] for w, n in zip(WEIGHTS, STEPS, strict=True))
         assert np.abs(force - 2600 * rate).max() < 1e-5 * np.abs(force).max()
+
+
+def test_a_harmonic_force_in_space():
+    """u = (g I + grad grad (g_b - g_a) / k_b^2) / mu of waves g = exp(i k r) / (4 pi r) (Achenbach,
+    1973): from a sine on, once the first waves have passed, the motion is harmonic."""
+    omega, late = 2 * np.pi * FREQUENCY, np.linspace(0.05, 0.06, 50)
+    k_b, r = omega / ROCK.s_speed, np.linalg.norm(IN_SPACE, axis=1)[:, None]
+    waves = []
+    for speed in (ROCK.p_speed, ROCK.s_speed):
+        k, g = omega / speed, np.exp(1j * omega / speed * r) / (4 * np.pi * r)
+        slope = (1j * k - 1 / r) * g
+        waves.append((g, slope / r, (1j * k - 1 / r) * slope + g / r**2))
+    (_, *fast), (value, *slow) = waves
+    over_r, second = ((b - a) / k_b**2 for a, b in zip(fast, slow, strict=True))
+    gamma = IN_SPACE / r
+    expected = (
+        gamma * (gamma @ OBLIQUE[3])[:, None] * (second - over_r) + OBLIQUE[3] * (value + over_r)
+    ) / ROCK.shear_modulus
+    breaks = np.arange(0, 0.065, 0.0025)
+    shapes = (
+        (lambda t: np.sin(omega * t) * (t > 0)),
+        (lambda t: omega * np.cos(omega * t) * (t > 0)),
+    )
+    found = motion(ROCK, OBLIQUE[3], *shapes, breaks, IN_SPACE, late).displacement
+    harmonic = (expected[..., None] * np.exp(-1j * omega * late)).imag * -1
+    assert np.abs(found - harmonic).max() < 1e-12 * np.abs(harmonic).max()
+
+
+def test_a_force_in_space_that_stays_is_kelvins():
+    """u = ((3 - 4 nu) I + gamma gamma) / (16 pi mu (1 - nu) r), at once when S waves have passed;
+    the tractions on a sphere then balance it."""
+    nu = ROCK.lame / (2 * (ROCK.lame + ROCK.shear_modulus))
+    r = np.linalg.norm(IN_SPACE, axis=1)[:, None]
+    gamma, f = IN_SPACE / r, OBLIQUE[3]
+    kelvin = (3 - 4 * nu) * f + gamma * (gamma @ f)[:, None]
+    kelvin /= 16 * np.pi * ROCK.shear_modulus * (1 - nu) * r
+    found = motion(ROCK, f, *ramp_of(1e-3), [0.0, 1e-3, np.inf], IN_SPACE, np.array([0.02]))
+    np.testing.assert_allclose(
+        found.displacement[..., 0], kelvin, rtol=0, atol=1e-13 * kelvin.max()
+    )
+    cosine, weight = np.polynomial.legendre.leggauss(6)
+    angle = 2 * np.pi * np.arange(8) / 8
+    sine = np.sqrt(1 - cosine**2)[:, None]
+    n = np.stack([sine * np.cos(angle), sine * np.sin(angle), np.tile(cosine, (8, 1)).T], axis=-1)
+    still = motion(ROCK, f, *ramp_of(1e-3), [0.0, 1e-3, np.inf], 2 * n.reshape(-1, 3), [0.02])
+    traction = np.einsum("mij,mj->mi", tensors(still.stress[..., 0]), n.reshape(-1, 3))
+    total = np.einsum("m,mi->i", np.repeat(4 * weight, 8), traction) * 2 * np.pi / 8
+    np.testing.assert_allclose(total, -f, rtol=0, atol=1e-12)
+
+
+def ramp_of(duration):
+    """Return a force that rises to 1 in a duration (s) and stays, and its rate."""
+
+    def force(t):
+        return 0.5 - 0.5 * np.cos(np.pi * np.clip(t, 0, duration) / duration)
+
+    def rate(t):
+        inside = (t > 0) & (t < duration)
+        return np.where(inside, 0.5 * np.pi / duration * np.sin(np.pi * t / duration), 0.0)
+
+    return force, rate
 
 
 def test_the_force_is_balanced_at_last():
     """Of a force that stays, the tractions on any circle tend to -f as its waves run away: what
     the rock within it still gains in momentum falls as 1/t. They do not twist it."""
-    ramp = 1e-3
     angles = 2 * np.pi * np.arange(60) / 60
     n = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-
-    def force(t):
-        return 0.5 - 0.5 * np.cos(np.pi * np.clip(t, 0, ramp) / ramp)
-
-    def rate(t):
-        inside = (t > 0) & (t < ramp)
-        return np.where(inside, 0.5 * np.pi / ramp * np.sin(np.pi * t / ramp), 0.0)
-
-    found = motion(ROCK, [0.0, 1.0], force, rate, [0.0, ramp, np.inf], 2 * n, np.array([5.0, 10.0]))
+    forces, times = ramp_of(1e-3), np.array([5.0, 10.0])
+    found = motion(ROCK, [0.0, 1.0], *forces, [0.0, 1e-3, np.inf], 2 * n, times)
     xx, yy, xy = np.moveaxis(found.stress, 1, 0)
     traction = np.array([xx * n[:, :1] + xy * n[:, 1:], xy * n[:, :1] + yy * n[:, 1:]])
     total = 2 * np.pi * 2 / 60 * traction.sum(axis=1)
@@ -212,41 +274,41 @@ def test_a_step_by_quadrature():
     assert np.abs(off).max() < 1e-6 * np.abs(np.where(arrived[:, None], v, 0)).max()
 
 
-def test_symmetry_and_reciprocity():
+@BY_DIMENSION
+def test_symmetry_and_reciprocity(places):
     """G_ij(x) = G_ji(-x), and a turned place and force turn the motion."""
-    t = np.linspace(0, 0.04, 100)
-    x, y = (of_gaussian(d, PLACES, t) for d in np.eye(2))
-    back = of_gaussian([1, 0], -PLACES, t)
-    np.testing.assert_allclose(
-        x.displacement[:, 1],
-        of_gaussian([0, 1], -PLACES, t).displacement[:, 0],
-        atol=1e-13 * np.abs(x.displacement).max(),
-    )
+    t, dim = np.linspace(0, 0.04, 100), places.shape[1]
+    e = np.eye(dim)
+    x, back = (of_gaussian(e[0], sign * places, t) for sign in (1, -1))
+    other = of_gaussian(e[1], -places, t).displacement[:, 0]
+    size = np.abs(x.displacement).max()
+    np.testing.assert_allclose(x.displacement[:, 1], other, rtol=0, atol=1e-13 * size)
     np.testing.assert_allclose(back.displacement, x.displacement, rtol=1e-12)
     np.testing.assert_allclose(back.stress, -x.stress, rtol=1e-12)
-    Q = np.array([[0.8, -0.6], [0.6, 0.8]])
-    turned = of_gaussian(Q @ [1, 0], PLACES @ Q.T, t)
+    Q = np.linalg.qr(np.arange(1.0, dim**2 + 1).reshape(dim, dim) ** 2)[0]
+    turned = of_gaussian(Q @ e[0], places @ Q.T, t)
     expected = np.einsum("ij,mjt->mit", Q, x.velocity)
     np.testing.assert_allclose(turned.velocity, expected, atol=1e-12 * np.abs(expected).max())
-    assert np.abs(y.velocity).max() > 0
 
 
-def test_nothing_moves_before_the_first_arrival():
+@BY_DIMENSION
+def test_nothing_moves_before_the_first_arrival(places):
     t = np.linspace(0, 0.04, 200)
-    found = of_gaussian([0, 1], PLACES, t)
-    early = t < np.hypot(*PLACES.T)[:, None] / 5800
+    found = of_gaussian(np.eye(places.shape[1])[1], places, t)
+    early = t < np.linalg.norm(places, axis=1)[:, None] / 5800
     for part in found[:3]:
-        assert not np.where(early[:, None], part, 0).any()
+        assert part.any() and not np.where(early[:, None], part, 0).any()
 
 
+@BY_DIMENSION
 @pytest.mark.parametrize("points", [16, 32])
-def test_the_error_is_bounded(monkeypatch, points):
+def test_the_error_is_bounded(monkeypatch, points, places):
     """Twice the points lie within the bound; 64 are at round-off."""
-    t = np.linspace(0, 0.05, 200)
-    best = of_gaussian([0.6, 0.8], PLACES, t)
+    t, direction = np.linspace(0, 0.05, 200), OBLIQUE[places.shape[1]]
+    best = of_gaussian(direction, places, t)
     for error, part in zip(best[3:], best[:3], strict=True):
         assert (error < 1e-11 * np.abs(part).max()).all()
-    monkeypatch.setattr(line_force, "POINTS", points)
-    found = of_gaussian([0.6, 0.8], PLACES, t)
+    monkeypatch.setattr(point_force, "POINTS", points)
+    found = of_gaussian(direction, places, t)
     for one, exact, error in zip(found[:3], best[:3], found[3:], strict=True):
         assert (np.abs(one - exact).max(axis=-1) <= error).all()

@@ -1,4 +1,4 @@
-"""Scenes of line forces: arrivals, statics, balance of momentum, where they hold and where not."""
+"""Scenes of forces at points: arrivals, statics, momentum, where they hold and where not."""
 
 import numpy as np
 import pytest
@@ -6,6 +6,8 @@ import pytest
 from jointwave.cases.histories import Recorded, Ricker, Sine
 from jointwave.compare.engines import applies, solve
 
+IN_SPACE = "is for a rock mass in the plane, not for one in space"
+IN_PLANE = "is for a rock mass in space, not for one in the plane"
 A, B = np.sqrt(2.4e7), np.sqrt(8e6)
 FORCE = {
     "kind": "force",
@@ -68,6 +70,23 @@ def test_forces_superpose_and_displacement_is_the_integral(forced):
     pairs = 2e-5 / 3 * (v[:, :-2:2] + 4 * v[:, 1:-1:2] + v[:, 2::2])
     assert np.abs(np.cumsum(pairs, axis=1) - u[:, 2::2]).max() < 1e-5 * np.abs(u).max()
     assert both.attrs["known_until"] == min(one.attrs["known_until"] for one in parts)
+
+
+def test_a_force_in_space_reaches_receivers_and_then_sides(forced):
+    """6 m beside a force to the north, S comes at 6/b and little before; nothing before 6/a. The
+    top is 4 m above the force: its image is 10 m from that receiver. In the plane it is none."""
+    force = FORCE | {"at": [20.0, 15.0, 16.0], "direction": [0.0, 1.0, 0.0]}
+    record = {"points": [[26.0, 15.0, 16.0], [20.0, 20.0, 16.0]], "joints": [], "interval": 2e-5}
+    scene = forced(domain={"size": [40.0, 30.0, 20.0]}, loads=[force], record=record)
+    found = solve("point-force", scene)
+    assert found.attrs["known_until"] == pytest.approx(np.sqrt(5**2 + 8**2) / A, rel=1e-12)
+    t, beside, along = found.time.values, *np.abs(found.velocity.values)
+    assert beside[t < 6 / A].max() == 0
+    assert beside[:, [0, 2]].max() < 1e-12 * beside.max()
+    assert 0 < beside[t < 6 / B].max() < 0.2 * beside.max()
+    assert along[t < 5 / A].max() == 0 < along[t < 5 / B, 1].max()
+    assert applies("line-force", scene).reason == IN_SPACE
+    assert applies("point-force", forced()).reason == IN_PLANE
 
 
 NO = [
