@@ -10,8 +10,6 @@ import xarray as xr
 
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
-from jointwave.cases.partition.pillar import block_ends, welds
-from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
@@ -26,6 +24,7 @@ from jointwave.compare.figures.animation.settings import (
     Quantity,
     settings_for,
 )
+from jointwave.compare.figures.drawing.bodies import seen
 from jointwave.results.snapshots import snapshots_of
 
 #: By name; a pillar's stress is that along it.
@@ -139,11 +138,9 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
 
 def _joints(scene: AnyScene) -> np.ndarray:
     """Return the joints of a scene as they are seen, in pieces [n, 2, 2], m."""
-    if scene.is_column:
-        y, half = block_ends(scene)[1:-1][~welds(scene)], scene.pillar.side / 2
-        return np.array([[(at, -half), (at, half)] for at in y]).reshape(-1, 2, 2)
-    blocks = blocks_of_scene(scene)
-    ends = blocks.contacts.ends[blocks.contacts.of_joints(len(scene.joint_sets))]
+    blocks, turn = seen(scene)
+    sets = 1 + len(scene.soft_layers) if scene.is_column else len(scene.joint_sets)
+    ends = blocks.contacts.ends[blocks.contacts.of_joints(sets)][..., turn]
     longest = float(np.ptp(blocks.outlines.corners, axis=0).max()) / PIECES
     lines = shapely.segmentize(shapely.linestrings(ends), longest)
     places, line = shapely.get_coordinates(lines, return_index=True)

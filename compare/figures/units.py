@@ -26,6 +26,12 @@ DRAWN = {
 }
 
 
+def in_unit(value: float, si: str) -> str:
+    """Return a value with the multiple of its unit that suits it, in words."""
+    unit = unit_for(si, abs(value))
+    return f"{value / unit.size:.3g} {unit.name}"
+
+
 def unit_for(si: str, largest: float) -> Unit:
     """Return the multiple of a unit that brings `largest` between 1 and 1000, or the unit itself
     if there is none."""

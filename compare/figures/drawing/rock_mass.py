@@ -3,43 +3,31 @@
 import numpy as np
 from matplotlib.artist import Artist
 
-from jointwave.cases.geometry.blocks import Blocks, Facets
-from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad, Wave
+from jointwave.compare.figures.drawing.bodies import bodies
 from jointwave.compare.figures.drawing.sketch import (
-    EDGE,
     Sketch,
     gravity,
-    lines,
     note,
     pushing,
     receivers,
-    rock,
     shaking,
-    side,
 )
 
-#: Colours of joint sets, in order; safe for all kinds of colour blindness (Tol 2021, bright).
-SETS = ("#4477aa", "#ee6677", "#228833", "#aa3377", "#ccbb44", "#66ccee")
 OVER = 0.16  # margin for arrows, of the domain's size
 LENGTH, SHORT = 0.12, 0.05  # of the domain's size: arrows of waves, and other arrows
 MOST = 12  # arrows of a pressure on one edge
 FEW = 4  # receivers that are listed with their coordinates
-DENSE = 3000  # contacts above which their lines are thin
 SLENDER = 0.6  # of the length of a slender rock mass, that sizes its arrows instead of its width
 
 
 def sketch_of(scene: RockMass) -> Sketch:
     """Return the sketch of a rock mass, cut into blocks."""
-    blocks, record = blocks_of_scene(scene), scene.record
-    low, high = (at(blocks.outlines.corners, axis=0) for at in (np.min, np.max))
+    (shapes, low, high), record = bodies(scene), scene.record
     size = float(max((high - low).min(), SLENDER * (high - low).max()))
-    shapes = [
-        *_blocks(scene, blocks),
-        *_joints(scene, blocks.contacts),
-        *_sides(scene, blocks.boundary),
+    shapes += [
         *receivers("point", record.points, "o"),
         *receivers("point of a joint", record.joints, "^"),
         *(shape for wave in scene.waves for shape in _wave(wave, low, high, size)),
@@ -56,32 +44,6 @@ def sketch_of(scene: RockMass) -> Sketch:
     margin = OVER * np.maximum(high - low, size)
     places = _listed("points", record.points) + _listed("points of joints", record.joints)
     return Sketch(shapes, low - margin, high + margin, ("x", "y"), size=places)
-
-
-def _blocks(scene: RockMass, blocks: Blocks) -> list[Artist]:
-    """Return the blocks of every region of rock."""
-    return [
-        rock(name, [blocks.outlines.of(i) for i in np.flatnonzero(blocks.body.region == k - 1)], k)
-        for k, name in enumerate(["_rock", *(one.name for one in scene.regions)])
-    ]
-
-
-def _joints(scene: RockMass, contacts: Facets) -> list[Artist]:
-    """Return the contacts of every joint set, and cuts through intact rock."""
-    ends, of, width = contacts.ends, contacts.joint_set, 0.4 if len(contacts) > DENSE else 0.9
-    shapes = lines("no joint", ends[of == -1], EDGE, width, (0, (1.0, 2.0)))
-    for k, one in enumerate(scene.joint_sets):
-        shapes += lines(one.name, ends[of == k], SETS[k % len(SETS)], width)
-    return shapes
-
-
-def _sides(scene: RockMass, edges: Facets) -> list[Artist]:
-    """Return the boundary by its condition; openings are free."""
-    shapes, sides = list[Artist](), shape_of(scene.domain).sides
-    held = np.array([getattr(scene.boundaries, name, "free") for name in sides])
-    for condition in dict.fromkeys(held.tolist()):
-        shapes += side("side", edges.ends[(held == condition)[edges.side]], condition)
-    return shapes
 
 
 def _listed(name: str, places: list[list[float]]) -> str:

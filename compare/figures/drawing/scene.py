@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from jointwave.cases.loads import history_of
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import Pulse
-from jointwave.compare.figures.drawing import pillar
+from jointwave.compare.figures.drawing import pillar, rock_mass, space
 from jointwave.compare.figures.drawing.sketch import LOAD, Sketch
 from jointwave.compare.figures.export import SceneFigure, blank
 from jointwave.compare.figures.style import WIDTH
@@ -63,8 +63,6 @@ def sketch_of(scene: AnyScene, explode: float = 0.0) -> Sketch:
     """Return the sketch of a pillar or a rock mass."""
     if scene.is_column:
         return pillar.sketch_of(scene)
-    from jointwave.compare.figures.drawing import rock_mass, space  # import shapely
-
     if scene.in_space:
         return space.sketch_of(scene, explode)
     return rock_mass.sketch_of(scene)

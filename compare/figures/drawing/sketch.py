@@ -24,7 +24,7 @@ SIDES: dict[str, tuple[float, Any]] = {
     "roller": (3.4, (0, (0.6, 0.6))),
     "periodic": (1.4, (0, (1.0, 1.5))),
 }
-MANY = 3000  # lines of one name above which they are an image in the drawing
+MANY = 3000  # lines or blocks of one name above which they are an image in the drawing
 
 
 class Sketch(NamedTuple):
@@ -81,7 +81,8 @@ class Sketch(NamedTuple):
 
 def rock(name: str, polygons: list[np.ndarray], k: int) -> Artist:
     """Return blocks of the k-th rock, polygons [corners, 2], m."""
-    return PolyCollection(polygons, facecolors=ROCKS[k % len(ROCKS)], label=name, zorder=1)
+    style: Any = {"facecolors": ROCKS[k % len(ROCKS)], "zorder": 1}
+    return PolyCollection(polygons, label=name, rasterized=len(polygons) > MANY, **style)
 
 
 def lines(name: str, segments: Any, colour: str, width: float, dashes: Any = "-") -> list[Artist]:

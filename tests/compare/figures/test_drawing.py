@@ -8,8 +8,9 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.text import Annotation
 
 from jointwave import cases
-from jointwave.compare.figures.drawing.pillar import MOST, THIN, sketch_of
+from jointwave.compare.figures.drawing.pillar import THIN, sketch_of
 from jointwave.compare.figures.drawing.scene import pulse_curve, scene_figure
+from jointwave.compare.figures.drawing.sketch import MANY
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.scenes import find
 
@@ -50,7 +51,7 @@ def test_every_block_joint_layer_and_receiver_is_drawn_in_its_place(pillar):
     joints, *layers = [c for c in ax.collections if isinstance(c, LineCollection)]
     assert len(blocks.get_paths()) == 100
     at = [segment[0][0] for segment in joints.get_segments()]
-    np.testing.assert_allclose(at, np.arange(0.5, 50, 0.5))
+    np.testing.assert_allclose(at, np.setdiff1d(np.arange(0.5, 50, 0.5), [20.0, 30.0]))
     assert [lines.get_segments()[0][0][0] for lines in layers[:2]] == [20.0, 30.0]
     assert [list(line.get_xdata()) for line in ax.lines] == [[10.0, 20.0, 47.5], [0.25, 19.75]]
     assert words(figure) == [
@@ -59,10 +60,12 @@ def test_every_block_joint_layer_and_receiver_is_drawn_in_its_place(pillar):
     ]
 
 
-def test_a_pillar_of_very_many_blocks_is_one_piece_with_its_count(pillar):
-    count = 2 * MOST
+def test_a_pillar_of_very_many_blocks_is_an_image_with_their_count(pillar):
+    count = 2 * MANY
     sketch = sketch_of(pillar(pillar__length=0.5 * count))
-    assert len(sketch.shapes[0].get_paths()) == 1 and f"{count} blocks of 0.5 m" in sketch.size
+    blocks, joints, *_ = sketch.shapes
+    assert blocks.get_rasterized() and joints.get_rasterized()
+    assert f"{count:,} blocks of 0.5 m" in sketch.size
 
 
 @pytest.mark.parametrize("end", ["free", "fixed", "quiet", "matched"])
@@ -146,7 +149,7 @@ def test_variants_that_look_alike_share_a_drawing(pillar, ink):
     titles = [ax.get_title("left") for ax in picture.figure.axes]
     assert titles[::2] == ["(a)  a, b", "(b)  c"]
     parts = Counter(zip(picture.table["variant"], picture.table["what"], strict=True))
-    assert parts["a, b", "joints"] == parts["c", "joints"] == 99
+    assert parts["a, b", "joints"] == 99 and parts["c", "joints"] == 97
     assert parts["c", "layer at y = 20 m, 875 MPa/m"] == 1 and parts["c", "free start"] == 1
     assert parts["c", "section: stress"] == 1 and len(parts) == 5 + 7
     assert ink(picture.figure) > 0.01

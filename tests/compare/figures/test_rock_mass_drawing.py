@@ -7,7 +7,7 @@ from matplotlib.colors import to_hex
 from matplotlib.text import Annotation
 
 from jointwave.cases.read import load_tables
-from jointwave.compare.figures.drawing import rock_mass
+from jointwave.compare.figures.drawing.bodies import SETS
 from jointwave.compare.figures.drawing.scene import scene_figure
 from jointwave.compare.figures.drawing.sketch import INK
 from jointwave.compare.misfit.pairs import Comparison
@@ -62,8 +62,8 @@ def test_every_joint_is_drawn_in_the_colour_of_its_set(drawing):
     """Five rows of 10 m less 2 m each of the three that the tunnel takes or runs along; four cross
     joints of 6 m less 2 m each of the two along its faces."""
     figure = drawing().figure
-    assert length(lines(figure, rock_mass.SETS[0])) == pytest.approx(50 - 3 * 2)
-    assert length(lines(figure, rock_mass.SETS[1])) == pytest.approx(24 - 2 * 2)
+    assert length(lines(figure, SETS[0])) == pytest.approx(50 - 3 * 2)
+    assert length(lines(figure, SETS[1])) == pytest.approx(24 - 2 * 2)
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.texts] == [
         *("rows", "cross", "quiet side", "free side", "fixed side", "point", "point of a joint")
