@@ -11,6 +11,7 @@ import pickle
 import re
 import shutil
 import sys
+import tomllib
 import warnings
 from contextlib import suppress
 from copy import deepcopy
@@ -168,12 +169,36 @@ def in_toml():
             return f"[{', '.join(map(inline, value))}]"
         if isinstance(value, dict):
             return f"{{{', '.join(f'{json.dumps(k)} = {inline(v)}' for k, v in value.items())}}}"
-        return json.dumps(value)
+        return json.dumps(value) if isinstance(value, str | bool) else str(value)
 
     def text(value):
-        if isinstance(value, dict) and "title" in value:
+        if isinstance(value, dict) and not value.keys().isdisjoint(("title", "time")):
             return "".join(f"{key} = {inline(one)}\n" for key, one in value.items())
         return inline(value)
+
+    return text
+
+
+@pytest.fixture(scope="session")
+def changed(in_toml):
+    """Return a function that gives the text of a scene with changes by their keys, as in
+    "rock.density = 0.0; no joint_sets[0].spacing"."""
+
+    def text(good, changes):
+        tables = tomllib.loads(good)
+        for one in changes.split("; "):
+            key = one.removeprefix("no ").partition(" = ")[0]
+            *above, last = (int(k) if k.isdigit() else k for k in re.findall(r"[^.[\]]+", key))
+            at = tables
+            for part in above:
+                at = at[part] if isinstance(at, list) else at.setdefault(part, {})
+            if one.startswith("no "):
+                del at[last]
+            else:
+                if isinstance(at, list) and last == len(at):
+                    at.append({})
+                at[last] = tomllib.loads(one.replace(key, "x", 1))["x"]
+        return in_toml(tables)
 
     return text
 

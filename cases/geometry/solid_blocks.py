@@ -162,12 +162,16 @@ def pieces_between(solids: list[Solid], names: list[str], tolerance: float) -> l
         k, m = divmod(int(score.argmax()), len(beyond))
         if not np.isfinite(score[k, m]):
             continue
-        common, _ = other.split(one.faces[k], m, tolerance)
+        face, beyond, alike = one.faces[k], other.faces[m], False
+        if len(face) == len(beyond):
+            alike = np.abs(face[:, None] - beyond).max(axis=2).min(axis=1).max() <= tolerance
+        common = face if alike else other.split(face, m, tolerance)[0]
         if common is None or np.abs(other.heights(common)[:, m]).max() > 2 * tolerance:
             continue
         found.append(Piece(common, first[i] + k, first[j] + m))
-        for face, by, against in ((first[i] + k, other, m), (first[j] + m, one, k)):
-            left[face] = [x for piece in left[face] for x in by.split(piece, against, tolerance)[1]]
+        for n, by, against in ((first[i] + k, other, m), (first[j] + m, one, k)):
+            rest = [] if alike else left[n]
+            left[n] = [x for piece in rest for x in by.split(piece, against, tolerance)[1]]
     return [*found, *(Piece(x, face, OUTSIDE) for face, own in enumerate(left) for x in own)]
 
 
