@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from jointwave.cases.loads import history_of
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import Pulse
-from jointwave.compare.figures.drawing import pillar, rock_mass, space
+from jointwave.compare.figures.drawing import plane, space
 from jointwave.compare.figures.drawing.sketch import LOAD, Sketch
 from jointwave.compare.figures.export import SceneFigure, blank
 from jointwave.compare.figures.style import WIDTH
@@ -61,11 +61,7 @@ def scene_figure(name: str, comparisons: list[Comparison], explode: float = 0.0)
 
 def sketch_of(scene: AnyScene, explode: float = 0.0) -> Sketch:
     """Return the sketch of a pillar or a rock mass."""
-    if scene.is_column:
-        return pillar.sketch_of(scene)
-    if scene.in_space:
-        return space.sketch_of(scene, explode)
-    return rock_mass.sketch_of(scene)
+    return space.sketch_of(scene, explode) if scene.in_space else plane.sketch_of(scene)
 
 
 def _figure(scenes: dict[str, AnyScene], sketches: list[Sketch]) -> Figure:

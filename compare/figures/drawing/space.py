@@ -14,7 +14,7 @@ from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import SIDES, Shape, shape_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.figures.drawing.bodies import SETS
-from jointwave.compare.figures.drawing.rock_mass import LENGTH
+from jointwave.compare.figures.drawing.plane import LENGTH
 from jointwave.compare.figures.drawing.sketch import (
     INK,
     ROCKS,

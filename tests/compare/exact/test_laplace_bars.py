@@ -56,14 +56,6 @@ def test_a_damped_wave_decays_and_disperses_as_its_wavenumber():
     assert np.allclose(stress[1] / stress[0], np.exp(-7j * k), rtol=1e-12)
 
 
-def test_attenuation_is_quadratic_in_frequency_while_it_is_small():
-    """About omega^2 eta / 2c, to a relative error of about (5/8)(omega eta)^2."""
-    omega, c, eta = 10.0, 1350.0, 1e-4
-    k = wavenumber(omega, c, eta)
-    assert -k.imag == pytest.approx(omega**2 * eta / (2 * c), rel=1e-6)
-    assert omega / k.real == pytest.approx(c, rel=1e-6)
-
-
 @pytest.mark.parametrize("front", [True, False])
 def test_a_step_and_a_record_arrive_as_images_say(misfit, monkeypatch, front):
     """With the part in front of the first joint apart it is round-off. Inverted as a whole, a

@@ -1,10 +1,15 @@
-"""The drawing of a rock mass: joints, boundaries, waves and loads, receivers."""
+"""The drawing of a scene in the plane: bodies, receivers, waves and loads. A pillar is seen from
+the side, y to the right and x up.
+"""
 
 import numpy as np
 from matplotlib.artist import Artist
+from matplotlib.text import Text
 
 from jointwave.cases.partition.shape import shape_of
+from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.sources import PlaneLoad, Wave
 from jointwave.compare.figures.drawing.bodies import bodies
 from jointwave.compare.figures.drawing.sketch import (
@@ -15,7 +20,11 @@ from jointwave.compare.figures.drawing.sketch import (
     receivers,
     shaking,
 )
+from jointwave.compare.figures.units import in_unit
 
+THIN, THICK = 0.07, 0.12  # limits of the pillar's thickness over the width of the drawing
+ROOM = 0.11  # beside the pillar, of the width of the drawing
+UNIT = 0.06  # length of arrows at a pillar, of the width of the drawing
 OVER = 0.16  # margin for arrows, of the domain's size
 LENGTH, SHORT = 0.12, 0.05  # of the domain's size: arrows of waves, and other arrows
 MOST = 12  # arrows of a pressure on one edge
@@ -23,7 +32,71 @@ FEW = 4  # receivers that are listed with their coordinates
 SLENDER = 0.6  # of the length of a slender rock mass, that sizes its arrows instead of its width
 
 
-def sketch_of(scene: RockMass) -> Sketch:
+def sketch_of(scene: AnyScene) -> Sketch:
+    """Return the sketch of a pillar or of a rock mass in the plane."""
+    return _of_pillar(scene) if scene.is_column else _of_rock_mass(scene)
+
+
+def _of_pillar(scene: Scene) -> Sketch:
+    """Return the sketch of a pillar, its thickness stretched if it were too thin."""
+    pillar, half = scene.pillar, scene.pillar.side / 2
+    stretch = max(1.0, THIN * pillar.length / (1 - 2 * ROOM) / pillar.side)
+    width = max(pillar.length / (1 - 2 * ROOM), stretch * pillar.side / THICK)
+    unit, beside = UNIT * width * np.array([1.0, 1 / stretch]), (width - pillar.length) / 2
+    above = half + 0.15 * unit[1]
+    shapes = [
+        *bodies(scene)[0],
+        *receivers("section: stress", [(y, above) for y in scene.record.stress], "v"),
+        *receivers("point: velocity", [(y, 0.0) for y in scene.record.velocity], "o"),
+        *_end_load(scene, half, unit),
+    ]
+    corner = np.array([pillar.length, half + 0.7 * unit[1]])
+    if scene.gravity is not None:
+        down = np.array(scene.gravity.direction)[[1, 0]]
+        shapes += gravity(corner + 0.3 * unit * down, down, 0.6 * unit, scene.gravity.acceleration)
+    if scene.prestress is not None and scene.prestress.normal:
+        words = f"prestress {in_unit(scene.prestress.normal, 'Pa')}"
+        shapes.append(note(corner * [0.5, 1.0], words, "center"))
+    blocks = f"in {len(scene.parts)} segments" if scene.segments else f"of {pillar.block:g} m"
+    average = " on average" if scene.scatter else ""
+    size = (
+        f": {scene.block_count:,} blocks {blocks}{average}, {pillar.side:g} m × {pillar.side:g} m"
+    )
+    over = 1.1 if any(isinstance(one, Text) and one.get_text() for one in shapes) else 0.4
+    return Sketch(
+        shapes,
+        np.array([-beside, -half - 0.5 * unit[1]]),
+        np.array([pillar.length + beside, half + over * unit[1]]),
+        ("y", "x"),
+        stretch,
+        size + (f"; thickness × {stretch:.2g}" if stretch > 1.01 else ""),
+    )
+
+
+def _end_load(scene: Scene, half: float, unit: np.ndarray) -> list[Artist]:
+    """Return the arrow of the load at the start; in words what acts across the drawing or turns."""
+    load = scene.load
+    across, along, depth = load.direction
+    direction, in_plane = np.array([along, across]), np.hypot(along, across) > 0.05
+    words = []
+    if load.arm is not None:
+        words.append(f"couple about ({', '.join(f'{part:.3g}' for part in load.direction)})")
+    elif abs(depth) > 0.05:
+        words.append("load also along z" if in_plane else "load along z")
+    if load.is_eccentric and load.at[1]:
+        words.append(f"at z = {load.at[1]:g} m")
+    if not load.amplitude:
+        return []
+    shapes = [note(unit * [-0.3, 0.7] + [0.0, half], ", ".join(words), "left")] if words else []
+    if in_plane and load.arm is None and scene.shakes_base:
+        shapes.append(shaking(unit * [-0.7, 0.0], direction, unit))
+    elif in_plane and load.arm is None:
+        tip = np.array([0.0, load.at[0] if load.is_eccentric else 0.0])
+        shapes.append(pushing(tip, direction, unit))
+    return shapes
+
+
+def _of_rock_mass(scene: RockMass) -> Sketch:
     """Return the sketch of a rock mass, cut into blocks."""
     (shapes, low, high), record = bodies(scene), scene.record
     size = float(max((high - low).min(), SLENDER * (high - low).max()))
