@@ -219,33 +219,24 @@ class Recorded(LoadHistory):
         return np.interp(np.asarray(t, dtype=float), self.time, self.stress, left=0.0, right=0.0)
 
     def impulse(self, t):
-        i, s, slope = self._piece(t)
-        return self._sums[0][i] + s * (self.stress[i] + slope * s / 2)
+        return self._lines.antiderivative()(np.clip(t, self.time[0], self.time[-1]))
 
     def double_impulse(self, t):
-        running, twice = self._sums
-        i, s, slope = self._piece(t)
-        found = twice[i] + s * (running[i] + s * (self.stress[i] / 2 + slope * s / 6))
-        return found + running[-1] * np.maximum(t - self.time[-1], 0.0)
+        inside, last = np.clip(t, self.time[0], self.time[-1]), self.time[-1]
+        found = self._lines.antiderivative(2)(inside)
+        return found + self.impulse(last) * np.maximum(t - last, 0.0)
 
     def rate(self, t):
         slopes = np.concatenate([[0.0], np.diff(self.stress) / np.diff(self.time), [0.0]])
         return slopes[np.searchsorted(self.time, t)]
 
     @property
-    def _sums(self) -> tuple[np.ndarray, np.ndarray]:
-        """The impulse and its own integral up to each sample."""
-        dt, before, after = np.diff(self.time), self.stress[:-1], self.stress[1:]
-        running = np.concatenate([[0.0], np.cumsum(dt * (before + after) / 2)])
-        more = dt * (running[:-1] + dt * (2 * before + after) / 6)
-        return running, np.concatenate([[0.0], np.cumsum(more)])
+    def _lines(self) -> Any:
+        """The lines between samples, as scipy's piecewise polynomial."""
+        from scipy.interpolate import PPoly
 
-    def _piece(self, t):
-        """Return the sample before t, the time since, and the slope to the next sample."""
-        t = np.clip(t, self.time[0], self.time[-1])
-        i = np.clip(np.searchsorted(self.time, t, side="right") - 1, 0, len(self.time) - 2)
-        slope = (self.stress[i + 1] - self.stress[i]) / (self.time[i + 1] - self.time[i])
-        return i, t - self.time[i], slope
+        slopes = np.diff(self.stress) / np.diff(self.time)
+        return PPoly([slopes, self.stress[:-1]], self.time)
 
     @property
     def end(self):

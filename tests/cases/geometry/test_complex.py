@@ -1,6 +1,7 @@
 """Properties of domains cut by planes, in one, two and three dimensions, over random sets."""
 
 from dataclasses import replace
+from math import factorial
 
 import numpy as np
 import pytest
@@ -106,7 +107,7 @@ def test_euler_s_formula_for_the_domain_and_for_each_block(domain):
         assert (distinct - len(faces) == 0) if dim == 2 else (distinct - edges + len(faces) == 2)
 
 
-@given(domains(dims=(3,)))
+@given(domains(dims=(2, 3)))
 def test_moments_are_those_of_intersected_half_spaces(domain):
     """Against Qhull: the hull of the corners that the planes of a block's faces meet at."""
     from scipy.spatial import ConvexHull, HalfspaceIntersection
@@ -121,10 +122,10 @@ def test_moments_are_those_of_intersected_half_spaces(domain):
         planes = np.column_stack([normal[mine], -place[mine]])
         corners = HalfspaceIntersection(planes, found.centroid[k]).intersections
         x = corners[ConvexHull(corners).simplices] - found.centroid[k]
-        volume = np.abs(np.linalg.det(x)) / 6
-        total = x.sum(axis=1)
-        second = np.einsum("n,nki,nkj->ij", volume / 20, x, x)
-        second += np.einsum("n,ni,nj->ij", volume / 20, total, total)
+        volume = np.abs(np.linalg.det(x)) / factorial(dim)
+        total, share = x.sum(axis=1), volume / ((dim + 1) * (dim + 2))
+        second = np.einsum("n,nki,nkj->ij", share, x, x)
+        second += np.einsum("n,ni,nj->ij", share, total, total)
         assert volume.sum() == pytest.approx(found.volume[k], rel=1e-8)
         np.testing.assert_allclose(second, found.second_moment[k], atol=1e-8)
 

@@ -34,10 +34,6 @@ def scene(*sets, block=1.0, poisson=0.0, size=(12.0, 10.0), width=None, **bounda
     return validated(tables, Path("scene.toml"), frozenset())
 
 
-def cut_blocks(own):
-    return blocks_of_scene(own, further_sets(own))
-
-
 def cut(own):
     return blocks_of_scene(own, further_sets(own))
 
@@ -157,7 +153,7 @@ STEEP = {"dip": 90.0, "dip_direction": 90.0, "spacing": 2.0}
 @pytest.mark.parametrize("sets", [[], [BED], [STEEP], [BED, STEEP]])
 def test_rock_in_space_is_cut_in_cubes(sets):
     """Across all directions in which no joints cut."""
-    found = cut_blocks(scene(*sets, size=BOX))
+    found = cut(scene(*sets, size=BOX))
     assert found.count == 120 and found.volume == pytest.approx(np.ones(120), rel=1e-9)
     assert len(found.contacts) == 5 * 5 * 4 + 6 * 4 * 4 + 6 * 5 * 3
     of_joints = found.contacts.area[found.contacts.of_joints(len(sets))].sum()
@@ -166,14 +162,14 @@ def test_rock_in_space_is_cut_in_cubes(sets):
 
 def test_rock_in_space_with_a_poisson_effect_is_cut_in_tetrahedra():
     """Five to a cube: a regular one in its middle, and four at corners."""
-    volume = np.sort(cut_blocks(scene(BED, poisson=0.25, size=BOX)).volume)
+    volume = np.sort(cut(scene(BED, poisson=0.25, size=BOX)).volume)
     assert volume == pytest.approx(np.repeat([1 / 6, 1 / 3], [480, 120]), rel=1e-9)
 
 
 def test_quiet_sides_in_space_are_met_in_the_middle_of_blocks():
     """Half blocks at sides, eighths where three of them meet."""
     sides = dict.fromkeys(("left", "front", "bottom"), "quiet")
-    found = cut_blocks(scene(size=BOX, **sides))
+    found = cut(scene(size=BOX, **sides))
     assert found.volume.min() == pytest.approx(found.volume.max() / 8, rel=1e-9)
     assert found.volume.sum() == pytest.approx(120.0, rel=1e-12)
 
@@ -206,8 +202,8 @@ def test_a_thin_plate_in_space_is_cut_as_the_plane_is(sets, poisson, held):
         for one in each
     ]
     sets = [one | {"through": [5.0, 0.0, 4.0]} for one in turned]
-    plate = cut_blocks(scene(*sets, size=(12.0, 0.5, 10.0), **keys))
-    found = cut_blocks(plane)
+    plate = cut(scene(*sets, size=(12.0, 0.5, 10.0), **keys))
+    found = cut(plane)
     assert np.sort(plate.volume) == pytest.approx(0.5 * np.sort(found.volume), rel=1e-6)
     for k in range(len(sets)):
         areas = [one.contacts.area[one.contacts.joint_set == k].sum() for one in (plate, found)]

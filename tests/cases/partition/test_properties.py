@@ -185,36 +185,6 @@ def test_each_outline_is_closed_by_its_contacts_and_boundary(domain, sets):
 
 @settings(max_examples=25)
 @given(domain=domains, sets=joint_sets())
-def test_moments_are_those_of_triangles(domain, sets):
-    """Against a fan of triangles about the centroid, each by its closed form."""
-    found = partition(domain, sets)
-    corners, first = found.outlines
-    whose = owner(first)
-    one, other = (corners[k] - found.centroid[whose] for k in (..., following(first)))
-    double = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
-    parts = np.stack(
-        [
-            double
-            / 12
-            * (
-                one[:, p] * one[:, q]
-                + other[:, p] * other[:, q]
-                + (one + other)[:, p] * (one + other)[:, q]
-            )
-            / 2
-            for p, q in ((0, 0), (1, 1), (0, 1))
-        ],
-        axis=1,
-    )
-    expected = np.add.reduceat(parts, first[:-1])
-    np.testing.assert_allclose(
-        found.second_moment[:, [0, 1, 0], [0, 1, 1]], expected, rtol=1e-8, atol=1e-12
-    )
-    np.testing.assert_allclose(np.add.reduceat(double / 2, first[:-1]), found.volume, rtol=1e-9)
-
-
-@settings(max_examples=25)
-@given(domain=domains, sets=joint_sets())
 def test_points_are_found_in_their_blocks(domain, sets):
     found = partition(domain, sets)
     np.testing.assert_array_equal(block_at(found, found.centroid), np.arange(found.count))

@@ -1,5 +1,6 @@
 """Rock masses in space: what their files may hold, their blocks, and mistakes in one line."""
 
+import tomllib
 from math import cos, radians, sin
 
 import numpy as np
@@ -23,11 +24,13 @@ BASE = {"kind": "base", "side": "bottom", "quantity": "velocity", "shape": "step
 QUIET = {"bottom": "quiet"}
 
 
+EVERY = {"title": "box", "domain": DOMAIN, "rock": ROCK, "joint_sets": [BED]}
+EVERY |= {"time": {"duration": 0.1}, "record": {"points": [[1.0, 1.0, 1.5]]}}
+
+
 def scene(**tables):
     """Return a scene in space with these tables beside a box of rock, its beds and a receiver."""
-    every = {"title": "box", "domain": DOMAIN, "rock": ROCK, "joint_sets": [BED]}
-    every |= {"time": {"duration": 0.1}, "record": {"points": [[1.0, 1.0, 1.5]]}} | tables
-    return cases.load_tables(every)
+    return cases.load_tables(EVERY | tables)
 
 
 @pytest.mark.parametrize("size", [[4.0, 4.0], [4.0, 4.0, 4.0]])
@@ -101,161 +104,101 @@ def test_joints_dip_where_they_say(dip, towards):
 
 
 MISTAKES = {
-    "a point of the plane": (
-        {"record": {"points": [[1.0, 1.0]]}},
-        "record.points[0] = [1.0, 1.0]: must have 3 numbers: the domain is in space",
+    "record.points = [[1.0, 1.0]]": (
+        "record.points[0] = [1.0, 1.0]: must have 3 numbers: the domain is in space"
     ),
-    "a direction of the plane": (
-        {"waves": [WAVE | {"direction": [0.0, 1.0]}], "boundaries": QUIET},
-        "waves[0].direction = [0.0, 1.0]: must have 3 numbers",
+    "waves[0].direction = [0.0, 1.0]": "waves[0].direction = [0.0, 1.0]: must have 3 numbers",
+    "joint_sets[0].name = 'east'; joint_sets[0].dip = 90.0; joint_sets[0].spacing = 2.0": (
+        "joint_sets[0].dip_direction: is required in space"
     ),
-    "no dip direction": (
-        {"joint_sets": [{k: v for k, v in EAST.items() if k != "dip_direction"}]},
-        "joint_sets[0].dip_direction: is required in space",
+    "waves[0].kind = 'S'": "waves[0].polarisation: is required for an S wave in space",
+    "waves[0].kind = 'S'; waves[0].polarisation = [0.0, 0.0, -1.0]": (
+        "waves[0].polarisation = [0.0, 0.0, -1.0]: is required for an S wave in space: not along"
     ),
-    "an S wave of any polarisation": (
-        {"waves": [S_WAVE], "boundaries": QUIET},
-        "waves[0].polarisation: is required for an S wave in space",
+    "waves[0].polarisation = [1.0, 0.0, 0.0]": (
+        "waves[0].polarisation = [1.0, 0.0, 0.0]: is of S waves"
     ),
-    "a polarisation along the wave": (
-        {"waves": [S_WAVE | {"polarisation": [0.0, 0.0, -1.0]}], "boundaries": QUIET},
-        "waves[0].polarisation = [0.0, 0.0, -1.0]: is required for an S wave in space: not along",
+    "prestress.xx = 1e6; prestress.yy = 1e6": "prestress.zz: is required in space",
+    "regions = [{ name = 'lens', outline = [[1.0, 1.0, 1.0]] }]": (
+        "regions[0].outline = [[1.0, 1.0, 1.0]]: has no meaning in space"
     ),
-    "a polarised P wave": (
-        {"waves": [WAVE | {"polarisation": [1.0, 0.0, 0.0]}], "boundaries": QUIET},
-        "waves[0].polarisation = [1.0, 0.0, 0.0]: is of S waves",
+    "regions = [{ name = 'cap', through = [0.0, 0.0, 5.0] }]": (
+        "regions[0].through = [0.0, 0.0, 5.0]: leaves the region empty"
     ),
-    "no zz": ({"prestress": {"xx": 1e6, "yy": 1e6}}, "prestress.zz: is required in space"),
-    "an outline of a region": (
-        {"regions": [{"name": "lens", "outline": [[1.0, 1.0, 1.0]]}]},
-        "regions[0].outline = [[1.0, 1.0, 1.0]]: has no meaning in space",
+    "domain.openings = [[[1.0, 1.0, 1.0], [2.0, 1.0, 1.0], [2.0, 2.0, 1.0]]]": (
+        "domain.openings[0]: must be two opposite corners of a box"
     ),
-    "a region outside": (
-        {"regions": [{"name": "cap", "through": [0.0, 0.0, 5.0]}]},
-        "regions[0].through = [0.0, 0.0, 5.0]: leaves the region empty",
+    "domain.openings = [[[1.0, 1.0, 1.0], [2.0, 2.0, 9.0]]]": (
+        "domain.openings[0]: must lie in the domain, near ["
     ),
-    "a polygon as an opening": (
-        {"domain": DOMAIN | {"openings": [[[1.0, 1.0, 1.0], [2.0, 1.0, 1.0], [2.0, 2.0, 1.0]]]}},
-        "domain.openings[0]: must be two opposite corners of a box",
+    "domain.openings = [[[1.0, 1.0, 1.0], [3.0, 3.0, 2.0]]]; "
+    "domain.prisms = [{ axis = 'x', polygon = [[2.0, 0.5], [4.0, 1.5], [2.0, 1.5]] }]": (
+        "domain.prisms[0]: must not overlap openings[0], near [2, 2."
     ),
-    "an opening outside": (
-        {"domain": DOMAIN | {"openings": [[[1.0, 1.0, 1.0], [2.0, 2.0, 9.0]]]}},
-        "domain.openings[0]: must lie in the domain, near [",
+    "domain.openings = [[[0.0, 0.0, 0.0], [8.0, 6.0, 4.0]]]": (
+        "domain.openings[0]: must leave rock, near [4, 3, 2]"
     ),
-    "two openings in one place": (
-        {
-            "domain": DOMAIN
-            | {
-                "openings": [[[1.0, 1.0, 1.0], [3.0, 3.0, 2.0]]],
-                "prisms": [{"axis": "x", "polygon": [[2.0, 0.5], [4.0, 1.5], [2.0, 1.5]]}],
-            }
-        },
-        "domain.prisms[0]: must not overlap openings[0], near [2, 2.",
+    "numerics.continuum.cell = 'triangle'": (
+        "numerics.continuum.cell = 'triangle': has no meaning in space"
     ),
-    "no rock": (
-        {"domain": DOMAIN | {"openings": [[[0.0, 0.0, 0.0], [8.0, 6.0, 4.0]]]}},
-        "domain.openings[0]: must leave rock, near [4, 3, 2]",
+    "domain.prisms = [{ axis = 'x', polygon = [[1.0, 1.0], [2.0, 2.0], [2.0, 1.0], [1, 2]] }]": (
+        "domain.prisms[0].polygon: must be a polygon that does not cross itself"
     ),
-    "cells of the plane": (
-        {"numerics": {"continuum": {"cell": "triangle"}}},
-        "numerics.continuum.cell = 'triangle': has no meaning in space",
+    "domain.prisms = [{ axis = 'x', polygon = [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]] }]; "
+    "domain.prisms[0].ends = [3.0, 2.0]": (
+        "domain.prisms[0].ends = [3.0, 2.0]: must be two increasing numbers"
     ),
-    "a prism that crosses itself": (
-        {
-            "domain": DOMAIN
-            | {
-                "prisms": [
-                    {"axis": "x", "polygon": [[1.0, 1.0], [2.0, 2.0], [2.0, 1.0], [1.0, 2.0]]}
-                ]
-            }
-        },
-        "domain.prisms[0].polygon: must be a polygon that does not cross itself",
+    "waves[0].direction = [0.0, 1.0, 0.0]": (
+        "boundaries.front = 'free': must be 'quiet': waves[0] enters there"
     ),
-    "ends of a prism": (
-        {
-            "domain": DOMAIN
-            | {
-                "prisms": [
-                    {
-                        "axis": "x",
-                        "polygon": [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]],
-                        "ends": [3.0, 2.0],
-                    }
-                ]
-            }
-        },
-        "domain.prisms[0].ends = [3.0, 2.0]: must be two increasing numbers",
+    "boundaries.front = 'periodic'": (
+        "boundaries.front = 'periodic': needs boundaries.back = 'periodic', too"
     ),
-    "a wave through a free side": (
-        {"waves": [WAVE | {"direction": [0.0, 1.0, 0.0]}]},
-        "boundaries.front = 'free': must be 'quiet': waves[0] enters there",
+    "boundaries.front = 'periodic'; boundaries.back = 'periodic'; "
+    "regions = [{ name = 'cap', dip = 10.0, dip_direction = 0.0, through = [0.0, 0.0, 2.0] }]": (
+        "regions[0].dip = 10.0: must be parallel to the y axis: boundaries.front is periodic"
     ),
-    "one periodic side": (
-        {"boundaries": {"front": "periodic"}},
-        "boundaries.front = 'periodic': needs boundaries.back = 'periodic', too",
+    "no joint_sets[0].spacing; joint_sets[0].name = 'one'; "
+    "joint_sets[0].through = [0.0, 0.0, 7.0]": (
+        "joint_sets[0].through: must lie in the domain, near [0, 0, 7]"
     ),
-    "a region across periodic sides": (
-        {
-            "boundaries": {"front": "periodic", "back": "periodic"},
-            "regions": [
-                {"name": "cap", "dip": 10.0, "dip_direction": 0.0, "through": [0.0, 0.0, 2.0]}
-            ],
-        },
-        "regions[0].dip = 10.0: must be parallel to the y axis: boundaries.front is periodic",
+    "domain.openings = [[[0.0, 0.0, 1.0], [2.0, 2.0, 2.0]]]": (
+        "record.points[0] = [1.0, 1.0, 1.5]: must lie in the domain and outside its openings"
     ),
-    "a joint outside": (
-        {"joint_sets": [STIFF | {"name": "one", "dip": 0.0, "through": [0.0, 0.0, 7.0]}]},
-        "joint_sets[0].through: must lie in the domain, near [0, 0, 7]",
-    ),
-    "a point in an opening": (
-        {"domain": DOMAIN | {"openings": [[[0.0, 0.0, 1.0], [2.0, 2.0, 2.0]]]}},
-        "record.points[0] = [1.0, 1.0, 1.5]: must lie in the domain and outside its openings",
-    ),
-    "a part of a side": (
-        {
-            "loads": [
-                BASE
-                | {
-                    "kind": "pressure",
-                    "quantity": "stress",
-                    "between": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
-                }
-            ]
-        },
-        "loads[0].between = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]: has no meaning in space",
+    "loads = [{ kind = 'pressure', side = 'bottom', shape = 'step', amplitude = 1.0 }]; "
+    "loads[0].between = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]": (
+        "loads[0].between = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]: has no meaning in space"
     ),
 }
 
 
-@pytest.mark.parametrize(("tables", "said"), MISTAKES.values(), ids=MISTAKES)
-def test_a_mistake_is_one_line(tables, said):
+@pytest.mark.parametrize("changes", MISTAKES)
+def test_a_mistake_is_one_line(changed, in_toml, changes):
+    text = changed(in_toml(EVERY | {"waves": [WAVE], "boundaries": QUIET}), changes)
     with pytest.raises(SceneError) as error:
-        scene(**tables)
-    assert str(error.value).startswith(f"scene: {said}") and "\n" not in str(error.value)
+        cases.load_tables(tomllib.loads(text))
+    assert str(error.value).startswith(f"scene: {MISTAKES[changes]}") and "\n" not in str(
+        error.value
+    )
 
 
 IN_PLANE = {
-    "a point": ({"record": {"points": [[1.0, 1.0, 1.0]]}}, "must have 2 numbers"),
-    "a dip direction": ({"joint_sets": [BED | {"dip_direction": 0.0}]}, "no meaning in the plane"),
-    "a side": ({"boundaries": {"front": "fixed"}}, "is not a side of this domain, which has left"),
-    "a stress": ({"prestress": {"xx": 1e6, "yy": 1e6, "zz": 1e6}}, "no meaning in the plane"),
-    "a prism": (
-        {
-            "domain": {
-                "size": [8.0, 6.0],
-                "prisms": [{"axis": "x", "polygon": [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]]}],
-            }
-        },
-        "no meaning in the plane",
+    "record.points = [[1.0, 1.0, 1.0]]": "must have 2 numbers",
+    "joint_sets[0].dip_direction = 0.0": "no meaning in the plane",
+    "boundaries.front = 'fixed'": "is not a side of this domain, which has left",
+    "prestress.xx = 1e6; prestress.yy = 1e6; prestress.zz = 1e6": "no meaning in the plane",
+    "domain.prisms = [{ axis = 'x', polygon = [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]] }]": (
+        "no meaning in the plane"
     ),
 }
 
 
-@pytest.mark.parametrize(("tables", "said"), IN_PLANE.values(), ids=IN_PLANE)
-def test_what_is_of_scenes_in_space_is_refused_in_the_plane(tables, said):
+@pytest.mark.parametrize("changes", IN_PLANE)
+def test_what_is_of_scenes_in_space_is_refused_in_the_plane(changed, in_toml, changes):
     plane = {"domain": {"size": [8.0, 6.0]}, "record": {"points": [[1.0, 1.5]]}}
-    with pytest.raises(SceneError, match=said) as error:
-        scene(**plane | tables)
+    text = changed(in_toml(EVERY | plane), changes)
+    with pytest.raises(SceneError, match=IN_PLANE[changes]) as error:
+        cases.load_tables(tomllib.loads(text))
     assert "\n" not in str(error.value)
 
 
