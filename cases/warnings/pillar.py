@@ -1,32 +1,23 @@
 """Warnings of likely mistakes in a pillar, one line each."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from jointwave.cases.effects import bends
-from jointwave.cases.loads import LEAST_BLOCKS, ShortestWave, shortest_wave
-from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.loads import LEAST_BLOCKS, shortest_wave
+from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.tables import Rock
-from jointwave.cases.warnings.sources import Met, of_resolution, of_sources, onset
+from jointwave.cases.warnings.sources import Met, of_resolution, onset
 
 POISSON = Rock.model_fields["intact_poisson"].default
 MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
 ON_JOINT = 1e-9  # of the pillar's length, and of a block: rounding of a receiver's place
 
-Rule = Callable[[Scene, Properties, ShortestWave | None], Iterator[str]]
 
-
-def warnings_of_pillar(scene: Scene) -> list[str]:
-    """Return warnings of probable mistakes in a pillar, one line each."""
-    p = calibrate(scene)
-    wave = shortest_wave(scene, p)
-    own = [line for rule in RULES for line in rule(scene, p, wave)]
-    return [*of_sources(scene, _met(scene, p)), *own]
-
-
-def _met(scene: Scene, p: Properties) -> Met:
-    load, fails = scene.load, bool(p.given) or not p.tension.all()
-    speed, begin = _fastest(scene, p), onset(load)
+def met(scene: Scene) -> Met:
+    """Return what the load of a pillar meets."""
+    load, p = scene.load, calibrate(scene)
+    speed, begin, fails = _fastest(scene), onset(load), bool(p.given) or not p.tension.all()
     arrivals = (
         (f"{key} = {y:g} m", begin + (y / speed if p.is_uniform else p.travel_time(y)))
         for key in ("stress", "velocity")
@@ -45,8 +36,8 @@ def _met(scene: Scene, p: Properties) -> Met:
     )
 
 
-def _of_poisson(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
-    rock = scene.rock
+def _of_poisson(scene: Scene) -> Iterator[str]:
+    rock, p = scene.rock, calibrate(scene)
     if rock.p_speed and p.poisson < 0:
         yield (
             f"rock.p_speed = {rock.p_speed:g} below sqrt(2) rock.s_speed = {rock.s_speed:g} m/s "
@@ -58,7 +49,8 @@ def _of_poisson(scene: Scene, p: Properties, wave: ShortestWave | None) -> Itera
         yield f"rock.intact_poisson = {poisson:g} is not used: it needs rock.intact_modulus"
 
 
-def _of_wavelength(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
+def _of_wavelength(scene: Scene) -> Iterator[str]:
+    wave, p = shortest_wave(scene, calibrate(scene)), calibrate(scene)
     if wave is None or wave.blocks >= LEAST_BLOCKS:
         return
     block = f"pillar.block = {p.spacing:g} m"
@@ -77,19 +69,20 @@ def _of_wavelength(scene: Scene, p: Properties, wave: ShortestWave | None) -> It
         yield from of_resolution(gives, count * wave.blocks, f"{what} wavelength {where}")
 
 
-def _fastest(scene: Scene, p: Properties) -> float:
+def _fastest(scene: Scene) -> float:
     """Return the speed (m/s) of the fastest wave that the load drives.
 
     Bending runs ahead of shear, up to the speed of the bar (Timoshenko 1921).
     """
-    load = scene.load
+    load, p = scene.load, calibrate(scene)
     shear_alone = load.is_across and not load.direction[1] and scene.motion.rotation == "none"
     twist = load.arm is not None and not load.is_across
     return p.shear_speed if shear_alone or twist else p.bar_speed
 
 
-def _of_quiet_ends(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
+def _of_quiet_ends(scene: Scene) -> Iterator[str]:
     """Warn of the reflection by a dashpot on a whole block; scenes with a source are exempt."""
+    wave = shortest_wave(scene, calibrate(scene))
     if wave is None or scene.source is not None or wave.reflection <= MOST_REFLECTED:
         return
     for key in ("start", "end"):
@@ -100,25 +93,18 @@ def _of_quiet_ends(scene: Scene, p: Properties, wave: ShortestWave | None) -> It
             )
 
 
-def _of_receivers_at_joints(
-    scene: Scene, p: Properties, wave: ShortestWave | None
-) -> Iterator[str]:
+def _of_receivers_at_joints(scene: Scene) -> Iterator[str]:
     """Warn of velocities at soft layers, across which they jump."""
     for y in scene.record.velocity:
         for layer in scene.soft_layers:
             where, away = f"record.velocity = {y:g} m", abs(y - layer.y)
             if away <= ON_JOINT * scene.pillar.length:
                 yield f"{where} lies on a soft layer: it is the mean of both sides"
-            elif away < (0.5 - ON_JOINT) * p.spacing:
+            elif away < (0.5 - ON_JOINT) * calibrate(scene).spacing:
                 yield (
                     f"{where} lies within half a block of the soft layer at {layer.y:g} m: rigid "
                     "blocks interpolate across it, between their centres"
                 )
 
 
-RULES: tuple[Rule, ...] = (
-    _of_poisson,
-    _of_wavelength,
-    _of_quiet_ends,
-    _of_receivers_at_joints,
-)
+RULES = (_of_poisson, _of_wavelength, _of_quiet_ends, _of_receivers_at_joints)

@@ -1,6 +1,6 @@
 """Warnings of likely mistakes in a rock mass, one line each."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import cast
 
@@ -21,20 +21,15 @@ from jointwave.cases.plausible import LENGTH, of_dip, of_value
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad, Wave
-from jointwave.cases.warnings.sources import Met, of_resolution, of_sources, onset
+from jointwave.cases.warnings.sources import Met, of_resolution, onset
 
 NEAR = 0.05  # of the domain's size: distance of a receiver from the joint that it is meant for
 COINCIDENT = 1e-9  # of the domain's size: distance of two joints that are one
 EARLY = 1e-6  # of the duration: by which a wave may seem to be early
 
 
-def warnings_in_plane(scene: RockMass) -> list[str]:
-    """Return warnings of probable mistakes in a rock mass, one line each."""
-    own = [line for rule in RULES for line in rule(scene)]
-    return [*of_sources(scene, _met(scene)), *own]
-
-
-def _met(scene: RockMass) -> Met:
+def met(scene: RockMass) -> Met:
+    """Return what waves and loads meet in a rock mass."""
     keys, sets = ("friction_angle", "cohesion", "tensile_strength"), scene.entries("joint_sets")
     fails = any(one.tension is False or any(getattr(one, k) for k in keys) for _, one in sets)
     rock, acting = elastic_rock(scene.rock), list(_acting(scene).values())
@@ -241,7 +236,7 @@ def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
             )
 
 
-RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
+RULES = (
     _of_joints_given_twice,
     _of_places,
     _of_directions,

@@ -15,6 +15,7 @@ from jointwave.cases.geometry.periodic import contacts_across
 from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
 from jointwave.cases.geometry.slivers import Limits, without_slivers
 from jointwave.cases.geometry.solids import Solid, prism, taken_out
+from tests.cases.partition.polygons import closed
 
 SIZE = np.array([3.0, 2.0, 2.5])
 TOLERANCE = 1e-9
@@ -78,15 +79,8 @@ def test_every_facet_has_one_owner_or_two_and_every_block_is_closed(domain):
     dim, sets = domain
     found = blocks(dim, sets)
     assert (found.body.sides != OUTSIDE).any(axis=1).all()
-    contacts, outer = found.contacts, found.boundary
-    total = np.zeros((found.count, dim))
-    for block, sign, of in (
-        (contacts.blocks[:, 0], 1, contacts),
-        (contacts.blocks[:, 1], -1, contacts),
-        (outer.blocks[:, 0], 1, outer),
-    ):
-        np.add.at(total, block, sign * of.normal * of.area[:, None])
-    np.testing.assert_allclose(total, 0, atol=1e-12 * SIZE[:dim].prod())
+    closed(found, 1e-12 * SIZE[:dim].prod())
+    contacts = found.contacts
     i, j = contacts.blocks.T
     assert (i < j).all() and len(np.unique(contacts.blocks, axis=0)) == len(contacts)
     towards = ((found.centroid[j] - found.centroid[i]) * contacts.normal).sum(axis=1)

@@ -38,6 +38,17 @@ def points_between(found, contacts, sets, normal, shear, shift=(0.0, 0.0)):
     return blocks, frame, arm, weight * stiffness[contact]
 
 
+def closed(found, tolerance):
+    """Assert that the sum of n A vanishes around each block; return that of A [n]."""
+    total, around = np.zeros_like(found.centroid), np.zeros(found.count)
+    for side, of in ((0, found.contacts), (1, found.contacts), (0, found.boundary)):
+        sign = (1 - 2 * side) * of.area[:, None]
+        np.add.at(total, of.blocks[:, side], sign * of.normal)
+        np.add.at(around, of.blocks[:, side], of.area)
+    np.testing.assert_allclose(total, 0, atol=tolerance)
+    return around
+
+
 def following(first: np.ndarray) -> np.ndarray:
     """Return the index of the corner that comes after each [k]."""
     after = np.arange(1, first[-1] + 1)
