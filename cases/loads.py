@@ -28,7 +28,7 @@ from jointwave.cases.schema.scene import Scene
 #: Part below its highest frequency of a load's energy, the integral of its square over time.
 #: A single sine cycle ends at 1.50 / T, a Ricker wavelet at 1.67 / T.
 SHARE = 0.95
-LEAST_BLOCKS = 10.0  #: and elements, in a wavelength that they resolve
+LEAST_BLOCKS = 10.0  #: and nodes of elements, in a wavelength that they resolve
 BINS, PADDING, MOST_CYCLES = 4096, 8, 32
 
 

@@ -65,8 +65,10 @@ def _of_wavelength(scene: Scene) -> Iterator[str]:
     else:
         yield from of_resolution(f"{block} gives", wave.blocks, f"blocks per wavelength {where}")
     if (count := scene.numerics.continuum.elements_per_block) is not None:
-        gives, what = f"numerics.continuum.elements_per_block = {count} gives", "elements per"
-        yield from of_resolution(gives, count * wave.blocks, f"{what} wavelength {where}")
+        order = scene.numerics.continuum.order
+        gives = f"numerics.continuum.elements_per_block = {count}, of order {order}, gives"
+        nodes = order * count * wave.blocks
+        yield from of_resolution(gives, nodes, f"nodes per wavelength {where}")
 
 
 def _fastest(scene: Scene) -> float:

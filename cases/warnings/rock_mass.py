@@ -149,8 +149,9 @@ def _of_wavelength(scene: RockMass) -> Iterator[str]:
         remedy = f": {key} {wave / LEAST_BLOCKS:.2g} m"
         yield from of_resolution(gives, wave / block, f"rigid blocks {where}", remedy)
     if size is not None:
-        gives = f"numerics.continuum.size = {size:g} m gives"
-        yield from of_resolution(gives, wave / size, f"elements {where}")
+        order = scene.numerics.continuum.order
+        gives = f"numerics.continuum.size = {size:g} m, of order {order}, gives"
+        yield from of_resolution(gives, order * wave / size, f"nodes {where}")
 
 
 def _block_size(scene: RockMass) -> float | None:

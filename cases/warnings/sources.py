@@ -134,7 +134,7 @@ def look_like_milliseconds(time: np.ndarray, values: np.ndarray, end: float) -> 
 
 
 def of_resolution(gives: str, count: float, what: str, remedy: str = "") -> Iterator[str]:
-    """Say that blocks or elements are too few in a wavelength."""
+    """Say that blocks or nodes of elements are too few in a wavelength."""
     if count < LEAST_BLOCKS:
         yield f"{gives} {count:.3g} {what}; at least {LEAST_BLOCKS:g} resolve it{remedy}"
 

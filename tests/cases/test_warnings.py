@@ -151,11 +151,12 @@ def test_blocks_a_wavelength_are_those_of_the_wave_that_is_driven(scene_with, sh
     assert bool(lines(scene, "pillar.block")) == warned
 
 
-def test_elements_a_wavelength_count_where_they_are_given(scene_with):
+def test_nodes_a_wavelength_count_where_elements_are_given(scene_with):
     coarse = BAR | {"load.period": 0.003}  # 500 Hz: 2 m, 4 blocks
     assert not lines(scene_with(**coarse), "numerics")
-    for count, warned in ((2, True), (3, False)):
-        scene = scene_with(**coarse, **{"numerics.continuum.elements_per_block": count})
+    for order, count, warned in ((1, 2, True), (1, 3, False), (2, 1, True), (2, 2, False)):
+        own = {"elements_per_block": count, "order": order}
+        scene = scene_with(**coarse, **{f"numerics.continuum.{k}": v for k, v in own.items()})
         assert bool(lines(scene, "numerics.continuum.elements_per_block")) == warned
         assert len(lines(scene, "pillar.block = 0.5 m gives")) == 1
 
