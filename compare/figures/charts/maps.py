@@ -20,14 +20,13 @@ from jointwave.compare.figures.animation.bodies import colours_of
 from jointwave.compare.figures.animation.settings import SLIP, stretch_of
 from jointwave.compare.figures.body_maps import Map, difference, maps_of, scene_of
 from jointwave.compare.figures.charts.axes import LETTER
-from jointwave.compare.figures.drawing.sketch import ROCKS
+from jointwave.compare.figures.drawing.sketch import MANY, ROCKS
 from jointwave.compare.figures.export import SceneFigure, blank
 from jointwave.compare.figures.style import DIFFERENCE, RC, SIZE, printed
 from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.results.dataset import A_RESULT
 
-MANY = 3000  # faces above which they are an image in the drawing
 FLAT = 0.4  # height over width of a body, below which maps are one below the other
 TALLEST = 0.7  # height of a single map over the width of the figure
 BAR, TITLE, BESIDE = 0.9, 0.25, 0.7  # inches: of a colour bar, above a map, and beside it
