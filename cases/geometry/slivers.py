@@ -1,7 +1,6 @@
 """Slivers: blocks too thin or too pointed, joined to a neighbour or refused."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -15,17 +14,15 @@ PARTS = 4
 NO_FIT = ", and joining it to a neighbour leaves no convex block"
 
 
-class Limits(NamedTuple):
-    """Least width, m, and least angle between faces, degrees, of a block."""
-
-    width: float
-    angle: float
-
-
 def without_slivers(
-    body: Complex, limits: Limits, joins: bool, tolerance: float, kept: int = 0
+    body: Complex,
+    least_width: float,
+    least_angle: float,
+    joins: bool,
+    tolerance: float,
+    kept: int = 0,
 ) -> Complex:
-    """Return a complex without blocks thinner or more pointed than the limits.
+    """Return a complex without blocks thinner (m) or more pointed (degrees) than the limits.
 
     joins : each is joined to the neighbour across its largest face with which it is convex, or part
     by part, cut where the faces of neighbours end at it; else, and where nothing fits, it is
@@ -36,7 +33,7 @@ def without_slivers(
     while True:
         half = body.halves()
         width, angle = widths(body, half), least_angles(body, half)
-        thin = np.flatnonzero((width < limits.width) | (angle < limits.angle))
+        thin = np.flatnonzero((width < least_width) | (angle < least_angle))
         if not len(thin):
             return body
         thin = thin[np.argsort(width[thin], kind="stable")]
@@ -47,8 +44,8 @@ def without_slivers(
         if found is None:
             cause = (
                 f"a block is {width[wrong]:.3g} m wide with an angle of {angle[wrong]:.3g} degrees,"
-                f" less than domain.least_width = {limits.width:.3g} m or domain.least_angle = "
-                f"{limits.angle:g}{NO_FIT if joins else ''}"
+                f" less than domain.least_width = {least_width:.3g} m or domain.least_angle = "
+                f"{least_angle:g}{NO_FIT if joins else ''}"
             )
             raise Sliver(body.centres(half)[wrong], cause)
         body = found

@@ -13,7 +13,7 @@ from jointwave.cases.geometry.blocks import Blocks, blocks_of
 from jointwave.cases.geometry.cell_complex import Complex, GeometryError, Sliver
 from jointwave.cases.geometry.measure import cell_moments
 from jointwave.cases.geometry.sets import cut_by_sets
-from jointwave.cases.geometry.slivers import Limits, without_slivers
+from jointwave.cases.geometry.slivers import without_slivers
 from jointwave.cases.geometry.solids import check_convex, cut_into_regions, taken_out
 from jointwave.cases.partition.joints import attitude, plane_sets
 from jointwave.cases.partition.periodic import across_periodic
@@ -80,9 +80,9 @@ def _body(
         check_convex(body, shape.solids)
 
     def joined(thin: float) -> Complex:
-        limits = Limits(least_width(domain, every, thin), domain.least_angle)
+        width, merges = least_width(domain, every, thin), domain.slivers == "merge"
         kept = len(sets) if further else 0
-        return without_slivers(body, limits, domain.slivers == "merge", tolerance, kept)
+        return without_slivers(body, width, domain.least_angle, merges, tolerance, kept)
 
     if further and domain.least_width is None:
         with suppress(Sliver):

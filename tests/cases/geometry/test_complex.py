@@ -13,7 +13,7 @@ from jointwave.cases.geometry.cell_complex import OUTSIDE, GeometryError, box
 from jointwave.cases.geometry.measure import least_angles, outline_moments, widths
 from jointwave.cases.geometry.periodic import contacts_across
 from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
-from jointwave.cases.geometry.slivers import Limits, without_slivers
+from jointwave.cases.geometry.slivers import without_slivers
 from jointwave.cases.geometry.solids import Solid, prism, taken_out
 from tests.cases.partition.polygons import closed
 
@@ -180,17 +180,16 @@ def test_prisms_are_taken_out_of_space():
 @given(domains(dims=(2, 3)))
 def test_slivers_are_merged_or_refused_with_place_and_cause(domain):
     dim, sets = domain
-    limits = Limits(0.05, 5.0)
     body = blocks(dim, sets).body
     try:
-        found = without_slivers(body, limits, True, TOLERANCE)
+        found = without_slivers(body, 0.05, 5.0, True, TOLERANCE)
     except GeometryError as error:
         assert ((error.at >= 0) & (error.at <= SIZE[:dim])).all() and "least_width" in error.cause
         return
     half = found.halves()
     used = np.unique(half.cell)
-    assert widths(found, half)[used].min() >= limits.width
-    assert least_angles(found, half)[used].min() >= limits.angle
+    assert widths(found, half)[used].min() >= 0.05
+    assert least_angles(found, half)[used].min() >= 5.0
     assert blocks_of(found, TOLERANCE).volume.sum() == pytest.approx(SIZE[:dim].prod(), rel=1e-9)
 
 
