@@ -1,7 +1,8 @@
-"""Bounds of the motion of rigid blocks in a rock mass: highest energy, motion of contacts."""
+"""Bounds of the motion of rigid blocks: highest energy, motion of contacts, rotation."""
 
 import numpy as np
 
+from jointwave.cases.errors import SceneError
 from jointwave.cases.loads import highest_frequency
 from jointwave.dem.build import carried
 from jointwave.dem.contacts import springs_of
@@ -9,6 +10,9 @@ from jointwave.dem.model import State
 from jointwave.dem.shaking import variation
 from jointwave.dem.system import BlockSystem
 from jointwave.numerics.divergence import speed_that
+from jointwave.numerics.small_motion import Moved, farthest, overlapping
+
+MOST_TURN = 0.045  # rad: small rotations then neglect 1 - cos = 1e-3 of a lever
 
 
 def highest_energy(system: BlockSystem, state: State) -> float:
@@ -58,3 +62,49 @@ def stored(system: BlockSystem, state: State) -> float:
     normal, shear = own.normal[met.column], own.shear[met.column]
     springs = springs_of(normal, shear, met.area, met.spread, rotations)
     return float(np.sqrt(np.einsum("ca,cab,cb->", moved, springs, moved)))
+
+
+def moved_apart(system: BlockSystem, state: State) -> Moved | None:
+    """Return the contact that has moved furthest over the size of its smaller block, or in the
+    plane blocks that overlap without one; None in a single block and where motion is along an axis.
+
+    Of a row it is the joint that has slipped furthest at its centre, over the side of its face:
+    opening leaves faces as large.
+    """
+    blocks, met, dim = system.blocks, system.blocks.contacts, system.blocks.dim
+    count = blocks.count
+    if dim == 2 and (overlap := overlapping(blocks.cut, state.u[:count])) is not None:
+        return overlap
+    if dim == 1 or not len(met.blocks):
+        return None
+    moved = motion_of_contacts(system, state)
+    by, place = np.linalg.norm(moved[:, 1:dim], axis=1), met.centre
+    if blocks.in_row:
+        size = np.where(met.blocks[:, 1] < count, np.sqrt(met.area), np.inf)
+        place = blocks.centroid[met.blocks[:, 0], 1:2]
+    else:
+        reach = np.sqrt(3 * np.trace(met.spread, axis1=1, axis2=2))  # of a rectangle's corners
+        ends = reach * np.linalg.norm(moved[:, dim:], axis=1)
+        by = np.hypot(np.abs(moved[:, 0]) + ends, by)
+        size = np.append(blocks.size, np.full(len(met.walls), np.inf))[met.blocks].min(axis=1)
+    k = farthest(by, size)
+    i, j = met.blocks[k].tolist()
+    return Moved(i, j if j < count else -1, float(by[k]), float(size[k]), tuple(place[k].tolist()))
+
+
+def refuse_large_rotation(system: BlockSystem, state: State, t: float) -> None:
+    """Raise SceneError if blocks of a row have rotated too far for small rotations at t (s);
+    elsewhere `moved_apart` sees what rotations do to faces."""
+    scene, form = system.blocks.scene, system.model.form
+    if not system.blocks.in_row or not form.turns or form.finite:
+        return
+    turn = np.abs(state.u[: system.blocks.count, form.dim :])
+    if turn.max() > MOST_TURN:
+        block = int(turn.max(axis=1).argmax()) + 1
+        raise SceneError(
+            scene.where,
+            "motion.rotation",
+            scene.motion.rotation,
+            f"block {block} has turned by {turn.max():.3g} rad at t = {t:.4g} s, beyond the "
+            f"{MOST_TURN:g} rad of small rotations: set motion.rotation = 'finite'",
+        )

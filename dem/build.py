@@ -11,29 +11,46 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.dem.boundaries import freedoms
 from jointwave.dem.chunks import Chunks, chunks_of
 from jointwave.dem.columns import Columns, points_on
+from jointwave.dem.composition import stability_limit
 from jointwave.dem.contacts import Contacts, extents
 from jointwave.dem.model import Blocks, KernelFlags
+from jointwave.dem.stability import critical_step_of_row, critical_time_step
+from jointwave.dem.surroundings import Surroundings
 from jointwave.joints.law import Law, parts_of
 from jointwave.joints.normal import gap_under
 
 
 @dataclass(frozen=True, kw_only=True)
 class RigidBlocks:
-    """Rigid blocks and their contacts, before time discretisation.
+    """Rigid blocks, their contacts and what acts on them, before time discretisation.
 
-    centroid : of each block [N, d], m. masses : matrices of mass, kg, and of inertia, kg m2, of
-    each block [N, F, F]. gravity : [d], m/s2. prestress : tensor [d, d], Pa; None without. finite :
-    whether they turn by any angle.
+    centroid : of each block [N, d], m. size : of each [N], m. masses : matrices of mass, kg, and of
+    inertia, kg m2, of each block [N, F, F]. gravity : [d], m/s2. prestress : tensor [d, d], Pa;
+    None without. pressed : the largest force that this stands for, N. finite : whether they turn by
+    any angle. composed : whether steps are those of `dem.composition`. in_row : whether contacts
+    join them one after the other. placed : their displacement
+    [N, F] under the weight if all joints were elastic; None where that is not known beforehand.
+    static_steps : the most of dynamic relaxation. corners : of a block, in snapshots. counted_by :
+    the key of the scene that decides their number.
     """
 
     scene: AnyScene
     centroid: np.ndarray
+    size: np.ndarray
     contacts: Contacts
     columns: Columns
     masses: np.ndarray
     gravity: np.ndarray
     prestress: np.ndarray | None
+    pressed: float
+    around: Surroundings
+    static_steps: int
+    corners: int
+    counted_by: str
     finite: bool = False
+    composed: bool = False
+    in_row: bool = False
+    placed: np.ndarray | None = None
 
     @property
     def count(self) -> int:
@@ -55,6 +72,15 @@ class RigidBlocks:
         """Mass and moments of inertia of each block [N, F]."""
         return np.ascontiguousarray(np.diagonal(self.masses, axis1=1, axis2=2))
 
+    @cached_property
+    def critical(self) -> float:
+        """The critical step of a row, or a lower bound of it, s."""
+        own = self.contacts, self.columns, self.masses, self.scene.damping.local or 0.0
+        if not self.in_row:
+            return critical_time_step(*own)
+        limit = stability_limit() / 2 if self.composed else 1.0
+        return limit * critical_step_of_row(*own, self.around.springs)
+
     @property
     def has_points(self) -> bool:
         """Whether forces are found at the points of contacts, not of faces as a whole."""
@@ -66,11 +92,10 @@ class RigidBlocks:
         return points_on(self.contacts, self.columns.rules)
 
 
-def form_of(
-    blocks: RigidBlocks, held: bool = False, shaken: bool = False, relaxed: bool = False
-) -> KernelFlags:
-    """Return the effects of blocks; held, shaken, relaxed : as in `KernelFlags`."""
-    scene, own, dim = blocks.scene, blocks.columns, blocks.dim
+def form_of(blocks: RigidBlocks) -> KernelFlags:
+    """Return the effects of blocks."""
+    scene, own, dim, around = blocks.scene, blocks.columns, blocks.dim, blocks.around
+    weighed = scene.gravity is not None and (scene.gravity.static or bool(around.borne.any()))
     return KernelFlags(
         dim=dim,
         turns=blocks.masses.shape[1] > dim,
@@ -79,12 +104,14 @@ def form_of(
         mass_damping=scene.damping.alpha is not None,
         local_damping=bool(scene.damping.local),
         gravity=scene.gravity is not None,
-        held=held,
+        held=len(around.rows) > 0 or scene.excavated,
         ledger=scene.record.energy,
         stressed=blocks.prestress is not None,
-        shaken=shaken,
-        relaxed=relaxed,
+        shaken=bool(around.bases),
+        relaxed=weighed or blocks.prestress is not None,
+        in_row=blocks.in_row,
         oblique=coupled(blocks.masses),
+        matched=bool(around.springs),
         finite=blocks.finite,
     )
 

@@ -9,13 +9,12 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from jointwave.dem.boundaries import facets_on
 from jointwave.dem.build import constants
 from jointwave.dem.chunks import LANES, Chunks
 from jointwave.dem.columns import Columns
 from jointwave.dem.contacts import Contacts
 from jointwave.dem.leapfrog import make_stepper
-from jointwave.dem.loads import Loads, reactions
+from jointwave.dem.loads import Loads
 from jointwave.dem.model import Model, State, held_by, samples_for, state_at_rest
 from jointwave.dem.stability import critical_time_step, squared_frequencies
 from jointwave.dem.static import (
@@ -125,7 +124,7 @@ class BlockRelaxation:
     """
 
     def __init__(self, system: BlockSystem, weighed: bool, sticks: bool = False) -> None:
-        blocks, model, loads, static = system.blocks, system.model, system.loads, system.static
+        blocks, model, loads = system.blocks, system.model, system.loads
         columns = blocks.columns._replace(time_constants=None)
         masses = blocks.masses * slowed(blocks.contacts, columns, blocks.masses)
         dt = STEP_FRACTION * critical_time_step(blocks.contacts, columns, masses, 0.0)
@@ -139,10 +138,7 @@ class BlockRelaxation:
         if sticks:
             laws, self.steady, stress = sticking(laws), np.zeros_like(self.steady), None
             model = model._replace(chunks=unstressed(model))
-        if stress is not None and blocks.scene.excavated and model.form.points:
-            openings = [name for name in blocks.sides if name.startswith("opening")]
-            facets = facets_on(blocks.cut, blocks.sides, openings)
-            walls = reactions(blocks.cut, facets, stress)
+        if stress is not None and (walls := blocks.around.opened) and model.form.points:
             rows = np.union1d(rows, walls.block)
             self.walls = Loads(rows, [walls], [], system.time, loads.onto).steady
             self.steady = np.zeros_like(self.walls)
@@ -168,14 +164,14 @@ class BlockRelaxation:
         )
         self.mass = own.inertia.ravel()
         weight = float(np.linalg.norm(own.gravity) * blocks.inertia[:, 0].sum())
-        self.scale = weight + (static.pressed if stress is not None else 0.0)
-        self.masses, self.centroid, self.most_steps = masses, blocks.centroid, static.steps
+        self.scale = weight + (blocks.pressed if stress is not None else 0.0)
+        self.masses, self.centroid, self.most_steps = masses, blocks.centroid, blocks.static_steps
         self.rotation = np.ones(masses.shape[1])
         if model.form.finite:  # whose state has momenta, and half the vectors of small rotations
             self.masses = self.model.inertia[:, :, None] * np.eye(6)
             self.rotation[3:] = 2.0
-        if weighed and static.placed is not None:
-            self.place(static.placed, blocks.scene.numerics.dem.static_tolerance)
+        if weighed and blocks.placed is not None:
+            self.place(blocks.placed, blocks.scene.numerics.dem.static_tolerance)
 
     def excavate(self) -> int:
         """Release the walls of openings but for the last part, and return the steps taken: all at

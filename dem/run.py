@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numba
 import numpy as np
@@ -15,13 +15,13 @@ from jointwave.cases.errors import SceneError, StoppedError
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.damping import NOT_OF_BLOCKS
-from jointwave.dem.bounds import highest_energy
+from jointwave.dem.bounds import highest_energy, moved_apart, refuse_large_rotation
 from jointwave.dem.leapfrog import make_stepper
 from jointwave.dem.model import Samples, State, samples_for, state_at_rest
 from jointwave.dem.parts import thread_count
-from jointwave.dem.pillar import record as pillar_record
-from jointwave.dem.pillar import system as pillar
+from jointwave.dem.prepare import blocks_of, clock_of, prepared
 from jointwave.dem.relaxation import start
+from jointwave.dem.snapshots import recorder
 from jointwave.dem.system import BlockSystem
 from jointwave.numerics.divergence import ENERGY, SPEED, Guard, audit, guard
 from jointwave.numerics.instability import Divergence, stopped
@@ -57,8 +57,7 @@ def simulate(
     if (quality := scene.rock.quality_factor) is not None:
         raise SceneError(scene.where, "rock.quality_factor", quality, NOT_OF_BLOCKS)
     began = perf_counter()
-    kind, reads = modules(scene)
-    system = kind.prepared(scene, incident)
+    system = prepared(scene, incident)
     model, time = system.model, system.time
     state, samples = state_at_rest(model), samples_for(model, time.samples)
     rest = start(system, state)
@@ -66,18 +65,18 @@ def simulate(
     built = perf_counter()
     step = stepper(system, state, samples)
     step(0, 0)
-    snapshots = reads.recorder(system, state)
+    snapshots = recorder(system, state)
     compiled = perf_counter()
 
     def result(count: int) -> xr.Dataset:
-        found = reads.dataset_of(
+        found = system.receivers.dataset(
             system,
             state,
             samples,
             count,
             model="rigid blocks",
             dt=time.dt,
-            critical_dt=system.critical,
+            critical_dt=system.blocks.critical,
             steps=time.steps,
             blocks=system.blocks.count,
             degrees_of_freedom=model.blocks.inertia.size,
@@ -99,12 +98,10 @@ def simulate(
         t = last * time.stride * time.dt
         if monitor.found[0] >= 0:
             speeds, places = _energies(system, state), system.blocks.centroid
-            refuse_beyond_bounds(scene, time, system.critical, monitor, speeds, places)
-        reads.refuse_large_rotation(system, state, t)
+            refuse_beyond_bounds(scene, time, system.blocks.critical, monitor, speeds, places)
+        refuse_large_rotation(system, state, t)
         if matters(scene):
-            refuse_large_motion(
-                scene, "the rigid blocks", reads.moved_apart(system, state), t, first
-            )
+            refuse_large_motion(scene, "the rigid blocks", moved_apart(system, state), t, first)
 
     steps = min(BLOCK_STEPS_AT_ONCE // system.blocks.count, time.steps // LOOKS)
     chunk, parts = max(LEAST_STEPS, steps) // time.stride, (state, samples, monitor)
@@ -127,20 +124,10 @@ class Plan(NamedTuple):
 
 def plan(scene: AnyScene) -> Plan:
     """Return what a run would take; raises SceneError as it would."""
-    kind, _ = modules(scene)
-    blocks = kind.blocks_of(scene)
-    time, critical = kind.clock_of(blocks)
+    blocks = blocks_of(scene)
+    time = clock_of(blocks)
     threads = thread_count(scene.numerics.dem.threads, blocks.count, blocks.dim)
-    return Plan(time, critical, blocks.inertia.size, threads)
-
-
-def modules(scene: AnyScene) -> tuple[Any, Any]:
-    """Return the module that makes blocks of a scene, and the one that reads its results."""
-    if scene.is_column:
-        return pillar, pillar_record
-    from jointwave.dem.rock_mass import system, waveforms  # with shapely, which no pillar needs
-
-    return system, waveforms
+    return Plan(time, blocks.critical, blocks.inertia.size, threads)
 
 
 def stepper(system: BlockSystem, state: State, samples: Samples) -> Callable[[int, int], None]:

@@ -26,8 +26,10 @@ from scipy.linalg import LinAlgError, cholesky_banded
 
 from jointwave.dem.columns import Columns
 from jointwave.dem.contacts import Contacts, jumps_of, springs_of
+from jointwave.dem.surroundings import EndSpring
 from jointwave.numerics.critical_step import critical_step
 
+ENOUGH_BLOCKS = 2000  # of a row of equal ones, for its critical step
 CLOSE_ENOUGH = 1e-14  # relative, to the largest eigenvalue
 
 
@@ -92,17 +94,18 @@ def critical_step_of_row(
     columns: Columns,
     masses: np.ndarray,
     local: float,
-    ends: Sequence[tuple[int, np.ndarray]],
+    springs: Sequence[EndSpring],
 ) -> float:
     """Return the critical step (s) of blocks one after the other, as `critical_time_step` has it,
-    to the last digits; ends : blocks that are held, and by what stiffness [F, F]."""
-    eta, local = columns.time_constants, 1 + local
+    to the last digits; springs : of their ends."""
+    contacts, masses = begin_of(contacts, columns, masses)
+    eta, local, last = columns.time_constants, 1 + local, len(masses) - 1
     back = np.linalg.inv(np.linalg.cholesky(masses))
 
     def band(normal: np.ndarray, shear: np.ndarray, held: float) -> np.ndarray:
         found = _coupled(contacts, columns, (normal, shear), masses.shape)
-        for block, matrix in ends:
-            found[0, block] += held * matrix
+        for one in springs:
+            found[0, min(one.block, last)] += held * one.critical
         found[0] = back @ found[0] @ back.swapaxes(1, 2)
         found[1, :-1] = back[1:] @ found[1, :-1] @ back[:-1].swapaxes(1, 2)
         return lower_band(found)
@@ -114,6 +117,24 @@ def critical_step_of_row(
     return critical_step(
         lambda a, b: local * largest_eigenvalue(a * own + b * damping), eta is not None
     )
+
+
+def begin_of(
+    contacts: Contacts, columns: Columns, masses: np.ndarray
+) -> tuple[Contacts, np.ndarray]:
+    """Return contacts and matrices of a row with the critical step of the whole: of equal blocks
+    and joints, the first; no longer one has an eigenvalue larger by 1e-6."""
+    count, eta = len(masses), columns.time_constants
+    joints, values = count - 1, [*columns.stiffest, *([] if eta is None else eta)]
+    alike = all((one[:joints] == one[0]).all() for one in values)
+    if not alike or (masses != masses[0]).any() or count <= ENOUGH_BLOCKS:
+        return contacts, masses
+    last, few = ENOUGH_BLOCKS - 1, np.r_[: ENOUGH_BLOCKS - 1, joints : len(contacts.area)]
+    pairs = np.minimum(contacts.blocks[few], [last, contacts.blocks.max()])
+    pairs[last:, 1] -= count - ENOUGH_BLOCKS
+    names = "area", "frame", "arm", "spread", "column"
+    kept = {name: getattr(contacts, name)[few] for name in names}
+    return contacts._replace(blocks=pairs, **kept), masses[:ENOUGH_BLOCKS]
 
 
 def _coupled(

@@ -36,11 +36,10 @@ def limiting(name: str, model: str | None, scene: AnyScene) -> dict[str, Any] | 
 
 def _blocks(scene: AnyScene, model: Any) -> tuple:
     """Return the squared frequencies (1/s2), masses and places of rigid blocks, and their sizes."""
-    from jointwave.dem.run import modules
     from jointwave.dem.stability import squared_frequencies
+    from jointwave.dem.prepare import blocks_of
 
-    kind, _ = modules(scene)
-    blocks = kind.blocks_of(scene)
+    blocks = blocks_of(scene)
     square = squared_frequencies(blocks.contacts, blocks.columns, blocks.masses)
     return square, blocks.inertia[:, 0], blocks.centroid, lambda i: blocks.size[i]
 

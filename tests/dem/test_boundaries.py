@@ -24,9 +24,9 @@ from jointwave.dem.boundaries import (
     resultants,
 )
 from jointwave.dem.loads import Loads, reactions
-from jointwave.dem.rock_mass.system import load_pattern
-from jointwave.dem.rock_mass.waves import incoming
 from jointwave.dem.shaking import Base, shaking
+from jointwave.dem.sides import load_pattern
+from jointwave.dem.waves import incoming
 
 SIZE = np.array([3.0, 2.0, 2.5])
 SIDES = ("left", "right", "front", "back", "bottom", "top")

@@ -7,7 +7,7 @@ import pytest
 
 from jointwave.cases.validate import validated
 from jointwave.dem.columns import points_on
-from jointwave.dem.rock_mass.system import prepared
+from jointwave.dem.prepare import prepared
 
 ASKEW = {2: [(20.0,), (75.0,), (140.0,)], 3: [(15.0, 40.0), (80.0, 100.0), (60.0, 200.0)]}
 ALONG = {2: [(0.0,), (90.0,)], 3: [(0.0, 0.0), (90.0, 0.0), (90.0, 90.0)]}

@@ -21,7 +21,7 @@ from jointwave.dem.model import (
     samples_for,
     state_at_rest,
 )
-from jointwave.dem.rock_mass.receivers import Faces, frames_of
+from jointwave.dem.receivers import Faces, frames_of
 from jointwave.joints.law import law, parts_of, table_of
 
 SIDE, DENSITY, NORMAL, SHEAR = 2.0, 2500.0, 3e9, 1.1e9

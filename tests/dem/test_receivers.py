@@ -15,7 +15,7 @@ from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.compare.runs.field_files import write_pvd
 from jointwave.dem.boundaries import freedoms as freedoms_of
-from jointwave.dem.rock_mass.receivers import (
+from jointwave.dem.receivers import (
     Faces,
     Stencil,
     everywhere,
@@ -24,8 +24,9 @@ from jointwave.dem.rock_mass.receivers import (
     stencils_in_rock,
     stencils_on_joints,
 )
-from jointwave.dem.rock_mass.record import at_points, jumps, mean_stress, quantities
-from jointwave.dem.rock_mass.snapshots import BlockFrame, BlockRecorder, corner_motion, triangles
+from jointwave.dem.rock_mass import blocks_of as rigid_blocks
+from jointwave.dem.snapshots import BlockFrame, BlockRecorder, corner_motion, triangles
+from jointwave.dem.stress import at_points, jumps, mean_stress, quantities
 from jointwave.results.rock_mass import rock_mass_dataset
 from jointwave.results.snapshots import snapshots_of
 from jointwave.results.stress import stress_components
@@ -373,23 +374,21 @@ def test_snapshots_show_whole_blocks_that_move_rigidly(dim):
 def test_snapshots_of_a_scene_in_space(tmp_path):
     """The faces of all bricks, as they move, with six stresses; displacement from the start on."""
     (scene,) = load(WALL, {"record.fields": 0.05})
-    found = blocks_of_scene(scene)
-    owner, _, pieces = found.faces(TOLERANCE)
+    found, bodies = blocks_of_scene(scene), rigid_blocks(scene).bodies
     draw, count = np.random.default_rng(8).normal, found.count
     frames = [
         BlockFrame(draw(size=(count, 6)), draw(size=(count, 6)), draw(size=(count, 6)), np.zeros(0))
         for _ in range(3)
     ]
-    recorder = BlockRecorder(scene, found, pieces, owner, lambda k: frames[k // recorder.every])
+    recorder = BlockRecorder(scene, bodies, lambda k: frames[k // recorder.every])
     times = np.arange(2 * recorder.every + 1) * scene.interval
     for k in range(len(times)):
         recorder.record_if_due(k)
     s = snapshots_of(recorder.add_to(rock_mass_dataset(scene, "dem", times, {})))
     assert s.kind == "triangle" and len(s.time) == 3 and s.stress.shape[2] == 6
     assert len(np.unique(s.block)) == count and not s.displacement[0].any()
-    block = np.repeat(owner, np.diff(pieces.first))
-    arm = pieces.corners - found.centroid[block]
-    own = frames[2].velocity[block]
+    arm = bodies.corners - found.centroid[bodies.owner]
+    own = frames[2].velocity[bodies.owner]
     np.testing.assert_allclose(s.velocity[2], own[:, :3] + np.cross(own[:, 3:], arm), atol=1e-12)
     np.testing.assert_array_equal(s.stress[1], frames[1].stress[s.block])
     path = write_pvd(tmp_path / "wall.pvd", s)

@@ -11,7 +11,7 @@ from jointwave.dem import simulate
 from jointwave.dem.bounds import motion_of_contacts
 from jointwave.dem.leapfrog import march
 from jointwave.dem.model import samples_for, state_at_rest
-from jointwave.dem.rock_mass.system import prepared
+from jointwave.dem.prepare import prepared
 
 LAW = {"normal_stiffness": 2e10, "shear_stiffness": 8e9}
 SLIPS = {"friction_angle": 20.0, "tension": False}

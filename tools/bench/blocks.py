@@ -12,7 +12,7 @@ from timing import Timed, in_turns, side_by_side
 
 from jointwave.dem.leapfrog import march
 from jointwave.dem.model import Model, samples_for, state_at_rest
-from jointwave.dem.rock_mass.system import prepared
+from jointwave.dem.prepare import prepared
 
 COULOMB = ELASTIC | {"friction_angle": 30.0, "cohesion": 1e5}
 PRESSURE = {"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1e5}

@@ -19,7 +19,7 @@ from lammps_bonds import BODIES, SPHERES, bodies, bpm_bonds, stepping
 from jointwave import cases
 from jointwave.dem.leapfrog import march
 from jointwave.dem.model import Model, samples_for, state_at_rest
-from jointwave.dem.rock_mass.system import prepared
+from jointwave.dem.prepare import prepared
 from jointwave.joints.law import law_of
 
 SIDES = (32, 100, 316)  # bodies along each side

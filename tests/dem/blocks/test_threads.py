@@ -5,7 +5,7 @@ import pytest
 from jointwave.cases.errors import InterruptedRun, StoppedError
 from jointwave.dem import simulate
 from jointwave.dem.parts import divided
-from jointwave.dem.rock_mass.system import prepared
+from jointwave.dem.prepare import prepared
 
 SLIDES = {"friction_angle": 10.0, "cohesion": 2e5, "residual_cohesion": 0.0, "damping_ratio": 0.05}
 UNDER_STRESS = {"xx": 2e6, "yy": 3e6}

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from jointwave.dem.rock_mass.receivers import Faces, Receivers, frames_of
+from jointwave.dem.receivers import Faces, Receivers, frames_of
 from jointwave.results.stress import stress_components
 
 LEVEL = 1e-9  #: of a unit normal: a component below it is round-off

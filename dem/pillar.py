@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -15,7 +16,11 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.dem.build import RigidBlocks
 from jointwave.dem.columns import Columns
 from jointwave.dem.contacts import Contacts
+from jointwave.dem.ends import Face, surroundings_of, under_weight
+from jointwave.dem.sections import Sections, sections_of
+from jointwave.dem.snapshots import Bodies
 from jointwave.joints.law import law, stiffest
+from jointwave.results.subcells import CORNERS
 
 ENDS = "start", "end"
 CUT = 400  # bytes of a block while a pillar is cut
@@ -32,40 +37,71 @@ class BlocksOfPillar(RigidBlocks):
     scene: Scene
     properties: Properties
 
-    @property
-    def size(self) -> np.ndarray:
-        """The thickness of each block [N], m."""
-        return np.diff(self.properties.contact_y)
+    @cached_property
+    def receivers(self) -> Sections:
+        """What is recorded."""
+        return sections_of(self.scene.record, self.properties, len(self.contacts.walls))
 
     @property
-    def along(self) -> int:
-        """Which axis is y."""
-        return self.dim // 2
+    def bodies(self) -> Bodies:
+        """Its blocks in space, as snapshots show them: hexahedra."""
+        sides = np.stack(np.broadcast_arrays(self.properties.side, self.size), axis=1)[:, [0, 1, 0]]
+        arms = (np.array(CORNERS["hexahedron"]) - 0.5) * sides[:, None]
+        block, centres = np.arange(self.count), np.zeros((self.count, 1, 3))
+        centres[:, 0, 1] = self.properties.centre_y
+        return Bodies(
+            corners=(centres + arms).reshape(-1, 3),
+            arms=arms.reshape(-1, 3),
+            owner=np.repeat(block, 8),
+            kind="hexahedron",
+            cells=np.arange(8 * self.count).reshape(-1, 8),
+            block=block,
+            joints=None,
+            from_start=False,
+        )
 
 
 def blocks_of(scene: Scene) -> BlocksOfPillar:
     """Return the rigid blocks of a pillar; raises SceneError for more than memory holds."""
     refuse_beyond_memory(scene, {"pillar.block": CUT * scene.block_count})
     p, dim = calibrate(scene), 3 if is_spatial(scene) else 1
+    count, along = p.block_count, dim // 2
     axes, turns = ([0, 1, 2] if dim == 3 else [1]), dim == 3 and scene.motion.rotation != "none"
-    gravity, stress = np.zeros(3), None
+    gravity, stress, pressed = np.zeros(3), None, 0.0
     if scene.gravity is not None:
         gravity = scene.gravity.acceleration * np.array(scene.gravity.direction)
     if scene.prestress is not None:
         stress = np.zeros((dim, dim))
-        stress[dim // 2, dim // 2] = scene.prestress.normal
-    centroid = np.zeros((p.block_count, dim))
-    centroid[:, dim // 2] = p.centre_y
-    contacts = contacts_of(scene, p, dim)
+        stress[along, along] = scene.prestress.normal
+        pressed = p.area * abs(scene.prestress.normal)
+    centroid = np.zeros((count, dim))
+    centroid[:, along] = p.centre_y
+    contacts, masses = contacts_of(scene, p, dim), masses_of(p, dim, turns)
+    columns = columns_of(scene, p, contacts, turns)
+    spread = columns.bending[0] * p.area / 12 * np.eye(dim - 1)
+    face, placed = Face(p.area, spread, masses.shape[1] - dim), None
+    moved = under_weight(scene, p, masses[:, 0, 0] * gravity[1])
+    if moved is not None:
+        placed = np.zeros(masses.shape[:2])
+        placed[:, along] = moved
     return BlocksOfPillar(
         scene=scene,
         centroid=centroid,
+        size=np.diff(p.contact_y),
         contacts=contacts,
-        columns=columns_of(scene, p, contacts, turns),
-        masses=masses_of(p, dim, turns),
+        columns=columns,
+        masses=masses,
         gravity=gravity[axes],
         prestress=stress,
+        pressed=pressed,
+        around=surroundings_of(scene, p, centroid, face, stress),
+        static_steps=40_000 + 80_000 * count,
+        corners=8,
+        counted_by="pillar.block",
         finite=turns and scene.motion.rotation == "finite",
+        composed=scene.numerics.dem.scheme == "fourth-order",
+        in_row=True,
+        placed=placed,
         properties=p,
     )
 

@@ -22,13 +22,16 @@ from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.dem.build import RigidBlocks
 from jointwave.dem.columns import Columns, Rule
-from jointwave.dem.rock_mass.contacts import contacts_of
-from jointwave.dem.rock_mass.receivers import Faces
-from jointwave.dem.stability import critical_time_step
+from jointwave.dem.receivers import Faces, receivers_of
+from jointwave.dem.rock_contacts import contacts_of
+from jointwave.dem.sides import surroundings_of
+from jointwave.dem.snapshots import Bodies, triangles
+from jointwave.dem.waveforms import PointsAndJoints
 from jointwave.joints.law import law, stiffest, uniform
 
 #: Rotations of a block, by dimension.
 ROTATIONS = {1: 0, 2: 1, 3: 3}
+CORNERS = {2: 4, 3: 24}  # of a block, in snapshots
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,23 +47,40 @@ class BlocksOfRockMass(RigidBlocks):
     sides: tuple[str, ...]
     joints: RigidJoints
 
-    @property
-    def size(self) -> np.ndarray:
-        """The root of the area or volume of each block [N], m."""
-        return self.cut.volume ** (1 / self.dim)
-
-    @property
-    def critical(self) -> float:
-        """A lower bound of the critical step, s."""
-        local = self.scene.damping.local or 0.0
-        return critical_time_step(self.contacts, self.columns, self.masses, local)
-
     @cached_property
     def faces(self) -> Faces:
         """The contacts as they are read."""
         met, excess = self.contacts, np.append(self.joints.excess, np.zeros((2, 1)), axis=1)
         own = excess[:, np.minimum(met.column, excess.shape[1] - 1)].T
         return Faces(met.blocks, met.area, met.frame, met.arm, own)
+
+    @cached_property
+    def receivers(self) -> PointsAndJoints:
+        """What is recorded; raises SceneError for a point outside the rock."""
+        return PointsAndJoints(*receivers_of(self.scene, self.cut, self.faces, self.onto))
+
+    @property
+    def bodies(self) -> Bodies:
+        """Its blocks as snapshots show them: in the plane polygons and the slip of joints, in space
+        the faces of polyhedra, in triangles."""
+        cut, contacts, joints = self.cut, self.cut.contacts, None
+        if self.dim == 2:
+            of, pieces = np.arange(cut.count), cut.outlines
+            shown = np.flatnonzero(contacts.of_joints(len(self.scene.joint_sets)))
+            joints = contacts.ends[shown], shown
+        else:
+            of, _, pieces = cut.faces(shape_of(self.scene.domain).tolerance)
+        owner, (cells, piece) = np.repeat(of, np.diff(pieces.first)), triangles(pieces)
+        return Bodies(
+            corners=pieces.corners,
+            arms=pieces.corners - cut.centroid[owner],
+            owner=owner,
+            kind="triangle",
+            cells=cells,
+            block=of[piece],
+            joints=joints,
+            from_start=True,
+        )
 
 
 def blocks_of(scene: RockMass) -> BlocksOfRockMass:
@@ -73,17 +93,26 @@ def blocks_of(scene: RockMass) -> BlocksOfRockMass:
         raise SceneError(scene.where, error.key, None, str(error)) from None
     joints = rigid_joints(scene, further, kinds)
     density = np.array([one.density for one in rocks_of(scene)])[cut.body.region]
-    gravity, stress = np.zeros(cut.body.dim), scene.prestress
+    gravity, stress, pressed, dim = np.zeros(cut.body.dim), None, 0.0, cut.body.dim
     if scene.gravity is not None:
         gravity = scene.gravity.acceleration * np.array(scene.gravity.direction)
+    if scene.prestress is not None:
+        stress = np.array(scene.prestress.tensor)
+        pressed = float(np.abs(stress).max() * cut.boundary.area.sum())
     return BlocksOfRockMass(
         scene=scene,
         centroid=cut.centroid,
+        size=cut.volume ** (1 / dim),
         contacts=contacts,
         columns=columns(scene, joints, others),
         masses=masses_of(cut, density),
         gravity=gravity,
-        prestress=None if stress is None else np.array(stress.tensor),
+        prestress=stress,
+        pressed=pressed,
+        around=surroundings_of(scene, cut, sides),
+        static_steps=40_000 + 40_000 * int(np.sqrt(cut.count)),
+        corners=CORNERS[dim],
+        counted_by="numerics.dem.block",
         cut=cut,
         sides=sides,
         joints=joints,
@@ -102,13 +131,6 @@ def masses_of(cut: Cut, density: np.ndarray) -> np.ndarray:
     elif dim == 3:
         found[:, 3:, 3:] = polar[:, None, None] * np.eye(3) - second
     return density[:, None, None] * found
-
-
-def relaxed(scene: RockMass) -> bool:
-    """Return whether a scene asks for a static state, by dynamic relaxation."""
-    gravity, quiet = scene.gravity, bool(scene.boundaries.sides("quiet"))
-    weighed = gravity is not None and (gravity.static or quiet)
-    return weighed or scene.prestress is not None
 
 
 def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:

@@ -15,7 +15,7 @@ from jointwave.cases.partition.regions import ROCK, rocks_of
 from jointwave.cases.schema.joint_set import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.dem.contacts import Contacts
-from jointwave.dem.rock_mass.receivers import frames_of
+from jointwave.dem.receivers import frames_of
 
 
 def contacts_of(

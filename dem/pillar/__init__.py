@@ -1,1 +1,0 @@
-"""Pillars as rigid blocks: from their scene to the model, and from its samples to results."""

@@ -1,0 +1,119 @@
+"""From a scene to blocks ready to run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from jointwave.cases.run_memory import (
+    load_bytes,
+    refuse_beyond_memory,
+    snapshot_bytes,
+    waveform_bytes,
+)
+from jointwave.cases.sampling import Clock, clock
+from jointwave.cases.scene_type import AnyScene
+from jointwave.dem import pillar
+from jointwave.dem.boundaries import dashpots
+from jointwave.dem.build import RigidBlocks, chunks, constants, form_of
+from jointwave.dem.composition import KICKS, table
+from jointwave.dem.loads import Loads
+from jointwave.dem.model import Held, Model, held_by
+from jointwave.dem.parts import thread_count
+from jointwave.dem.shaking import Shaking, shaking
+from jointwave.dem.surroundings import DashpotsOfBase
+from jointwave.dem.system import BlockSystem
+from jointwave.joints.law import table_of
+
+if TYPE_CHECKING:
+    from jointwave.cases.incident import IncidentField
+
+#: Bytes a block, with its contacts and all that makes them, by dimension, and for each of their
+#: points.
+OF_BLOCK, OF_POINT = {1: 500, 2: 2000, 3: 2000}, 60
+
+
+def prepared(scene: AnyScene, incident: IncidentField | None = None) -> BlockSystem:
+    """Return a scene ready to run; raises SceneError if it cannot run.
+
+    incident : the field of waves that quiet sides take in; absent: that of the scene's waves in
+    rock without joints.
+    """
+    blocks = blocks_of(scene)
+    time, around = clock_of(blocks), blocks.around
+    moving = shaking(around.bases, blocks.contacts.walls, blocks.dim, time.dt)
+    loads, resistance, bearing = loads_of(blocks, time, moving, incident)
+    form, own = form_of(blocks), constants(blocks, time.dt, blocks.masses)
+    if loads.composed:
+        own, form = own._replace(stages=table(time.dt)), form._replace(stages=len(KICKS))
+    receivers = blocks.receivers
+    model = Model(
+        form=form,
+        blocks=own,
+        chunks=chunks(blocks),
+        laws=table_of(blocks.columns.law),
+        held=held(blocks, loads, resistance, time.dt, own.keep) if form.held else None,
+        places=receivers.places,
+        watched=receivers.watched,
+        walls=len(blocks.contacts.walls),
+    )
+    threads = thread_count(scene.numerics.dem.threads, blocks.count, blocks.dim)
+    return BlockSystem(blocks, time, model, receivers, loads, resistance, bearing, moving, threads)
+
+
+def blocks_of(scene: AnyScene) -> Any:
+    """Return a scene as `build.RigidBlocks`; raises SceneError if they cannot be made."""
+    if scene.is_column:
+        return pillar.blocks_of(scene)
+    from jointwave.dem import rock_mass  # with shapely, which no pillar needs
+
+    return rock_mass.blocks_of(scene)
+
+
+def clock_of(blocks: RigidBlocks) -> Clock:
+    """Return the clock of a run; raises SceneError for an unstable step and for a run that does not
+    fit in memory."""
+    scene, numerics, dim = blocks.scene, blocks.scene.numerics.dem, blocks.dim
+    time = clock(scene, blocks.critical, numerics.step_fraction, numerics.allow_unstable, "dem")
+    of_block = OF_BLOCK[dim] + OF_POINT * form_of(blocks).points * (dim > 1)
+    parts = {
+        blocks.counted_by: of_block * blocks.count,
+        "record.interval": waveform_bytes(scene, dim > 1),
+        "numerics.dem.step_fraction": load_bytes(scene, time.steps + time.stride),
+        "record.fields": snapshot_bytes(scene, blocks.corners * blocks.count),
+    }
+    refuse_beyond_memory(scene, parts)
+    return time
+
+
+def loads_of(
+    blocks: RigidBlocks, time: Clock, moving: Shaking | None, incident: IncidentField | None
+) -> tuple[Loads, np.ndarray, np.ndarray]:
+    """Return the external forces on blocks, the resistance of the dashpots there, as
+    `boundaries.dashpots` has it, then that of unit dashpots where they bear the weight."""
+    around, rows = blocks.around, blocks.around.rows
+    row = np.searchsorted(rows, around.points.block)
+    resistance, bearing = (
+        dashpots(around.points, one, row, len(rows)) for one in (around.impedance, around.borne)
+    )
+    waves = [] if around.waves is None else around.waves(incident, rows, time)
+    if moving is not None and around.moves.any():
+        k = int(row[around.moves][0])
+        waves.append(DashpotsOfBase(k, resistance[k][:, : blocks.dim], moving))
+    return (
+        Loads(rows, around.patterns, waves, time, blocks.onto, blocks.composed),
+        resistance,
+        bearing,
+    )
+
+
+def held(blocks: RigidBlocks, loads: Loads, resistance: np.ndarray, dt: float, keep: float) -> Held:
+    """Return the blocks that something acts on from outside, for steps of dt, s; keep : as in
+    `model.held_by`."""
+    dashpot, springs = loads.onto @ resistance @ loads.onto.T, None
+    if blocks.around.springs:
+        springs = np.zeros((len(dashpot), 3, *dashpot.shape[1:]))
+        for one in blocks.around.springs:
+            springs[np.searchsorted(loads.rows, one.block)] = one.at(dt)
+    return held_by(dashpot, loads.rows, blocks.masses, dt, keep, springs)

@@ -1,0 +1,42 @@
+"""Finite rotations of blocks as they are read: unit quaternions, scalar last."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jointwave.dem.build import RigidBlocks
+from jointwave.dem.model import Samples
+
+
+def turning(quaternion: np.ndarray, r: np.ndarray) -> np.ndarray:
+    """Return what unit quaternions [..., 4] add to vectors [..., 3] that they turn.
+
+    Rr - r = 2 q x (q x r + w r), which keeps the digits of small turns.
+    """
+    q, w = quaternion[..., :3], quaternion[..., 3:]
+    return 2 * np.cross(q, np.cross(q, r) + w * r)
+
+
+def velocity_of(
+    blocks: RigidBlocks, samples: Samples, places: np.ndarray | slice = slice(None)
+) -> np.ndarray:
+    """Return the velocity of recorded blocks [r, F, n], m/s and rad/s; with finite rotations
+    samples have angular momenta. places : the blocks [r]."""
+    if not blocks.finite:
+        return samples.velocity
+    turn = samples.displacement[:, 3:].swapaxes(1, 2)
+    momentum, back = samples.velocity[:, 3:].swapaxes(1, 2), turn * [-1, -1, -1, 1]
+    own = (momentum + turning(back, momentum)) / blocks.inertia[places, None, 3:]
+    spin = own + turning(turn, own)
+    return np.concatenate([samples.velocity[:, :3], spin.swapaxes(1, 2)], axis=1)
+
+
+def rotation_vectors(quaternions: np.ndarray) -> np.ndarray:
+    """Return the rotation vectors [..., 3] (rad, up to pi) of quaternions [..., 4]."""
+    from scipy.spatial.transform import Rotation  # slow to import
+
+    if not quaternions.size:
+        return quaternions[..., :3]
+    lengths = np.linalg.norm(quaternions, axis=-1, keepdims=True)
+    turns = Rotation.from_quat((quaternions / lengths).reshape(-1, 4))
+    return turns.as_rotvec().reshape(*quaternions.shape[:-1], 3)
