@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
 from jointwave.cases.material.contact_points import bending, points_of, vertex_points
+from jointwave.cases.material.strength import strength_of
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.joint import JointLaw
 from jointwave.dem.contacts import Contacts
-from jointwave.joints.law import Law
+from jointwave.joints.law import Law, law, stiffest, uniform
 
 #: Corners of an edge and a square, by the number of tangents.
 AROUND = {1: np.array([[-1], [1]]), 2: np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])}
@@ -21,10 +25,9 @@ class Columns(NamedTuple):
     """The law in its columns, and K_n and K_s of each [columns], Pa/m, as they are.
 
     stiffest : K_n and K_s of joints that have closed as far as is in reach, and slide where that
-    lifts them [2, columns], Pa/m.
-    time_constants : viscosity over stiffness, normal and in shear [2, columns], s; None without
-    dashpots. rules : of points and their number, one for all or one a column. fails : whether
-    points have a history of their own.
+    lifts them [2, columns], Pa/m. time_constants : viscosity over stiffness, normal and in shear
+    [2, columns], s; None without dashpots. rules : of points and their number, one for all or one a
+    column. fails : whether points have a history of their own.
     """
 
     law: Law
@@ -39,6 +42,37 @@ class Columns(NamedTuple):
     def bending(self) -> np.ndarray:
         """Part of a face's second moments that its points have, by column."""
         return np.resize([bending(*rule) for rule in self.rules], len(self.normal))
+
+
+def columns_of(
+    scene: AnyScene,
+    laws: Sequence[JointLaw],
+    which: np.ndarray,
+    stiffness: np.ndarray,
+    *,
+    eta: np.ndarray | None,
+    rock: np.ndarray | None,
+    rules: list[Rule],
+    shears: bool = True,
+) -> Columns:
+    """Return the law of contacts in columns, each of one of some joint laws (int array [columns]).
+
+    stiffness : normal and in shear [2, columns], Pa/m. eta : viscosity over these, s; None without
+    dashpots. rock : what rock has of the compliance, m/Pa; None where no joint stiffens. rules : as
+    in `Columns`. shears : whether there is motion along joints.
+    """
+    (normal, shear), tension = stiffness, np.array([one.tension is not False for one in laws])
+    strengths, tension = strength_of(laws, which).strengths(shears), tension[which]
+    across = shear if shears else None
+    found = law(normal, None, tension, shear_stiffness=across, rock_compliance=rock, **strengths)
+    if eta is not None:
+        found = found._replace(
+            normal_viscosity=uniform(eta[0] * normal),
+            shear_viscosity=uniform(eta[1] * shear) if shears else None,
+        )
+    most = [np.resize(0.0 if one is None else one, len(normal)) for one in stiffest(found, scene)]
+    fails = not tension.all() or bool(strengths)
+    return Columns(found, normal, shear * shears, np.array(most), eta, rules, fails)
 
 
 def points_on(contacts: Contacts, rules: list[Rule]) -> np.ndarray:

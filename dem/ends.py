@@ -168,12 +168,9 @@ def under_weight(scene: Scene, p: Properties, weight: np.ndarray) -> np.ndarray 
     elif held[0]:
         force -= force[-1]
     before = scene.prestress.normal if scene.prestress else 0.0
-    gaps = gaps_under(p, before + force[1:-1] / p.area) - gaps_under(p, before)
-    moved = np.append(0.0, np.cumsum(gaps))
-    return moved + (-force[0] / walls[0] if held[0] else force[-1] / walls[1] - moved[-1])
-
-
-def gaps_under(p: Properties, stress: float | np.ndarray) -> np.ndarray:
-    """Return the gaps of joints whose springs carry a normal stress (Pa), or each its own, m."""
     law = Law(p.stiffness, rock_compliance=p.rock_compliance, **p.strengths(shears=False))
-    return gap_under(law, parts_of(law), stress)
+    after, rest = (
+        gap_under(law, parts_of(law), one) for one in (before + force[1:-1] / p.area, before)
+    )
+    moved = np.append(0.0, np.cumsum(after - rest))
+    return moved + (-force[0] / walls[0] if held[0] else force[-1] / walls[1] - moved[-1])

@@ -345,3 +345,8 @@ def samples_for(model: Model, count: int) -> Samples:
         closure = np.zeros((len(model.held.block), form.freedoms, count))
     energy = np.zeros((len(TERMS), count)) if form.ledger else None
     return Samples(displacement, velocity, contact, energy, closure)
+
+
+def first_of(samples: Samples, count: int) -> Samples:
+    """Return the first of samples."""
+    return Samples._make(None if one is None else one[..., :count] for one in samples)

@@ -9,17 +9,15 @@ import numpy as np
 
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.material.calibrate import Properties, calibrate
-from jointwave.cases.material.strength import strength_of
 from jointwave.cases.run_memory import refuse_beyond_memory
 from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.scene import Scene
 from jointwave.dem.build import RigidBlocks
-from jointwave.dem.columns import Columns
+from jointwave.dem.columns import Columns, columns_of
 from jointwave.dem.contacts import Contacts
 from jointwave.dem.ends import Face, surroundings_of, under_weight
 from jointwave.dem.sections import Sections, sections_of
 from jointwave.dem.snapshots import Bodies
-from jointwave.joints.law import law, stiffest
 from jointwave.results.subcells import CORNERS
 
 ENDS = "start", "end"
@@ -77,7 +75,7 @@ def blocks_of(scene: Scene) -> BlocksOfPillar:
     centroid = np.zeros((count, dim))
     centroid[:, along] = p.centre_y
     contacts, masses = contacts_of(scene, p, dim), masses_of(p, dim, turns)
-    columns = columns_of(scene, p, contacts, turns)
+    columns = columns_of_pillar(scene, p, contacts, turns)
     spread = columns.bending[0] * p.area / 12 * np.eye(dim - 1)
     face, placed = Face(p.area, spread, masses.shape[1] - dim), None
     moved = under_weight(scene, p, masses[:, 0, 0] * gravity[1])
@@ -153,35 +151,22 @@ def contacts_of(scene: Scene, p: Properties, dim: int) -> Contacts:
     )
 
 
-def columns_of(scene: Scene, p: Properties, contacts: Contacts, turns: bool) -> Columns:
-    """Return the law of the contacts, each in a column of its own where they differ."""
-    dim, count = contacts.frame.shape[1], p.block_count
+def columns_of_pillar(scene: Scene, p: Properties, contacts: Contacts, turns: bool) -> Columns:
+    """Return the law of the contacts, each in a column of its own."""
     walls = [p.at_start if one == "start" else p.at_end for one in contacts.walls]
-    rest = np.zeros(len(walls))
     normal = np.append(p.stiffness, [one.wall_stiffness for one in walls])
     shear = np.append(p.shear_stiffness, [one.wall_shear_stiffness for one in walls])
-    eta, rock = p.joint_time_constant, p.rock_compliance
-    eta = None if eta is None else np.append(eta, rest)
-    which = np.full(count - 1 + len(walls), 1 + len(scene.layers))  # of no joint
-    which[: count - 1][~p.weld], which[p.soft] = 0, 1 + np.arange(len(p.soft))
-    laws = [scene.joints, *scene.layers, JointLaw()]
-    strengths = strength_of(laws[: which.max() + 1], which).strengths(shears=dim > 1)
-    found = law(
-        normal,
-        eta,
-        np.append(p.tension, rest == 0),
-        shear_stiffness=shear if dim > 1 else None,
-        rock_compliance=None if rock is None else np.append(rock, rest),
-        **strengths,
-    )
-    most = [np.resize(0.0 if one is None else one, len(normal)) for one in stiffest(found, scene)]
+    eta, rock, rest = p.joint_time_constant, p.rock_compliance, np.zeros(len(walls))
+    which = np.full(len(normal), 1 + len(scene.layers))  # of no joint
+    which[: len(p.weld)][~p.weld], which[p.soft] = 0, 1 + np.arange(len(p.soft))
     rule = scene.joints.point_rule, scene.joints.contact_points
-    return Columns(
-        law=found,
-        normal=normal,
-        shear=shear * (dim > 1),
-        stiffest=np.array(most),
-        time_constants=None if eta is None else np.stack([eta, eta]),
+    return columns_of(
+        scene,
+        [scene.joints, *scene.layers, JointLaw()][: which.max() + 1],
+        which,
+        np.stack([normal, shear]),
+        eta=None if eta is None else np.tile(np.append(eta, rest), (2, 1)),
+        rock=None if rock is None else np.append(rock, rest),
         rules=[rule if turns else ("midpoint", 1)],
-        fails=not p.tension.all() or bool(strengths),
+        shears=contacts.frame.shape[1] > 1,
     )

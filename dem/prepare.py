@@ -14,13 +14,13 @@ from jointwave.cases.run_memory import (
 )
 from jointwave.cases.sampling import Clock, clock
 from jointwave.cases.scene_type import AnyScene
-from jointwave.dem import pillar
 from jointwave.dem.boundaries import dashpots
 from jointwave.dem.build import RigidBlocks, chunks, constants, form_of
 from jointwave.dem.composition import KICKS, table
 from jointwave.dem.loads import Loads
 from jointwave.dem.model import Held, Model, held_by
 from jointwave.dem.parts import thread_count
+from jointwave.dem.pillar import blocks_of as row_of
 from jointwave.dem.shaking import Shaking, shaking
 from jointwave.dem.surroundings import DashpotsOfBase
 from jointwave.dem.system import BlockSystem
@@ -65,10 +65,10 @@ def prepared(scene: AnyScene, incident: IncidentField | None = None) -> BlockSys
 def blocks_of(scene: AnyScene) -> Any:
     """Return a scene as `build.RigidBlocks`; raises SceneError if they cannot be made."""
     if scene.is_column:
-        return pillar.blocks_of(scene)
-    from jointwave.dem import rock_mass  # with shapely, which no pillar needs
+        return row_of(scene)
+    from jointwave.dem.rock_mass import blocks_of as cut  # with shapely, which no pillar needs
 
-    return rock_mass.blocks_of(scene)
+    return cut(scene)
 
 
 def clock_of(blocks: RigidBlocks) -> Clock:
@@ -98,7 +98,7 @@ def loads_of(
         dashpots(around.points, one, row, len(rows)) for one in (around.impedance, around.borne)
     )
     waves = [] if around.waves is None else around.waves(incident, rows, time)
-    if moving is not None and around.moves.any():
+    if moving is not None and around.impedance[around.moves].any():
         k = int(row[around.moves][0])
         waves.append(DashpotsOfBase(k, resistance[k][:, : blocks.dim], moving))
     return (

@@ -112,7 +112,7 @@ def slowed(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarr
 
 
 class BlockRelaxation:
-    """The blocks under their static forces: `dem.static.System`.
+    """The blocks under their static forces, as `dem.static` relaxes them.
 
     Where a wall holds its group, a block has the mass that gives it the critical step of the
     stiffest: only weights and stiffness count, and no small block holds up the others (Underwood,

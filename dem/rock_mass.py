@@ -13,7 +13,6 @@ from jointwave.cases.geometry.cell_complex import GeometryError
 from jointwave.cases.material.contact_points import CUT
 from jointwave.cases.material.rigid_blocks import RigidJoints, rigid_joints
 from jointwave.cases.material.rock_mass import Stiffness, set_time_constants
-from jointwave.cases.material.strength import strength_of
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.regions import rocks_of
 from jointwave.cases.partition.scene import blocks_of_scene
@@ -21,13 +20,12 @@ from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.dem.build import RigidBlocks
-from jointwave.dem.columns import Columns, Rule
+from jointwave.dem.columns import Columns, Rule, columns_of
 from jointwave.dem.receivers import Faces, receivers_of
 from jointwave.dem.rock_contacts import contacts_of
 from jointwave.dem.sides import surroundings_of
 from jointwave.dem.snapshots import Bodies, triangles
 from jointwave.dem.waveforms import PointsAndJoints
-from jointwave.joints.law import law, stiffest, uniform
 
 #: Rotations of a block, by dimension.
 ROTATIONS = {1: 0, 2: 1, 3: 3}
@@ -104,7 +102,7 @@ def blocks_of(scene: RockMass) -> BlocksOfRockMass:
         centroid=cut.centroid,
         size=cut.volume ** (1 / dim),
         contacts=contacts,
-        columns=columns(scene, joints, others),
+        columns=columns_of_sets(scene, joints, others),
         masses=masses_of(cut, density),
         gravity=gravity,
         prestress=stress,
@@ -133,30 +131,23 @@ def masses_of(cut: Cut, density: np.ndarray) -> np.ndarray:
     return density[:, None, None] * found
 
 
-def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
+def columns_of_sets(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
     """Return the law of a scene's contacts.
 
     joints : of the sets. others : of further contacts, in separate columns, always linear.
     """
     sets, made = scene.joint_sets, len(joints.normal)
     normal = np.concatenate([joints.normal, others.normal])
-    shear = np.concatenate([joints.shear, others.shear])
+    stiffness = np.stack([normal, np.concatenate([joints.shear, others.shear])])
     which = np.full(len(normal), len(sets))
     which[:made] = np.minimum(joints.kinds[:, 0], len(sets))
-    tension = np.array([*(one.tension is not False for one in sets), True])[which]
-    strengths = strength_of([*sets, JointLaw()], which).strengths()
-    stiffens, rock = "maximum_closure" in strengths, None
-    if stiffens:  # rock's share of the compliance, at most all but a billionth of it
+    rock = None
+    if any(one.maximum_closure is not None for one in sets):  # at most all but a billionth of it
         rock = np.minimum(np.resize(joints.excess[0], len(normal)), (1 - 1e-9) / normal)
         rock[which == len(sets)] = 0.0
-    found = law(normal, None, tension, shear_stiffness=shear, rock_compliance=rock, **strengths)
-    eta = _time_constants(scene, normal, shear, which)
-    if eta is not None:
-        viscosities = uniform(eta[0] * normal), uniform(eta[1] * shear)
-        found = found._replace(normal_viscosity=viscosities[0], shear_viscosity=viscosities[1])
-    fails = not tension.all() or bool(strengths)
-    most = np.array([np.resize(one, len(normal)) for one in stiffest(found, scene)])
-    return Columns(found, normal, shear, most, eta, _rules(scene, which), fails)
+    eta, laws = _time_constants(scene, normal, stiffness[1], which), [*sets, JointLaw()]
+    rules = _rules(scene, which)
+    return columns_of(scene, laws, which, stiffness, eta=eta, rock=rock, rules=rules)
 
 
 def _time_constants(

@@ -17,7 +17,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.damping import NOT_OF_BLOCKS
 from jointwave.dem.bounds import highest_energy, moved_apart, refuse_large_rotation
 from jointwave.dem.leapfrog import make_stepper
-from jointwave.dem.model import Samples, State, samples_for, state_at_rest
+from jointwave.dem.model import Samples, State, first_of, samples_for, state_at_rest
 from jointwave.dem.parts import thread_count
 from jointwave.dem.prepare import blocks_of, clock_of, prepared
 from jointwave.dem.relaxation import start
@@ -72,8 +72,7 @@ def simulate(
         found = system.receivers.dataset(
             system,
             state,
-            samples,
-            count,
+            first_of(samples, count),
             model="rigid blocks",
             dt=time.dt,
             critical_dt=system.blocks.critical,

@@ -11,7 +11,7 @@ import xarray as xr
 from jointwave.cases.geometry.measure import Outlines
 from jointwave.dem.boundaries import freedoms
 from jointwave.dem.model import State
-from jointwave.dem.spin import turning, velocity_of
+from jointwave.dem.readings import turning, velocity_of
 from jointwave.dem.system import BlockSystem
 from jointwave.results.snapshots import (
     SnapshotRecorder,

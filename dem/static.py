@@ -1,4 +1,4 @@
-"""Static states by dynamic relaxation, for any engine: damped motion until equilibrium.
+"""Static states by dynamic relaxation: damped motion until equilibrium.
 
 Mass-proportional damping alpha is critical for a mode omega at alpha = 2 omega. The mode that still
 moves shows itself in the change of displacement du and of unbalanced force dF over a few steps,
@@ -11,7 +11,7 @@ for Transient Analysis (1983).
 """
 
 from math import sqrt
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -28,37 +28,6 @@ PATIENCE = 80
 STEADY = 0.9  # of a way to that in the same time before: 1 at a constant speed, 3 from rest
 
 
-class System(Protocol):
-    """The system to be relaxed. Vectors have every freedom, displacements and rotations."""
-
-    @property
-    def mass(self) -> np.ndarray:
-        """Masses and moments of inertia, kg and kg m2."""
-
-    @property
-    def scale(self) -> float:
-        """The largest force at work, N: the weight of the pillar or what its prestress carries."""
-
-    @property
-    def most_steps(self) -> int:
-        """The largest number of steps."""
-
-    def advance(self, steps: int, alpha: float) -> None:
-        """Take steps under mass-proportional damping alpha (1/s), a stable step long."""
-
-    def unbalanced(self) -> np.ndarray:
-        """Return the net force (N) and moment (N m) on every freedom."""
-
-    def displacement(self) -> np.ndarray:
-        """Return displacements (m) and rotations (rad)."""
-
-    def stop(self) -> None:
-        """Set all velocities to zero."""
-
-    def fastest(self, change: np.ndarray) -> str:
-        """Return the block that moves farthest in a change of displacement, in words."""
-
-
 class Rest(NamedTuple):
     """How a static state was reached: steps taken, largest unbalanced force over the scale; moving,
     the block that moves ever farther, None where none does."""
@@ -73,7 +42,7 @@ class Rest(NamedTuple):
         return {"static_steps": self.steps, "static_out_of_balance": self.ratio}
 
 
-def settle(scene: AnyScene, system: System, unborne: str = "") -> Rest:
+def settle(scene: AnyScene, system: Any, unborne: str = "") -> Rest:
     """Bring a scene's blocks to rest under gravity and prestress.
 
     unborne : what to do where sudden gravity does not come to rest on sides that bear it. Raises
@@ -104,7 +73,7 @@ def _why(rest: Rest, tolerance: float, remedy: str) -> str:
     )
 
 
-def relax(system: System, tolerance: float, most_steps: int) -> Rest:
+def relax(system: Any, tolerance: float, most_steps: int) -> Rest:
     """Relax a system until its out-of-balance ratio is within the tolerance.
 
     It ends earlier after `most_steps`, or once the ratio no longer falls and the system moves: it
@@ -145,7 +114,7 @@ class Damped:
     force : unbalanced, on every freedom, N and N m.
     """
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: Any) -> None:
         self.system, self.alpha = system, 0.0
         self.u, self.force = system.displacement().copy(), system.unbalanced().copy()
 

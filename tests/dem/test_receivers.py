@@ -26,7 +26,7 @@ from jointwave.dem.receivers import (
 )
 from jointwave.dem.rock_mass import blocks_of as rigid_blocks
 from jointwave.dem.snapshots import BlockFrame, BlockRecorder, corner_motion, triangles
-from jointwave.dem.stress import at_points, jumps, mean_stress, quantities
+from jointwave.dem.waveforms import at_points, jumps, mean_stress, quantities
 from jointwave.results.rock_mass import rock_mass_dataset
 from jointwave.results.snapshots import snapshots_of
 from jointwave.results.stress import stress_components

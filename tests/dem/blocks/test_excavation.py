@@ -5,8 +5,8 @@ import pytest
 
 from jointwave.dem import simulate
 from jointwave.dem.model import state_at_rest
-from jointwave.dem.relaxation import start
 from jointwave.dem.prepare import prepared
+from jointwave.dem.relaxation import start
 
 STRESS = {"xx": 4e6, "yy": 5e6, "xy": 5e5}
 TENSOR = np.array([[4e6, 5e5], [5e5, 5e6]])

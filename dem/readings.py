@@ -1,4 +1,4 @@
-"""Finite rotations of blocks as they are read: unit quaternions, scalar last."""
+"""Samples of blocks as they are read: velocities, rotations, and what acts from outside."""
 
 from __future__ import annotations
 
@@ -6,6 +6,30 @@ import numpy as np
 
 from jointwave.dem.build import RigidBlocks
 from jointwave.dem.model import Samples
+from jointwave.dem.system import BlockSystem
+
+
+def acting(system: BlockSystem, places: np.ndarray, samples: Samples, first: int = 0) -> np.ndarray:
+    """Return the resultants of sides, ends and loads on recorded blocks [r, d + d^2, n], N and N m,
+    as `dem.boundaries` has them, but of the springs of ends the force alone.
+
+    places : the blocks that the samples are of. first : number of the first sample.
+    """
+    loads, count = system.loads, samples.velocity.shape[-1]
+    found = np.zeros((len(places), loads.onto.shape[1], count))
+    acted = np.flatnonzero(np.isin(places, loads.rows))
+    if not len(acted):
+        return found
+    row = np.searchsorted(loads.rows, places[acted])
+    steps = system.time.stride * (first + np.arange(count))
+    sums = np.moveaxis(loads.resultants(steps, row), 0, -1)
+    velocity = velocity_of(system.blocks, samples, places)[acted]
+    sums -= system.resistance[row] @ loads.onto.T @ velocity
+    if samples.closure is not None:
+        dim, pushed = system.blocks.dim, system.model.held.springs[row, 2] @ samples.closure[row]
+        sums[:, :dim] -= pushed[:, :dim]
+    found[acted] = sums
+    return found
 
 
 def turning(quaternion: np.ndarray, r: np.ndarray) -> np.ndarray:
