@@ -26,7 +26,7 @@ def test_momenta_are_the_impulse_of_the_load(dim, joints):
     own = problem(body, joined(2, **JOINTS[joints]))
     dt = 0.3 * own.critical_step()
     push = Force(freedom, np.array(WAYS[dim]), lambda t: 0.2 * np.sin(t), dt)
-    steps = Leapfrog(own._replace(forces=push), dt, 1, energy=False)
+    steps = Leapfrog(own._replace(forces=push), dt, 1)
     steps.take(0, 200, 1000)
     impulse = dt * push.at(0, 200).sum(axis=0)
     momentum = (body.mass * steps.v).reshape(-1, dim)

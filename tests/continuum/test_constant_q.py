@@ -43,7 +43,7 @@ def test_a_mode_rings_and_decays_as_the_root_of_leapfrog_says(dim, number):
     body = stack(dim, 1, 4 if dim < 3 else 2, 1)
     own = of_bar(body)
     dt = 0.5 * own.critical_step()
-    steps = Leapfrog(own, dt, 1, energy=False)
+    steps = Leapfrog(own, dt, 1)
     square, shapes = eigh(body.stiffness.toarray(), np.diag(body.mass))
     mode = np.zeros(steps.product.size)
     mode[steps.product.place] = shapes[:, number]

@@ -18,8 +18,11 @@ DT = 3e-5
 NEVER = 1 << 40
 
 
-def blocks_of(turned=None, finite=True, ledger=False, dashpots=0.0, held=None, **strengths):
-    """Return the model of 2 x 3 x 2 boxes and the places of their centroids, all of them turned."""
+def blocks_of(turned=None, finite=True, dashpots=0.0, held=None, **strengths):
+    """Return the model of 2 x 3 x 2 boxes and the places of their centroids, all of them turned.
+
+    held : matrix of dashpots of each block; none by default, but one kernel serves both.
+    """
     turned = Rotation.identity() if turned is None else turned
     places = np.stack(np.unravel_index(np.arange(12), COUNT), 1) * SIDES
     numbers = np.arange(12).reshape(COUNT)
@@ -58,8 +61,7 @@ def blocks_of(turned=None, finite=True, ledger=False, dashpots=0.0, held=None, *
     tensor = np.tile(axes @ np.diag(moments) @ axes.T, (12, 1, 1))
     inertia = np.column_stack([np.full((12, 3), mass), np.diagonal(tensor, axis1=1, axis2=2)])
     form = KernelFlags(
-        3, True, parts_of(own), 4, False, False, False, held is not None, ledger, oblique=True,
-        finite=finite,
+        3, True, parts_of(own), 4, False, False, False, True, True, oblique=True, finite=finite
     )  # fmt: skip
     chunks = chunks_of(
         faces,
@@ -70,8 +72,8 @@ def blocks_of(turned=None, finite=True, ledger=False, dashpots=0.0, held=None, *
     )
     masses = np.zeros((12, 6, 6))
     masses[:, :3, :3], masses[:, 3:, 3:] = mass * np.eye(3), tensor
-    if held is not None:
-        held = held_by(np.tile(held, (12, 1, 1)), np.arange(12), masses, DT)
+    held = np.zeros((6, 6)) if held is None else held
+    held = held_by(np.tile(held, (12, 1, 1)), np.arange(12), masses, DT)
     blocks = Blocks(inertia, DT, 1.0, 0.0, np.zeros(3), tensor)
     model = Model(form, blocks, chunks, table_of(own), held, np.arange(12), np.arange(count))
     return model, turned.apply(places)
@@ -204,7 +206,7 @@ def test_small_rotations_are_the_limit():
         found = []
         drive = size * np.random.default_rng(2).standard_normal((12, 6))
         for finite in (True, False):
-            model, _ = blocks_of(finite=finite, dashpots=1e-5, held=np.zeros((6, 6)))
+            model, _ = blocks_of(finite=finite, dashpots=1e-5)
             state = state_at_rest(model)
             take(model, state, 500, np.tile(drive, (500, 1, 1)))
             turned = orientation(state).as_rotvec() if finite else state.u[:, 3:]
@@ -218,13 +220,12 @@ def test_small_rotations_are_the_limit():
 
 def left_over(law, dt, drive=None, speed=2.0):
     """Return what the ledger lacks over the largest of its terms."""
-    model, _ = blocks_of(ledger=True, **law)
+    model, _ = blocks_of(**law)
     model = model._replace(blocks=model.blocks._replace(dt=dt))
-    if model.held is not None:
-        masses = np.zeros((12, 6, 6))
-        masses[:, range(3), range(3)], masses[:, 3:, 3:] = model.inertia[:, :3], model.blocks.tensor
-        held = held_by(model.held.matrices[:, 2], np.arange(12), masses, dt)
-        model = model._replace(held=held)
+    masses = np.zeros((12, 6, 6))
+    masses[:, range(3), range(3)], masses[:, 3:, 3:] = model.inertia[:, :3], model.blocks.tensor
+    held = held_by(model.held.matrices[:, 2], np.arange(12), masses, dt)
+    model = model._replace(held=held)
     state, steps = moving(model, speed), round(0.03 / dt)
     samples = samples_for(model, steps)
     acting = None if drive is None else np.tile(drive, (steps, 12, 1))

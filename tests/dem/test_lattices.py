@@ -131,11 +131,18 @@ def test_bloch_waves_step_on_as_leapfrog_has_them(dim, waves, points):
         )
 
 
-def composed(model, dt, **flags):
-    """Return a model with a ledger whose steps of dt (s) are composed."""
-    stages = composition.table(dt)
-    form = model.form._replace(stages=len(stages), ledger=True, **flags)
-    return model._replace(form=form, blocks=model.blocks._replace(dt=dt, stages=stages))
+def composed(model, dt):
+    """Return a model with a ledger whose steps of dt (s) are composed; one block may be pushed."""
+    stages, f = composition.table(dt), model.form.freedoms
+    form = model.form._replace(stages=len(stages), ledger=True, held=True)
+    masses = model.blocks.inertia[:, :, None] * np.eye(f)
+    pushed = np.array([7])
+    return model._replace(
+        form=form,
+        blocks=model.blocks._replace(dt=dt, stages=stages),
+        held=held_by(np.zeros((1, f, f)), pushed, masses, dt),
+        places=pushed,
+    )
 
 
 def orders(errors):
@@ -171,12 +178,8 @@ def test_forces_and_their_work_in_composed_steps_are_of_fourth_order(dim):
     """A block that is pushed and turned for a while: its motion, and the ledger of all."""
     model, _ = lattice(dim, False)
     dt, steps, form, errors, last = 4 * model.blocks.dt, 40, model.form, [], []
-    none, block = np.zeros((1, form.freedoms, form.freedoms)), np.array([7])
-    masses = model.blocks.inertia[:, :, None] * np.eye(form.freedoms)
     for halved in (1, 2, 4, 8):
-        stepped = composed(model, dt / halved, held=True)._replace(
-            held=held_by(none, block, masses, dt / halved), places=block
-        )
+        stepped = composed(model, dt / halved)
         state, samples = state_at_rest(stepped), samples_for(stepped, steps + 1)
         at = composition.instants(np.arange(steps * halved + 1)) / halved
         drive = 1e5 * np.sin(3 * at / steps)[:, None, None] * np.ones((1, form.freedoms))

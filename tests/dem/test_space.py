@@ -66,8 +66,8 @@ def momenta(system, state):
 
 @pytest.mark.parametrize("law", [{}, SLIPS], ids=["elastic", "slip"])
 def test_momenta_are_conserved(law):
-    """Of free blocks with products of inertia, whatever their joints do."""
-    system, state = moving(oblique(law, loads=[]))
+    """Of free blocks with products of inertia, whatever their joints do; the load does not act."""
+    system, state = moving(oblique(law))
     assert system.model.form.oblique and bool(system.model.form.points) == bool(law)
     linear, angular, size, turned = momenta(system, state)
     march(system.model, state, samples_for(system.model, 0), 1000, (1, 401))
@@ -78,7 +78,7 @@ def test_momenta_are_conserved(law):
 
 def test_rigid_motion_makes_no_force():
     """A small translation and rotation of all blocks together moves no face against another."""
-    system = prepared(oblique(loads=[]))
+    system = prepared(oblique())
     state = state_at_rest(system.model)
     turn, shift = np.array([2e-4, -1e-4, 3e-4]), np.array([1e-3, 2e-3, -1e-3])
     state.u[:, :3] = shift + np.cross(turn, system.blocks.cut.centroid)

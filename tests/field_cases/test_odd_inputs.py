@@ -9,6 +9,7 @@ domain = {{ size = [6.0, 6.0], non_convex = "cut", openings = [[[2, 2], [4, 2], 
 rock = {{ density = 2600.0, intact_modulus = 5.0e10 }}
 time = {{ duration = 2.0e-3 }}
 record = {{ points = [[1.0, 1.0], [5.0, 3.0]], joints = [[1.0, 2.0]], interval = {interval} }}
+numerics = {{ continuum = {{ size = 2.0, order = 1 }} }}
 
 [[joint_sets]]
 name = "bed"

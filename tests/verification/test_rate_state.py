@@ -130,7 +130,7 @@ def test_blocks_rest_under_a_shear_stress():
         "prestress": {"xx": 4e6, "yy": 4e6, "xy": 1.2e6},
     }
     numerics = {"dem": {"block": 0.8}}
-    plain = {key: RATED[key] for key in RATED if key not in RATE}
+    plain = {key: RATED[key] for key in RATED if key not in RATE} | {"tension": False}
     sides = SIDES | {"cohesion": 1e9}
     found = []
     for joint in (RATED, plain):

@@ -11,7 +11,7 @@ JOINTS = {
     "no tension": {"joints": {"tension": False}},
     "finite rotations": {
         "motion__rotation": "finite",
-        "joints": {"tension": False, "friction_angle": 20.0},
+        "joints": {"tension": False, "friction_angle": 20.0, "point_rule": "midpoint"},
     },
 }
 QUARTER = np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0]])  # about y

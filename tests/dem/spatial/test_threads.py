@@ -20,7 +20,7 @@ def test_a_long_row_takes_the_processors_that_it_may_use(monkeypatch, row):
 
 def test_threads_change_no_bit_of_blocks_that_turn_by_any_angle(row, narrow, assert_alike):
     """Of 400 blocks that slide."""
-    slides = {"friction_angle": 20.0, "cohesion": 1e4, "damping_ratio": 0.02}
+    slides = {"friction_angle": 20.0, "tension": False}
     keys = {f"joints__{key}": value for key, value in slides.items()}
     keys |= {"pillar__length": 200.0, "motion__rotation": "finite", "time__duration": 2e-3}
     one, other = (dem.simulate(row(**keys, numerics__dem__threads=n)) for n in (1, 3))
