@@ -7,7 +7,7 @@ their place.
 
 from functools import lru_cache
 from math import asin, pi, tan
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,6 +44,13 @@ def load_history(scene: Scene) -> LoadHistory:
         return history_of(load, amplitude * (2 if load.quantity == "incident-stress" else 1))
     p = calibrate(scene).at_start
     return velocity_of(load, 2 * amplitude * (p.shear_impedance if load.is_across else p.impedance))
+
+
+def force_history(scene: AnyScene, load: Any) -> LoadHistory:
+    """Return a load of a scene that is a force on its rock as a function of time."""
+    if scene.is_column:
+        return load_history(scene)
+    return velocity_of(load, load.amplitude)
 
 
 def velocity_of(pulse: Pulse, amplitude: float) -> LoadHistory:

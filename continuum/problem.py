@@ -15,7 +15,6 @@ from jointwave.cases.partition.periodic import of_all
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.joints import resolved_joints
-from jointwave.continuum.loads.ends import load_on, quiet_ends
 from jointwave.continuum.loads.forces import Loads, pushes, released, waves_of, weight_of
 from jointwave.continuum.loads.sides import bearing_sides, cells_behind, held_sides, quiet_sides
 from jointwave.continuum.receivers.points import readings_of
@@ -69,20 +68,16 @@ def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
     """
     body, own = with_law(found)
     steady = [one for one in (weight_of(scene, body), released(scene, body)) if one is not None]
-    if scene.is_column:
-        alpha, quiet = calibrate(scene).mass_damping, quiet_ends(scene, body, found.model)
-    else:
-        alpha, quiet = scene.damping.alpha, quiet_sides(scene, body, own_impedances(found))
     return Problem(
         body,
         _readings(scene, found),
         law=own,
         stiffest=None if own is None else stiffest(own, scene),
         stress=_prestress(scene, body),
-        alpha=alpha or 0.0,
+        alpha=scene.damping.alpha or 0.0,
         mechanisms=mechanisms_of(scene, found.model),
         steady=np.sum(steady, axis=0) if steady else None,
-        quiet=quiet,
+        quiet=quiet_sides(scene, body, found.model, own_impedances(found)),
         held=held_sides(scene, body),
     )
 
@@ -91,9 +86,7 @@ def _prestress(scene: AnyScene, body: Body) -> np.ndarray | None:
     """Return the stress at u = 0 [d, d], Pa; None without."""
     if scene.prestress is None:
         return None
-    if not scene.is_column:
-        return scene.prestress.tensor
-    return np.diag(np.where(np.array(directions(body)) == 1, scene.prestress.normal, 0.0))
+    return scene.prestress.tensor[np.ix_(directions(body), directions(body))]
 
 
 def _readings(scene: AnyScene, found: SceneBody) -> Readings:
@@ -130,10 +123,7 @@ def in_time(
     """Return a problem with forces and motion that have a history, for the steps of a clock;
     incident : of the waves, in intact rock where absent."""
     body = problem.body
-    if scene.is_column:
-        pushed, waves = load_on(scene, body), None
-    else:
-        pushed, waves = pushes(scene, body), waves_of(scene, body, incident)
+    pushed, waves = pushes(scene, body), waves_of(scene, body, incident)
     forces = None
     if pushed or waves is not None:
         forces = Loads(body.stiffness.shape[0], time.dt, pushed, waves)

@@ -11,11 +11,11 @@ w is advanced with the mean of f over the step, which keeps second order and add
 """
 
 from math import inf
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 
 class HalfSpring(NamedTuple):
-    """One such end, for a given step.
+    """One such end, or arrays of several, for a given step.
 
     stiffness, viscosity : of f = stiffness w + viscosity v, N/m and N s/m.
     decay, gain : of w <- decay w + gain v, with v half a step later; gain in s.
@@ -23,14 +23,14 @@ class HalfSpring(NamedTuple):
         the mode that alternates at every step the face stands still, but for its share.
     """
 
-    stiffness: float
-    viscosity: float
-    decay: float
-    gain: float
-    critical_stiffness: float
+    stiffness: Any
+    viscosity: Any
+    decay: Any
+    gain: Any
+    critical_stiffness: Any
 
 
-def half_spring(k: float, eta: float, z: float = inf, dt: float = 0.0) -> HalfSpring:
+def half_spring(k: Any, eta: Any, z: Any = inf, dt: float = 0.0) -> HalfSpring:
     """Return the end of spring k (N/m), time constant eta (s), dashpot z (N s/m) at step dt (s).
 
     An infinite z is a rigid wall.

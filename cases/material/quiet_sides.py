@@ -4,11 +4,16 @@ The speeds are, region by region, those of the intact rock where `numerics.dem.b
 a lattice has them at its sides, else those of the effective medium of the joint sets.
 """
 
+from math import isfinite
+
 import numpy as np
 
+from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.effective_medium import compliant, speeds, stiffness
+from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.regions import within
+from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.tables import LEAN
 
@@ -20,24 +25,51 @@ def impedances(scene: RockMass, normals: np.ndarray, region: np.ndarray) -> np.n
     return medium_impedances(scene, normals, region, smeared)
 
 
-def borne(scene: RockMass, normals: np.ndarray) -> np.ndarray:
+def borne(scene: AnyScene, normals: np.ndarray) -> np.ndarray:
     """Return whether quiet sides of outward normals [m, d] bear what gravity puts on them along
-    their normal and along themselves, 1 or 0 [m, 2].
+    their normal and along themselves, 1 or 0 [m, 2]; d = 1 along a pillar.
 
-    Both below the rock, the first beside it: there is rock beyond, too. None above it.
+    Both below the rock, the first beside it: there is rock beyond, too. None above it. The ends of
+    a pillar bear both or none.
     """
     gravity = scene.gravity
     if gravity is None or not gravity.acceleration:
         return np.zeros((len(normals), 2))
-    lean = normals @ np.array(gravity.direction)
-    return np.stack([lean > -LEAN, lean > LEAN], axis=1).astype(float)
+    pull = np.array(gravity.direction, dtype=float)
+    lean = normals @ (pull[1:2] if normals.shape[1] == 1 else pull[: normals.shape[1]])
+    least = -LEAN, -LEAN if scene.is_column else LEAN
+    return (lean[:, None] > least).astype(float)
+
+
+def half_joints(scene: AnyScene, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the half joints in front of matched sides of outward normals [m, d]: normal and shear
+    stiffness [m, 2], Pa/m, 0 of other sides, and time constants [m], s."""
+    stiffness, eta = np.zeros((len(normals), 2)), np.zeros(len(normals))
+    for k, (kind, rock) in enumerate(_ends(scene, normals)):
+        if kind == "matched" and isfinite(rock.regular_own_stiffness):
+            stiffness[k] = 2 * rock.regular_own_stiffness, 2 * rock.regular_own_shear_stiffness
+            eta[k] = rock.time_constant or 0.0
+    return stiffness, eta
+
+
+def _ends(scene: AnyScene, normals: np.ndarray) -> list[tuple[str, JointedRock]]:
+    """Return condition and rock of a pillar's ends of outward normals [m, d]; none of others."""
+    if not scene.is_column:
+        return []
+    p, along = calibrate(scene), normals[:, min(1, normals.shape[1] - 1)]
+    start, end = (scene.ends.start, p.at_start), (scene.ends.end, p.at_end)
+    return [start if one < 0 else end for one in along]
 
 
 def medium_impedances(
-    scene: RockMass, normals: np.ndarray, region: np.ndarray, smeared: bool = True
+    scene: AnyScene, normals: np.ndarray, region: np.ndarray, smeared: bool = True
 ) -> np.ndarray:
     """Return the same of the effective medium of all sets that have a spacing, in space rho b of
-    the mean of both S speeds; smeared : whether there is one, else of the intact rock."""
+    the mean of both S speeds, and of a pillar's bar; smeared : whether there is one, else of the
+    intact rock."""
+    if scene.is_column:
+        ends = [(one.impedance, one.shear_impedance) for _, one in _ends(scene, normals)]
+        return np.array(ends).reshape(-1, 2)
     found, scenes = np.zeros((len(normals), 2)), within(scene, scene.joint_sets)
     for own in np.unique(region):
         there = region == own

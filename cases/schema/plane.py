@@ -12,6 +12,7 @@ from jointwave.cases.schema.tables import (
     Gravity,
     Numerics,
     Recording,
+    Sides,
 )
 from jointwave.cases.schema.values import (
     Number,
@@ -36,7 +37,7 @@ class IntactRock(Attenuating):
     intact_poisson: Poisson = 0.25  #: of the rock between the joints
 
 
-class Boundaries(Table):
+class Boundaries(Sides):
     """Boundary conditions of the sides of the domain; openings are free. Rock slides freely along a
     roller side, as along a plane of symmetry, and does not move normal to it."""
 
@@ -47,10 +48,6 @@ class Boundaries(Table):
     bottom: Held = "free"  #: side of least y, in space of least z
     top: Held = "free"  #: side of largest y, in space of largest z
     outline: Literal["quiet", "free", "fixed"] = "free"  #: all other sides of an outline
-
-    def sides(self, *kinds: str) -> list[str]:
-        """Return the sides with one of these conditions."""
-        return [side for side, held in self if held in kinds]
 
 
 class GravityOfRock(Gravity):

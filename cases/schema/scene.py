@@ -91,6 +91,21 @@ class Scene(SceneBase):
         return self.load.is_motion and self.ends.start == "fixed"
 
     @property
+    def boundaries(self) -> Ends:
+        """The conditions of its sides, which are its ends."""
+        return self.ends
+
+    @property
+    def bases(self) -> list[Load]:
+        """The load where it is the motion of a base."""
+        return [self.load] if self.shakes_base else []
+
+    @property
+    def pushes(self) -> list[Load]:
+        """The load where it is a force on the rock."""
+        return [self.load] if self.load.amplitude and not self.shakes_base else []
+
+    @property
     def bears(self) -> tuple[bool, bool]:
         """Whether the start and the end, which waves pass, bear what gravity puts on them."""
         if self.gravity is None or not self.gravity.acceleration:

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from jointwave.cases.schema.damping import Attenuating
@@ -137,7 +138,15 @@ class Motion(Table):
     rotation: Literal["none", "small", "finite"] = "small"
 
 
-class Ends(Table):
+class Sides(Table):
+    """Boundary conditions of sides, by their names."""
+
+    def sides(self, *kinds: str) -> list[str]:
+        """Return the sides with one of these conditions."""
+        return [side for side, held in self if held in kinds]
+
+
+class Ends(Sides):
     """Boundary conditions of the ends: matched, a dashpot behind the end block's half-block spring,
     reflects least; quiet, (9), has the dashpot on the end block; fixed is a wall that the rock
     joins without a joint.
@@ -160,6 +169,11 @@ class Prestress(Table):
     """Initial normal stress of the joints, also carried by ends that are not fixed."""
 
     normal: Number  #: Pa, compression positive
+
+    @property
+    def tensor(self) -> np.ndarray:
+        """The stress [3, 3], Pa."""
+        return np.diag([0.0, self.normal, 0.0])
 
     @property
     def words(self) -> str:

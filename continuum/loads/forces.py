@@ -8,7 +8,7 @@ from scipy.sparse import csr_matrix
 
 from jointwave.cases.histories import LoadHistory
 from jointwave.cases.incident import FaceTractions, FreeField, IncidentField, free_field, tractions
-from jointwave.cases.loads import step_means, velocity_of
+from jointwave.cases.loads import force_history, step_means
 from jointwave.cases.material.quiet_sides import base_traction
 from jointwave.cases.partition.parts import BESIDE, loaded_lines
 from jointwave.cases.partition.shape import shape_of
@@ -16,9 +16,10 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad
+from jointwave.continuum.loads.ends import end_force
 from jointwave.continuum.loads.sides import facets_on, impedances_of, inside
 from jointwave.continuum.space.evaluation import matrix_of, places_in
-from jointwave.continuum.space.model import Body, Facets
+from jointwave.continuum.space.model import Body, Facets, directions, forces_on
 
 IN_A_PERIOD = 100  # samples of a field that is not evaluated at every step
 AT_ONCE = 500_000  # numbers: forces that are in memory at a time for their impulse
@@ -33,11 +34,10 @@ class Push(NamedTuple):
 
 
 def pull_of(scene: AnyScene, body: Body) -> np.ndarray:
-    """Return the acceleration of gravity of every freedom, m/s2; a pillar's y runs along it."""
+    """Return the acceleration of gravity of every freedom, m/s2."""
     assert scene.gravity is not None
     pull = np.array(scene.gravity.direction, dtype=float) * scene.gravity.acceleration
-    own = pull[1:2] if body.components == 1 else pull[: body.components]
-    return np.tile(own, body.stiffness.shape[0] // body.components)
+    return np.tile(pull[directions(body)], len(body.x))
 
 
 def weight_of(scene: AnyScene, body: Body) -> np.ndarray | None:
@@ -48,28 +48,21 @@ def weight_of(scene: AnyScene, body: Body) -> np.ndarray | None:
     return body.mass * every if body.mass is not None else body.consistent @ every
 
 
-def forces_on(body: Body, facets: Facets, traction: np.ndarray) -> np.ndarray:
-    """Return the force on every freedom of tractions [n, d] (Pa) on facets at their nodes, N."""
-    dim, found = body.components, np.zeros(body.stiffness.shape[0])
-    own = dim * facets.node[:, None] + np.arange(dim)
-    np.add.at(found, own, facets.weight[:, None] * traction)
-    return found
-
-
 def released(scene: AnyScene, body: Body) -> np.ndarray | None:
     """Return the force on every freedom by which walls of openings lose the prestress that what is
     excavated bore there, N; None where nothing is."""
-    if scene.is_column or not scene.excavated or scene.prestress is None:
+    if not scene.excavated:
         return None
+    assert scene.prestress is not None
     walls = facets_on(body, [name for name in body.sides if name.startswith("opening")])
     return forces_on(body, walls, walls.normal @ scene.prestress.tensor)
 
 
-def pushes(scene: RockMass, body: Body) -> list[Push]:
+def pushes(scene: AnyScene, body: Body) -> list[Push]:
     """Return the loads of a scene that are forces."""
-    of_kind = {"pressure": _pressure, "force": _force, "base": _base}
+    of_kind = {"pressure": _pressure, "force": _force, "base": _base, "end": end_force}
     return [
-        Push(of_kind[one.kind](scene, body, one), velocity_of(one, one.amplitude))
+        Push(of_kind[one.kind](scene, body, one), force_history(scene, one))  # type: ignore[operator]
         for one in scene.pushes
     ]
 
@@ -195,7 +188,7 @@ class Waves:
         return (self.facets.weight[:, None] * found).reshape(len(times), -1)
 
 
-def waves_of(scene: RockMass, body: Body, incident: IncidentField | None) -> Waves | None:
+def waves_of(scene: AnyScene, body: Body, incident: IncidentField | None) -> Waves | None:
     """Return the waves of a scene; incident : their field, in intact rock where absent."""
     if not scene.waves or not scene.boundaries.sides("quiet"):
         return None

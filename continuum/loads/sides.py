@@ -1,30 +1,29 @@
 """The sides of a body: where rock is held, absorbs waves, or bears its weight.
 
 Quiet sides carry dashpots of rho a along their normal and rho b along themselves (Lysmer &
-Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969) at the nodes, of the effective medium of the joint
-sets that have a spacing.
+Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969) at the nodes: of the effective medium of the joint
+sets that have a spacing, and of the bar at the ends of a pillar. In jointed rock a matched end has
+half a joint in front of them, as the rock beyond would have (`joints.ends`).
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
 from jointwave.cases.loads import base_steps
-from jointwave.cases.material.quiet_sides import borne, medium_impedances
+from jointwave.cases.material.quiet_sides import borne, half_joints, medium_impedances
 from jointwave.cases.partition.regions import region_at
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.pulse import Load
-from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.evaluation import nodes_of_cells
 from jointwave.continuum.space.model import Body, Facets, directions
-from jointwave.continuum.stepping.problem import Dashpots, Held
+from jointwave.continuum.stepping.problem import Dashpots, Held, Springs
+from jointwave.joints.ends import half_spring
 
 INSIDE = 1e-7  # of a cell: how far inside it a field is asked for, lest it is beyond a joint
-ENDS = ("start", "end")  #: sides of a pillar that hold it or absorb waves
 #: Sides by the axis of their normal.
 AXIS = {
     2: {"left": 0, "right": 0, "bottom": 1, "top": 1},
@@ -50,6 +49,11 @@ def facets_on(body: Body, names: list[str]) -> Facets:
     )
 
 
+def absorbing(scene: AnyScene, body: Body) -> Facets:
+    """Return the facets of sides that absorb waves."""
+    return facets_on(body, scene.boundaries.sides("quiet", "matched"))
+
+
 def cells_behind(body: Body, facets: Facets) -> np.ndarray:
     """Return a cell at each node of facets, int array [n]."""
     nodes = nodes_of_cells(body)
@@ -64,7 +68,7 @@ def inside(body: Body, facets: Facets) -> np.ndarray:
     return facets.place + INSIDE * (centre[cells_behind(body, facets)] - facets.place)
 
 
-def impedances_of(scene: RockMass, body: Body, facets: Facets) -> np.ndarray:
+def impedances_of(scene: AnyScene, body: Body, facets: Facets) -> np.ndarray:
     """Return rho a and rho b of the rock behind facets [n, 2], Pa s/m."""
     region = region_at(scene.regions, inside(body, facets))
     return medium_impedances(scene, facets.normal, region)
@@ -78,37 +82,50 @@ def along_and_across(normal: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def quiet_sides(
-    scene: RockMass, body: Body, impedances: Callable[[Facets], np.ndarray] | None = None
+    scene: AnyScene,
+    body: Body,
+    model: str = "jointed",
+    impedances: Callable[[Facets], np.ndarray] | None = None,
 ) -> Dashpots | None:
-    """Return the dashpots of the quiet sides, None without any; impedances : of rock that is not
-    the scene's, tensors [n, d, d], Pa s/m."""
-    facets = facets_on(body, scene.boundaries.sides("quiet"))
+    """Return the dashpots of sides that absorb waves, None without any; impedances : of rock that
+    is not the scene's, tensors [n, d, d], Pa s/m."""
+    facets = absorbing(scene, body)
     if not len(facets.node):
         return None
     if impedances is None:
         tensors = along_and_across(facets.normal, impedances_of(scene, body, facets))
     else:
         tensors = impedances(facets)
+    if model == "jointed" and scene.boundaries.sides("matched"):
+        return _matched(scene, facets, np.einsum("nii->ni", tensors))
     node, group = np.unique(facets.node, return_inverse=True)
     viscosity = np.zeros((len(node), body.components, body.components))
     np.add.at(viscosity, group, facets.weight[:, None, None] * tensors)
     return Dashpots(node, viscosity)
 
 
+def _matched(scene: AnyScene, facets: Facets, z: np.ndarray) -> Dashpots:
+    """Return the dashpots of ends, some of them behind half a joint; z : impedances [n, d]."""
+    given, eta = half_joints(scene, facets.normal)
+    weight, along = facets.weight[:, None], np.abs(facets.normal) > 0.5
+    k = np.where(along, given[:, :1], given[:, 1:])
+
+    def springs(dt: float) -> Springs:
+        own = half_spring(k, eta[:, None], z, dt)
+        return Springs(weight * own.stiffness, own.decay, own.gain, weight * own.critical_stiffness)
+
+    c = weight * np.where(k > 0, half_spring(k, eta[:, None], z).viscosity, z)
+    return Dashpots(facets.node, c[:, :, None] * np.eye(z.shape[1]), springs if k.any() else None)
+
+
 def bearing_sides(scene: AnyScene, body: Body) -> csr_matrix | None:
     """Return the areas [freedoms, freedoms] of quiet sides that bear the weight beside their
     dashpots, m2; None without."""
-    if scene.is_column:
-        names = [name for name, bears in zip(ENDS, scene.bears, strict=True) if bears]
-        facets = facets_on(body, names)
-        tensors = facets.weight[:, None, None] * np.eye(body.components)
-    else:
-        facets = facets_on(body, scene.boundaries.sides("quiet"))
-        bears = facets.weight[:, None] * borne(scene, facets.normal)
-        tensors = along_and_across(facets.normal, bears)
-    if not tensors.any():
+    facets, dim = absorbing(scene, body), body.components
+    bears = facets.weight[:, None] * borne(scene, facets.normal)
+    if not bears.any():
         return None
-    dim = body.components
+    tensors = along_and_across(facets.normal, bears)
     own = dim * facets.node[:, None] + np.arange(dim)
     row, column = np.repeat(own, dim, axis=1), np.tile(own, dim)
     return csr_matrix((tensors.ravel(), (row.ravel(), column.ravel())), body.stiffness.shape)
@@ -117,16 +134,17 @@ def bearing_sides(scene: AnyScene, body: Body) -> csr_matrix | None:
 def held_sides(scene: AnyScene, body: Body, time: Clock | None = None) -> Held | None:
     """Return the freedoms of fixed sides, with the motion of one that is shaken, and those normal
     to roller sides; None without any."""
-    dim, base, shaken = body.components, *_base(scene)
-    direction = np.full(body.stiffness.shape[0], np.nan)
-    for name, axes in _held(scene, dim):
+    base: Any = next(iter(scene.bases), None)
+    dim, direction = body.components, np.full(body.stiffness.shape[0], np.nan)
+    for name in scene.boundaries.sides("fixed", "roller"):
         node, given = np.unique(facets_on(body, [name]).node), np.zeros(dim)
-        if base is not None and name == shaken:
+        shaken = base is not None and name == base.side
+        if shaken:
             given = np.array(base.direction, dtype=float)[directions(body)]
-        for c in axes:
+        rolls = name in scene.boundaries.sides("roller")
+        for c in [AXIS[dim][name]] if rolls else range(dim):
             of = dim * node + c
-            kept = ~np.isnan(direction[of]) & (name != shaken)
-            direction[of] = np.where(kept, direction[of], given[c])
+            direction[of] = np.where(np.isnan(direction[of]) | shaken, given[c], direction[of])
     freedom = np.flatnonzero(~np.isnan(direction))
     if not freedom.size:
         return None
@@ -134,20 +152,3 @@ def held_sides(scene: AnyScene, body: Body, time: Clock | None = None) -> Held |
     if base is not None and time is not None:
         steps = base_steps(base, time.dt, time.steps + time.stride + 1).__getitem__
     return Held(freedom, direction[freedom], steps)
-
-
-def _held(scene: AnyScene, dim: int) -> list[tuple[str, list[int]]]:
-    """Return the sides that are held, and the components of their motion that are."""
-    every = list(range(dim))
-    if scene.is_column:
-        return [(name, every) for name in ENDS if getattr(scene.ends, name) == "fixed"]
-    fixed, rollers = (scene.boundaries.sides(kind) for kind in ("fixed", "roller"))
-    return [*((name, every) for name in fixed), *((name, [AXIS[dim][name]]) for name in rollers)]
-
-
-def _base(scene: AnyScene) -> tuple[Load | PlaneLoad | None, str | None]:
-    """Return the motion of a base, and its side; None without."""
-    if scene.is_column:
-        return (scene.load, ENDS[0]) if scene.shakes_base else (None, None)
-    base = next(iter(scene.bases), None)
-    return base, None if base is None else base.side

@@ -23,7 +23,7 @@ from jointwave.continuum.space.compat import (
     vector_space,
 )
 from jointwave.continuum.space.jump_operator import jump_operator
-from jointwave.continuum.space.model import Body, Facets, Forms, JumpOperator
+from jointwave.continuum.space.model import Body, Facets, Forms, JumpOperator, in_motion
 from jointwave.continuum.space.traces import Trace, reference_cell, trace
 
 log = logging.getLogger("jointwave")
@@ -129,7 +129,7 @@ def build_body(
         stiffness=stiffness,
         damping=damping,
         joints=_joints(found, pairs.of(cut), column[cut], across, size),
-        sides=_sides(found, marks),
+        sides=_sides(found, marks, size),
     )
 
 
@@ -160,7 +160,7 @@ def _joints(
     return jump_operator(i, j, np.concatenate(columns), shape, found.cell)
 
 
-def _sides(found: Elements, marks: Marks) -> dict[str, Facets]:
+def _sides(found: Elements, marks: Marks, size: int) -> dict[str, Facets]:
     """Return the facets of each side that there is."""
     outer, sides = _marked(marks.side, found.mesh.on), {}
     for k, name in enumerate(marks.names):
@@ -171,7 +171,7 @@ def _sides(found: Elements, marks: Marks) -> dict[str, Facets]:
             sides[name] = Facets(
                 node=own.node.ravel(),
                 weight=own.weight.ravel(),
-                normal=own.normal.reshape(-1, dim),
+                normal=in_motion(own.normal.reshape(-1, dim), size),
                 place=own.place.reshape(-1, dim),
                 block=np.repeat(block, own.node.shape[1]),
             )

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix, identity, kron
 
 from jointwave.cases.geometry.measure import frames
-from jointwave.continuum.space.model import JumpOperator
+from jointwave.continuum.space.model import JumpOperator, in_motion
 from jointwave.continuum.space.traces import Reference, Trace
 
 ROUND_OFF = 1e-14  # of entries, which are of the order of 1
@@ -51,11 +51,8 @@ def jump_operator(
 
 def frames_of(normal: np.ndarray, components: int) -> np.ndarray:
     """Return frames [n, c, c] of joints with normals [n, d]: in the plane the tangent is the normal
-    rotated to the left, in space they are the strike and the line of dip. A mesh of one dimension
-    runs along y where it has three components."""
-    if normal.shape[1] < components:
-        normal = normal * [0.0, 1.0, 0.0]
-    tangents: tuple[np.ndarray, ...] = ()
+    rotated to the left, in space they are the strike and the line of dip."""
+    normal, tangents = in_motion(normal, components), tuple[np.ndarray, ...]()
     if components == 2:
         tangents = (np.stack([-normal[:, 1], normal[:, 0]], axis=1),)
     elif components == 3:

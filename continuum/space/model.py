@@ -49,8 +49,8 @@ class Facets(NamedTuple):
     """Facets of one side of the boundary, at their nodes; a node stands once for each facet.
 
     node : int array [n]. weight : float array [n], m^(d-1): integral of a facet's function that is
-    1 at the node and 0 at others. normal : float array [n, d], unit vectors out of the rock.
-    place : float array [n, d], m. block : int array [n], that the facet belongs to.
+    1 at the node and 0 at others. normal : float array [n, components], unit vectors out of the
+    rock. place : float array [n, d], m. block : int array [n], that the facet belongs to.
     """
 
     node: np.ndarray
@@ -92,6 +92,20 @@ class Body(NamedTuple):
     def components(self) -> int:
         """Components of displacements at a node."""
         return self.stiffness.shape[0] // len(self.x)
+
+
+def in_motion(vectors: np.ndarray, components: int) -> np.ndarray:
+    """Return vectors in a mesh [n, d] by the components of the motion; a mesh of one dimension runs
+    along y where it has three."""
+    return vectors if vectors.shape[1] == components else vectors * [0.0, 1.0, 0.0]
+
+
+def forces_on(body: Body, facets: Facets, traction: np.ndarray) -> np.ndarray:
+    """Return the force on every freedom of tractions [n, d] (Pa) on facets at their nodes, N."""
+    dim, found = body.components, np.zeros(body.stiffness.shape[0])
+    own = dim * facets.node[:, None] + np.arange(dim)
+    np.add.at(found, own, facets.weight[:, None] * traction)
+    return found
 
 
 def directions(body: Body) -> list[int]:

@@ -9,7 +9,8 @@ from jointwave.cases.errors import InterruptedRun, SceneError
 from jointwave.cases.loads import load_history, step_means
 from jointwave.compare.exact.bar import images
 from jointwave.compare.exact.bar.bars import JOINTED
-from jointwave.continuum.loads.ends import force_and_moment, load_on
+from jointwave.continuum.loads.ends import force_and_moment
+from jointwave.continuum.loads.forces import pushes
 from jointwave.continuum.run import simulate
 from jointwave.continuum.scene import body_of
 from jointwave.results.dataset import energy_residual
@@ -112,8 +113,8 @@ def test_loads_have_their_force_and_moment(short, load, cell):
         numerics = {"order": order, "cell": cell, "dim": 3, "elements_across": 2}
         scene = short(load=WAVE | load, numerics=numerics)
         body, area = body_of(scene).body, scene.pillar.area
-        share = load_on(scene, body)[0].share.reshape(-1, 3)
-        force, moment = force_and_moment(scene)
+        share = pushes(scene, body)[0].share.reshape(-1, 3)
+        force, moment = force_and_moment(scene.load)
         assert share.sum(axis=0) == pytest.approx(area * force, abs=1e-12)
         around = np.cross(body.x, share).sum(axis=0)
         assert around == pytest.approx(area * moment, abs=1e-12)
