@@ -23,7 +23,7 @@ from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space.model import Body, Facets, directions
 from jointwave.continuum.space.own_rock import impedances_along
 from jointwave.continuum.space.rock import layers_of
-from jointwave.continuum.stepping.problem import Problem, Readings
+from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.static import Rest, elastic_rest, holding, settled
 from jointwave.joints.law import Law, law, stiffest
 
@@ -68,40 +68,22 @@ def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
     """
     body, own = with_law(found)
     steady = [one for one in (weight_of(scene, body), released(scene, body)) if one is not None]
+    stress = None
+    if scene.prestress is not None:
+        stress = scene.prestress.tensor[np.ix_(directions(body), directions(body))]
+    read = readings_of_pillar if scene.is_column else readings_of
     return Problem(
         body,
-        _readings(scene, found),
+        read(scene, found, stress),  # type: ignore[arg-type]
         law=own,
         stiffest=None if own is None else stiffest(own, scene),
-        stress=_prestress(scene, body),
+        stress=stress,
         alpha=scene.damping.alpha or 0.0,
         mechanisms=mechanisms_of(scene, found.model),
         steady=np.sum(steady, axis=0) if steady else None,
         quiet=quiet_sides(scene, body, found.model, own_impedances(found)),
         held=held_sides(scene, body),
     )
-
-
-def _prestress(scene: AnyScene, body: Body) -> np.ndarray | None:
-    """Return the stress at u = 0 [d, d], Pa; None without."""
-    if scene.prestress is None:
-        return None
-    return scene.prestress.tensor[np.ix_(directions(body), directions(body))]
-
-
-def _readings(scene: AnyScene, found: SceneBody) -> Readings:
-    """Return how the receivers of a scene read its body."""
-    if scene.is_column:
-        return readings_of_pillar(scene, found.body, found.materials, found.of_cell)
-    moduli, lag = (
-        np.array([getattr(one, name) for one in found.materials])[found.of_cell]
-        for name in ("stiffness", "time_constant")
-    )
-    points, joints = (
-        np.array(places, dtype=float).reshape(-1, found.body.components)
-        for places in (scene.record.points, scene.record.joints)
-    )
-    return readings_of(found.body, moduli, points, joints, _prestress(scene, found.body), lag)
 
 
 def own_impedances(found: SceneBody) -> Callable[[Facets], np.ndarray] | None:

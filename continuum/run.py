@@ -21,7 +21,6 @@ from jointwave.continuum.processes.leapfrog import SharedLeapfrog
 from jointwave.continuum.receivers.snapshots import RockRecorder
 from jointwave.continuum.receivers.waveforms import recorded
 from jointwave.continuum.scheme import Choice
-from jointwave.continuum.space.evaluation import kind_of
 from jointwave.continuum.space.fenicsx import dolfinx
 from jointwave.continuum.space.rock import Rock
 from jointwave.continuum.stepping.implicit import Implicit
@@ -124,7 +123,7 @@ def about_run(
         "scheme": choice.scheme,
         "scheme_reason": choice.reason,
         "dim": problem.body.x.shape[1],
-        "cell": kind_of(problem.body),
+        "cell": problem.body.cell.kind,
         "order": scene.numerics.continuum.order,
         "dt": time.dt,
         "critical_dt": critical,

@@ -46,7 +46,6 @@ def run(
 def prepare(scene: Scene, model: str) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
     from jointwave.continuum.plan import plan_of
-    from jointwave.continuum.space.evaluation import kind_of
 
     with estimates() as parts:
         plan = plan_of(scene, model)
@@ -55,7 +54,7 @@ def prepare(scene: Scene, model: str) -> Prepared:
     settings = {
         "scheme": choice.scheme,
         "dim": body.components,
-        "cell": kind_of(body),
+        "cell": body.cell.kind,
         "order": scene.numerics.continuum.order,
     }
     time, freedoms, size = choice.time, body.stiffness.shape[0], sum(parts.values())

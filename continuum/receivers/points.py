@@ -5,18 +5,18 @@ the place on them that is nearest to the receiver, between their points there.
 """
 
 import numpy as np
-from scipy.sparse import coo_matrix, csr_matrix, identity, kron
+from scipy.sparse import coo_matrix, csr_matrix, kron
 from scipy.sparse.csgraph import connected_components
 
 from jointwave.cases.material.effective_medium import tensor
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.evaluation import (
     Places,
     at_reference,
-    kind_of,
     matrix_of,
     nodes_of_cells,
-    order_of,
     places_in,
     tabulate,
 )
@@ -31,39 +31,36 @@ WHOLE = 1e-6  # what shares of a joint's points may lack of one where they surro
 LEVEL = 1e-6  # cosine between planes that are one
 
 
-def readings_of(
-    body: Body,
-    moduli: np.ndarray,
-    points: np.ndarray,
-    joints: np.ndarray,
-    stress: np.ndarray | None = None,
-    lag: np.ndarray | None = None,
-) -> Readings:
-    """Return how receivers at points [m, d] and on joints near places [r, d] read a body.
-
-    moduli : of each cell in Voigt's form [cells, n, n], Pa. stress : [d, d], Pa, compression
-    positive, at u = 0. lag : time constant of the rock's dashpots in each cell [cells], s.
-    """
-    at, dim = places_in(body, points), body.components
+def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) -> Readings:
+    """Return how the receivers of a rock mass, at points and on joints, read its body; stress :
+    [d, d], Pa, compression positive, at u = 0."""
+    body, dim = found.body, found.body.components
+    points, joints = (
+        np.array(places, dtype=float).reshape(-1, dim)
+        for places in (scene.record.points, scene.record.joints)
+    )
+    moduli, lag = (
+        np.array([getattr(one, name) for one in found.materials])[found.of_cell]
+        for name in ("stiffness", "time_constant")
+    )
+    at, pairs = places_in(body, points), stress_components(dim).values()
     share = shares_of_pieces(at.point, pieces_of(body)[at.cell])
-    pairs = stress_components(dim).values()
-    constant = np.zeros((len(points), len(pairs)))
-    read, carried = _joints(body, joints), np.zeros(0)
+    constant, carried = np.zeros((len(points), len(pairs))), np.zeros((len(joints), dim))
+    read, area = np.zeros((0, 0)), np.zeros(0)
+    if body.joints is not None and len(body.joints.weight):
+        read, area = nearest_points(body, body.joints, joints), body.joints.weight
     if stress is not None:
         constant[:] = [stress[i, j] for i, j in pairs]
-    if body.joints is not None:
-        carried = np.zeros(len(body.joints.weight) * dim)
-        if stress is not None:
-            frame = body.joints.frame
-            carried = np.einsum("qac,cd,qd->qa", frame, stress, frame[:, 0]).ravel()
-    viscous = None if lag is None or not lag.any() else lag[:, None, None] * moduli
+        if body.joints is not None:
+            carried = read @ body.joints.carried(stress).reshape(-1, dim)
+    viscous = lag[:, None, None] * moduli if lag.any() else None
     return Readings(
         motion=motion_at(body, at, share, len(points)),
         stress=_recovered(body, moduli, points, at, share),
         constant=constant.ravel(),
-        traction=csr_matrix(kron(read @ _per_area(body.joints), identity(dim))),
-        carried=kron(read, identity(dim)) @ carried,
-        jump=csr_matrix(kron(read, identity(dim))),
+        traction=csr_matrix(kron(read / area, np.eye(dim))),
+        carried=carried.ravel(),
+        jump=csr_matrix(kron(read, np.eye(dim))),
         viscous=None if viscous is None else _recovered(body, viscous, points, at, share),
     )
 
@@ -134,11 +131,11 @@ def _patch(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return cells [n], places in them [n, d] and weights [n] of the stresses that make the one at
     a place in a cell."""
-    kind, order = kind_of(body), order_of(body)
+    kind, order = body.cell.kind, body.cell.order
     simplex = kind in ("triangle", "tetrahedron")
     rule = compat.quadrature(kind, max(2 * order - 2, 1) if simplex else 2 * order - 1)[0]
     cells, at = np.repeat(near, len(rule)), np.tile(rule, (len(near), 1))
-    basis = tabulate(kind, corners.shape[1], at)[0]
+    basis = tabulate(compat.reference(kind, 1), at)[0]
     x = np.einsum("nv,nvd->nd", basis, corners[cells])
     size = np.ptp(corners[own], axis=0).prod() ** (1 / body.components)
     s = (x - place) / size
@@ -154,20 +151,9 @@ def _patch(
     return cells, at, np.linalg.pinv(terms)[0] * weight
 
 
-def _per_area(joints: JumpOperator | None) -> csr_matrix:
-    """Return one over the area of each point, a diagonal matrix."""
-    weight = np.zeros(0) if joints is None else joints.weight
-    count = len(weight)
-    return csr_matrix((1 / weight, (np.arange(count), np.arange(count))), (count, count))
-
-
-def _joints(body: Body, places: np.ndarray) -> csr_matrix:
+def nearest_points(body: Body, joints: JumpOperator, places: np.ndarray) -> np.ndarray:
     """Return the shares of joints' points at the places on joints nearest to these [r, points]."""
-    joints = body.joints
-    if joints is None or not len(joints.weight):
-        return csr_matrix((0, 0))
-    nodes, before = nodes_of_cells(body), nodes_before(body)
-    rows = []
+    nodes, before, shares = nodes_of_cells(body), nodes_before(joints), []
     for place in places:
         nearest = int(np.linalg.norm(joints.place - place, axis=1).argmin())
         normal, share = joints.frame[nearest, 0], np.zeros(len(joints.weight))
@@ -184,14 +170,13 @@ def _joints(body: Body, places: np.ndarray) -> csr_matrix:
             share += here if abs(here.sum() - 1) < WHOLE else 0.0
         if not share.any():
             share[nearest] = 1.0
-        rows.append(share / share.sum())
-    return csr_matrix(np.array(rows).reshape(len(places), len(joints.weight)))
+        shares.append(share / share.sum())
+    return np.array(shares).reshape(len(places), len(joints.weight))
 
 
-def nodes_before(body: Body) -> np.ndarray:
+def nodes_before(joints: JumpOperator) -> np.ndarray:
     """Return the node of each point on the side that its normal points away from, int array."""
-    joints, dim = body.joints, body.components
-    assert joints is not None
+    dim = joints.frame.shape[1]
     entries = joints.matrix[::dim].tocoo()
     along = entries.data * joints.frame[entries.row, 0, entries.col % dim]
     found = np.empty(len(joints.weight), np.int64)

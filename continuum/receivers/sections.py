@@ -19,18 +19,16 @@ from jointwave.cases.material.effective_medium import tensor
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.loads.forces import pull_of
 from jointwave.continuum.receivers.points import motion_at, pieces_of, shares_of_pieces
+from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.build import SIMPLEX
 from jointwave.continuum.space.evaluation import (
-    kind_of,
     matrix_of,
     nodes_of_cells,
-    order_of,
     places_in,
     tabulate,
 )
 from jointwave.continuum.space.model import Body
-from jointwave.continuum.space.rock import Material
 from jointwave.continuum.stepping.problem import Readings
 
 NEAR = 1e-9  # of the pillar: when a section is on a joint
@@ -45,16 +43,14 @@ def extent_of(scene: Scene, body: Body) -> float:
     return float(scene.pillar.side ** (3 - body.x.shape[1]))
 
 
-def readings_of_pillar(
-    scene: Scene, body: Body, materials: list[Material], which: np.ndarray
-) -> Readings:
+def readings_of_pillar(scene: Scene, found: SceneBody, stress: np.ndarray | None) -> Readings:
     """Return how a pillar's receivers read its body: motion, then rotation; stress over sections,
-    that of rock by itself and that of joints among tractions. which : material of each cell."""
-    area = scene.pillar.area / extent_of(scene, body)
-    force = sections(body, materials, which, scene.record.stress)
-    constant = np.zeros(force.elastic.shape[0])
-    if scene.prestress is not None:
-        constant[:: body.components] = scene.prestress.normal
+    that of rock by itself and that of joints among tractions. stress : [d, d], Pa, compression
+    positive, at u = 0."""
+    body, force, axes = found.body, sections(found, scene.record.stress), along_first(found.body)
+    area, constant = scene.pillar.area / extent_of(scene, body), np.zeros(force.elastic.shape[0])
+    if stress is not None:
+        constant += np.tile(stress[axes[0], axes], len(scene.record.stress))
     if scene.gravity is not None:
         constant -= force.inertia @ pull_of(scene, body) / area
     return Readings(
@@ -79,7 +75,7 @@ class Sections(NamedTuple):
     contact: csr_matrix
 
 
-def order_of_directions(body: Body) -> list[int]:
+def along_first(body: Body) -> list[int]:
     """Return the components of the motion along y, then x, then z."""
     return [0] if body.components == 1 else [1, 0, 2][: body.components]
 
@@ -105,31 +101,18 @@ def points_on_axis(body: Body, places: list[float]) -> csr_matrix:
     return csr_matrix(vstack([motion, matrix_of(body, at.point, at.cell, weights, len(x))]))
 
 
-def sections(
-    body: Body, materials: list[Material], which: np.ndarray, places: list[float]
-) -> Sections:
-    """Return the receivers of places along the pillar; which : of the materials, of each cell."""
-    rows = [_section(body, materials, which, y) for y in places]
-    nothing = tuple(one[:0] for one in _nothing(body))
-    return Sections(*(csr_matrix(vstack(part)) for part in zip(nothing, *rows, strict=True)))
-
-
-def _nothing(body: Body) -> tuple[csr_matrix, ...]:
-    """Return a section that reads nothing."""
+def sections(found: SceneBody, places: list[float]) -> Sections:
+    """Return the receivers of places along the pillar."""
+    body = found.body
     none = csr_matrix((body.components, body.stiffness.shape[0]))
-    return none, none, none, _contact(body, on_joint(body, np.inf))
-
-
-def _section(
-    body: Body, materials: list[Material], which: np.ndarray, y: float
-) -> tuple[csr_matrix, ...]:
-    on, nothing = on_joint(body, y), _nothing(body)
-    if on.any():
-        return *nothing[:3], _contact(body, on)
-    layer = _layer(body, y)
-    if layer is None:
-        return *_by_stress(body, materials, which, y), nothing[3]
-    return *_by_momentum(body, materials, which, layer, y), nothing[3]
+    parts = [[one[:0]] for one in (none, none, none, _contact(body, on_joint(body, np.inf)))]
+    for y in places:
+        rock, on, layer = (none, none, none), on_joint(body, y), _layer(body, y)
+        if not on.any():
+            rock = _by_stress(found, y) if layer is None else _by_momentum(found, layer, y)
+        for part, one in zip(parts, (*rock, _contact(body, on)), strict=True):
+            part.append(one)
+    return Sections(*(csr_matrix(vstack(part)) for part in parts))
 
 
 def on_joint(body: Body, y: float) -> np.ndarray:
@@ -148,7 +131,7 @@ def _contact(body: Body, on: np.ndarray) -> csr_matrix:
     size = body.components
     if body.joints is None:
         return csr_matrix((size, 0))
-    turned = body.joints.frame.transpose(0, 2, 1)[:, order_of_directions(body)]
+    turned = body.joints.frame.transpose(0, 2, 1)[:, along_first(body)]
     weights = on[:, None, None] * turned
     return csr_matrix(weights.transpose(1, 0, 2).reshape(size, -1))
 
@@ -163,16 +146,15 @@ def _layer(body: Body, y: float) -> np.ndarray | None:
     layer = here[np.abs(low[here] - low[here].min()) <= slack]
     own, bottom, top = corners[layer], low[layer[0]], high[layer[0]]
     away = np.minimum(np.abs(own - bottom), np.abs(own - top)).max()
-    if kind_of(body) in SIMPLEX or away > slack or y > top + slack:
+    if body.cell.kind in SIMPLEX or away > slack or y > top + slack:
         return None
     return layer
 
 
-def _by_momentum(
-    body: Body, materials: list[Material], which: np.ndarray, layer: np.ndarray, y: float
-) -> tuple[csr_matrix, ...]:
+def _by_momentum(found: SceneBody, layer: np.ndarray, y: float) -> tuple[csr_matrix, ...]:
     """Return a section's force by the momentum of the part of a layer before it."""
-    kind, along, order = kind_of(body), axis_of(body), order_of(body)
+    body = found.body
+    kind, along, order = body.cell.kind, axis_of(body), body.cell.order
     corners = compat.cell_corners(body.mesh)[layer]
     near, thickness = corners[:, :, along].min(), np.ptp(corners[:, :, along])
     nodes, x, piece = nodes_of_cells(body), body.x[:, along], pieces_of(body)
@@ -180,7 +162,7 @@ def _by_momentum(
     moves[nodes[piece == piece[layer[0]]]] = 1.0
     moves[x > near + NEAR * float(np.ptp(x))] = 0.0
     strained[nodes[layer]] = 1.0
-    directions = np.eye(body.components)[order_of_directions(body)]
+    directions = np.eye(body.components)[along_first(body)]
     w, in_layer = kron(moves, directions), diags(np.repeat(strained, body.components))
     elastic, viscous = (
         csr_matrix((w @ one if one is not None else 0 * w) @ in_layer)
@@ -193,8 +175,8 @@ def _by_momentum(
     share = -poly.polyval((y - near) / thickness, running)
     share[0] += whole[0]
     at, weight = compat.quadrature(kind, 2 * order - 1)
-    volumes = weight @ tabulate(kind, nodes.shape[1], at)[0]
-    density = np.array([one.density for one in materials])[which[layer]]
+    volumes = weight @ tabulate(body.cell.element, at)[0]
+    density = np.array([one.density for one in found.materials])[found.of_cell[layer]]
     size = np.ptp(corners, axis=1).prod(axis=1)
     own = nodes[layer]
     level = np.abs((x[own] - near)[:, :, None] / thickness - levels).argmin(axis=2)
@@ -203,10 +185,9 @@ def _by_momentum(
     return elastic, viscous, csr_matrix(kron(inertia, directions))
 
 
-def _by_stress(
-    body: Body, materials: list[Material], which: np.ndarray, y: float
-) -> tuple[csr_matrix, ...]:
+def _by_stress(found: SceneBody, y: float) -> tuple[csr_matrix, ...]:
     """Return a section's force as the integral of the stress over it, by Gauss points."""
+    body = found.body
     at, weight = np.polynomial.legendre.leggauss(PER_SIDE)
     low, high = body.x.min(axis=0), body.x.max(axis=0)
     across = [k for k in range(len(low)) if k != axis_of(body)]
@@ -216,11 +197,12 @@ def _by_stress(
     shares = np.meshgrid(*[weight * (high[k] - low[k]) / 2 for k in across])
     area = np.prod([one.ravel() for one in shares], axis=0)
     here = places_in(body, x)
-    moduli = np.array([tensor(one.stiffness) for one in materials])[which[here.cell]]
-    own = moduli[:, order_of_directions(body), axis_of(body)]
+    which = found.of_cell[here.cell]
+    moduli = np.array([tensor(one.stiffness) for one in found.materials])[which]
+    own = moduli[:, along_first(body), axis_of(body)]
     each = (area / np.bincount(here.point))[here.point]
     entries = -np.einsum("ndcj,nkj,n->ndkc", own, here.gradient, each)
-    eta = np.array([one.time_constant for one in materials])[which[here.cell]]
+    eta = np.array([one.time_constant for one in found.materials])[which]
     row = np.zeros(len(here.cell), np.int64)
     elastic, viscous = (
         matrix_of(body, row, here.cell, values, 1)

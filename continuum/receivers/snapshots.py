@@ -11,11 +11,9 @@ from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space import compat
+from jointwave.continuum.space.build import SIMPLEX
 from jointwave.continuum.space.evaluation import (
-    element,
     jacobians,
-    kind_of,
-    lattice_of,
     nodes_of_cells,
     places_of_nodes,
     tabulate,
@@ -40,10 +38,10 @@ class StressOfCells:
     """
 
     def __init__(self, found: SceneBody, parts: np.ndarray, points: np.ndarray) -> None:
-        body, kind = found.body, kind_of(found.body)
+        body, kind = found.body, found.body.cell.kind
         self.nodes, corners = nodes_of_cells(body), compat.cell_corners(body.mesh)
         self.size, centres = body.components, points[parts].mean(axis=1)
-        self.slopes = tabulate(kind, self.nodes.shape[1], centres)[1]
+        self.slopes = tabulate(body.cell.element, centres)[1]
         at = np.tile(centres, (len(corners), 1))
         each = np.repeat(corners, len(parts), axis=0)
         shape = len(corners), len(parts), *2 * (corners.shape[2],)
@@ -94,9 +92,15 @@ class RockRecorder(SnapshotRecorder):
 
     def __init__(self, scene: AnyScene, found: SceneBody, steps: Leapfrog | Implicit) -> None:
         self.found, self.steps, body = found, steps, found.body
-        kind, nodes = kind_of(body), compat.cell_nodes(body.space)
-        own = lattice_of(kind, nodes.shape[1])
-        points = element(kind, nodes.shape[1]).points[own]
+        kind, nodes, points = (
+            body.cell.kind,
+            compat.cell_nodes(body.space),
+            body.cell.element.points,
+        )
+        own = np.arange(len(points))
+        if kind in SIMPLEX and body.cell.order == 2:  # a full lattice, without nodes of bubbles
+            own = np.flatnonzero(np.isclose(2 * points, np.rint(2 * points)).all(axis=1))
+        points = points[own]
         parts = linear_cells(kind, points)
         self.node, first, number = np.unique(nodes[:, own], return_index=True, return_inverse=True)
         self.points = places_of_nodes(body)[:, own].reshape(-1, body.x.shape[1])[first]
@@ -125,7 +129,7 @@ class RockRecorder(SnapshotRecorder):
             stress = stress[:, :, 0]
         else:
             u = u - u[0]
-        cells = self.points, KINDS[kind_of(self.found.body)], self.cells, self.block
+        cells = self.points, KINDS[self.found.body.cell.kind], self.cells, self.block
         return with_snapshots(result, snapshots(time, *cells, u, v, stress))
 
     @property

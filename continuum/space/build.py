@@ -54,7 +54,7 @@ class Elements:
         else:
             element = reference(kind, order)
             self.space = lagrange(self.domain, order, components)
-        self.cell = reference_cell(kind, element)
+        self.cell = reference_cell(kind, order, element)
         self.nodes = np.empty((len(self.row), len(self.cell.shares)), np.int64)
         self.nodes[self.row] = cell_nodes(self.space)
         self.x = np.empty((self.nodes.max() + 1, mesh.x.shape[1]))
@@ -121,6 +121,7 @@ def build_body(
     return Body(
         mesh=found.domain,
         space=found.space,
+        cell=found.cell,
         tied=found.tied,
         x=x,
         block=block,

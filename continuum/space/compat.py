@@ -3,6 +3,7 @@
 import inspect
 import os
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import basix
@@ -164,6 +165,7 @@ def quadrature(kind: str, degree: int) -> tuple[np.ndarray, np.ndarray]:
         return basix.make_quadrature(rule, cell, degree)
 
 
+@cache
 def reference(kind: str, order: int) -> Any:
     """Return basix's Lagrange element of a cell; `points` are its nodes, one for each function."""
     family, variant = basix.ElementFamily.P, basix.LagrangeVariant.gll_warped

@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from jointwave.continuum.space.traces import Reference
+
 
 class Forms(NamedTuple):
     """Rock, as bilinear forms of UFL on a vector space.
@@ -44,6 +46,10 @@ class JumpOperator(NamedTuple):
     frame: np.ndarray
     place: np.ndarray
 
+    def carried(self, stress: np.ndarray) -> np.ndarray:
+        """Return the tractions of a stress [d, d] on the points [points * d], Pa."""
+        return np.einsum("qac,cd,qd->qa", self.frame, stress, self.frame[:, 0]).ravel()
+
 
 class Facets(NamedTuple):
     """Facets of one side of the boundary, at their nodes; a node stands once for each facet.
@@ -64,8 +70,9 @@ class Body(NamedTuple):
     """A jointed elastic body.
 
     mesh : dolfinx.mesh.Mesh, in which the two sides of a joint share no node. space : dolfinx.fem's
-    vector space of displacements. tied : int array [nodes of the space], the node of the body that
-    each is; None where these are the same, but for rock that is whole across periodic sides.
+    vector space of displacements. cell : of the mesh, with its element. tied : int array [nodes of
+    the space], the node of the body that each is; None where these are the same, but for rock that
+    is whole across periodic sides.
     x : float array [nodes, d], m. block : int array [cells], of the partition. mass : float array
     [freedoms], the diagonal, kg; None where there is the consistent one, [freedoms, freedoms], kg.
     stiffness : N/m, and damping, N s/m (None without) : [freedoms, freedoms]. joints : None where
@@ -78,6 +85,7 @@ class Body(NamedTuple):
 
     mesh: Any
     space: Any
+    cell: Reference
     tied: np.ndarray | None
     x: np.ndarray
     block: np.ndarray

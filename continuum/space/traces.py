@@ -27,7 +27,7 @@ class Trace(NamedTuple):
 
 
 class Reference(NamedTuple):
-    """A cell with its element.
+    """A cell with its element of basix, which is complete up to an order.
 
     shares : of its corners at the nodes [nodes, corners]. at : points of a rule on a facet, by
     shares of its corners [r, c]. functions : of the nodes there, times the weights of the rule, on
@@ -37,6 +37,8 @@ class Reference(NamedTuple):
     """
 
     kind: str
+    order: int
+    element: Any
     shares: np.ndarray
     at: np.ndarray
     functions: np.ndarray
@@ -44,7 +46,7 @@ class Reference(NamedTuple):
     areas: np.ndarray | None
 
 
-def reference_cell(kind: str, element: Any) -> Reference:
+def reference_cell(kind: str, order: int, element: Any) -> Reference:
     """Return the reference cell of a kind with an element of basix, one function a node."""
     corners = reference(kind, 1)
     shares = corners.tabulate(0, element.points)[0, :, :, 0]
@@ -54,7 +56,7 @@ def reference_cell(kind: str, element: Any) -> Reference:
         at, weight = _rule(kind, 2 * degree)
         values = element.tabulate(0, at @ corners.points[facet])[0, :, :, 0]
         functions.append(weight[:, None] * values)
-    found = Reference(kind, shares, at, np.array(functions), None, None)
+    found = Reference(kind, order, element, shares, at, np.array(functions), None, None)
     facet = facets_of(kind)[0].tolist()
     local = _on(found, facet)[0]
     if (found.functions[0].sum(axis=0)[local] > ON).all():

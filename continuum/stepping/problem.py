@@ -183,8 +183,7 @@ class Problem(NamedTuple):
         """Return the tractions that points carry at u = 0 [points * d], Pa; None without."""
         if self.stress is None or self.body.joints is None:
             return None
-        frame = self.body.joints.frame
-        return np.einsum("qac,cd,qd->qa", frame, self.stress, frame[:, 0]).ravel()
+        return self.body.joints.carried(self.stress)
 
 
 def any_motion(body: Body) -> np.ndarray:

@@ -1,132 +1,41 @@
-"""Stacks of equal boxes with joints between them, made by hand: bodies for tests of steps."""
+"""Stacks of equal boxes with joints between them: bodies for tests of steps."""
 
-import itertools
-
-import basix
 import numpy as np
-import ufl
-from dolfinx import fem
 from scipy.sparse import csr_matrix, diags
 
-from jointwave.continuum.space import compat
-from jointwave.continuum.space.model import Body, Facets, JumpOperator
+from jointwave.cases.geometry.cell_complex import box
+from jointwave.cases.geometry.cut import cut, planes_of
+from jointwave.cases.geometry.measure import facet_moments
+from jointwave.continuum.mesh.boxes import box_mesh, boxes_of
+from jointwave.continuum.mesh.domain import Marks
+from jointwave.continuum.space.build import build_body
+from jointwave.continuum.space.rock import elastic, isotropic
 from jointwave.continuum.stepping.problem import Readings
 
-KINDS = {1: "interval", 2: "quadrilateral", 3: "hexahedron"}
-SIDES = {1: ("bottom", "top"), 2: ("left", "right", "bottom", "top")}
-SIDES[3] = ("left", "right", "front", "back", "bottom", "top")
 
-
-def stack(dim, count, cells, across=1, order=2, size=1.0, width=1.0, modulus=2.0, poisson=0.25,
-          density=1.0):  # fmt: skip
-    """Return `count` boxes on top of one another along the last axis, each `size` high in `cells`
-    elements and `width` wide in `across`: linear elastic, a bar in one dimension."""
-    numbers = [across] * (dim - 1) + [cells]
-    lengths = np.array([width] * (dim - 1) + [size])
-    grid = np.array(list(itertools.product(*(range(n + 1) for n in numbers))))
-    strides = np.array([int(np.prod([n + 1 for n in numbers[k + 1 :]])) for k in range(dim)])
-    corner = np.array(list(itertools.product(*([range(2)] * dim))))[:, ::-1]
-    first = np.array(list(itertools.product(*(range(n) for n in numbers))))
-    table = (first[:, None] + corner) @ strides
-    x = grid * lengths / numbers
-    lift = np.eye(dim)[-1] * size
-    every = np.concatenate([x + b * lift for b in range(count)])
-    tables = np.concatenate([table + b * len(x) for b in range(count)])
-    mesh = compat.make_mesh(KINDS[dim], every, tables)
-    space = compat.lagrange(mesh, order, dim)
-    block = np.arange(len(tables)) // len(table)
-    block = block[compat.input_cells(mesh)]
-
-    u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
+def stack(dim, count, cells, across=1, order=2, modulus=2.0, poisson=0.25):
+    """Return `count` boxes 1 wide and high on top of one another along the last axis, each high in
+    `cells` elements and wide in `across`: rock of density 1, a bar in one dimension."""
+    low, high = np.zeros(dim), np.append(np.ones(dim - 1), count)
+    up, levels = np.eye(dim)[-1], np.arange(1.0, count)
+    body = cut(box(low, high), planes_of(up, np.zeros(1, int), [levels], joint_set=0), 1e-9).body
+    boxes, middle = boxes_of(body), facet_moments(body).centroid
+    arms = (
+        body.vertices[boxes.corners[:, 1 << np.arange(dim)]] - body.vertices[boxes.corners[:, :1]]
+    )
+    mesh = box_mesh(body, boxes, np.where(arms @ up > 0.5, cells, across))
+    column = np.where(body.inner, body.sides.min(axis=1), -1)
+    side = np.where(middle[:, -1] < 1e-9, 0, np.where(middle[:, -1] > count - 1e-9, 1, 2))
+    marks = Marks(column, np.where(body.inner, -1, side), ("bottom", "top", "beside"))
     shear = modulus / 2 / (1 + poisson)
     lame = 2 * shear * poisson / (1 - 2 * poisson)
 
-    def strain(w):
-        return ufl.sym(ufl.grad(w))
+    def rock(space, _):
+        if dim == 1:
+            return elastic(space, 1.0, lambda slope: modulus * slope, None)
+        return isotropic(space, 1.0, lame, shear)
 
-    nodes = {"quadrature_rule": "GLL", "quadrature_degree": max(2 * order - 1, 1)}
-    at_nodes = ufl.dx(metadata=nodes)
-    stress = modulus * strain(u)
-    if dim > 1:
-        stress = 2 * shear * strain(u) + lame * ufl.tr(strain(u)) * ufl.Identity(dim)
-    mass = compat.matrix(density * ufl.inner(u, v) * at_nodes).diagonal()
-    stiffness = compat.matrix(ufl.inner(stress, strain(v)) * ufl.dx)
-
-    at = fem.Function(space, dtype=np.float64)
-    at.interpolate(lambda x: x[:dim])
-    places = at.x.array.reshape(-1, dim).copy()
-    cell_nodes = compat.cell_nodes(space)
-    node_block = np.empty(len(places), dtype=int)
-    node_block[cell_nodes] = block[:, None]
-    area = facet_weights(places, node_block, numbers, lengths, order)
-    sides = {}
-    for k, name in enumerate(SIDES[dim]):
-        axis, end = (k // 2, k % 2) if dim > 1 else (0, k)
-        reach = (lengths + (count - 1) * lift)[axis]
-        on = np.flatnonzero(np.isclose(places[:, axis], end * reach))
-        normal = np.zeros((len(on), dim))
-        normal[:, axis] = 2 * end - 1
-        sides[name] = Facets(on, area(on, axis), normal, places[on], node_block[on])
-    joints = jump_operator(places, node_block, count, size, area) if count > 1 else None
-    return Body(mesh, space, None, places, block, mass, None, stiffness, None, joints, sides)
-
-
-def facet_weights(places, block, numbers, lengths, order):
-    """Return the function of the areas that nodes stand for on facets normal to an axis."""
-    degree, gll = max(2 * order - 1, 1), basix.QuadratureType.gll
-    try:
-        at, weight = basix.make_quadrature(basix.CellType.interval, degree, rule=gll)
-    except TypeError:  # older: the rule comes first, and nothing has a name
-        at, weight = basix.make_quadrature(gll, basix.CellType.interval, degree)
-
-    def along(axis):
-        h = lengths[axis] / numbers[axis]
-        local = places[:, axis] / h % 1
-        local[np.isclose(local, 1)] = 0
-        found = np.zeros(len(places))
-        for one, share in zip(at[:, 0], weight, strict=True):
-            found[np.isclose(local, round(one, 9) % 1)] += h * share
-        end = np.isclose(places[:, axis] % lengths[axis], 0) | np.isclose(
-            places[:, axis] % lengths[axis], lengths[axis]
-        )
-        return np.where(end, found / 2, found)
-
-    def area(nodes, axis):
-        found = np.ones(len(nodes))
-        for other in range(len(lengths)):
-            if other != axis:
-                found *= along(other)[nodes]
-        return found
-
-    return area
-
-
-def jump_operator(places, block, count, size, area):
-    """Return the joints between boxes, points at the nodes."""
-    dim, axis = places.shape[1], places.shape[1] - 1
-    rows, columns, values, weights, points, number = [], [], [], [], [], []
-    frame = np.roll(np.eye(dim), 1, axis=0)  # the last axis is normal
-    if dim == 2:
-        frame = np.array([[0.0, 1.0], [-1.0, 0.0]])
-    for b in range(count - 1):
-        height = (b + 1) * size
-        below = np.flatnonzero((block == b) & np.isclose(places[:, axis], height))
-        above = np.flatnonzero((block == b + 1) & np.isclose(places[:, axis], height))
-        keys = [np.lexsort(places[one].round(9).T) for one in (below, above)]
-        for i, j in zip(below[keys[0]], above[keys[1]], strict=True):
-            q = len(points)
-            for a in range(dim):
-                for c in range(dim):
-                    rows += [dim * q + a] * 2
-                    columns += [dim * i + c, dim * j + c]
-                    values += [-frame[a, c], frame[a, c]]
-            points.append(places[i])
-            weights.append(area(np.array([i]), axis)[0])
-            number.append(b)
-    matrix = csr_matrix((values, (rows, columns)), (dim * len(points), dim * len(places)))
-    matrix.eliminate_zeros()
-    frames = np.tile(frame, (len(points), 1, 1))
-    return JumpOperator(matrix, np.array(weights), np.array(number), frames, np.array(points))
+    return build_body(mesh, marks, order, rock)
 
 
 def stiff_joints(body, normal, shear):

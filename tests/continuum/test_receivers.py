@@ -67,7 +67,7 @@ def test_sections_read_uniform_stress_exactly(dim, cell, order, homogenised):
     dashpots of a rate."""
     scene, found = homogenised(dim, cell, order)
     rock, u = calibrate(scene).each[0], affine(found.body)
-    read = sections(found.body, found.materials, found.of_cell, PLACES[1:-1])
+    read = sections(found, PLACES[1:-1])
     force = uniform_force(rock.modulus, rock.poisson, dim)
     for matrix, expected in ((read.elastic, force), (read.viscous, rock.time_constant * force)):
         values = (matrix @ u).reshape(-1, dim)
@@ -82,7 +82,7 @@ def test_sections_of_skewed_cells_read_uniform_stress_exactly(kind, column, tmp_
     path = drawn(tmp_path / "skewed.msh", kind, [(0.4, 0.6), (1.1, 0.9)])
     scene = column(path, joints__damping_ratio=None)
     found, rock = body_of(scene, "jointed", dim=dim), scene.rock
-    read = sections(found.body, found.materials, found.of_cell, [0.2, 0.5, 0.77])
+    read = sections(found, [0.2, 0.5, 0.77])
     values = (read.elastic @ affine(found.body)).reshape(-1, dim)
     force = uniform_force(rock.intact_modulus, rock.intact_poisson, dim)
     assert np.abs(values - force).max() < 1e-11 * np.abs(force).max()
@@ -103,7 +103,7 @@ def test_section_force_of_a_bar_pushed_at_one_end_falls_linearly(dim, cell, orde
     push = force * face / face.sum() - body.mass * rate
     u = np.linalg.lstsq(body.stiffness.toarray(), push, rcond=1e-12)[0]
     places = np.array([0.0, 0.05, 0.2, 0.3, 0.5, 0.9, 1.41])
-    read = sections(body, found.materials, found.of_cell, places.tolist())
+    read = sections(found, places.tolist())
     values = (read.elastic @ u + read.inertia @ rate).reshape(-1, dim)
     assert values[:, 0] == pytest.approx(force * (1 - places / 1.5), abs=1e-10)
     assert np.abs(values[:, 1:]).max(initial=0.0) < 1e-10
