@@ -1,4 +1,6 @@
-"""Springs of joints, and uniform stress on the sides of a body."""
+"""Springs of joints, uniform stress on the sides of a body, and blows on a pillar."""
+
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_matrix, diags
@@ -8,6 +10,19 @@ from jointwave.continuum.space.model import Body
 
 STIFFNESS = 2e10, 8e9  # of joints along the normal and in shear, Pa/m
 LAME, SHEAR = 5e10 * 0.2 / (1.2 * 0.6), 5e10 / 2.4  # of the rock, Pa
+
+BLOW = {"shape": "sine", "amplitude": 1e5, "period": 1e-3}  # on a pillar
+
+
+def oblique(dim: int) -> list[float]:
+    """Return a direction, in the plane or in space; along the bar."""
+    return {1: [0.0, 1.0, 0.0], 2: [0.6, 0.8, 0.0], 3: [0.48, 0.6, -0.64]}[dim]
+
+
+def blow(dim: int) -> dict[str, Any]:
+    """Return an oblique eccentric load; that of a bar is axial."""
+    at = {1: [0.0, 0.0], 2: [0.1, 0.0], 3: [0.1, -0.05]}[dim]
+    return {**BLOW, "direction": oblique(dim), "at": at}
 
 
 def springs(body: Body) -> csr_matrix:

@@ -67,9 +67,12 @@ def column(pillar):
 def short(pillar):
     """Return a function that gives four blocks of 0.5 m, one element long, keys changed."""
 
-    def scene(**changes):
+    def scene(numerics=None, **changes):
+        own = {f"numerics__continuum__{key}": value for key, value in (numerics or {}).items()}
+        given = [key for key in changes if key.startswith("record__")]
         record = SHORT["record"] | changes.pop("record", {})
-        keys = SHORT | {"record": record} | changes
+        record |= {key.removeprefix("record__"): changes.pop(key) for key in given}
+        keys = SHORT | {"record": record} | own | changes
         if "numerics__continuum__mesh" in changes:
             del keys["numerics__continuum__elements_per_block"]
         return pillar(**keys)

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from jointwave.cases.errors import SceneError
 from jointwave.cases.loads import history_of
 from jointwave.cases.material.constant_q import fitted, mechanisms_of
 from jointwave.cases.material.rock import elastic_rock
@@ -225,15 +224,6 @@ def test_without_a_quality_factor_nothing_of_it_is_there(rock_mass):
     )
     implicit = Implicit(own, 1e-4, 1, 0.9)
     assert implicit.now.forces.past.elongation.size == 0
-
-
-def test_what_has_no_quality_factor_says_so(rock_mass):
-    wave = {"kind": "P", "direction": [0.0, -1.0], "shape": "ricker", "period": 1e-3}
-    with pytest.raises(SceneError, match=r"\[\[waves\]\] do not support a quality_factor"):
-        waves, top = [wave | {"amplitude": 1e6}], {"top": "quiet"}
-        simulate(rock_mass(JOINT, rock=ROCK, waves=waves, boundaries=top))
-    with pytest.raises(SceneError, match="effective medium has no quality_factor"):
-        simulate(rock_mass({"dip": 0.0, "spacing": 2.0}, rock=ROCK, loads=[LOAD]), "equivalent")
 
 
 @pytest.mark.parametrize("scheme", ["explicit", "implicit"])
