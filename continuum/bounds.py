@@ -6,19 +6,10 @@ from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.continuum.scene import SceneBody
-from jointwave.continuum.space.model import Body
 from jointwave.continuum.stepping.problem import Problem
 from jointwave.numerics.divergence import speed_that
 
 IN_PERIOD = 50  # forces that are looked at in the period of a pulse, at least
-
-
-def masses(body: Body) -> np.ndarray:
-    """Return the diagonal of the mass [freedoms], kg."""
-    if body.mass is not None:
-        return body.mass
-    assert body.consistent is not None
-    return np.asarray(body.consistent.diagonal())
 
 
 def highest_speed(
@@ -30,7 +21,7 @@ def highest_speed(
     any node at most 2 E.
     """
     body, duration = problem.body, time.dt * (time.steps + time.stride)
-    mass = masses(body)
+    mass = np.asarray(body.consistent.diagonal()) if body.mass is None else body.mass  # type: ignore[union-attr]
     rock, pushed, shaken, weight, stored = mass > 0, 0.0, 0.0, 0.0, 0.0
     if problem.forces is not None:
         pushed = problem.forces.impulse(mass, time.steps, sampled(found.scene, time))

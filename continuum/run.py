@@ -131,7 +131,7 @@ def about_run(
         "degrees_of_freedom": problem.body.stiffness.shape[0],
         "bytes": steps.bytes if comm is None else comm.allreduce(steps.bytes),
         "processes": 1 if comm is None else comm.size,
-        "versions": versions(),
+        "versions": json.dumps({one.__name__: one.__version__ for one in (np, numba, dolfinx)}),
         **static,
         **steps.attributes,
     }
@@ -159,9 +159,3 @@ def stepper(
     if rest is not None:
         steps.start(rest.u, rest.history)
     return steps
-
-
-def versions() -> str:
-    """Return the versions of the libraries of a run, as JSON."""
-    own = {one.__name__: one.__version__ for one in (np, numba, dolfinx)}
-    return json.dumps(own)

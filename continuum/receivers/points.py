@@ -5,9 +5,9 @@ the place on them that is nearest to the receiver, between their points there.
 """
 
 import numpy as np
-from scipy.sparse import coo_matrix, csr_matrix, kron
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse import csr_matrix, kron
 
+from jointwave.cases.geometry.relations import joined
 from jointwave.cases.material.effective_medium import tensor
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.scene import SceneBody
@@ -74,10 +74,8 @@ def motion_at(body: Body, at: Places, share: np.ndarray, count: int) -> csr_matr
 def pieces_of(body: Body) -> np.ndarray:
     """Return the connected piece of the body that each cell is of, int array [cells]."""
     nodes = nodes_of_cells(body)
-    cell = np.repeat(np.arange(len(nodes)), nodes.shape[1])
-    size = len(nodes) + nodes.max() + 1
-    links = coo_matrix((np.ones(nodes.size), (cell, len(nodes) + nodes.ravel())), (size, size))
-    return connected_components(links, directed=False)[1][: len(nodes)]
+    first = np.broadcast_to(nodes[:, :1], nodes.shape)
+    return joined(np.stack([first.ravel(), nodes.ravel()], axis=1), len(body.x))[nodes[:, 0]]
 
 
 def shares_of_pieces(point: np.ndarray, piece: np.ndarray) -> np.ndarray:

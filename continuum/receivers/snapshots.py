@@ -46,10 +46,14 @@ class StressOfCells:
         each = np.repeat(corners, len(parts), axis=0)
         shape = len(corners), len(parts), *2 * (corners.shape[2],)
         self.inverse = np.linalg.inv(jacobians(kind, each, at)).reshape(shape)
-        self.moduli = -moduli_of(found)[found.of_cell]
+        pairs = [(1, 1)]  # along a pillar
+        if not found.scene.is_column:
+            pairs = [*stress_components(body.components).values()]
+        self.moduli = -moduli_of(found, pairs)[found.of_cell]
         lag = np.array([one.time_constant for one in found.materials])[found.of_cell]
         self.lag = lag[:, None, None] if lag.any() else None
-        self.constant = prestress_of(found.scene)
+        given = found.scene.prestress
+        self.constant = np.array([0.0 if given is None else given.tensor[one] for one in pairs])
 
     def of(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the stress [cells * parts, n], Pa, of displacements and velocities [freedoms]."""
@@ -61,27 +65,16 @@ class StressOfCells:
         return found.reshape(-1, found.shape[2]) + self.constant
 
 
-def moduli_of(found: SceneBody) -> np.ndarray:
-    """Return the components of the stress by the gradient of the displacement in each material
-    [materials, n, components, d], Pa: those of `stress_components`, of a pillar along it alone."""
-    dim, components = found.body.x.shape[1], found.body.components
+def moduli_of(found: SceneBody, pairs: list[tuple[int, int]]) -> np.ndarray:
+    """Return the components i, j of the stress by the gradient of the displacement in each material
+    [materials, n, components, d], Pa; in one dimension that along it."""
     stiffness = np.array([one.stiffness for one in found.materials])
-    if dim == 1:
-        moduli, along = np.zeros((len(stiffness), 1, components, 1)), components // 2
-        moduli[:, 0, along, 0] = stiffness[:, along, along]
-        return moduli
-    full, pairs = np.array([tensor(one) for one in stiffness]), stress_components(dim).values()
-    shown = [(1, 1)] if found.scene.is_column else [*pairs]
-    return np.stack([full[:, i, j] for i, j in shown], axis=1)
-
-
-def prestress_of(scene: AnyScene) -> np.ndarray:
-    """Return the stress at u = 0 [n], Pa, compression positive; zero without."""
-    if scene.is_column:
-        return np.array([scene.prestress.normal if scene.prestress else 0.0])
-    dim, given = scene.domain.dimension, scene.prestress
-    stress = np.zeros((dim, dim)) if given is None else given.tensor
-    return np.array([stress[i, j] for i, j in stress_components(dim).values()])
+    if found.body.x.shape[1] > 1:
+        full = np.array([tensor(one) for one in stiffness])
+        return np.stack([full[:, i, j] for i, j in pairs], axis=1)
+    moduli, along = np.zeros((len(stiffness), 1, stiffness.shape[1], 1)), stiffness.shape[1] // 2
+    moduli[:, 0, along, 0] = stiffness[:, along, along]
+    return moduli
 
 
 class RockRecorder(SnapshotRecorder):

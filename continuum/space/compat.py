@@ -20,7 +20,7 @@ if not NEW:
     import basix.ufl_wrapper
 
 
-def make_mesh(kind: str, x: np.ndarray, cells: np.ndarray, comm: Any = None) -> Any:
+def make_mesh(kind: str, x: np.ndarray, cells: np.ndarray) -> Any:
     """Return the dolfinx mesh of cells [n, corners] between vertices x [m, d], m.
 
     Cells that share no vertex are not connected, wherever their vertices lie.
@@ -33,7 +33,7 @@ def make_mesh(kind: str, x: np.ndarray, cells: np.ndarray, comm: Any = None) -> 
         element = ufl.VectorElement("Lagrange", cell, 1, variant="equispaced")
     name = "e" if "e" in inspect.signature(mesh.create_mesh).parameters else "domain"
     given = {"cells": cells, "x": x, name: ufl.Mesh(element)}
-    return compiled(lambda: mesh.create_mesh(comm or MPI.COMM_SELF, **given))
+    return compiled(lambda: mesh.create_mesh(MPI.COMM_SELF, **given))
 
 
 def input_cells(domain: Any) -> np.ndarray:
