@@ -1,10 +1,12 @@
-"""Springs of joints, uniform stress on the sides of a body, and blows on a pillar."""
+"""A small scene, springs of joints, uniform stress on the sides of a body, and blows on a pillar."""
 
 from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
+from jointwave.cases.read import load_tables
+from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.space.compat import cell_nodes
 from jointwave.continuum.space.model import Body
 
@@ -12,6 +14,21 @@ STIFFNESS = 2e10, 8e9  # of joints along the normal and in shear, Pa/m
 LAME, SHEAR = 5e10 * 0.2 / (1.2 * 0.6), 5e10 / 2.4  # of the rock, Pa
 
 BLOW = {"shape": "sine", "amplitude": 1e5, "period": 1e-3}  # on a pillar
+
+
+def rock_mass(*joints, dim=2, continuum=None, **tables) -> RockMass:
+    """Return a scene in 6 m x 4 m, or 6 m x 4 m x 5 m, of rock."""
+    law = dict(zip(("normal_stiffness", "shear_stiffness"), STIFFNESS, strict=True))
+    table: dict[str, Any] = {
+        "title": "a rock mass",
+        "domain": {"size": [6.0, 4.0, 5.0][:dim]},
+        "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
+        "joint_sets": [{"name": f"set {k}", **law, **one} for k, one in enumerate(joints)],
+        "time": {"duration": 2e-3},
+        "record": {"points": [[2.0, 1.5, 1.0][:dim]]},
+        "numerics": {"continuum": {"size": 1.5, "order": 1, **(continuum or {})}},
+    }
+    return load_tables({**table, **tables})
 
 
 def oblique(dim: int) -> list[float]:

@@ -4,10 +4,8 @@ from typing import Any
 
 import pytest
 
-from jointwave.cases.read import load_tables
-from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.scene import SceneBody, body_of
-from tests.continuum.bodies import STIFFNESS
+from tests.continuum import bodies
 
 SHORT: dict[str, Any] = {
     "pillar__length": 2.0,
@@ -20,22 +18,8 @@ SHORT: dict[str, Any] = {
 
 @pytest.fixture(scope="session")
 def rock_mass():
-    """Return a function that gives a scene in 6 m x 4 m, or 6 m x 4 m x 5 m, of rock."""
-
-    def scene(*joints, dim=2, continuum=None, **tables) -> RockMass:
-        law = dict(zip(("normal_stiffness", "shear_stiffness"), STIFFNESS, strict=True))
-        table: dict[str, Any] = {
-            "title": "a rock mass",
-            "domain": {"size": [6.0, 4.0, 5.0][:dim]},
-            "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
-            "joint_sets": [{"name": f"set {k}", **law, **one} for k, one in enumerate(joints)],
-            "time": {"duration": 2e-3},
-            "record": {"points": [[2.0, 1.5, 1.0][:dim]]},
-            "numerics": {"continuum": {"size": 1.5, "order": 1, **(continuum or {})}},
-        }
-        return load_tables({**table, **tables})
-
-    return scene
+    """Return `bodies.rock_mass`."""
+    return bodies.rock_mass
 
 
 @pytest.fixture(scope="session")

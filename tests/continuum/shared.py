@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from jointwave.cases.errors import InterruptedRun, SceneError, StoppedError
-from jointwave.cases.read import load_tables, load_variant
+from jointwave.cases.read import load_variant
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
@@ -17,9 +17,9 @@ from jointwave.continuum.run import simulate
 from jointwave.continuum.space.petsc import PETSc, shared_by
 from jointwave.continuum.stepping import product
 from tests.conftest import Checkpointer
+from tests.continuum.bodies import rock_mass
 
 SAMPLES = 41
-STIFF = {"normal_stiffness": 2e10, "shear_stiffness": 8e9}
 WEAK = {"friction_angle": 30.0, "cohesion": 1e4, "tensile_strength": 5e4, "fracture_energy": 1.0}
 LOAD = {"kind": "pressure", "side": "top", "shape": "sine", "period": 1e-3, "amplitude": 1e6}
 BASE = {
@@ -30,21 +30,16 @@ BASE = {
 
 def scene(*joints, dim=2, scheme="explicit", continuum=None, **tables) -> RockMass:
     """Return a rock mass on a fixed base between quiet sides, loaded from above."""
-    size = [6.0, 4.0, 5.0][:dim]
-    middle = [0.5 * one for one in size]
+    middle = [3.0, 2.0, 2.5][:dim]
+    record = {"points": [[2.0, 1.5, 1.0][:dim], middle], "joints": [middle], "fields": 5e-4}
     table: dict[str, Any] = {
-        "title": "shared",
-        "domain": {"size": size},
-        "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
-        "joint_sets": [{"name": f"set {k}", **STIFF, **one} for k, one in enumerate(joints)],
         "time": {"duration": 1e-3},
-        "record": {"points": [[2.0, 1.5, 1.0][:dim], middle], "joints": [middle],
-                   "interval": 1e-3 / (SAMPLES - 1), "fields": 5e-4},
-        "numerics": {"continuum": {"size": 1.0, "order": 1, "scheme": scheme, **(continuum or {})}},
+        "record": record | {"interval": 1e-3 / (SAMPLES - 1)},
         "loads": [LOAD],
         "boundaries": {"bottom": "fixed", "left": "quiet", "right": "quiet"},
-    }  # fmt: skip
-    return load_tables({**table, **tables})
+    }
+    own = {"size": 1.0, "scheme": scheme, **(continuum or {})}
+    return rock_mass(*joints, dim=dim, continuum=own, **table | tables)
 
 
 def plane(**changes) -> RockMass:

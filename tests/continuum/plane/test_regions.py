@@ -35,13 +35,14 @@ def test_a_column_of_two_rocks_is_pressed_as_both_in_series(rock_mass, model):
     """2 m by 6 m without a Poisson effect, at rest under 1 MPa: sigma h / E of each rock and four
     joints in the upper one, of which the lowest lies along the boundary, or their medium."""
     scene = rock_mass(
-        [{"dip": 0.0, "spacing": 0.5, "regions": ["upper"]}],
+        {"dip": 0.0, "spacing": 0.5, "regions": ["upper"]},
         domain={"size": [2.0, 6.0]},
         rock={"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.0},
         regions=[{"name": "upper", "through": [0.0, 4.0], "intact_modulus": 2e10}],
         boundaries={"bottom": "fixed"},
         loads=[{"kind": "pressure", "side": "top", "shape": "step", "amplitude": 1e6}],
         damping={"mass_proportional": 500.0},
+        continuum={"order": 2},
         time={"duration": 0.05},
         record={"points": [[1.0, 2.0], [1.0, 6.0]]},
     )
