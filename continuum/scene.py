@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -106,16 +107,24 @@ def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) ->
     size = element_size(scene, boxes is None)
     if np.isfinite(size):
         refuse_large_mesh(scene, blocks, size, body.dim)
-    if boxes is not None:
-        wanted = np.ceil(extents(body, boxes.corners) / size * (1 - 1e-9))
-        wanted = np.maximum(1, wanted).astype(int)
-        like = matching_vertices(body, across)
-        return box_mesh(body, boxes, along_edges(boxes.corners, wanted, like))
-    _refuse_order(scene)
+    if boxes is None:
+        return _simplices(scene, body, size, across)
+    wanted = np.ceil(extents(body, boxes.corners) / size * (1 - 1e-9))
+    like = matching_vertices(body, across)
+    counts = along_edges(boxes.corners, np.maximum(1, wanted).astype(int), like)
+    return box_mesh(body, boxes, counts)
+
+
+def _simplices(
+    scene: AnyScene, body: Complex, size: float, across: Sequence[Across] = ()
+) -> Conforming:
+    """Return a mesh of simplices; raises SceneError where these have no diagonal mass."""
+    if (order := scene.numerics.continuum.order) > 2:
+        allowed = "must be at most 2 for triangles and tetrahedra"
+        raise SceneError(scene.where, "numerics.continuum.order", order, allowed)
     if not np.isfinite(size) and are_simplices(body):
         return own_cells(body)
-    alike = [(matching_facets(body, one), one.shift) for one in across]
-    return simplex_mesh(body, size, alike)
+    return simplex_mesh(body, size, [(matching_facets(body, one), one.shift) for one in across])
 
 
 def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool, dim: int) -> SceneBody:
@@ -160,23 +169,10 @@ def _mesh_of_pillar(scene: Scene, blocks: Blocks, each: np.ndarray, components: 
     size = (blocks.volume.sum() / cells) ** (1 / body.dim)
     refuse_large_mesh(scene, blocks, size, components, key)
     if numerics.cell == "simplex" and faces:
-        _refuse_order(scene)
         longest = blocks.volume / scene.pillar.side**faces / many
-        return simplex_mesh(body, min(scene.pillar.side / across, longest.min()))
+        return _simplices(scene, body, min(scene.pillar.side / across, longest.min()))
     boxes = boxes_of(body)
     assert boxes is not None
-    return box_mesh(body, boxes, _along(body, boxes.corners, many, across))
-
-
-def _refuse_order(scene: AnyScene) -> None:
-    """Raise SceneError where simplices have no diagonal mass."""
-    if (order := scene.numerics.continuum.order) > 2:
-        allowed = "must be at most 2 for triangles and tetrahedra"
-        raise SceneError(scene.where, "numerics.continuum.order", order, allowed)
-
-
-def _along(body: Complex, corners: np.ndarray, many: np.ndarray, across: int) -> np.ndarray:
-    """Return the numbers of cells along the axes of the blocks of a pillar, int array [n, d]."""
-    arms = body.vertices[corners[:, 1 << np.arange(body.dim)]] - body.vertices[corners[:, :1]]
-    lengthwise = np.abs(arms).argmax(axis=2) == body.dim // 2
-    return np.where(lengthwise, many[:, None], across)
+    ends = body.vertices[boxes.corners[:, np.append(0, 1 << np.arange(body.dim))]]
+    lengthwise = np.abs(ends[:, 1:] - ends[:, :1]).argmax(axis=2) == body.dim // 2
+    return box_mesh(body, boxes, np.where(lengthwise, many[:, None], across))

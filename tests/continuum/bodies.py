@@ -1,4 +1,4 @@
-"""A small scene, springs of joints, uniform stress on the sides of a body, and blows on a pillar."""
+"""A small scene, springs of joints, uniform stress on the sides of a body, blows on a pillar."""
 
 from typing import Any
 
