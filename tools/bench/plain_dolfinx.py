@@ -14,7 +14,6 @@ from dolfinx import fem
 from jointwave.continuum.plan import Plan
 from jointwave.continuum.space.build import by_rule, rock_rule
 from jointwave.continuum.space.compiling import compiled
-from jointwave.continuum.space.evaluation import kind_of
 from jointwave.continuum.space.rock import rock_of_cells
 from jointwave.continuum.stepping.problem import Problem
 
@@ -64,7 +63,7 @@ def assembled(plan: Plan, problem: Problem) -> Steps:
     u = fem.Function(space, dtype=np.float64)
     region = found.blocks.body.region[problem.body.block]
     form = rock_of_cells(space, found.materials, region).stiffness
-    rule = rock_rule(kind_of(problem.body), found.scene.numerics.continuum.order)
+    rule = rock_rule(problem.body.cell.kind, found.scene.numerics.continuum.order)
     made = plainly(by_rule(ufl.action(-form, u), rule))
 
     def internal(force: np.ndarray) -> None:
