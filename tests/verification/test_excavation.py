@@ -10,10 +10,10 @@ import pytest
 
 from closed_forms.kirsch import Kirsch
 from jointwave.cases.read import load
-from jointwave.continuum.loads.forces import forces_on
 from jointwave.continuum.loads.sides import facets_on
 from jointwave.continuum.mesh.session import gmsh_session
 from jointwave.continuum.plan import plan_of
+from jointwave.continuum.space.model import forces_on
 from jointwave.continuum.stepping.static import settled
 from jointwave.continuum.stepping.tractions import SLIDE, history_at_rest
 
