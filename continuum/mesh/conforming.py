@@ -47,11 +47,6 @@ def facets_of(kind: str) -> np.ndarray:
     return np.array(basix.topology(getattr(basix.CellType, kind))[-2])
 
 
-def facet_vertices(mesh: Conforming) -> np.ndarray:
-    """Return the vertices of the facets of cells in rising order, int array [c, facets, n]."""
-    return np.sort(mesh.cells[:, facets_of(mesh.kind)], axis=2)
-
-
 def on_facets(
     kind: str, cells: np.ndarray, vertices: np.ndarray, facet: np.ndarray, count: int
 ) -> np.ndarray:
@@ -75,7 +70,7 @@ def row_numbers(rows: np.ndarray, count: int) -> np.ndarray:
 
 def shared(mesh: Conforming) -> Places:
     """Return the pairs of facets that two cells share."""
-    vertices = facet_vertices(mesh)
+    vertices = np.sort(mesh.cells[:, facets_of(mesh.kind)], axis=2)  # [c, facets, n]
     number = row_numbers(vertices, len(mesh.x)).ravel()
     order = np.argsort(number, kind="stable")
     first = np.flatnonzero(np.diff(number[order]) == 0)

@@ -103,7 +103,9 @@ def _mesh(tagged: Tagged, p: Properties) -> Conforming:
     _check_extent(x, p, dim)
     x = x[:, :dim]
     cells = _oriented(kind, x, cells)
-    one = merged(x, APART * _shortest(x[cells]))
+    i, j = np.triu_indices(cells.shape[1], 1)
+    shortest = float(np.linalg.norm(x[cells[:, i]] - x[cells[:, j]], axis=2).min())
+    one = merged(x, APART * shortest)
     index, names = np.full(len(tagged.x), len(x)), sorted(tagged.facets)
     index[used] = np.arange(len(x))
     group = grouped(kind, cells, [index[tagged.facets[name]] for name in names], len(x) + 1)
@@ -158,12 +160,6 @@ def _jacobians(kind: str, x: np.ndarray) -> np.ndarray:
         return np.linalg.det(x[:, 1:] - x[:, :1])[:, None]
     corner, bit = np.arange(x.shape[1])[:, None], 1 << np.arange(x.shape[2])
     return np.linalg.det(x[:, corner | bit] - x[:, corner & ~bit])
-
-
-def _shortest(x: np.ndarray) -> float:
-    """Return the shortest distance between two corners of a cell, m; x : [c, corners, d], m."""
-    i, j = np.triu_indices(x.shape[1], 1)
-    return float(np.linalg.norm(x[:, i] - x[:, j], axis=2).min())
 
 
 def _along(mesh: Conforming, is_joint: np.ndarray) -> Conforming:
