@@ -1,7 +1,7 @@
 """Forces on a body: gravity, pressures, point forces, compliant bases, excavations, and waves that
 enter through quiet sides."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -60,9 +60,14 @@ def released(scene: AnyScene, body: Body) -> np.ndarray | None:
 
 def pushes(scene: AnyScene, body: Body) -> list[Push]:
     """Return the loads of a scene that are forces."""
-    of_kind = {"pressure": _pressure, "force": _force, "base": _base, "end": end_force}
+    of_kind: dict[str, Any] = {
+        "pressure": _pressure,
+        "force": _force,
+        "base": _base,
+        "end": end_force,
+    }
     return [
-        Push(of_kind[one.kind](scene, body, one), force_history(scene, one))  # type: ignore[operator]
+        Push(of_kind[getattr(one, "kind", "end")](scene, body, one), force_history(scene, one))
         for one in scene.pushes
     ]
 
