@@ -52,8 +52,11 @@ class Wave(Pulse):
     def _in_the_vertical_plane(cls, table: Any, info: ValidationInfo) -> Any:
         if not isinstance(table, dict) or table.get("kind") != "SV":
             return table
+        if table.get("polarisation") is not None:
+            allowed = 'is of kind = "S": SV is polarised in the vertical plane of its direction'
+            raise contradiction(".polarisation", table["polarisation"], allowed)
         vertical = {"polarisation": [0.0, 0.0, 1.0]} if dimension(info) == 3 else {}
-        return vertical | table | {"kind": "S"}
+        return table | vertical | {"kind": "S"}
 
     @model_validator(mode="after")
     def _is_polarised(self, info: ValidationInfo) -> "Wave":
@@ -64,6 +67,7 @@ class Wave(Pulse):
             along = np.dot(self.polarisation or self.direction, self.direction)
             if abs(along) > 1 - LEAST_ACROSS:
                 allowed = "is required for an S wave in space: not along its direction"
+                allowed += "; a vertical wave is of no kind 'SV'" * (self.polarisation is not None)
                 raise contradiction(".polarisation", self.polarisation, allowed)
         return self
 
