@@ -24,6 +24,7 @@ from jointwave.dem.static import (
     UNBORNE,
     Damped,
     Rest,
+    relax,
     settle,
 )
 from jointwave.dem.system import BlockSystem
@@ -31,6 +32,7 @@ from jointwave.joints.law import IN_MOTION, sticking
 from jointwave.results.arrays import copied, fill
 
 PARTS = 40  # in which walls of openings are released where joints may slip or open
+STUCK = 1e-4  # out-of-balance ratio of joints that neither slip nor open, before they may
 RESISTED = 1e-9  # of the largest resistance: below it there is none
 LOOKS = 0.3  # stretches of ten steps after each part, over the root of the number of blocks
 
@@ -46,7 +48,7 @@ def start(system: BlockSystem, state: State) -> Rest | None:
     rest, bears, form = None, bool(system.bearing.any()), system.model.form
     if static or scene.prestress is not None:
         relaxation = BlockRelaxation(system, static)
-        before = relaxation.excavate()
+        before = relaxation.excavate() if relaxation.walls is not None else relaxation.stick()
         rest = settle(scene, relaxation)
         rest = rest._replace(steps=before + rest.steps)
         state.u[:] = relaxation.state.u
@@ -133,7 +135,7 @@ class BlockRelaxation:
         if not weighed:
             own = own._replace(gravity=np.zeros_like(own.gravity))
         laws[IN_MOTION] = 0.0
-        rows, self.steady, self.walls = loads.rows, loads.steady, None
+        rows, self.steady, self.walls, self.alpha = loads.rows, loads.steady, None, 0.0
         stress = blocks.prestress
         if sticks:
             laws, self.steady, stress = sticking(laws), np.zeros_like(self.steady), None
@@ -176,8 +178,6 @@ class BlockRelaxation:
     def excavate(self) -> int:
         """Release the walls of openings but for the last part, and return the steps taken: all at
         once blocks overshoot, and slip further than they must."""
-        if self.walls is None:
-            return 0
         whole, looks = self.steady, ceil(LOOKS * np.sqrt(self.count))
         for part in range(1, PARTS):
             self.steady = whole + (1 - part / PARTS) * self.walls
@@ -187,6 +187,20 @@ class BlockRelaxation:
             self.stop()
         self.steady = whole
         return (PARTS - 1) * looks * STEPS_BETWEEN_LOOKS
+
+    def stick(self) -> int:
+        """Go to the static state of joints that neither slip nor open, where some can, and return
+        the steps taken: from rest, undamped, blocks overshoot and slip further than they must."""
+        if self.state.history is None or not self.model.form.points:
+            return 0
+        before, own = copied(self.state), self.model.laws.copy()
+        self.model.laws[:] = sticking(own)
+        self.state.history[:] = state_at_rest(self.model).history
+        rest = relax(self, STUCK, self.most_steps)
+        self.model.laws[:] = own
+        at = self.state if rest.ratio <= STUCK else before
+        fill(self.state, before._replace(u=at.u, turn=at.turn))
+        return rest.steps
 
     def place(self, moved: np.ndarray, tolerance: float) -> None:
         """Begin with this displacement of the blocks [N, F] if it is a static state."""

@@ -109,20 +109,21 @@ def _moves(first: np.ndarray, second: np.ndarray, until: np.ndarray, mass: np.nd
 
 
 class Damped:
-    """Motion under damping that is critical for the mode that still moves.
+    """Motion under damping that is critical for the mode that still moves: `system.alpha`, 1/s, at
+    first that of the motion before.
 
     force : unbalanced, on every freedom, N and N m.
     """
 
     def __init__(self, system: Any) -> None:
-        self.system, self.alpha = system, 0.0
+        self.system = system
         self.u, self.force = system.displacement().copy(), system.unbalanced().copy()
 
     def advance(self) -> None:
         """Take `STEPS_BETWEEN_LOOKS` steps, and look."""
-        self.system.advance(STEPS_BETWEEN_LOOKS, self.alpha)
+        self.system.advance(STEPS_BETWEEN_LOOKS, self.system.alpha)
         u, force = self.system.displacement().copy(), self.system.unbalanced().copy()
-        self.alpha = 2 * _frequency(u - self.u, self.force - force, self.system.mass)
+        self.system.alpha = 2 * _frequency(u - self.u, self.force - force, self.system.mass)
         self.u, self.force = u, force
 
 
