@@ -48,7 +48,8 @@ def start(system: BlockSystem, state: State) -> Rest | None:
     rest, bears, form = None, bool(system.bearing.any()), system.model.form
     if static or scene.prestress is not None:
         relaxation = BlockRelaxation(system, static)
-        before = relaxation.excavate() if relaxation.walls is not None else relaxation.stick()
+        walls = relaxation.walls
+        before = relaxation.stick() if walls is None else relaxation.excavate(walls)
         rest = settle(scene, relaxation)
         rest = rest._replace(steps=before + rest.steps)
         state.u[:] = relaxation.state.u
@@ -175,12 +176,15 @@ class BlockRelaxation:
         if weighed and blocks.placed is not None:
             self.place(blocks.placed, blocks.scene.numerics.dem.static_tolerance)
 
-    def excavate(self) -> int:
+    def excavate(self, walls: np.ndarray) -> int:
         """Release the walls of openings but for the last part, and return the steps taken: all at
-        once blocks overshoot, and slip further than they must."""
+        once blocks overshoot, and slip further than they must.
+
+        walls : what they hold blocks by, in the rows of the forces.
+        """
         whole, looks = self.steady, ceil(LOOKS * np.sqrt(self.count))
         for part in range(1, PARTS):
-            self.steady = whole + (1 - part / PARTS) * self.walls
+            self.steady = whole + (1 - part / PARTS) * walls
             damped = Damped(self)
             for _ in range(looks):
                 damped.advance()
