@@ -114,8 +114,9 @@ def stress_at(reads: Sections, system: BlockSystem, samples: Samples, first: int
     force, own = np.zeros((len(crossed), dim, count)), np.searchsorted(reads.watched, crossed - 1)
     axes = [0] if dim == 1 else [2, 0, 1]  # of the frame y, z, x
     force[inner] = samples.contact[own[inner]][:, axes]
-    ends = on_ends(reads, system, samples, first)
-    force[crossed == 0], force[crossed == end] = ends[0], -ends[1]
+    if not inner.all():
+        ends = on_ends(reads, system, samples, first)
+        force[crossed == 0], force[crossed == end] = ends[0], -ends[1]
     at = sections._replace(
         left=np.searchsorted(crossed, sections.left), right=np.searchsorted(crossed, sections.right)
     )

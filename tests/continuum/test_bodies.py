@@ -195,7 +195,7 @@ def test_a_pillar_has_as_many_dimensions_as_its_motion_asks_for(pillar, changes,
     mass = p.density * area * scene.pillar.length
     assert np.allclose(body.mass.reshape(-1, components).sum(axis=0), mass, rtol=1e-12)
     assert np.isclose(body.sides["start"].weight.sum(), area, rtol=1e-12)
-    assert np.allclose(body.sides["end"].normal[:, dim // 2], 1.0)
+    assert np.allclose(body.sides["end"].normal[:, components // 2], 1.0)
     joints = body.joints
     axis = min(1, components - 1)
     assert np.allclose(joints.frame[:, 0, axis], 1.0)

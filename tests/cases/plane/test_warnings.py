@@ -35,7 +35,7 @@ def test_a_scene_that_is_meant_has_none(mass):
         ),
         ({"damping__local": 0.5}, "damping.local distorts waves"),
         ({"numerics__dem__block": 1.0}, "numerics.dem.block = 1 m gives 8.33 rigid blocks"),
-        ({"numerics__continuum__size": 1.0}, "numerics.continuum.size = 1 m gives"),
+        ({"numerics__continuum__size": 2.0}, "numerics.continuum.size = 2 m, of order 2, gives"),
         ({"joint_sets": SETS}, "the joint sets give 4.17 rigid blocks"),
     ],
 )
@@ -43,10 +43,10 @@ def test_a_likely_mistake_is_a_line(mass, changes, words):
     assert any(words in line for line in warnings(mass(**changes))), warnings(mass(**changes))
 
 
-def test_the_bound_of_blocks_and_elements_is_ten_a_wavelength(mass):
-    for key in ("dem__block", "continuum__size"):
+def test_the_bound_of_blocks_and_nodes_is_ten_a_wavelength(mass):
+    for key, each in (("dem__block", 1), ("continuum__size", 2)):  # of elements of order 2
         for part, count in ((0.99, 0), (1.01, 1)):
-            found = warnings(mass(**{f"numerics__{key}": part * SHORTEST / 10}))
+            found = warnings(mass(**{f"numerics__{key}": part * each * SHORTEST / 10}))
             assert len(found) == count, (key, part, found)
 
 
