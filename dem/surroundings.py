@@ -1,4 +1,4 @@
-"""What acts on blocks from outside: on ends and sides, in any dimension."""
+"""Surroundings of blocks in any dimension: forces, dashpots and moving bases on ends and sides."""
 
 from __future__ import annotations
 
