@@ -12,7 +12,7 @@ from jointwave.compare.engines import solve
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.studies.findings import judged, orders
 from jointwave.compare.studies.study import load
-from jointwave.compare.studies.work_precision import run
+from jointwave.compare.studies.work_precision import experiment
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -47,7 +47,7 @@ def test_study_runs_on_its_scene(scene_file):
     path = scene_file.with_name("my-study.toml")
     path.write_text(blocks("toml", STUDY)[0], encoding="utf-8")
     study = load(str(path))
-    rows = run(study, scene_file.parent / "points")
+    rows = experiment(study, scene_file.parent / "points").rows()
     assert [row.state for row in rows] == ["done"] * 3
     (order,) = orders(study, judged(rows))
     assert order.measured == pytest.approx(order.theory, abs=0.1)

@@ -9,19 +9,17 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli.forecast_view import show_forecasts
 from jointwave.compare.cli.options import PrintOptions, SceneOptions, SweepOptions, warn
 from jointwave.compare.cli.terminal import print_json, progress, say, show_frame, show_table
-from jointwave.compare.engines import Progress, label_of
+from jointwave.compare.engines import label_of
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.runs.jobs import options_of
 from jointwave.compare.runs.processes import started
 from jointwave.compare.runs.reuse import ResultFolder
-from jointwave.compare.studies.catalogue import Experiment
+from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.forecast import Run, runs_of
 from jointwave.compare.studies.plan import Plan
 from jointwave.compare.studies.reference import Reference
-from jointwave.compare.studies.store import Pool, on_pool, plain
-from jointwave.compare.studies.summary import Summary
-from jointwave.compare.studies.sweep import Work, cases_of, run
-from jointwave.compare.studies.sweep_table import summarise
+from jointwave.compare.studies.store import on_pool, plain
+from jointwave.compare.studies.sweep import Work, cases_of, experiment
 from jointwave.compare.text import percent
 
 
@@ -62,7 +60,7 @@ def sweep(
     """
     cases = cases_of(*asked[:3], sweeps.swept, out, sweeps.members)
     scenes = [case.scene for case in cases if case.scene is not None]
-    work, keys = work_of(scenes), list(cases[0].settings)
+    work = work_of(scenes)
     warn(scenes, asked.strict)
     if shown.dry:
         runs: list[Run] = []
@@ -76,10 +74,7 @@ def sweep(
         show_forecasts(runs, shown.as_json, others, failing)
         return
 
-    def done(pool: Pool | None, advance: Progress | None) -> Summary:
-        return summarise(asked.scene, keys, out, run(cases, out, fresh, work, pool, advance))
-
-    one = Experiment(f"{len(cases)} points", list, done)
+    one = experiment(asked.scene, cases, out, fresh, work)
     run_and_show(one, out, sweeps.workers, shown)
 
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from jointwave.cases.errors import SceneError
 from jointwave.cases.files import read_text
 from jointwave.compare.figures.export import blank, save
-from jointwave.compare.studies.summary import Summary
+from jointwave.compare.studies.experiment import Summary
 from jointwave.compare.text import span
 
 PLACE = Path("out/peers/points.csv")  # where `make bench-peers` writes

@@ -16,12 +16,12 @@ from jointwave.compare.figures.export import save
 from jointwave.compare.report import peers
 from jointwave.compare.runs.field_files import write_pvd
 from jointwave.compare.scenes import find
-from jointwave.compare.studies import effects, effects_summary, hard_cases
+from jointwave.compare.studies import effects, hard_cases
 from jointwave.compare.studies.catalogue import experiment
+from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.scattering import TITLES
 from jointwave.compare.studies.store import Pool
-from jointwave.compare.studies.summary import Summary
 from jointwave.compare.studies.work_precision import REPORTED
 from jointwave.results.snapshots import snapshots_of
 
@@ -52,8 +52,7 @@ def sections(
             found = peers.summarise(others, folder)
             yield section("peers", found, "make bench-peers", contents="Other codes")
         progress(HARD * i / (len(REPORTED) + 1))
-    measured = effects.run(effects.reported(), out / "effects", pool=pool)
-    found = effects_summary.summarise(out / "effects", measured)
+    found = _effects(out).make(pool, None)
     yield section("effects", found, "jointwave effects beyond/paper-effects", contents="Effects")
     progress(HARD)
     if hard:
@@ -69,7 +68,11 @@ def planned(out: Path) -> list[Run]:
     """Return the runs of the sections, with the hard cases."""
     names = *TITLES, *REPORTED, hard_cases.NAME
     studies = (experiment(name, out / "studies", brief=True).planned() for name in names)
-    return [*chain(*studies), *effects.planned(effects.reported(), out / "effects")]
+    return [*chain(*studies), *_effects(out).planned()]
+
+
+def _effects(out: Path) -> Experiment:
+    return effects.experiment("Effects", effects.reported(), out / "effects")
 
 
 def section(kind: str, found: Summary, command: str, **more: Any) -> dict[str, Any]:

@@ -4,10 +4,13 @@ Both are measured in rigid blocks and, if it applies, in the jointed rock: each 
 in turn. The misfit is relative L2 from the engine's own result of the complete scene.
 """
 
+from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
+from itertools import chain
 from math import nan
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pandas as pd
 
@@ -22,6 +25,8 @@ from jointwave.compare.solvers.continuum import JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies import store
 from jointwave.compare.studies.effect_removal import left_out
+from jointwave.compare.studies.effects_summary import summarise
+from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.step_cost import (
     REPEATS,
@@ -78,32 +83,43 @@ def reported() -> list[Variant]:
     return [(name, cases.load_variant(find(name), of)) for name, of in REPORTED.items()]
 
 
-def run(
-    wanted: list[Variant], folder: Path, progress: Progress | None = None, pool: Pool | None = None
-) -> pd.DataFrame:
-    """Return the table of all effects, one `EffectRow` each; results are saved in `folder`.
+class Effects(Experiment):
+    """The effects of some variants: a pool leaves them out, and so compiles all kernels but that of
+    every effect; steps are timed in this process, one variant after the other."""
 
-    pool : leaves out the effects, and so compiles all kernels but that of every effect. Steps are
-    timed in this process, one variant after the other.
-    """
-    saved: Store[list[EffectRow]] = Store(list[EffectRow], folder)
-    unsaved: Store[list[EffectRow]] = Store(list[EffectRow], None)
-    points = [(one, engine) for one in wanted for engine in _engines(one)]
-    with alone():
-        left = saved.missing(points, key)
-        runs = unsaved.compute(left, key, measure, pool)
-        rows = dict(zip(map(key, left), runs, strict=True))
-        measured = saved.compute(
-            points, key, lambda point: timed(point, rows[key(point)]), progress=progress
-        )
-    return pd.DataFrame([row for some in measured for row in some], columns=EffectRow._fields)
+    def rows(self, pool: Pool | None = None, progress: Progress | None = None) -> list[Any]:
+        """Return the rows of all effects of each point."""
+        with alone():
+            left = self.store.missing(self.points)
+            runs = replace(self.store, folder=None).compute(left, measure, pool)
+            rows = dict(zip(map(key, left), runs, strict=True))
+
+            def work(point: Point) -> list[EffectRow]:
+                return timed(point, rows[key(point)])
+
+            return self.store.compute(self.points, work, progress=progress)
 
 
-def planned(wanted: list[Variant], folder: Path) -> list[Run]:
-    """Return the runs of the variants that are not saved yet, and those that time their steps."""
-    points = [(one, engine) for one in wanted for engine in _engines(one)]
+def experiment(title: str, wanted: list[Variant], folder: Path) -> Experiment:
+    """Return the study of all effects of some variants; results and files are in `folder`."""
+    saved = Store[Point, Any](list[EffectRow], folder, key)
+    points = [
+        (one, engine)
+        for one in wanted
+        for engine in (BLOCKS, ROCK)
+        if engine == BLOCKS or applies(engine, one[1])
+    ]
+
+    def told(rows: list[list[EffectRow]]) -> Summary:
+        return summarise(folder, pd.DataFrame(chain(*rows), columns=EffectRow._fields))
+
+    return Effects(title, points, saved, measure, runs, told)
+
+
+def runs(points: Sequence[Point]) -> list[Run]:
+    """Return the runs of variants with all effects and without each, and those that are timed."""
     found, whole = [], {}
-    for (name, scene), engine in Store(list[EffectRow], folder).missing(points, key):
+    for (name, scene), engine in points:
         for effect in (None, *active_effects(scene)):
             with suppress(*FAILURES):
                 one = scene if effect is None else left_out(scene, effect)
@@ -121,10 +137,6 @@ def key(point: Point) -> str:
     return store.key(name, scene.name, scene_hash(scene), engine)
 
 
-def _engines(one: Variant) -> list[str]:
-    return [engine for engine in (BLOCKS, ROCK) if engine == BLOCKS or applies(engine, one[1])]
-
-
 def measure(point: Point) -> list[EffectRow]:
     """Return the rows of a variant in an engine, not yet timed; none for rock that cannot be run.
 
@@ -133,23 +145,22 @@ def measure(point: Point) -> list[EffectRow]:
     (name, scene), engine = point
     if not active_effects(scene):
         raise SceneError(scene.where, "", None, "has no effect to leave out")
-    found = []
+    rows = [EffectRow(name, scene.title, scene.name, engine, x) for x in active_effects(scene)]
     try:
         result = solve(engine, scene)
     except FAILURES:
         if engine == BLOCKS:
             raise
         return []
-    for effect in active_effects(scene):
-        row = EffectRow(name, scene.title, scene.name, engine, effect)
+    for i, row in enumerate(rows):
         try:
-            other = solve(engine, left_out(scene, effect))
+            other = solve(engine, left_out(scene, row.effect))
         except FAILURES as error:
-            found.append(row._replace(reason=reason_of(error)))
+            rows[i] = row._replace(reason=reason_of(error))
         else:
             steps = float(result.attrs["steps"] / other.attrs["steps"])
-            found.append(row._replace(misfit=misfit(other, result), steps=steps))
-    return found
+            rows[i] = row._replace(misfit=misfit(other, result), steps=steps)
+    return rows
 
 
 def timed(point: Point, rows: list[EffectRow]) -> list[EffectRow]:
@@ -157,16 +168,15 @@ def timed(point: Point, rows: list[EffectRow]) -> list[EffectRow]:
     (_, scene), engine = point
     if not rows:
         return []
-    without = {row.effect: left_out(scene, row.effect) for row in rows if not row.reason}
-    own, *costs = step_costs([scene, *without.values()], engine)
-    less = dict(zip(without, costs, strict=True))
+    without = [left_out(scene, row.effect) for row in rows if not row.reason]
+    own, *less = step_costs([scene, *without], engine)
     whole = engine == BLOCKS and not scene.in_space
-    every = cost_of_every_effect(scene).ns if whole else nan
-    found = []
+    everything = cost_of_every_effect(scene).ns if whole else nan
+    found, costs = [], iter(less)
     for row in rows:
-        row = row._replace(own=own.ns, everything=every)
-        if row.effect in less:
-            ns, noise = own.ns - less[row.effect].ns, own.noise + less[row.effect].noise
+        if not row.reason:
+            one = next(costs)
+            ns, noise = own.ns - one.ns, own.noise + one.noise
             row = row._replace(ns=ns, noise=noise, share=ns / own.ns)
-        found.append(row)
+        found.append(row._replace(own=own.ns, everything=everything))
     return found

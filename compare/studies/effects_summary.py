@@ -10,8 +10,8 @@ from matplotlib.lines import Line2D
 
 from jointwave.compare.figures.export import blank, save
 from jointwave.compare.runs.output import write_csv
-from jointwave.compare.studies.effects import BLOCKS
-from jointwave.compare.studies.summary import Summary
+from jointwave.compare.solvers.dem import DEM
+from jointwave.compare.studies.experiment import Summary
 from jointwave.compare.text import percent
 
 NAME, TITLE = "effects", "Cost and influence of each effect"
@@ -42,7 +42,7 @@ def table(found: pd.DataFrame) -> pd.DataFrame:
     for _, some in found.assign(label=_labels(found)).groupby(["label", "engine"], sort=False):
         one = next(some.itertuples())
         heading = f"{numbers[one.label]}. {one.title} ({one.label}): {one.own:.3g} ns per "
-        if one.engine == BLOCKS:
+        if one.engine == DEM.name:
             heading += "block and step"
             if isfinite(one.everything):
                 full = f"{percent(one.own / one.everything)} % of {one.everything:.3g} ns"
@@ -71,7 +71,7 @@ def _resolved(value: float, noise: float) -> float | str:
 def sentences(found: pd.DataFrame) -> list[str]:
     """Return the costs of the cheapest and the most expensive set of effects, and the most
     expensive effect without influence."""
-    blocks = found[found.engine == BLOCKS].assign(label=_labels)
+    blocks = found[found.engine == DEM.name].assign(label=_labels)
     sets = (blocks.own / blocks.everything).dropna().groupby(blocks.label).first().sort_values()
     said = []
     if len(sets):
@@ -97,7 +97,7 @@ def draw(found: pd.DataFrame) -> Figure:
     is the SVG group effects-points-k.
     """
     labels = _labels(found).unique().tolist()
-    points = found[(found.engine == BLOCKS) & (found.reason == "")].assign(label=_labels)
+    points = found[(found.engine == DEM.name) & (found.reason == "")].assign(label=_labels)
     with blank(max(4.6, 0.6 + 0.17 * (len(labels) + points.effect.nunique()))) as figure:
         ax = figure.subplots()
         for k, (effect, some) in enumerate(points.groupby("effect", sort=False)):

@@ -13,7 +13,9 @@ over the spectrum of a Ricker wavelet (CUBES). Steps above the critical one are 
 by the divergence monitor if the scene allows them.
 """
 
+from collections.abc import Sequence
 from contextlib import suppress
+from functools import partial
 from math import inf, isfinite, nan, pi
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -27,13 +29,14 @@ from jointwave.cases.effects import active_effects
 from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import shortest_period
-from jointwave.compare.engines import ENGINES, Progress, applies, label_of, solver
+from jointwave.compare.engines import ENGINES, applies, label_of, solver
 from jointwave.compare.figures.export import save
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.runs.output import write_csv
 from jointwave.compare.runs.timings import solved
 from jointwave.compare.scenes import bound_of, find, shipped
 from jointwave.compare.studies import store
+from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.hard_map import (
     SCENE,
@@ -44,8 +47,7 @@ from jointwave.compare.studies.hard_map import (
     computed,
     draw_maps,
 )
-from jointwave.compare.studies.store import Pool, Store
-from jointwave.compare.studies.summary import Summary
+from jointwave.compare.studies.store import Store
 from jointwave.results.dataset import energy_residual, scene_hash
 
 NAME = "stability"
@@ -196,16 +198,19 @@ def largest_fall(result: xr.Dataset) -> float:
     return max(falls, default=0.0) / work if work else 0.0
 
 
-def key(row: HardRow) -> str:
-    """Return the key of a row: everything that determines it."""
-    return store.key(row[:5], scene_hash(cases.load_variant(find(row.scene), row.variant)))
+def key(point: HardRow | Column) -> str:
+    """Return the key of a row or of a map's column: everything that determines it."""
+    if isinstance(point, Column):
+        return store.key(point)
+    scene = cases.load_variant(find(point.scene), point.variant)
+    return store.key(point[:5], scene_hash(scene))
 
 
-def planned(out: Path) -> list[Run]:
-    """Return the runs of the cases and of the maps' cells that are not saved yet, with what they
-    are held against; a cell above the critical step ends early."""
-    folder, found = out / NAME, []
-    for row in Store(HardRow, folder).missing(hard_cases(), key):
+def runs(points: Sequence[HardRow | Column]) -> list[Run]:
+    """Return the runs of rows, with what they are held against, and of maps' cells; a cell above
+    the critical step ends early."""
+    found = [Run("maps", *cells_to_run(one)) for one in points if isinstance(one, Column)]
+    for row in (one for one in points if isinstance(one, HardRow)):
         with suppress(SceneError):
             scene = scene_of(row)
             bounds = (bound_of(key) for key in scene.expect)
@@ -213,16 +218,25 @@ def planned(out: Path) -> list[Run]:
             names = [row.engine, *(one for one in exact if one not in ENGINES)][:2]
             solver(row.engine).prepare(scene)
             found += [Run("cases", scene, one) for one in names if applies(one, scene)]
-    left = Store(Column, folder).missing(columns(), store.key)
-    return found + [Run("maps", *cells_to_run(one)) for one in left]
+    return found
 
 
-def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = None) -> Summary:
-    """Run all cases and the maps, saved in OUT/stability/; write their tables and figure into
-    `out`."""
-    folder = out / NAME
-    cells = cells_of(Store[Column](Column, folder).compute(columns(), store.key, computed, pool))
-    rows = Store[HardRow](HardRow, folder).compute(hard_cases(), key, run, pool, progress)
+def experiment(out: Path) -> Experiment:
+    """Return the study of all cases and the maps, saved in OUT/stability/, with files in `out`."""
+    saved = Store[Any, Any](HardRow | Column, out / NAME, key)
+    points, told = [*columns(), *hard_cases()], partial(summarise, out)
+    return Experiment(TITLE, points, saved, measure, runs, told)
+
+
+def measure(point: HardRow | Column) -> HardRow | Column:
+    """Return a row after its run, or a column of a map with its cells."""
+    return computed(point) if isinstance(point, Column) else run(point)
+
+
+def summarise(out: Path, found: Sequence[HardRow | Column]) -> Summary:
+    """Return the summary of rows and maps; write their tables and figure into `out`."""
+    cells = cells_of([one for one in found if isinstance(one, Column)])
+    rows = [one for one in found if isinstance(one, HardRow)]
     drawn = save(draw_maps(cells), out, NAME, TITLE)
     tables = {NAME: pd.DataFrame(rows, columns=HardRow._fields), f"{NAME}-map": cells}
     files = [write_csv(out / f"{name}.csv", table) for name, table in tables.items()]

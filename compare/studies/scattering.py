@@ -3,6 +3,8 @@
 The scenes of the waves, and what is read off their motion, are those of `joint_waves`.
 """
 
+from collections.abc import Sequence
+from functools import partial
 from math import nan
 from pathlib import Path
 from time import process_time
@@ -13,7 +15,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from jointwave.cases.read import load
-from jointwave.compare.engines import Progress, solve, solver
+from jointwave.compare.engines import solve, solver
 from jointwave.compare.exact.plane.oblique_joint import Joint
 from jointwave.compare.exact.plane.waves import KINDS, Kind
 from jointwave.compare.figures.export import blank, save
@@ -23,6 +25,7 @@ from jointwave.compare.runs.timings import machine
 from jointwave.compare.solvers.continuum import JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies import store
+from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.joint_waves import (
     SCENE,
@@ -31,8 +34,7 @@ from jointwave.compare.studies.joint_waves import (
     closed_form,
     scene_of,
 )
-from jointwave.compare.studies.store import Pool, alone
-from jointwave.compare.studies.summary import Summary
+from jointwave.compare.studies.store import Store
 from jointwave.compare.text import percent
 
 ANGLES = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0)  # degrees from the joints' normal
@@ -104,13 +106,6 @@ def points(study: str, brief: bool = False) -> list[JointsRow]:
     ]
 
 
-def planned(study: str, folder: Path, brief: bool = False) -> list[Run]:
-    """Return the runs of the points that are not saved yet."""
-    left = store.Store(JointsRow, folder).missing(points(study, brief), key)
-    scenes = [scene_of(joints_of(one.joints), one.incidence, one.angle) for one in left]
-    return [Run(study, scene, one.solver) for one, scene in zip(left, scenes, strict=True)]
-
-
 def key(point: JointsRow) -> str:
     """Return the key of a point: everything that determines its row."""
     return store.key(point[:4], load(SCENE)[0].model_dump_json())
@@ -141,22 +136,22 @@ def measure(point: JointsRow) -> JointsRow:
     return JointsRow(*point[:4], *numbers)
 
 
-def make_study(
-    name: str,
-    out: Path,
-    brief: bool = False,
-    pool: Pool | None = None,
-    progress: Progress | None = None,
-) -> Summary:
-    """Run a study of TITLES; write its table and figure into `out`, its points into OUT/NAME/.
+def experiment(name: str, out: Path, brief: bool = False) -> Experiment:
+    """Return a study of TITLES, with its table and figure in `out`, its points in OUT/NAME/.
 
     Seconds are CPU time: as many points may run at a time as there are cores. brief : only every
     other point, see `points`.
     """
-    saved: store.Store[JointsRow] = store.Store(JointsRow, out / name)
-    wanted = points(name, brief)
-    with alone():
-        found = saved.compute(wanted, key, measure, pool, progress)
+
+    def runs(left: Sequence[JointsRow]) -> list[Run]:
+        return [Run(name, scene_of(joints_of(x.joints), *x[1:3]), x.solver) for x in left]
+
+    saved, told = Store[Any, Any](JointsRow, out / name, key), partial(summarise, name, out)
+    return Experiment(TITLES[name], points(name, brief), saved, measure, runs, told, timed=True)
+
+
+def summarise(name: str, out: Path, found: list[JointsRow]) -> Summary:
+    """Return the summary of a study; write its table and its figure into `out`."""
     rows, title = pd.DataFrame(found), TITLES[name]
     data = rows.rename_axis("row").to_xarray().assign_attrs(title=title, **machine())
     figure = save(draw(name, rows), out, name, title)

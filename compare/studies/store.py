@@ -61,59 +61,57 @@ def plain(value: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class Store(Generic[T]):
+class Store(Generic[P, T]):
     """The results of a study's points.
 
     form : the type of a result: a NamedTuple, or a list of them. folder : of the files; None:
-    nothing is saved. is_valid : whether a saved result is still valid. fresh : take none.
+    nothing is saved. key : returns the name of a point. is_valid : whether a saved result is still
+    valid. fresh : take none. lost : returns the result, not saved, of a point whose process has
+    died; None: MemoryError is raised.
     """
 
     form: Any
     folder: Path | None
+    key: Callable[[P], str]
     is_valid: Callable[[T], bool] = lambda result: True
     fresh: bool = False
+    lost: Callable[[P], T] | None = None
 
     def compute(
         self,
         points: Sequence[P],
-        key: Callable[[P], str],
         work: Callable[[P], T],
         pool: Pool | None = None,
         progress: Progress | None = None,
-        lost: Callable[[P], T] | None = None,
     ) -> list[T]:
         """Return the results of points, in order; saved ones are not recomputed.
 
         work : returns the result of a point. pool : does the work; None: this process, one point
-        after the other. lost : returns the result of a point whose process has died, not saved;
-        None: MemoryError is raised. Raises SceneError if a saved file is damaged.
+        after the other. Raises SceneError if a saved file is damaged.
         """
-        named = {key(point): point for point in points}
+        named = {self.key(point): point for point in points}
         found = {name: done for name in named if (done := self._saved(name)) is not None}
         missing = {name: point for name, point in named.items() if name not in found}
         for name, result in (pool or partial(in_processes, 1))(work, missing):
             if result is not None and self.folder is not None:
                 write_text(self.folder / f"{name}.json", json.dumps(plain(result), indent=1))
             elif result is None:
-                if lost is None:
+                if self.lost is None:
                     raise MemoryError(f"a point has no result: {DIED}")
-                result = lost(named[name])
+                result = self.lost(named[name])
             found[name] = result
             if progress:
                 progress(len(found) / len(named))
-        return [found[key(point)] for point in points]
+        return [found[self.key(point)] for point in points]
 
-    def missing(self, points: Sequence[P], key: Callable[[P], str]) -> list[P]:
+    def missing(self, points: Sequence[P]) -> list[P]:
         """Return the points without a saved result."""
-        return [point for point in points if self._saved(key(point)) is None]
+        return [point for point in points if self._saved(self.key(point)) is None]
 
     def _saved(self, name: str) -> T | None:
         """Return a saved result; None without one, or if it is no longer valid."""
-        if (
-            self.fresh
-            or self.folder is None
-            or not (path := self.folder / f"{name}.json").is_file()
-        ):
+        path = self.folder and self.folder / f"{name}.json"
+        if self.fresh or path is None or not path.is_file():
             return None
         found: T = read_kept(path, self.form)
         return found if self.is_valid(found) else None
@@ -148,23 +146,21 @@ def _parallel(
     run = Parallel(
         count, return_as="generator_unordered", pre_dispatch=count, batch_size=1, max_nbytes=None
     )
-    named = _named if count == 1 else _named_and_settled
-    yield from run(delayed(named)(*one, work, Path.cwd()) for one in points.items())
+    about = work, Path.cwd(), count > 1
+    yield from run(delayed(_named)(*one, *about) for one in points.items())
 
 
-def _named(name: str, point: P, work: Callable[[P], T], folder: Path) -> tuple[str, T]:
+def _named(
+    name: str, point: P, work: Callable[[P], T], folder: Path, is_worker: bool
+) -> tuple[str, T]:
+    """Work on a point. What a worker has made, mostly compiled kernels, stays: joblib looks for
+    garbage after each point, among a million objects of numba for half a second."""
     os.chdir(folder)  # processes outlive a call, and remember the folder of the first one
-    return name, work(point)
-
-
-def _named_and_settled(*about: Any) -> tuple[str, Any]:
-    """Do what `_named` does in a worker. What it leaves there, mostly of compiled kernels, stays:
-    joblib looks for garbage after each point, among a million objects of numba for half a second.
-    """
-    found = _named(*about)
-    gc.collect()
-    gc.freeze()
-    return found
+    result = work(point)
+    if is_worker:
+        gc.collect()
+        gc.freeze()
+    return name, result
 
 
 def on_executor(

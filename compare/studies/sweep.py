@@ -22,7 +22,6 @@ import xarray as xr
 from jointwave.cases.errors import InterruptedRun, SceneError
 from jointwave.cases.read import parse_override
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import Progress
 from jointwave.compare.figures.tables import write_comparisons
 from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.places import Place, places_of
@@ -35,8 +34,10 @@ from jointwave.compare.runs.run import execute
 from jointwave.compare.scenes import find, load, load_variants
 from jointwave.compare.studies import ensemble, store
 from jointwave.compare.studies.ensemble import MEMBER
-from jointwave.compare.studies.store import DIED, FAILURES, Pool, Store
+from jointwave.compare.studies.experiment import Experiment, Summary
+from jointwave.compare.studies.store import DIED, FAILURES, Store
 from jointwave.compare.studies.sweep_keys import axes
+from jointwave.compare.studies.sweep_table import summarise
 from jointwave.results.dataset import scene_hash
 from jointwave.results.netcdf import load_netcdf
 
@@ -111,25 +112,36 @@ def _folder(setting: dict[str, Any], number: int) -> str:
     return name if plain else f"point-{number:05d}"
 
 
-def run(
-    cases: list[Case],
-    out: Path | None,
-    fresh: bool,
-    work: Work,
-    pool: Pool | None = None,
-    progress: Progress | None = None,
-) -> pd.DataFrame:
-    """Return the table of a sweep, SI: the rows of all cases in order, with their keys, variant and
+def experiment(
+    scene: str, cases: list[Case], out: Path | None, fresh: bool, work: Work
+) -> Experiment:
+    """Return a sweep. Its table has the rows of all cases in order, with their keys, variant and
     folder, `state`, "done" or "failed", and the reason in `message`.
 
-    out : the folder; None writes nothing. Completed cases are read from it, if their files are
-    still there. fresh : compute them anew.
+    scene : its name. out : the folder; None writes nothing. Completed cases are read from it, if
+    their files are still there. fresh : compute them anew.
     """
-    saved: Store[Rows] = Store(Rows, out and out / "points", _has_files, fresh)
-    about, outcome = partial(_key, work=work), partial(_outcome, work=work, fresh=fresh)
-    found = saved.compute(cases, about, outcome, pool, progress, lambda one: _failed(DIED))
+
+    def key(case: Case) -> str:
+        about = case.message if case.scene is None else [case.variant, scene_hash(case.scene)]
+        return store.key(str(case.folder), about, joblib.hash(work))
+
+    def told(found: list[Rows]) -> Summary:
+        return summarise(scene, list(cases[0].settings), out, table_of(cases, found))
+
+    folder, lost = out and out / "points", lambda _: _failed(DIED)
+    saved = Store[Case, Rows](Rows, folder, key, _has_files, fresh, lost)
+    measure = partial(_outcome, work=work, fresh=fresh)
+    return Experiment(f"{len(cases)} points", cases, saved, measure, list, told)
+
+
+def table_of(cases: list[Case], found: list[Rows]) -> pd.DataFrame:
+    """Return the rows of all cases as a table, SI."""
     return pd.DataFrame(
-        {key: _cell(value) for key, value in case.settings.items()}
+        {
+            k: json.dumps(v, default=str) if isinstance(v, list | dict) else v
+            for k, v in case.settings.items()
+        }
         | {"variant": case.variant}
         | {"folder": str(case.folder / case.variant if case.folder else "")}
         | row
@@ -138,30 +150,20 @@ def run(
     )
 
 
-def _cell(value: Any) -> Any:
-    return json.dumps(value, default=str) if isinstance(value, list | dict) else value
-
-
 def _has_files(rows: Rows) -> bool:
     return all(Path(row["file"]).is_file() for row in rows if "file" in row)
-
-
-def _key(case: Case, work: Work) -> str:
-    scene = case.message if case.scene is None else [case.scene.name, scene_hash(case.scene)]
-    return store.key(str(case.folder), scene, joblib.hash(work))
 
 
 def _outcome(case: Case, work: Work, fresh: bool) -> Rows:
     if case.scene is None:
         return _failed(case.message)
     try:
-        return [
-            {"state": "done", "message": ""} | row for row in work(case.scene, case.folder, fresh)
-        ]
+        found = work(case.scene, case.folder, fresh)
     except InterruptedRun:
         raise
     except (*FAILURES, MemoryError) as error:
         return _failed(str(error) or "not enough memory")
+    return [{"state": "done", "message": ""} | row for row in found]
 
 
 def _failed(message: str) -> Rows:

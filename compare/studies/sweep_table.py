@@ -14,7 +14,7 @@ from jointwave.compare.misfit.places import Place
 from jointwave.compare.runs.output import write_csv
 from jointwave.compare.studies import ensemble
 from jointwave.compare.studies.ensemble import MEMBER
-from jointwave.compare.studies.summary import Summary
+from jointwave.compare.studies.experiment import Summary
 
 #: Numbers at a receiver of a run, and of a pair of solutions, by the column that names them.
 NUMBERS = {

@@ -5,7 +5,8 @@ Colours are those of models.
 """
 
 import json
-from contextlib import nullcontext
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,19 +15,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from jointwave.compare.engines import Progress
 from jointwave.compare.figures.export import blank, save
 from jointwave.compare.figures.style import style
 from jointwave.compare.runs.output import write_csv, write_dataset
 from jointwave.compare.runs.timings import machine
+from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.findings import done, floor, judged, orders, sentences
 from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.measure import PointRow, is_valid, measure
 from jointwave.compare.studies.reference import references
-from jointwave.compare.studies.store import Pool, Store, alone
+from jointwave.compare.studies.store import Store
 from jointwave.compare.studies.store import key as store_key
 from jointwave.compare.studies.study import Study, StudyPoint
-from jointwave.compare.studies.summary import Summary
 
 #: The studies of the report, in its order.
 REPORTED = ("free-pillar", "convergence", "uniform-chain", "one-joint")
@@ -58,42 +58,34 @@ COLUMNS = {
 }
 
 
-def run(
-    study: Study, folder: Path, pool: Pool | None = None, progress: Progress | None = None
-) -> list[PointRow]:
-    """Return the rows of all points of a study, in its order; they are saved in `folder`.
-
-    Points of a timed study are run one at a time in this process, regardless of `pool`, and only
-    one timed study runs on a machine at a time.
-    """
-    rows: Store[PointRow] = Store(PointRow, folder)
-    with alone() if study.timed else nullcontext():
-        pool = None if study.timed else pool
-        return rows.compute(study.points(), key, measure, pool, progress)
-
-
-def planned(study: Study, folder: Path) -> list[Run]:
-    """Return the runs of a study's points that are not saved yet, and of their references."""
-    points = Store(PointRow, folder).missing(study.points(), key)
-    again = study.repeats if study.timed and study.repeats > 1 else 0
-    valid = [point for point in points if is_valid(point)]
-    return [
-        *(Run(one.curve.label, one.scene, one.curve.method, 1, again) for one in valid),
-        *(Run("references", scene, name) for name, scene in references(valid)),
-    ]
-
-
 def key(point: StudyPoint) -> str:
     """Return the key of a point: everything that determines its row."""
     study = point.study.model_dump(mode="json", exclude={"title", "curves"})
     return store_key(study, point.curve.model_dump(mode="json"), point.settings)
 
 
-def make_study(
-    study: Study, folder: Path, pool: Pool | None = None, progress: Progress | None = None
-) -> Summary:
-    """Run a study, saved in `folder`; write NAME.csv, NAME.nc and the diagram beside it."""
-    out, name, rows = folder.parent, folder.name, run(study, folder, pool, progress)
+def experiment(study: Study, folder: Path) -> Experiment:
+    """Return a study with its points in `folder`, and NAME.csv, NAME.nc and the diagram beside it.
+
+    Points of a timed study are run one at a time in this process.
+    """
+    again = study.repeats if study.timed and study.repeats > 1 else 0
+
+    def runs(left: Sequence[StudyPoint]) -> list[Run]:
+        valid = [point for point in left if is_valid(point)]
+        return [
+            *(Run(one.curve.label, one.scene, one.curve.method, 1, again) for one in valid),
+            *(Run("references", scene, name) for name, scene in references(valid)),
+        ]
+
+    saved, told = Store[Any, Any](PointRow, folder, key), partial(summarise, study, folder)
+    shares = study.timed, not study.timed
+    return Experiment(study.title, study.points(), saved, measure, runs, told, *shares)
+
+
+def summarise(study: Study, folder: Path, rows: list[PointRow]) -> Summary:
+    """Return the summary of a study; write its files beside `folder`."""
+    out, name = folder.parent, folder.name
     table = judged(rows)
     written = table.assign(settings=table["settings"].map(json.dumps))
     data = written.rename_axis("point").to_xarray()

@@ -172,11 +172,8 @@ def mesh(data: bytes, folder: Path) -> str:
 SOLVERS = (
     "jointwave.compare.runs.run.execute",
     "jointwave.compare.runs.comparison.compare",
-    "jointwave.compare.cli.study_view.run",
-    "jointwave.compare.studies.effects.run",
+    "jointwave.compare.cli.study_view.on_pool",
     "jointwave.compare.studies.plan.plan",
-    "jointwave.compare.studies.work_precision.run",
-    "jointwave.compare.studies.hard_cases.make_study",
     "jointwave.compare.report.report.build",
     "jointwave.compare.runs.comparison.solved",
     "jointwave.compare.figures.animation.snapshots.take",

@@ -82,7 +82,7 @@ def test_files_table_and_sentences_tell_of_every_row(tmp_path, monkeypatch):
     few = [case for case in CASES if case.title == "short-pillar"]
     monkeypatch.setattr(hard_cases, "hard_cases", lambda: few)
     monkeypatch.setattr(hard_cases, "columns", lambda: hard_map.columns(("dem",), 5))
-    found = hard_cases.make_study(tmp_path)
+    found = hard_cases.experiment(tmp_path).make()
     assert (tmp_path / "stability.csv").read_text().count("\n") == len(few) + 1
     assert (tmp_path / "stability-map.csv").read_text().count("\n") == 25 + 1
     svg = (tmp_path / "stability.svg").read_text()

@@ -1,6 +1,5 @@
 """Commands that weigh accuracy against cost over many runs: effects, plan, study, report."""
 
-from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -36,14 +35,10 @@ def effects(
     and not measured again.
     """
     from jointwave.compare.cli.study_view import run_and_show
-    from jointwave.compare.studies.catalogue import Experiment
-    from jointwave.compare.studies.effects import planned, run
-    from jointwave.compare.studies.effects_summary import summarise
+    from jointwave.compare.studies.effects import experiment
 
     wanted = [(asked.scene, one) for one in asked.load(every=False)]
-
-    title, runs = wanted[0][1].title, partial(planned, wanted, out)
-    one = Experiment(title, runs, lambda pool, tell: summarise(out, run(wanted, out, tell, pool)))
+    one = experiment(wanted[0][1].title, wanted, out)
     run_and_show(one, out, CORES, shown)
 
 

@@ -10,7 +10,7 @@ from jointwave.compare.report.claims.claim import Claim
 from jointwave.compare.report.page import render
 from jointwave.compare.report.scenes import PAPER, SceneRequest, SolvedScene
 from jointwave.compare.report.sections import section
-from jointwave.compare.studies.summary import Summary
+from jointwave.compare.studies.experiment import Summary
 
 
 @pytest.fixture

@@ -1,6 +1,7 @@
 """Cost and influence of effects: measured, saved when done, and shown whole."""
 
 import json
+from itertools import chain
 from math import nan
 
 import numpy as np
@@ -12,7 +13,7 @@ from jointwave.cases.effects import active_effects
 from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.compare.studies import effects
 from jointwave.compare.studies.effect_removal import left_out
-from jointwave.compare.studies.effects import EffectRow, run
+from jointwave.compare.studies.effects import EffectRow, Effects, experiment
 from jointwave.compare.studies.effects_summary import draw, sentences, summarise, table
 from jointwave.compare.studies.step_cost import StepCost
 
@@ -40,9 +41,14 @@ def damped(pillar):
     return "a/b", pillar(joints__damping_ratio=0.05, time__duration=0.03)
 
 
+def run(variant, folder, progress=None):
+    """Return the table of the effects of a variant."""
+    return pd.DataFrame(chain(*experiment("", [variant], folder).rows(None, progress)))
+
+
 def test_effects_are_measured_by_leaving_them_out(damped, known, tmp_path):
     """The ledger changes nothing; dashpots do, and shorten the step. Costs are differences."""
-    found = run([damped], tmp_path).set_index(["engine", "effect"])
+    found = run(damped, tmp_path).set_index(["engine", "effect"])
     assert set(found.loc["dem"].index) == {"dashpots", "energy ledger"}
     ledger, dashpots = found.loc["dem", "energy ledger"], found.loc["dem", "dashpots"]
     assert (ledger.misfit, ledger.steps) == (0, 1)
@@ -60,10 +66,10 @@ def test_effects_are_measured_by_leaving_them_out(damped, known, tmp_path):
 def test_what_is_done_is_not_done_again(damped, known, tmp_path, monkeypatch):
     """NaN is read as such."""
     fractions: list[float] = []
-    first = run([damped], tmp_path, fractions.append)
+    first = run(damped, tmp_path, fractions.append)
     for name in ("measure", "timed"):
         monkeypatch.setattr(effects, name, lambda *some: pytest.fail("measured again"))
-    again = run([damped], tmp_path)
+    again = run(damped, tmp_path)
     pd.testing.assert_frame_equal(first, again)
     assert fractions[-1] == 1
 
@@ -141,7 +147,7 @@ def test_files_hold_every_number(tmp_path):
 
 def test_the_command_prints_a_scene_and_keeps_its_files(command, tmp_path, monkeypatch):
     rows = [row("energy ledger", 0, 3, 0.75)]
-    monkeypatch.setattr(effects, "run", lambda *of: pd.DataFrame(rows))
+    monkeypatch.setattr(Effects, "rows", lambda *of: [rows])
     scene = ["effects", "guo-li-2002/fig-09", "--variant", "no tension"]
     said = command(*scene).out
     assert "energy ledger" in said and "10.0 % of 40 ns" in said

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from jointwave.compare.studies.findings import TARGETS, cheapest, floor, judged, orders, sentences
 from jointwave.compare.studies.measure import PointRow
 from jointwave.compare.studies.study import load, shipped
-from jointwave.compare.studies.work_precision import run
+from jointwave.compare.studies.work_precision import experiment
 
 
 def row(**numbers):
@@ -17,7 +17,7 @@ def row(**numbers):
 
 
 def test_leapfrog_is_of_second_order(study, tmp_path):
-    (order,) = orders(study(), judged(run(study(), tmp_path)))
+    (order,) = orders(study(), judged(experiment(study(), tmp_path).rows()))
     assert order.measured == pytest.approx(2, abs=0.05) and order.theory == 2
 
 
@@ -122,7 +122,7 @@ def test_a_headline_by_cancellation_is_marked_and_not_counted(tmp_path):
     is 1.97 % off, so that no step is within 1 %, nor the most accurate one within 1.95 %."""
     pillar = load("free-pillar")
     blocks = pillar.model_copy(update={"curves": pillar.curves[:1], "repeats": 1})
-    table = judged(run(blocks, tmp_path))
+    table = judged(experiment(blocks, tmp_path).rows())
     assert list(100 * table.measured) == pytest.approx([7.1, 2.1, 0.96, 1.7, 1.9, 1.95], 0.02)
     assert list(100 * table.modelling) == pytest.approx([1.97] * 6, rel=0.01)
     assert [len(cheapest(table, target)) for target in TARGETS] == [1, 0, 0, 0]
@@ -149,7 +149,7 @@ def test_shipped_orders_are_within_a_tenth_of_theory(name, cut, tmp_path):
     curves = tuple(curve for curve in study.curves if curve.order is not None)
     alone = {"curves": curves, "timed": False, "finest": "none"}
     study = study.model_copy(update=alone | {"changes": study.changes | cut})
-    found = orders(study, judged(run(study, tmp_path)))
+    found = orders(study, judged(experiment(study, tmp_path).rows()))
     assert [order.curve for order in found] == [curve.label for curve in curves]
     for order in found:
         assert order.measured == pytest.approx(order.theory, abs=0.1), order.curve
@@ -158,6 +158,6 @@ def test_shipped_orders_are_within_a_tenth_of_theory(name, cut, tmp_path):
 def test_a_smaller_step_is_worse_on_the_uniform_chain(tmp_path):
     """At c dt = d the error is round-off over some hundred steps; then it only grows."""
     study = load("uniform-chain")
-    found = [one.numerical for one in run(study, tmp_path)]
+    found = [one.numerical for one in experiment(study, tmp_path).rows()]
     assert found[0] < 1e-12
     assert found[1:] == sorted(found[1:]) and found[1] > 0.01

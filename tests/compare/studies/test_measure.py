@@ -15,7 +15,7 @@ from jointwave.compare.studies.measure import measure
 from jointwave.compare.studies.reference import finest_of, own_of
 from jointwave.compare.studies.store import alone
 from jointwave.compare.studies.study import FineRun, load, shipped
-from jointwave.compare.studies.work_precision import key, run
+from jointwave.compare.studies.work_precision import experiment, key
 
 STEP = "numerics.dem.step_fraction"
 FINE = {"method": "dem", "changes": {STEP: 0.01}, "coarser": {STEP: 0.02}}
@@ -43,8 +43,8 @@ def test_the_floor_is_how_far_the_coarser_run_is_from_the_finer(study):
 def test_errors_against_a_fine_run_are_nearly_those_against_the_exact_solution(study, tmp_path):
     asked = fine(study, timed=True, repeats=1)
     exact = study([asked.curves[0].model_dump() | {"own": "lattice"}])
-    rows = run(asked, tmp_path)
-    for one, other in zip(rows, run(exact, tmp_path), strict=True):
+    rows = experiment(asked, tmp_path).rows()
+    for one, other in zip(rows, experiment(exact, tmp_path).rows(), strict=True):
         assert one.numerical == pytest.approx(other.numerical, rel=0.02)
         assert 0 < other.numerical_floor < 1e-11  # a matrix exponential knows its round-off
     (order,) = orders(asked, judged(rows))
@@ -128,7 +128,7 @@ def test_every_point_of_shipped_studies_can_be_run(name):
 
 def test_an_interrupted_study_ends_with_the_same_table(study, tmp_path, monkeypatch):
     """Completed points are kept, including seconds; only the rest is run, to the same counts."""
-    whole, calls = run(study(), tmp_path / "whole"), []
+    whole, calls = experiment(study(), tmp_path / "whole").rows(), []
 
     def until_third(point):
         if len(calls) == 2:
@@ -138,10 +138,10 @@ def test_an_interrupted_study_ends_with_the_same_table(study, tmp_path, monkeypa
 
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
         patch.setattr(work_precision, "measure", until_third)
-        run(study(), tmp_path / "resumed")
+        experiment(study(), tmp_path / "resumed").rows()
     kept = {p.name: p.read_text() for p in (tmp_path / "resumed").iterdir()}
     assert len(kept) == 2
-    rows = run(study(), tmp_path / "resumed")
+    rows = experiment(study(), tmp_path / "resumed").rows()
     assert [(r.settings, r.numerical, r.work) for r in rows] == [
         (r.settings, r.numerical, r.work) for r in whole
     ]
@@ -160,7 +160,7 @@ def test_points_that_cannot_be_run_say_why(study, tmp_path):
     vary = {STEP: [0.1, 1.5]}
     curve = {"label": "blocks", "method": "dem", "own": "lattice", "vary": vary}
     none = {"label": "series", "method": "series"}
-    good, unstable, wrong = run(study([curve, none]), tmp_path)
+    good, unstable, wrong = experiment(study([curve, none]), tmp_path).rows()
     assert (good.state, unstable.state, wrong.state) == ("done", "failed", "failed")
     assert "step_fraction" in unstable.message and "not a sine" in wrong.message
     assert good.numerical < 0.01 and unstable.numerical != unstable.numerical
@@ -168,7 +168,7 @@ def test_points_that_cannot_be_run_say_why(study, tmp_path):
 
 def test_timed_points_are_run_one_at_a_time_whatever_the_pool(study, tmp_path):
     """A pool that cannot be made is not asked for; a second timed study waits for the first."""
-    rows = run(study(timed=True, repeats=2), tmp_path, pool=lambda work, points: 1 / 0)
+    rows = experiment(study(timed=True, repeats=2), tmp_path).rows(lambda work, points: 1 / 0)
     assert all(row.seconds > 0 and row.spread >= 0 for row in rows)
     program = "from jointwave.compare.studies.store import alone\nwith alone(): print('in')"
     with alone():

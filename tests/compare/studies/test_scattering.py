@@ -11,8 +11,8 @@ from jointwave.compare.studies.scattering import (
     WAVES,
     JointsRow,
     draw,
+    experiment,
     joints_of,
-    make_study,
     measure,
 )
 
@@ -83,7 +83,7 @@ def few(monkeypatch):
 
 
 def test_the_study_writes_its_table_and_its_figure(few, tmp_path):
-    found = make_study("oblique-joint", tmp_path)
+    found = experiment("oblique-joint", tmp_path).make()
     names = {"oblique-joint.csv", "oblique-joint.svg"}
     assert names <= {file.name for file in found.files}
     assert set(found.table.index) == {
@@ -92,7 +92,7 @@ def test_the_study_writes_its_table_and_its_figure(few, tmp_path):
     assert found.table.iloc[0, :4].tolist() == pytest.approx(KNOWN[30.0], abs=6e-5)
     assert "at 30 degrees" in found.sentences[0]
     saved = [file.stat().st_mtime_ns for file in sorted((tmp_path / "oblique-joint").iterdir())]
-    again = make_study("oblique-joint", tmp_path)
+    again = experiment("oblique-joint", tmp_path).make()
     assert again.table.equals(found.table) and len(saved) == 2
     assert saved == [f.stat().st_mtime_ns for f in sorted((tmp_path / "oblique-joint").iterdir())]
 

@@ -3,6 +3,7 @@
 import gc
 import os
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from functools import partial
 from math import inf, isnan, nan
 from multiprocessing import get_context
@@ -45,7 +46,7 @@ def has(store, name):
 
 @pytest.fixture
 def store(tmp_path):
-    return Store(Square, tmp_path)
+    return Store(Square, tmp_path, str)
 
 
 def test_points_are_computed_once_in_their_order(store):
@@ -56,8 +57,8 @@ def test_points_are_computed_once_in_their_order(store):
         calls.append(number)
         return square(number)
 
-    first = store.compute([3, 1, 3], str, counted, progress=fractions.append)
-    again = store.compute([1, 3], str, counted)
+    first = store.compute([3, 1, 3], counted, progress=fractions.append)
+    again = store.compute([1, 3], counted)
     assert calls == [3, 1] and fractions == [0.5, 1.0]
     assert [one.square for one in first] == [9.0, 1.0, 9.0]
     assert [one.square for one in again] == [1.0, 9.0] and isnan(again[0].root)
@@ -75,8 +76,8 @@ def test_processes_and_executors_give_what_one_process_gives(tmp_path):
     """In the order of the points, whichever is done first."""
     with ProcessPoolExecutor(2, get_context("spawn")) as executor:
         for pool in (partial(in_processes, 2), partial(on_executor, executor)):
-            store = Store(Square, tmp_path / str(id(pool)))
-            found = store.compute(range(5), str, square, pool)
+            store = Store(Square, tmp_path / str(id(pool)), str)
+            found = store.compute(range(5), square, pool)
             assert [one.number for one in found] == list(range(5)) and has(store, "4")
 
 
@@ -87,39 +88,40 @@ def test_an_interrupted_experiment_has_saved_what_was_done(store):
         return square(number)
 
     with pytest.raises(KeyboardInterrupt):
-        store.compute(range(5), str, until_two)
+        store.compute(range(5), until_two)
     assert [has(store, str(n)) for n in range(5)] == [True, True, False, False, False]
 
 
 def test_a_point_whose_process_dies_is_lost_and_stops_nobody(store):
     """It is not saved. Where a study has no result for it, that is an error."""
     pool = partial(in_processes, 2)
-    found = store.compute(range(8), str, dies, pool, lost=lambda number: Square(number, nan))
+    losing = replace(store, lost=lambda number: Square(number, nan))
+    found = losing.compute(range(8), dies, pool)
     assert [one.number for one in found] == list(range(8))
     assert [isnan(one.square) for one in found] == [n == 2 for n in range(8)]
     assert [has(store, str(n)) for n in range(8)] == [n != 2 for n in range(8)]
     with pytest.raises(MemoryError, match="its process ended early"):
-        store.compute([2], str, dies, pool)
+        store.compute([2], dies, pool)
 
 
 def test_a_result_that_no_longer_holds_is_computed_anew(tmp_path):
-    Store(Square, tmp_path).compute([1], str, lambda number: square(5))
-    store = Store(Square, tmp_path, lambda one: one.number == 1)
-    assert store.compute([1], str, square)[0].square == 1.0
-    assert store.compute([1], str, dies)[0].number == 1
+    Store(Square, tmp_path, str).compute([1], lambda number: square(5))
+    store = Store(Square, tmp_path, str, lambda one: one.number == 1)
+    assert store.compute([1], square)[0].square == 1.0
+    assert store.compute([1], dies)[0].number == 1
 
 
 def test_without_a_folder_nothing_is_saved(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    store = Store(Square, None)
-    assert store.compute([2], str, square)[0].square == 4.0
+    store = Store(Square, None, str)
+    assert store.compute([2], square)[0].square == 4.0
     assert not list(tmp_path.iterdir())
 
 
 def test_a_damaged_file_is_one_line_that_names_it(store):
     (store.folder / "1.json").write_text('{"number": "many"}')
     with pytest.raises(SceneError, match=r"1\.json.*is damaged, remove it") as error:
-        store.compute([1], str, square)
+        store.compute([1], square)
     assert "\n" not in str(error.value)
 
 

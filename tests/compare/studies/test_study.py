@@ -12,7 +12,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.compare.studies.findings import judged
 from jointwave.compare.studies.measure import PointRow
 from jointwave.compare.studies.study import load
-from jointwave.compare.studies.work_precision import COSTS, draw, run
+from jointwave.compare.studies.work_precision import COSTS, draw, experiment
 
 GOOD = """
 title = "two steps"
@@ -111,7 +111,7 @@ def test_two_ranks_give_the_table_of_one_process(made, tmp_path, mpiexec):
 def test_every_point_is_drawn_where_it_was_measured(study, tmp_path):
     """Two errors over two costs; each curve's line holds its points in the study's order."""
     timed = study(timed=True, repeats=1, finest="jointed-bar")
-    table = judged(run(timed, tmp_path))
+    table = judged(experiment(timed, tmp_path).rows())
     figure = draw("wp", table, COSTS)
     lines = {line.get_gid(): line for ax in figure.axes for line in ax.lines}
     for i, error in enumerate(("numerical", "total")):
