@@ -21,7 +21,7 @@ def highest_speed(
     any node at most 2 E.
     """
     body, duration = problem.body, time.dt * (time.steps + time.stride)
-    mass = np.asarray(body.consistent.diagonal()) if body.mass is None else body.mass  # type: ignore[union-attr]
+    mass = body.mass
     rock, pushed, shaken, weight, stored = mass > 0, 0.0, 0.0, 0.0, 0.0
     if problem.forces is not None:
         pushed = problem.forces.impulse(mass, time.steps, sampled(found.scene, time))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from math import nan
 from typing import Any, NamedTuple
 
 from jointwave.cases.material.rock_mass import refuse_beyond_strength
@@ -24,7 +23,7 @@ class Plan(NamedTuple):
     """A run before its first step.
 
     found : the scene as a body. problem : the body and what acts on it all the time. choice : how
-    it is stepped. critical : the critical step of explicit steps, s; NaN of a consistent mass.
+    it is stepped. critical : the critical step of explicit steps, s.
     """
 
     found: SceneBody
@@ -42,17 +41,15 @@ def plan_of(
 ) -> Plan:
     """Return the run of a scene; arguments and errors as of `continuum.run.simulate`."""
     refuse(scene, model, dim)
-    numerics = scene.numerics.continuum
-    consistent = getattr(numerics, "mass", None) == "consistent" and numerics.scheme == "auto"
-    implicit = numerics.scheme == "implicit" or consistent
-    found = body_of(scene, model, rock, implicit, dim)
+    found = body_of(scene, model, rock, dim)
     refuse_beyond_strength(found.scene)
     problem = problem_of(scene, found)
+    implicit = scene.numerics.continuum.scheme == "implicit"
     scaled, plain = None if implicit else scaled_mass(problem), (found, problem)
     if scaled is not None:
         found = found._replace(body=found.body._replace(mass=scaled.mass))
         problem = problem_of(scene, found)
-    critical = problem.critical_step() if problem.body.mass is not None else nan
+    critical = problem.critical_step()
     if comm is not None:
         critical = comm.bcast(critical)
     choice = choose(scene, problem, critical)

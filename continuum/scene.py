@@ -12,6 +12,7 @@ from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import Complex, GeometryError
+from jointwave.cases.geometry.measure import Outlines
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.partition.periodic import Across, across_periodic, of_all
 from jointwave.cases.partition.pillar import blocks_of_pillar
@@ -22,16 +23,15 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.joints import resolved_joints
 from jointwave.continuum.mesh.boxes import along_edges, box_mesh, boxes_of, extents
-from jointwave.continuum.mesh.conforming import Conforming
-from jointwave.continuum.mesh.domain import Marks, marks_of
+from jointwave.continuum.mesh.conforming import Conforming, marks_of
 from jointwave.continuum.mesh.given import ENDS, mesh_of_file
 from jointwave.continuum.mesh.periodic import facing, fitted, matching_facets, matching_vertices
 from jointwave.continuum.mesh.simplices import are_simplices, own_cells, simplex_mesh
 from jointwave.continuum.mesh.size import element_size, elements_along, refuse_large_mesh
 from jointwave.continuum.space import rock as materials
-from jointwave.continuum.space.build import SIMPLEX, build_body
+from jointwave.continuum.space.build import Elements
 from jointwave.continuum.space.model import Body
-from jointwave.continuum.space.own_rock import ChosenRock
+from jointwave.continuum.space.own_rock import materials_of
 from jointwave.continuum.space.rock import Material, Rock
 from jointwave.continuum.validity import dimension_of
 
@@ -51,51 +51,60 @@ class SceneBody(NamedTuple):
     model: str = "jointed"
 
 
+#: The resolved scene, its blocks, contacts across periodic sides, elements, and its own materials.
+Meshed = tuple[AnyScene, Blocks, list[Across], Elements, list[Material]]
+
+
 def body_of(
-    scene: AnyScene,
-    model: str = "jointed",
-    rock: Rock | None = None,
-    implicit: bool = False,
-    dim: int | None = None,
+    scene: AnyScene, model: str = "jointed", rock: Rock | None = None, dim: int | None = None
 ) -> SceneBody:
     """Return the body of a scene; model : "jointed", or "equivalent" where sets of joints that have
     a spacing, and a pillar's, are an effective medium.
 
-    rock : of the scene, of a function of its own. implicit : whether steps need no diagonal mass.
-    dim : of a pillar's mesh, in place of the scene's.
+    rock : of the scene, of a function of its own. dim : of a pillar's mesh, in place of the
+    scene's.
 
     Raises SceneError where the scene cannot be cut or meshed as it asks for.
     """
-    numerics, key = scene.numerics.continuum, "numerics.continuum.cell"
     try:
-        if not scene.is_column:
-            return _rock_mass(scene, model, rock, implicit)
-        return _pillar(scene, model, rock, implicit, dimension_of(scene, dim))
+        if scene.is_column:
+            meshed = _pillar(scene, model, dimension_of(scene, dim))
+        else:
+            meshed = _rock_mass(scene, model)
+        resolved, blocks, across, elements, own = meshed
+        if rock is None:
+            of_cell = blocks.body.region[elements.block]
+            forms = materials.rock_of_cells(elements.space, own, of_cell)
+        else:
+            forms = rock(scene, elements.space)
+            own, of_cell = materials_of(scene, elements.space, forms, own)
+        body = elements.body(forms)
     except ImportError as error:
-        raise SceneError(scene.where, key, numerics.cell, str(error)) from None
+        key, cell = "numerics.continuum.cell", scene.numerics.continuum.cell
+        raise SceneError(scene.where, key, cell, str(error)) from None
+    return SceneBody(resolved, blocks, across, own, of_cell, rock is not None, body, model)
 
 
-def _rock_mass(scene: RockMass, model: str, rock: Rock | None, implicit: bool) -> SceneBody:
+def _rock_mass(scene: RockMass, model: str) -> Meshed:
     smeared = [one for one in scene.joint_sets if model == "equivalent" and one.spacing is not None]
     kept = [one for one in scene.joint_sets if one not in smeared]
-    resolved = scene.model_copy(update={"joint_sets": kept})
-    blocks, numerics = blocks_of_scene(resolved), scene.numerics.continuum
-    across, dim = across_periodic(scene, blocks), blocks.body.dim
+    resolved, shape = scene.model_copy(update={"joint_sets": kept}), shape_of(scene.domain)
+    blocks = blocks_of_scene(resolved)
+    across = across_periodic(scene, blocks)
     blocks = replace(blocks, body=fitted(blocks.body, across))
-    joint = of_all(blocks, across, "joint_set") >= 0
-    column = np.where(joint, np.arange(len(joint)), -1)
-    marks = marks_of(blocks, column, shape_of(scene.domain).sides)
+    joint, body = of_all(blocks, across, "joint_set") >= 0, blocks.body
+    corners = body.corners_of_facets()
+    first = np.searchsorted(corners[:, 0], np.arange(len(body.sides) + 1))
+    side = shape.sides_of(Outlines(body.vertices[corners[:, 1]], first), body.side)
+    marks = marks_of(blocks, np.where(joint, np.arange(len(joint)), -1), side, shape.sides)
     try:
         mesh = _mesh_of_rock_mass(scene, blocks, across)
         first = np.cumsum([len(blocks.contacts), *(len(one.contacts) for one in across)])
-        faces = [facing(mesh, blocks.body, *one) for one in zip(across, first[:-1], strict=True)]
+        faces = [facing(mesh, body, *one) for one in zip(across, first[:-1], strict=True)]
     except GeometryError as error:
         raise SceneError(scene.where, error.key, None, str(error)) from None
-    own = materials.rock_mass(scene, smeared, model)
-    chosen = ChosenRock(scene, rock, own, blocks.body.region)
-    whole = implicit and numerics.order == 2 and mesh.kind in SIMPLEX
-    body = build_body(mesh, marks, numerics.order, chosen, dim, whole, faces)
-    return SceneBody(resolved, blocks, across, *chosen.found, body, model)
+    elements = Elements(mesh, marks, scene.numerics.continuum.order, body.dim, faces)
+    return resolved, blocks, across, elements, materials.rock_mass(scene, smeared, model)
 
 
 def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) -> Conforming:
@@ -127,35 +136,26 @@ def _simplices(
     return simplex_mesh(body, size, [(matching_facets(body, one), one.shift) for one in across])
 
 
-def _pillar(scene: Scene, model: str, rock: Rock | None, implicit: bool, dim: int) -> SceneBody:
+def _pillar(scene: Scene, model: str, dim: int) -> Meshed:
     """Return the body of a pillar in so many dimensions; columns of joints are their numbers."""
     numerics, size = scene.numerics.continuum, 3 if dim == 1 and is_spatial(scene) else dim
     layers = materials.layers_of(scene) if numerics.mesh is None else {}
     resolved = resolved_joints(calibrate(scene), model, size > 1, tuple(layers)).number
     if numerics.mesh is None:
-        blocks, marks = _blocks_of_pillar(scene, dim, layers, resolved)
+        blocks = blocks_of_pillar(scene, dim, layers)
+        joint = np.arange(calibrate(scene).block_count - 1)
+        joint = np.repeat(joint, 1 + np.isin(joint, [*layers]))  # a layer's two contacts have one
+        body, side = blocks.body, np.full(len(blocks.body.sides), 2)
+        y = body.means(body.corners_of_facets(), len(side))[:, dim // 2]
+        side[[y.argmin(), y.argmax()]] = 0, 1
+        marks = marks_of(blocks, np.where(np.isin(joint, resolved), joint, -1), side, ENDS)
         each = np.append(elements_along(scene, model), np.ones(len(layers), int))
         mesh = _mesh_of_pillar(scene, blocks, each, size)
     else:
         blocks, mesh, marks = mesh_of_file(scene, resolved, dim)
-    own = materials.pillar(scene, model, size, dim)
-    chosen = ChosenRock(scene, rock, own, blocks.body.region)
-    consistent = numerics.mass == "consistent" and implicit
     flat = scene.motion.rotation == "none" and dim > 1
-    body = build_body(mesh, marks, numerics.order, chosen, size, consistent, flat=flat)
-    return SceneBody(scene, blocks, [], *chosen.found, body, model)
-
-
-def _blocks_of_pillar(
-    scene: Scene, dim: int, layers: dict[int, float], resolved: np.ndarray
-) -> tuple[Blocks, Marks]:
-    blocks = blocks_of_pillar(scene, dim, layers)
-    normal = blocks.boundary.normal[:, dim // 2]
-    end = np.select([normal < -0.5, normal > 0.5], [0, 1], 2)
-    blocks = replace(blocks, boundary=replace(blocks.boundary, side=end))
-    joint = np.arange(calibrate(scene).block_count - 1)
-    joint = np.repeat(joint, 1 + np.isin(joint, [*layers]))  # of a layer's two contacts the same
-    return blocks, marks_of(blocks, np.where(np.isin(joint, resolved), joint, -1), ENDS)
+    elements = Elements(mesh, marks, numerics.order, size, flat=flat)
+    return scene, blocks, [], elements, materials.pillar(scene, model, size, dim)
 
 
 def _mesh_of_pillar(scene: Scene, blocks: Blocks, each: np.ndarray, components: int) -> Conforming:

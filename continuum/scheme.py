@@ -35,8 +35,6 @@ def choose(scene: AnyScene, problem: Problem, critical: float) -> Choice:
     Raises SceneError for a step that cannot be taken.
     """
     given = scene.numerics.continuum.scheme
-    if given == "auto" and problem.body.mass is None:
-        return Choice("implicit", _implicit(scene), "a consistent mass is not diagonal")
     if given == "auto":
         return _cheaper(scene, problem, critical)
     steps = _explicit if given == "explicit" else _implicit

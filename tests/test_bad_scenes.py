@@ -364,13 +364,6 @@ MISTAKES = {
     "numerics.continuum.order = 3; numerics.continuum.cell = 'simplex'": (
         "numerics.continuum.order = 3 ... 1 or 2 ... 'simplex'"
     ),
-    "numerics.continuum.mass = 'consistent'": (
-        "numerics.continuum.mass = 'consistent' ... needs cell 'simplex'"
-    ),
-    "numerics.continuum.mass = 'consistent'; numerics.continuum.cell = 'simplex'; "
-    "numerics.continuum.scheme = 'explicit'": (
-        "numerics.continuum.mass = 'consistent' ... 'implicit' or 'auto'"
-    ),
     "numerics.continuum.cell = 'cube'": "numerics.continuum.cell = 'cube' ... 'simplex'",
     "numerics.continuum.dim = 4": "numerics.continuum.dim = 4 ... at most 3",
     "numerics.continuum.elements_across = 0": (

@@ -48,9 +48,6 @@ def of_discretisation(scene: Scene) -> Iterator[Wrong]:
 def _of_elements(numerics: ContinuumNumerics) -> Iterator[Wrong]:
     """Yield what contradicts in [numerics.continuum]: a file decides all that would describe the
     elements that are built."""
-    consistent = numerics.mass == "consistent"
-    if consistent and numerics.scheme == "explicit":
-        yield "mass", "consistent", "needs scheme 'implicit' or 'auto'"
     if numerics.mesh is not None:
         if numerics.dim == 1:
             yield "dim", 1, "is a bar, which takes no numerics.continuum.mesh"
@@ -59,8 +56,6 @@ def _of_elements(numerics: ContinuumNumerics) -> Iterator[Wrong]:
                 yield key, getattr(numerics, key), "has no meaning with numerics.continuum.mesh"
     elif numerics.cell == "simplex" and numerics.order > 2:
         yield "order", numerics.order, "must be 1 or 2 for cell 'simplex'"
-    elif consistent and numerics.cell == "hexahedron":
-        yield "mass", "consistent", "needs cell 'simplex'"
 
 
 def _of_layer(layer: SoftLayer, scene: Scene) -> Iterator[Wrong]:

@@ -92,7 +92,8 @@ def _place(scene: RockMass, rock: Blocks, cells: np.ndarray) -> Place:
     shape, body = shape_of(scene.domain), rock.body
     inside = cells[rock.contacts.blocks].sum(axis=1) == 1
     outer = cells[rock.boundary.blocks[:, 0]]
-    held = [getattr(scene.boundaries, shape.sides[k]) for k in shape.sides_of(rock.boundary)[outer]]
+    side = shape.sides_of(rock.boundary.outlines, rock.boundary.side)[outer]
+    held = [getattr(scene.boundaries, shape.sides[k]) for k in side]
     corners = body.vertices[np.unique(body.corners(body.beside(cells))[:, 1])]
     return Place(
         corners[ConvexHull(corners).vertices],

@@ -60,7 +60,7 @@ def blocks_of_domain(
     else:
         body = _body(domain, shape, sets, further, regions)
     found = blocks_of(body, shape.tolerance)
-    side = shape.sides_of(found.boundary)
+    side = shape.sides_of(found.boundary.outlines, found.boundary.side)
     return replace(found, boundary=replace(found.boundary, side=side))
 
 

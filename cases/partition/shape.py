@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from jointwave.cases.geometry.blocks import Facets
 from jointwave.cases.geometry.cell_complex import Complex, GeometryError, box, polygon
 from jointwave.cases.geometry.locate import distance_from
 from jointwave.cases.geometry.measure import Outlines, cell_moments, outlines, outlines_of
@@ -73,10 +72,10 @@ class Shape:
         numbers = self.given.side if self.given is not None else [side for _, side in self.solids]
         return (*SIDES[self.hull.dim], *(f"opening {k}" for k in range(max(numbers, default=0))))
 
-    def sides_of(self, facets: Facets) -> np.ndarray:
-        """Return the index in `sides` of facets of the outer boundary and of openings."""
-        outer = self._along(facets.outlines)
-        return np.where(facets.side == 0, outer, len(SIDES[self.hull.dim]) - 1 + facets.side)
+    def sides_of(self, facets: Outlines, side: np.ndarray) -> np.ndarray:
+        """Return the index in `sides` of facets of the outer boundary (0) and of openings (1 + k);
+        side : which, int array."""
+        return np.where(side == 0, self._along(facets), len(SIDES[self.hull.dim]) - 1 + side)
 
     def _along(self, pieces: Outlines) -> np.ndarray:
         """Return the index in `sides` of pieces of the outer boundary."""

@@ -242,7 +242,6 @@ class ContinuumNumerics(ElementStepping):
     #: 1: bar; 2: plane stress; 3: square column; absent: the least that the scene needs
     dim: Annotated[int, Field(ge=1, le=3)] | None = None
     cell: Literal["hexahedron", "simplex"] = "hexahedron"  #: quadrilateral and triangle in dim 2
-    mass: Literal["lumped", "consistent"] = "lumped"  #: consistent: implicit simplices only
     #: absent: a wave crosses one in 1/100 of the shortest period at most, 1/25 in damped rock
     elements_per_block: Annotated[int, Field(ge=1, le=1000)] | None = None
     elements_across: Annotated[int, Field(ge=1, le=100)] = 1  #: in each direction of the section

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from jointwave.cases.run_memory import estimates
@@ -58,8 +57,7 @@ def prepare(scene: Scene, model: str) -> Prepared:
         "order": scene.numerics.continuum.order,
     }
     time, freedoms, size = choice.time, body.stiffness.shape[0], sum(parts.values())
-    critical = plan.critical if isfinite(plan.critical) else 0.0  # of a consistent mass
-    return Prepared(choice.scheme, time.steps, time.dt, critical, freedoms, size, settings)
+    return Prepared(choice.scheme, time.steps, time.dt, plan.critical, freedoms, size, settings)
 
 
 def libraries() -> dict[str, str]:

@@ -44,8 +44,7 @@ def weight_of(scene: AnyScene, body: Body) -> np.ndarray | None:
     """Return the weight on every freedom, N; None without gravity."""
     if scene.gravity is None:
         return None
-    every = pull_of(scene, body)
-    return body.mass * every if body.mass is not None else body.consistent @ every
+    return body.mass * pull_of(scene, body)
 
 
 def released(scene: AnyScene, body: Body) -> np.ndarray | None:

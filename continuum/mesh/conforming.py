@@ -5,11 +5,41 @@ from typing import NamedTuple
 import basix
 import numpy as np
 
+from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.relations import joined
 
 #: Kinds of cells by dimension: intervals, quadrilaterals and hexahedra, and simplices.
 BOXES = {1: "interval", 2: "quadrilateral", 3: "hexahedron"}
 SIMPLICES = {1: "interval", 2: "triangle", 3: "tetrahedron"}
+SIMPLEX = ("triangle", "tetrahedron")
+
+
+class Marks(NamedTuple):
+    """What facets of a complex are: the column of the law of a resolved joint, or -1, and the
+    index of the name of a side, or -1: int arrays [facets]. names : of sides."""
+
+    column: np.ndarray
+    side: np.ndarray
+    names: tuple[str, ...]
+
+
+def marks_of(
+    blocks: Blocks, columns: np.ndarray, side: np.ndarray, names: tuple[str, ...]
+) -> Marks:
+    """Return the marks of the facets of blocks; columns : of each contact, -1 where it is no joint.
+    side : the index of the name of the side of each facet of the boundary."""
+    body, contacts = blocks.body, blocks.contacts
+    sets, inner = int(body.joint_set.max(initial=0)) + 2, body.inner
+
+    def number(pairs: np.ndarray, joint_set: np.ndarray) -> np.ndarray:
+        """Return a number for pairs of blocks and a joint set, in the order of contacts."""
+        return (np.sort(pairs, axis=1) @ [blocks.count, 1]) * sets + joint_set + 1
+
+    column = np.full(len(inner), -1)
+    known = number(contacts.blocks, contacts.joint_set)
+    own = number(body.sides[inner], body.joint_set[inner])
+    column[inner] = columns[np.searchsorted(known, own)]
+    return Marks(column, np.where(inner, -1, side), names)
 
 
 class Conforming(NamedTuple):

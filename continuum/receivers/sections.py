@@ -18,10 +18,10 @@ from scipy.sparse import csr_matrix, diags, kron, vstack
 from jointwave.cases.material.effective_medium import tensor
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.loads.forces import pull_of
+from jointwave.continuum.mesh.conforming import SIMPLEX
 from jointwave.continuum.receivers.points import motion_at, pieces_of, shares_of_pieces
 from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space import compat
-from jointwave.continuum.space.build import SIMPLEX
 from jointwave.continuum.space.evaluation import (
     matrix_of,
     nodes_of_cells,

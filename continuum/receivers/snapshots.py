@@ -9,9 +9,9 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.effective_medium import tensor
 from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes
 from jointwave.cases.scene_type import AnyScene
+from jointwave.continuum.mesh.conforming import SIMPLEX
 from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space import compat
-from jointwave.continuum.space.build import SIMPLEX
 from jointwave.continuum.space.evaluation import (
     jacobians,
     nodes_of_cells,

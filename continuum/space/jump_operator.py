@@ -5,34 +5,25 @@ from scipy.sparse import bsr_matrix, csr_matrix, identity, kron
 
 from jointwave.cases.geometry.measure import frames
 from jointwave.continuum.space.model import JumpOperator, in_motion
-from jointwave.continuum.space.traces import Reference, Trace
+from jointwave.continuum.space.traces import Trace
 
 ROUND_OFF = 1e-14  # of entries, which are of the order of 1
 
 
 def jump_operator(
-    one: Trace,
-    other: Trace,
-    column: np.ndarray,
-    shape: tuple[int, int],
-    cell: Reference,
+    one: Trace, other: Trace, column: np.ndarray, shape: tuple[int, int]
 ) -> JumpOperator:
     """Return the jump operator of facets of block i and those of block j at the same places.
 
     column : of the law, int array [facets]. shape : nodes of the body, and components. At the end
     of a joint in rock both sides have one node, and no jump.
     """
-    facets, (nodes, components) = len(one.node), shape
-    count, weight, place = one.node.size, one.weight, one.place
+    count, points, (nodes, components) = one.node.size, one.node.shape[1], shape
     row, ones = np.tile(np.arange(count), 2), np.ones(count)
     at = row, np.append(one.node.ravel(), other.node.ravel())
     jump = csr_matrix((np.append(-ones, ones), at), (count, nodes))
-    if cell.points is not None and cell.areas is not None:
-        jump = csr_matrix(kron(identity(facets), cell.points) @ jump)
-        weight = weight.sum(axis=1)[:, None] * cell.areas
-        place = cell.points @ place
     jump.eliminate_zeros()
-    open_, points = np.flatnonzero(np.diff(jump.indptr)), weight.shape[1]
+    open_ = np.flatnonzero(np.diff(jump.indptr))
     normal = np.repeat(one.normal[:, :1], points, axis=1).reshape(-1, one.normal.shape[2])
     frame, each = frames_of(normal[open_], components), np.arange(len(open_) + 1)
     size = len(open_) * components
@@ -42,10 +33,10 @@ def jump_operator(
     matrix.eliminate_zeros()
     return JumpOperator(
         matrix=matrix,
-        weight=weight.ravel()[open_],
+        weight=one.weight.ravel()[open_],
         column=np.repeat(column, points)[open_],
         frame=frame,
-        place=place.reshape(-1, place.shape[2])[open_],
+        place=one.place.reshape(count, -1)[open_],
     )
 
 

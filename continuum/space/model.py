@@ -74,9 +74,8 @@ class Body(NamedTuple):
     the space], the node of the body that each is; None where these are the same, but for rock that
     is whole across periodic sides.
     x : float array [nodes, d], m. block : int array [cells], of the partition. mass : float array
-    [freedoms], the diagonal, kg; None where there is the consistent one, [freedoms, freedoms], kg.
-    stiffness : N/m, and damping, N s/m (None without) : [freedoms, freedoms]. joints : None where
-    none is resolved. sides : by name.
+    [freedoms], the diagonal, kg. stiffness : N/m, and damping, N s/m (None without) : [freedoms,
+    freedoms]. joints : None where none is resolved. sides : by name.
 
     A process's share of a body (`continuum.processes.share`) has the rows of its freedoms, which
     are the first, and columns of those of others that these need; `block` is of its nodes, and
@@ -89,8 +88,7 @@ class Body(NamedTuple):
     tied: np.ndarray | None
     x: np.ndarray
     block: np.ndarray
-    mass: np.ndarray | None
-    consistent: csr_matrix | None
+    mass: np.ndarray
     stiffness: csr_matrix
     damping: csr_matrix | None
     joints: JumpOperator | None

@@ -15,35 +15,10 @@ from jointwave.cases.material.effective_medium import PAIRS, tensor
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.model import Forms
-from jointwave.continuum.space.rock import Material, Rock, rock_of_cells
+from jointwave.continuum.space.rock import Material
 
 DIGITS = 9  # to which moduli of cells of one rock agree
 ZERO = 1e-9  # of the stiffness: the force of a translation, damping of another form
-
-
-class ChosenRock:
-    """The rock of a script, or that of the scene: forms for `build.build_body`.
-
-    found : once it has been called, the materials, which of them each cell has, int array [cells],
-    and whether they are a script's.
-    """
-
-    found: tuple[list[Material], np.ndarray, bool]
-
-    def __init__(
-        self, scene: AnyScene, rock: Rock | None, own: list[Material], region: np.ndarray
-    ) -> None:
-        self.scene, self.rock, self.own, self.region = scene, rock, own, region
-
-    def __call__(self, space: Any, block: np.ndarray) -> Forms:
-        """Return the forms on a space; block : of each cell of its mesh."""
-        if self.rock is None:
-            self.found = self.own, self.region[block], False
-            return rock_of_cells(space, *self.found[:2])
-        forms = self.rock(self.scene, space)
-        refuse_own_rock(self.scene, forms, self.own)
-        self.found = *materials_of(self.scene, space, forms), True
-        return forms
 
 
 class CellMeans:
@@ -86,12 +61,15 @@ def strains_of(dim: int, size: int) -> np.ndarray:
     return found
 
 
-def materials_of(scene: AnyScene, space: Any, forms: Forms) -> tuple[list[Material], np.ndarray]:
+def materials_of(
+    scene: AnyScene, space: Any, forms: Forms, own: list[Material]
+) -> tuple[list[Material], np.ndarray]:
     """Return the materials of forms on a space, and which of them each cell has, int array [cells].
 
-    Raises SceneError for a stiffness that resists translations, and for damping that is no time
-    constant times the stiffness.
+    own : of the scene. Raises SceneError for a stiffness that resists translations, for damping
+    that is no time constant times the stiffness, and for what the scene takes from its own rock.
     """
+    _refuse_own_rock(scene, forms, own)
     means, masses = CellMeans(space, forms.stiffness), CellMeans(space, forms.mass)
     moves, far = np.eye(means.size), float(np.ptp(space.mesh.geometry.x, axis=0).max())
     density, stiffness = masses.of(moves[0], moves[0]), means.moduli()
@@ -112,7 +90,7 @@ def materials_of(scene: AnyScene, space: Any, forms: Forms) -> tuple[list[Materi
     return each, which.reshape(-1)
 
 
-def refuse_own_rock(scene: AnyScene, forms: Forms, own: list[Material]) -> None:
+def _refuse_own_rock(scene: AnyScene, forms: Forms, own: list[Material]) -> None:
     """Raise SceneError for what a scene takes from its own [rock], which a script has replaced."""
     if forms.damping is None and any(one.time_constant for one in own):
         _refuse(scene, "the scene's dashpots of rock need Forms.damping", "damping")

@@ -31,9 +31,7 @@ class Reference(NamedTuple):
 
     shares : of its corners at the nodes [nodes, corners]. at : points of a rule on a facet, by
     shares of its corners [r, c]. functions : of the nodes there, times the weights of the rule, on
-    each reference facet [facets, r, nodes]. points : functions of the nodes of a facet at the
-    points of a rule [p, q] that is exact for their products; None where the nodes are the points.
-    areas : weights of the points, over the area of the facet [p].
+    each reference facet [facets, r, nodes].
     """
 
     kind: str
@@ -42,8 +40,6 @@ class Reference(NamedTuple):
     shares: np.ndarray
     at: np.ndarray
     functions: np.ndarray
-    points: np.ndarray | None
-    areas: np.ndarray | None
 
 
 def reference_cell(kind: str, order: int, element: Any) -> Reference:
@@ -56,13 +52,7 @@ def reference_cell(kind: str, order: int, element: Any) -> Reference:
         at, weight = _rule(kind, 2 * degree)
         values = element.tabulate(0, at @ corners.points[facet])[0, :, :, 0]
         functions.append(weight[:, None] * values)
-    found = Reference(kind, order, element, shares, at, np.array(functions), None, None)
-    facet = facets_of(kind)[0].tolist()
-    local = _on(found, facet)[0]
-    if (found.functions[0].sum(axis=0)[local] > ON).all():
-        return found
-    points = element.tabulate(0, at @ corners.points[facet])[0, :, local, 0].T
-    return found._replace(points=points, areas=weight / weight.sum())
+    return Reference(kind, order, element, shares, at, np.array(functions))
 
 
 def _rule(kind: str, degree: int) -> tuple[np.ndarray, np.ndarray]:

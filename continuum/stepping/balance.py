@@ -71,8 +71,7 @@ class Balance:
         self.free = np.setdiff1d(np.arange(n), problem.fixed)
         self.stiffness, self.points = body.stiffness, problem.points()
         self.mechanisms = problem.mechanisms
-        mass: Any = body.consistent if body.mass is None else diags(body.mass)
-        self.mass = csr_matrix(mass)
+        self.mass = csr_matrix(diags(body.mass))
         self.damping, self.quiet = csr_matrix((n, n)), csr_matrix((n, n))
         quiet = None if at_rest else problem.quiet
         self.springs = cache(quiet.springs) if quiet is not None and quiet.springs else None
@@ -117,9 +116,8 @@ class Balance:
 
     def acceleration(self, force: np.ndarray, held: np.ndarray) -> np.ndarray:
         """Return the acceleration of freedoms by forces on them (N); held : that of held ones."""
-        mass = np.asarray(self.mass.sum(axis=1)).ravel()
         found = held.copy()
-        found[self.free] = force[self.free] / mass[self.free]
+        found[self.free] = force[self.free] / self.problem.body.mass[self.free]
         return found
 
     def forces(

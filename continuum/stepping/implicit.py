@@ -147,7 +147,7 @@ class Implicit:
         past, external = copied(now.forces.past), self._external(0, 0.0)
         forces = own.forces(now.u, now.v, 0 * now.u, self.dt, past, external)
         rest = (forces.whole - own.mass @ now.a)[own.free]
-        now.a[own.free] += Factors(own.mass[own.free][:, own.free], self.problem.comm).solve(rest)
+        now.a[own.free] += rest / self.problem.body.mass[own.free]
         fill(now.forces, forces)
 
     def _reach(self, n: int, begin: float, end: float, stride: int) -> None:

@@ -173,9 +173,7 @@ class Leapfrog:
 
     def drop(self, force: np.ndarray) -> None:
         """Begin at rest under forces (N) that act from t = 0 on, in the middle of a step."""
-        mass = self.problem.body.mass
-        assert mass is not None
-        fall = 0.5 * self.dt * force / mass
+        fall = 0.5 * self.dt * force / self.problem.body.mass
         fall[self.problem.fixed] = 0.0
         self.place(-fall, self.state.v)
         self.place(-3 * fall, self.state.v_before)
@@ -183,7 +181,6 @@ class Leapfrog:
     def _constants(self) -> Constants:
         problem, place, dt = self.problem, self.product.place, self.dt
         body, held, forces = problem.body, problem.held, problem.forces
-        assert body.mass is not None
         braked = 1 + problem.alpha * dt / 2
         inverse = self._placed(dt / (body.mass * braked))
         nothing = csr_matrix((0, body.mass.size))

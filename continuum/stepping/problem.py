@@ -158,7 +158,6 @@ class Problem(NamedTuple):
 
     def critical_step(self) -> float:
         """Return the critical step of leapfrog, s."""
-        assert self.body.mass is not None
         start = any_motion(self.body)
         return critical_step(self.body.mass, self.stiffness, self.viscosity, self.fixed, start)
 

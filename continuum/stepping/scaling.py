@@ -50,8 +50,6 @@ class Scaled(NamedTuple):
 def scaled_mass(problem: Problem) -> Scaled | None:
     """Return the mass of a body with what small cells lack; None where that is not worth it."""
     body = problem.body
-    if body.mass is None:
-        return None
     mass = body.mass.reshape(-1, body.components)
     stiffness, viscosity = problem.stiffness, problem.viscosity
     elastic, viscous = (_sums(problem, one, mass.shape) for one in (stiffness, viscosity))

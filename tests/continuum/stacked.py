@@ -7,8 +7,8 @@ from jointwave.cases.geometry.cell_complex import box
 from jointwave.cases.geometry.cut import cut, planes_of
 from jointwave.cases.geometry.measure import facet_moments
 from jointwave.continuum.mesh.boxes import box_mesh, boxes_of
-from jointwave.continuum.mesh.domain import Marks
-from jointwave.continuum.space.build import build_body
+from jointwave.continuum.mesh.conforming import Marks
+from jointwave.continuum.space.build import Elements
 from jointwave.continuum.space.rock import elastic, isotropic
 from jointwave.continuum.stepping.problem import Readings
 
@@ -30,12 +30,10 @@ def stack(dim, count, cells, across=1, order=2, modulus=2.0, poisson=0.25):
     shear = modulus / 2 / (1 + poisson)
     lame = 2 * shear * poisson / (1 - 2 * poisson)
 
-    def rock(space, _):
-        if dim == 1:
-            return elastic(space, 1.0, lambda slope: modulus * slope, None)
-        return isotropic(space, 1.0, lame, shear)
-
-    return build_body(mesh, marks, order, rock)
+    elements = Elements(mesh, marks, order)
+    if dim == 1:
+        return elements.body(elastic(elements.space, 1.0, lambda slope: modulus * slope, None))
+    return elements.body(isotropic(elements.space, 1.0, lame, shear))
 
 
 def stiff_joints(body, normal, shear):

@@ -12,7 +12,7 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.continuum.scene import body_of
 from jointwave.continuum.space import rock
 from jointwave.continuum.space.compat import cell_nodes
-from tests.continuum.bodies import LAME, SHEAR, of_blocks, springs
+from tests.continuum.bodies import LAME, SHEAR, springs
 
 SMALL = 1e-9  # of the stiffness: the eigenvalues of rigid motions
 HALF = {"regions": [{"name": "upper", "dip": 0.0, "through": [0.0, 2.1]}]}
@@ -153,25 +153,6 @@ def test_a_script_gives_its_own_rock(made):
     assert np.isclose(u @ body.stiffness @ u, 2 * 1e10 * 1e-8 * 6.0 * (4.0 + 8.0), rtol=1e-12)
     away = np.abs(body.damping - 1e-4 * body.stiffness).max()
     assert away < 1e-14 * np.abs(body.damping).max()
-
-
-@pytest.mark.parametrize("dim", [2, 3])
-def test_implicit_steps_have_plain_elements_of_order_two(rock_mass, dim):
-    """Corners of faces have no weight there: joints are integrated at points within."""
-    joint = {"dip": 40.0, "through": [3.0, 2.0, 2.5][:dim]}
-    cell = {"cell": "triangle"} if dim == 2 else {"size": 1.4}
-    joint |= {"dip_direction": 120.0} if dim == 3 else {}
-    found = body_of(rock_mass(joint, dim=dim, continuum={"order": 2} | cell), implicit=True)
-    body, area = found.body, found.blocks.contacts.area.sum()
-    assert body.mass is None
-    assert cell_nodes(body.space).shape[1] == {2: 6, 3: 10}[dim]
-    assert body.joints.weight.min() > 0
-    assert np.isclose(body.joints.weight.sum(), area, rtol=1e-12)
-    moved = of_blocks(body, np.array([[0.0] * dim, [1.0] * dim])).ravel()
-    jump = body.joints.matrix @ moved
-    stored = jump**2 @ np.repeat(body.joints.weight, dim)
-    assert np.isclose(stored, dim * area, rtol=1e-12)
-    assert np.allclose(body.consistent.sum(), dim * 2600.0 * found.blocks.volume.sum())
 
 
 @pytest.mark.parametrize(

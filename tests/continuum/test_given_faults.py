@@ -56,10 +56,6 @@ MISTAKES = {
         dict(changes=dict(numerics__continuum__dim=3)),
         ["quadrilateral cells", "dim = 3"],
     ),
-    "consistent mass": (
-        dict(changes=dict(numerics__continuum__mass="consistent")),
-        ["quadrilateral cells support numerics.continuum.mass = 'lumped'"],
-    ),
 }
 
 

@@ -56,7 +56,7 @@ def test_the_start_carries_the_load(short, dim):
 
 
 @pytest.mark.parametrize(
-    "keys", [{}, {"cell": "simplex", "mass": "consistent"}], ids=["lumped", "consistent"]
+    "keys", [{}, {"cell": "simplex", "scheme": "implicit"}], ids=["explicit", "implicit"]
 )
 def test_rock_in_free_fall_carries_no_stress(short, keys):
     """From rest at t = 0: v = g t and u = g t^2 / 2, by explicit and by implicit steps."""

@@ -7,10 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from closed_forms.manufactured import Manufactured
-from jointwave.continuum.mesh.conforming import Conforming, facets_of
-from jointwave.continuum.mesh.domain import Marks
+from jointwave.continuum.mesh.conforming import Conforming, Marks, facets_of
 from jointwave.continuum.space import compat
-from jointwave.continuum.space.build import build_body
+from jointwave.continuum.space.build import Elements
 from jointwave.continuum.space.evaluation import (
     Places,
     at_reference,
@@ -67,7 +66,7 @@ class Load:
 
 
 @cache
-def moved(kind, order, count, consistent=False) -> Moved:
+def moved(kind, order, count) -> Moved:
     """Return a unit square or cube (m) of skewed cells, `count` a side, under that motion."""
     x, cells = unit_cube(kind, count)
     dim = x.shape[1]
@@ -75,10 +74,8 @@ def moved(kind, order, count, consistent=False) -> Moved:
     block, on = np.zeros(len(cells), int), np.full((len(cells), len(facets_of(kind))), -1)
     none = Marks(np.zeros(0, int), np.zeros(0, int), ())
     mesh = Conforming(kind, x, cells, block, on)
-    body = build_body(
-        mesh, none, order, lambda space, _: isotropic(space, DENSITY, LAME, SHEAR),
-        consistent=consistent,
-    )  # fmt: skip
+    elements = Elements(mesh, none, order)
+    body = elements.body(isotropic(elements.space, DENSITY, LAME, SHEAR))
     motion = Manufactured(WAVES[:dim, :dim], PHASES[:dim], 4000.0, 0.4)
     points, weights = compat.quadrature(kind, 2 * order + 4)
     cell, local = np.repeat(np.arange(len(cells)), len(points)), np.tile(points, (len(cells), 1))

@@ -7,7 +7,7 @@ from jointwave.continuum.stepping.implicit import Implicit
 from jointwave.continuum.stepping.leapfrog import Leapfrog
 from jointwave.continuum.stepping.problem import Problem
 from tests.continuum.stacked import readings
-from tests.verification.moved import END, SIMPLICES, Load, moved
+from tests.verification.moved import END, Load, moved
 
 #: Kind, order p, and cells a side of the coarser mesh.
 MESHES = [
@@ -74,18 +74,6 @@ def test_order_of_the_elements(kind, order, count):
         one = moved(kind, order, cells)
         dt = END / steps_of(one)
         u = drive(one, dt, steps_of(one), leapfrogs_own(one.motion, dt))
-        errors.append(one.error(u))
-    rate = np.log2(errors[0] / errors[1])
-    assert order + 1 - 0.2 < rate < order + 1 + 0.5
-
-
-@pytest.mark.parametrize("kind, order, count", [mesh for mesh in MESHES if mesh[0] in SIMPLICES])
-def test_order_of_simplices_of_consistent_mass(kind, order, count):
-    """p + 1, too, by implicit steps, which make no error at any length."""
-    errors, dt = [], END / 10
-    for cells in (count, 2 * count):
-        one = moved(kind, order, cells, consistent=True)
-        u = drive_implicitly(one, dt, 10, trapezoids_own(one.motion, dt))
         errors.append(one.error(u))
     rate = np.log2(errors[0] / errors[1])
     assert order + 1 - 0.2 < rate < order + 1 + 0.5
