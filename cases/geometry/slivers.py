@@ -7,7 +7,7 @@ import numpy as np
 from jointwave.cases.geometry.cell_complex import Complex, Sliver
 from jointwave.cases.geometry.cut import cut, one_plane
 from jointwave.cases.geometry.measure import least_angles, widths
-from jointwave.cases.geometry.pieces import fitting, joined, pieces_of
+from jointwave.cases.geometry.pieces import Pieces
 
 #: Cuts of a sliver, at most: parts that made slivers of neighbours could pass round for ever.
 PARTS = 4
@@ -59,11 +59,10 @@ def _joined(
     chosen = np.zeros(body.count + 1, bool)
     chosen[thin] = True
     chosen[body.sides[chosen[body.sides].any(axis=1)].ravel()] = True
-    pieces = pieces_of(body, chosen[:-1], body.in_rock, kept)
-    found, stuck = joined(body, pieces, thin, tolerance)
-    slivers = set(thin)
+    pieces = Pieces(body, chosen[:-1], body.in_rock, kept)
+    found, stuck = pieces.joined(thin, tolerance)
     for cell in stuck if found is None else ():
-        near = [other for other in pieces[cell].near() if other not in slivers]
+        near = [other for other in pieces.near(cell) if other not in thin]
         if (found := _parted(body, cell, near, tolerance)) is not None:
             break
     return found, (stuck or thin)[0]
@@ -83,10 +82,10 @@ def _parted(body: Complex, cell: int, near: Sequence[int], tolerance: float) -> 
         split = cut(body, one_plane(half.outward[k], place[k], alone), tolerance).body
         parts = cell, body.count
         cells = chosen | np.isin(np.arange(split.count), parts)
-        pieces = pieces_of(split, cells, split.in_rock)
+        pieces = Pieces(split, cells, split.in_rock)
         for part in parts:
-            ends = [other for other in pieces[part].near() if other in near]
-            if (other := fitting(pieces, part, ends, tolerance)) is not None:
+            ends = [other for other in pieces.near(part) if other in near]
+            if (other := pieces.fitting(part, ends, tolerance)) is not None:
                 root = np.arange(split.count)
                 root[part] = other
                 return split.joined(root)

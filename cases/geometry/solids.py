@@ -13,7 +13,7 @@ import shapely
 
 from jointwave.cases.geometry.cell_complex import NO_SET, Complex, Halves, NonConvex
 from jointwave.cases.geometry.cut import cut, one_plane
-from jointwave.cases.geometry.pieces import clipped, joined, pieces_of
+from jointwave.cases.geometry.pieces import Pieces, clipped
 from jointwave.cases.geometry.relations import groups
 
 STRAIGHT = 1e-9  #: sine of the angle below which a corner of a polygon turns nowhere
@@ -204,7 +204,7 @@ def _rejoined(body: Complex, tolerance: float) -> Complex:
     found: Complex | None = body
     while found is not None:
         body, cuts = found, _through_rock(found)
-        pieces = pieces_of(body, np.isin(np.arange(body.count), body.sides[cuts]), cuts)
-        order = sorted(pieces, key=lambda cell: (pieces[cell].thickness, cell))
-        found = joined(body, pieces, order, tolerance)[0]
+        pieces = Pieces(body, np.isin(np.arange(body.count), body.sides[cuts]), cuts)
+        order = sorted(pieces.thickness, key=lambda cell: (pieces.thickness[cell], cell))
+        found = pieces.joined(order, tolerance)[0]
     return body
