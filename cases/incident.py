@@ -18,7 +18,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.histories import LoadHistory
 from jointwave.cases.loads import history_of
 from jointwave.cases.material.rock import ElasticRock, elastic_rock
-from jointwave.cases.partition.regions import region_at, rocks_of
+from jointwave.cases.partition.joints import region_at, rocks_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import Wave
 

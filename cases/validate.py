@@ -1,14 +1,18 @@
 """Validation of a scene's tables by its model; a mistake is one line."""
 
 import re
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
+from pydantic_core import PydanticCustomError
 
-from jointwave.cases.checks.scene import checked
+from jointwave.cases.checks import pillar
+from jointwave.cases.checks.rules import Wrong, of_quality, of_time
 from jointwave.cases.errors import SceneError, all_of, nearest
 from jointwave.cases.joints_at_places import spelled_out
+from jointwave.cases.scene_type import Either
 from jointwave.cases.schema.keys import model_in
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
@@ -45,29 +49,19 @@ def validated(table: dict[str, Any], path: Path, given: frozenset[str]) -> Any:
     """
     asked = {PLACE.sub("", key) for key in given}
     where = f"{path} [{table['name']}]" if table.get("name") else str(path)
-    model = _model_of(table, where)
-    context = {"folder": path.parent, "asked": asked, "dimension": _dimension(table)}
+    if "domain" in table and "pillar" in table:
+        raise SceneError(where, "pillar", None, "give [pillar] or [domain], not both")
+    model: Any = RockMass if "domain" in table else Scene
+    domain = table.get("domain")
+    size = domain.get("size") if isinstance(domain, dict) else None
+    dimension = 3 if isinstance(size, list) and len(size) == 3 else 2
+    context = {"folder": path.parent, "asked": asked, "dimension": dimension}
     try:
         scene = model.model_validate(spelled_out(table, where, context), context=context)
     except ValidationError as error:
         raise all_of(_error(where, one, model) for one in error.errors()) from None
     scene._where = where
     return checked(scene)
-
-
-def _model_of(table: dict[str, Any], where: str) -> Any:
-    if "domain" not in table:
-        return Scene
-    if "pillar" in table:
-        raise SceneError(where, "pillar", None, "give [pillar] or [domain], not both")
-    return RockMass
-
-
-def _dimension(table: dict[str, Any]) -> int:
-    """Return in how many dimensions a rock mass is: 3 where its size has three numbers."""
-    domain = table.get("domain")
-    size = domain.get("size") if isinstance(domain, dict) else None
-    return 3 if isinstance(size, list) and len(size) == 3 else 2
 
 
 def _error(where: str, first: Any, model: Any) -> SceneError:
@@ -101,3 +95,24 @@ def _dotted(location: tuple[int | str, ...]) -> str:
     for part in location:
         text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
     return text
+
+
+def checked(scene: Either) -> Either:
+    """Return a scene; raises SceneError, a line a contradiction, where its tables do not fit
+    together: the first that each rule finds. What stops a rule after one is its consequence."""
+    own: Any = pillar
+    if not scene.is_column:
+        from jointwave.cases.checks import rock_mass as own  # with shapely
+    found: list[Wrong] = []
+    for rule in (*own.rules(scene), of_time(scene), of_quality(scene)):
+        try:
+            found.extend(islice(rule, 1))
+        except PydanticCustomError as error:
+            about = error.context or {}
+            found.append((about["key"], about["found"], about["allowed"]))
+        except Exception:
+            if not found:
+                raise
+    if found:
+        raise all_of(SceneError(scene.where, *one) for one in found)
+    return scene

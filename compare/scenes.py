@@ -82,7 +82,7 @@ def load(scene: AnySource, variant: str = "", changes: dict[str, Any] | None = N
     if variant or changes:
         allowed = "are of a file, a shipped scene or tables, not of a loaded scene"
         raise SceneError(scene.where, "variant and changes", None, allowed)
-    from jointwave.cases.checks.scene import checked  # with numpy, which no completion needs
+    from jointwave.cases.validate import checked  # with numpy, which no completion needs
 
     return checked(scene)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from jointwave.cases.errors import StoppedError
-from jointwave.cases.partition.periodic import of_all
+from jointwave.cases.geometry.periodic import of_all
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.bounds import highest_speed
 from jointwave.continuum.scene import SceneBody

@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
+from jointwave.cases.geometry.periodic import of_all
 from jointwave.cases.incident import IncidentField
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
+from jointwave.cases.material.properties import strength_of
 from jointwave.cases.material.rock_mass import set_time_constants
-from jointwave.cases.material.strength import strength_of
-from jointwave.cases.partition.periodic import of_all
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.joints import resolved_joints

@@ -13,10 +13,10 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import Complex, GeometryError
 from jointwave.cases.geometry.measure import Outlines
+from jointwave.cases.geometry.periodic import Across, of_all
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.partition.periodic import Across, across_periodic, of_all
 from jointwave.cases.partition.pillar import blocks_of_pillar
-from jointwave.cases.partition.scene import blocks_of_scene
+from jointwave.cases.partition.scene import across_periodic, blocks_of_scene
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass

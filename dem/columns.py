@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.material.contact_points import bending, points_of, vertex_points
-from jointwave.cases.material.strength import strength_of
+from jointwave.cases.material.properties import strength_of
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import JointLaw
 from jointwave.dem.contacts import Contacts

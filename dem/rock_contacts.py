@@ -7,12 +7,13 @@ import numpy as np
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.geometry.measure import joined
+from jointwave.cases.geometry.periodic import Across, of_all
 from jointwave.cases.material.rigid_blocks import welds
 from jointwave.cases.material.rock import shear_modulus
 from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus
-from jointwave.cases.partition.periodic import Across, across_periodic, of_all
-from jointwave.cases.partition.regions import ROCK, rocks_of
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.partition.joints import ROCK, rocks_of
+from jointwave.cases.partition.scene import across_periodic
+from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.dem.contacts import Contacts
 from jointwave.dem.receivers import frames_of

@@ -13,8 +13,8 @@ from jointwave.cases.geometry.cell_complex import GeometryError
 from jointwave.cases.material.contact_points import CUT
 from jointwave.cases.material.rigid_blocks import RigidJoints, rigid_joints
 from jointwave.cases.material.rock_mass import Stiffness, set_time_constants
+from jointwave.cases.partition.joints import rocks_of
 from jointwave.cases.partition.lattice import further_sets
-from jointwave.cases.partition.regions import rocks_of
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.joint import JointLaw

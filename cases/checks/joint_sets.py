@@ -10,12 +10,11 @@ from jointwave.cases.geometry.cell_complex import PARALLEL
 from jointwave.cases.geometry.measure import cell_moments
 from jointwave.cases.geometry.sets import in_order
 from jointwave.cases.geometry.solids import taken_out
-from jointwave.cases.partition.joints import attitude, plane_sets
-from jointwave.cases.partition.regions import rocks_beside
+from jointwave.cases.partition.joints import attitude, plane_sets, rocks_beside
 from jointwave.cases.partition.scene import rock_of
 from jointwave.cases.partition.shape import Shape
-from jointwave.cases.schema.joint_set import JointSet
-from jointwave.cases.schema.region import REST
+from jointwave.cases.schema.joint import JointSet
+from jointwave.cases.schema.plane import REST
 from jointwave.cases.schema.rock_mass import RockMass
 
 NEEDS = (("offset", "spacing"), ("scatter", "spacing"), ("offset", "ends_at"), ("seed", "scatter"))

@@ -2,6 +2,7 @@
 the domain's extent, with a joint there or without."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -12,6 +13,22 @@ from jointwave.cases.geometry.measure import Outlines, around, outline_moments
 from jointwave.cases.geometry.relations import sums
 
 SAME = 1e-9  #: of the domain's extent: lengths below which places on a side are one
+
+
+class Across(NamedTuple):
+    """Contacts across a pair of periodic sides, of a joint set where a joint lies along both sides:
+    block i at the far side, block j, in no order, at the near one. Ends and normals are those at
+    block i. shift : [d], m, offset of blocks j. sides : names of the pair, the near one first."""
+
+    contacts: Facets
+    shift: np.ndarray
+    sides: tuple[str, str]
+
+
+def of_all(blocks: Blocks, across: Sequence[Across], key: str) -> np.ndarray:
+    """Return an array of all contacts, those across periodic sides last."""
+    parts = blocks.contacts, *(one.contacts for one in across)
+    return np.concatenate([getattr(part, key) for part in parts])
 
 
 def contacts_across(

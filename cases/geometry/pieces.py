@@ -10,7 +10,7 @@ from jointwave.cases.geometry.relations import groups
 
 
 class Pieces:
-    """Some cells of a complex, which can be joined: each is known by the number of one of its cells.
+    """Some cells of a complex, to be joined: a piece is known by the number of one of its cells.
 
     Attributes
     ----------

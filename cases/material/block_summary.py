@@ -10,11 +10,11 @@ from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.geometry.measure import widths
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.partition.joints import rocks_of
 from jointwave.cases.partition.lattice import further_sets
-from jointwave.cases.partition.regions import rocks_of
 from jointwave.cases.partition.scene import blocks_of_scene, partition_bytes
 from jointwave.cases.partition.shape import shape_of
-from jointwave.cases.schema.region import REST
+from jointwave.cases.schema.plane import REST
 from jointwave.cases.schema.rock_mass import RockMass
 
 #: What the sizes of blocks and of contacts are, by the number of dimensions.

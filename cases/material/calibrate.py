@@ -17,8 +17,7 @@ import numpy as np
 
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.material.jointed_rock import JointedRock, joint_time_constant, mean_of, rock_of
-from jointwave.cases.material.properties import Properties
-from jointwave.cases.material.strength import strength_of
+from jointwave.cases.material.properties import Properties, strength_of
 from jointwave.cases.partition.pillar import blocks_of_pillar, drawn
 from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.scene import Scene

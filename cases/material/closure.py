@@ -90,7 +90,7 @@ def _stress_of(pulse: Pulse, scene: AnyScene) -> float:
     if pulse.quantity == "force":
         spacings = (one.spacing for one in scene.joint_sets if one.spacing)
         return 1 / min(spacings, default=scene.domain.extent.max())
-    from jointwave.cases.partition.regions import rocks_of  # with shapely
+    from jointwave.cases.partition.joints import rocks_of  # with shapely
 
     return max(float(elastic_rock(one).p_impedance) for one in rocks_of(scene))
 

@@ -21,9 +21,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointwave.cases.material.rock import ElasticRock, elastic_rock
-from jointwave.cases.partition.joints import attitude
-from jointwave.cases.partition.regions import within
-from jointwave.cases.schema import joint_set as schema
+from jointwave.cases.partition.joints import attitude, within
+from jointwave.cases.schema import joint as schema
 from jointwave.cases.schema.rock_mass import RockMass
 
 DIRECTIONS = 36  # in which speeds are looked at

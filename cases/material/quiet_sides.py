@@ -12,7 +12,7 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.effective_medium import compliant, speeds, stiffness
 from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.regions import within
+from jointwave.cases.partition.joints import within
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.tables import LEAN

@@ -24,10 +24,9 @@ from jointwave.cases.material.effective_medium import compliant, intact, joints_
 from jointwave.cases.material.rigid_fit import nearest_stiffness
 from jointwave.cases.material.rock import elastic_rock, shear_modulus
 from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus
-from jointwave.cases.partition.joints import attitude
+from jointwave.cases.partition.joints import attitude, rocks_of, within
 from jointwave.cases.partition.lattice import by_direction
-from jointwave.cases.partition.regions import rocks_of, within
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 
 #: Sine of the angle up to which a contact lies along joints.

@@ -6,10 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.partition.joints import attitude
-from jointwave.cases.partition.regions import rocks_beside
+from jointwave.cases.partition.joints import attitude, rocks_beside
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.plane import InSituStress, IntactRock
 from jointwave.cases.schema.rock_mass import RockMass
 

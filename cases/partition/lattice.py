@@ -16,12 +16,11 @@ import numpy as np
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import Blocks, blocks_of
-from jointwave.cases.partition.joints import attitude, dips_of
-from jointwave.cases.partition.regions import ROCK, within
+from jointwave.cases.partition.joints import ROCK, attitude, dips_of, within
 from jointwave.cases.partition.scene import rock_of
 from jointwave.cases.partition.shape import shape_of
-from jointwave.cases.schema.joint_set import JointSet
-from jointwave.cases.schema.region import REST
+from jointwave.cases.schema.joint import JointSet
+from jointwave.cases.schema.plane import REST
 from jointwave.cases.schema.rock_mass import RockMass
 
 #: Blocks from a side to the nearest plane, by the side's boundary condition.

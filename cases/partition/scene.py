@@ -12,16 +12,15 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import Blocks, blocks_of
 from jointwave.cases.geometry.cell_complex import Complex, GeometryError, Sliver
 from jointwave.cases.geometry.measure import cell_moments
+from jointwave.cases.geometry.periodic import Across, contacts_across
 from jointwave.cases.geometry.sets import cut_by_sets
 from jointwave.cases.geometry.slivers import without_slivers
 from jointwave.cases.geometry.solids import check_convex, cut_into_regions, taken_out
-from jointwave.cases.partition.joints import attitude, plane_sets
-from jointwave.cases.partition.periodic import across_periodic
-from jointwave.cases.partition.regions import bounded
-from jointwave.cases.partition.shape import Shape, shape_of
+from jointwave.cases.partition.joints import attitude, bounded, plane_sets
+from jointwave.cases.partition.shape import SIDES, Shape, shape_of
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.joint_set import JointSet
-from jointwave.cases.schema.region import Region
+from jointwave.cases.schema.joint import JointSet
+from jointwave.cases.schema.plane import Region
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.size import LIMIT, memory, spoken
 
@@ -114,6 +113,19 @@ def blocks_of_scene(scene: RockMass, further: Sequence[JointSet] = ()) -> Blocks
     except GeometryError as error:
         raise SceneError(scene.where, error.key, None, str(error)) from None
     return found
+
+
+def across_periodic(scene: RockMass, blocks: Blocks) -> list[Across]:
+    """Return the contacts across the periodic sides of a scene; raises GeometryError where they do
+    not fit each other."""
+    x, dim, names = blocks.body.vertices, blocks.body.dim, [one.name for one in scene.joint_sets]
+    return [
+        Across(
+            contacts_across(blocks, axis, pair, names), np.ptp(x, axis=0) * np.eye(dim)[axis], pair
+        )
+        for axis, pair in enumerate(zip(SIDES[dim][:-1:2], SIDES[dim][1::2], strict=True))
+        if getattr(scene.boundaries, pair[0]) == "periodic"
+    ]
 
 
 def block_count(domain: Domain, sets: Sequence[JointSet]) -> float:

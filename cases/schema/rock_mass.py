@@ -13,7 +13,7 @@ import numpy as np
 from jointwave.cases.schema.any_scene import SceneBase
 from jointwave.cases.schema.damping import Damping
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.plane import (
     Boundaries,
     GravityOfRock,
@@ -21,8 +21,8 @@ from jointwave.cases.schema.plane import (
     IntactRock,
     NumericsOfRock,
     RecordOfRock,
+    Region,
 )
-from jointwave.cases.schema.region import Region
 from jointwave.cases.schema.sources import PlaneLoad, Wave
 from jointwave.cases.schema.tables import Time
 from jointwave.cases.schema.values import Pair, Positive

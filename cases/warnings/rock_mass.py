@@ -12,13 +12,12 @@ from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.incident import plane_wave
 from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.joints import attitude
+from jointwave.cases.partition.joints import attitude, rocks_of
 from jointwave.cases.partition.parts import loaded_lines
-from jointwave.cases.partition.regions import rocks_of
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import distance, shape_of
 from jointwave.cases.plausible import LENGTH, of_dip, of_value
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad, Wave
 from jointwave.cases.warnings.sources import Met, of_resolution, onset

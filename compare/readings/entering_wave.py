@@ -11,7 +11,7 @@ from jointwave.cases.incident import WITHIN, plane_wave
 from jointwave.cases.loads import load_history, velocity_of
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.quiet_sides import impedances
-from jointwave.cases.partition.regions import region_at, rocks_of
+from jointwave.cases.partition.joints import region_at, rocks_of
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass

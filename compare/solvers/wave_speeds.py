@@ -6,8 +6,8 @@ from jointwave.cases.material.effective_medium import compliant, stiffness
 from jointwave.cases.material.effective_medium import speeds as speeds_of_medium
 from jointwave.cases.material.rigid_blocks import long_wave_stiffness
 from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.partition.joints import within
 from jointwave.cases.partition.lattice import further_sets
-from jointwave.cases.partition.regions import within
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.solvers.record import Rock
 

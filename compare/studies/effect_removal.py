@@ -2,13 +2,13 @@
 
 from typing import Any
 
-from jointwave.cases.checks.scene import checked
 from jointwave.cases.effects import SIDES
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.strength import SLIP
+from jointwave.cases.material.properties import SLIP
 from jointwave.cases.scene_type import Either
 from jointwave.cases.schema.damping import Attenuating
 from jointwave.cases.schema.law_parts import PARTS
+from jointwave.cases.validate import checked
 
 ALONG = (*SLIP, *(key for part in PARTS if part.along for key in part.all_keys))
 #: By effect, the tables and keys that leave it out of a scene; `joints` are all its joints.

@@ -5,12 +5,12 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from jointwave.cases.checks.scene import checked
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.effective_medium import slowest
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import shortest_period
+from jointwave.cases.validate import checked
 from jointwave.compare.engines import ENGINES, applies, solve, solver
 from jointwave.compare.runs import timings
 from jointwave.compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK

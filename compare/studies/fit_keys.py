@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
-from jointwave.cases.checks.scene import checked
 from jointwave.cases.errors import SceneError, nearest
 from jointwave.cases.scene_type import AnyScene, Either
 from jointwave.cases.schema.keys import field_comments, in_words, keys
 from jointwave.cases.units import UNITS
+from jointwave.cases.validate import checked
 
 CLOCK = "clock"  # shift added to the times of the files, s
 FACTOR = 1000.0  # by which a positive key may change, if nothing else bounds it

@@ -14,7 +14,7 @@ from scipy.sparse import csr_matrix
 
 from jointwave.cases.loads import base_steps
 from jointwave.cases.material.quiet_sides import borne, half_joints, medium_impedances
-from jointwave.cases.partition.regions import region_at
+from jointwave.cases.partition.joints import region_at
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.space import compat

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from jointwave.cases.geometry.cell_complex import NO_SET, Complex, GeometryError
 from jointwave.cases.geometry.measure import facet_moments
-from jointwave.cases.partition.periodic import Across
+from jointwave.cases.geometry.periodic import Across
 from jointwave.continuum.mesh.conforming import Conforming, Places, facets_of
 
 SAME = 1e-7  # of the domain: places on the two sides are one within it

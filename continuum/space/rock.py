@@ -24,8 +24,8 @@ from jointwave.cases.material.rock import (
     shear_modulus,
     speeds_from_modulus,
 )
-from jointwave.cases.partition.regions import within
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.partition.joints import within
+from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.space.compat import cell_constants

@@ -7,7 +7,7 @@ import numpy as np
 
 from jointwave.cases.partition.scene import blocks_of_domain
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 
 LAW = {"normal_stiffness": 1e10, "shear_stiffness": 4e9, "spacing": 1.0}
 ANGLES = np.linspace(0, 2 * np.pi, 32, endpoint=False)

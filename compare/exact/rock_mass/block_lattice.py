@@ -23,8 +23,7 @@ from jointwave.cases.material.contact_points import bending
 from jointwave.cases.material.quiet_sides import impedances
 from jointwave.cases.material.rigid_blocks import rigid_joints, welds
 from jointwave.cases.partition.lattice import further_sets
-from jointwave.cases.partition.periodic import across_periodic
-from jointwave.cases.partition.scene import block_count, blocks_of_scene
+from jointwave.cases.partition.scene import across_periodic, block_count, blocks_of_scene
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.pulse import shortest_period

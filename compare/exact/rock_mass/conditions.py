@@ -6,12 +6,11 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.incident import across, in_components
-from jointwave.cases.partition.joints import attitude
-from jointwave.cases.partition.regions import strata
+from jointwave.cases.partition.joints import attitude, strata
 from jointwave.cases.partition.shape import SIDES, shape_of
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.law_parts import PARTS
-from jointwave.cases.schema.region import Region
+from jointwave.cases.schema.plane import Region
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import Wave
 

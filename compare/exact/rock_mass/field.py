@@ -24,13 +24,11 @@ from jointwave.cases.incident import (
     free_field,
     plane_wave,
 )
-from jointwave.cases.partition.joints import attitude
-from jointwave.cases.partition.regions import strata
+from jointwave.cases.partition.joints import attitude, strata
 from jointwave.cases.partition.shape import SIDES, shape_of
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.joint_set import JointSet
-from jointwave.cases.schema.plane import Boundaries
-from jointwave.cases.schema.region import REST, Region
+from jointwave.cases.schema.joint import JointSet
+from jointwave.cases.schema.plane import REST, Boundaries, Region
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane import layer_pulses
 from jointwave.compare.exact.rock_mass import normal_incidence

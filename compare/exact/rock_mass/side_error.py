@@ -14,10 +14,9 @@ import numpy as np
 
 from jointwave.cases.incident import PlaneWave, plane_wave
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.joints import direction_of
-from jointwave.cases.partition.regions import rocks_of
+from jointwave.cases.partition.joints import direction_of, rocks_of
 from jointwave.cases.partition.shape import Face, distance, shape_of
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane.waves import face
 from jointwave.compare.exact.rock_mass import normal_incidence

@@ -14,8 +14,7 @@ from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.incident import PlaneWave, plane_wave
 from jointwave.cases.material.rock import ElasticRock, elastic_rock
 from jointwave.cases.material.rock_mass import set_time_constants
-from jointwave.cases.partition.joints import attitude
-from jointwave.cases.partition.regions import rocks_of, strata
+from jointwave.cases.partition.joints import attitude, rocks_of, strata
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import TOLERANCE, shape_of
 from jointwave.cases.schema.rock_mass import RockMass

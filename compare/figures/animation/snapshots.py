@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.checks.scene import checked
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.validate import checked
 from jointwave.compare.engines import ENGINES, Progress, applies
 from jointwave.compare.figures.units import UNITS
 from jointwave.compare.runs.reuse import NOWHERE, SNAPSHOTS, ResultFolder

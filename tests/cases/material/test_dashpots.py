@@ -6,7 +6,7 @@ import pytest
 from jointwave.cases.material.rock_mass import set_time_constants
 from jointwave.cases.schema.damping import Damping, Rayleigh
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.plane import IntactRock, RecordOfRock
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.tables import Time

@@ -3,7 +3,7 @@
 import pytest
 
 from jointwave.cases.material.rock_mass import beyond_strength
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.plane import InSituStress
 
 #: At 30 degrees: t_n = 1 x 1/4 + 5 x 3/4 = 4 MPa, |t_s| = 4 sqrt(3)/4 = 1.732 MPa.

@@ -13,7 +13,7 @@ from jointwave.cases.material.contact_points import points_of
 from jointwave.cases.material.rock_mass import constrained_modulus
 from jointwave.cases.partition.scene import blocks_of_domain as cut
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.plane import IntactRock
 from tests.cases.material.block_stiffness import block_stiffness, jump
 from tests.cases.partition.polygons import periodic_contacts, points_between

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.material.strength import NAMES
+from jointwave.cases.material.properties import NAMES
 from jointwave.cases.schema.law_parts import UNLIMITED
 
 TENSILE = {"tensile_strength": 1e5, "fracture_energy": 10.0}

@@ -3,7 +3,7 @@
 import pytest
 
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 
 
 @pytest.fixture(scope="session")

@@ -14,7 +14,7 @@ from jointwave.cases.partition.scene import blocks_of_domain as cut
 from jointwave.cases.partition.scene import least_width
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 from tests.cases.partition.polygons import block_at, closed, following, least_angles, owner, widths
 
 LAW = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}

@@ -10,7 +10,7 @@ from closed_forms.bloch import masses
 from jointwave.cases.histories import Ricker
 from jointwave.cases.partition.scene import blocks_of_domain
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 from jointwave.compare.exact.blocks.events import Loads, integrate
 from jointwave.compare.exact.blocks.system import Contacts, contacts_of, first_order
 from jointwave.compare.exact.linear import twins

@@ -9,7 +9,7 @@ from closed_forms.bloch import modes as bloch_modes
 from closed_forms.block_lattice import Lattice, dynamic_matrix, modes
 from jointwave.cases.partition.scene import blocks_of_domain
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 from jointwave.compare.exact.blocks.system import carried, resistance
 
 A, DENSITY, K_N, K_S = 0.5, 2400.0, 3e10, 1e10

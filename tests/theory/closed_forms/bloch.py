@@ -21,7 +21,7 @@ from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.geometry.periodic import contacts_across
 from jointwave.cases.partition.scene import blocks_of_domain
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.joint_set import JointSet
+from jointwave.cases.schema.joint import JointSet
 from jointwave.compare.exact.blocks.system import Contacts, contacts_of, relative, resistance
 
 
