@@ -1,14 +1,26 @@
-"""Initial state of a rock mass of rigid blocks: unloaded, under its prestress, at rest under
-gravity."""
+"""Initial state of rigid blocks: unloaded, or at rest under prestress and gravity, found by dynamic
+relaxation.
+
+Mass-proportional damping alpha is critical for a mode omega at alpha = 2 omega. The mode that still
+moves shows itself in the change of displacement du and of unbalanced force dF over a few steps,
+
+    omega^2 = -du . dF / (du . M du),
+
+Rayleigh's quotient, so the damping follows from fast modes to the slowest, which takes
+some ln(1 / tolerance) / (omega dt) steps. Underwood, Dynamic relaxation, in: Computational Methods
+for Transient Analysis (1983).
+"""
 
 from __future__ import annotations
 
-from math import ceil
+from math import ceil, sqrt
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from jointwave.cases.errors import SceneError
 from jointwave.dem.build import constants
 from jointwave.dem.chunks import LANES, Chunks
 from jointwave.dem.columns import Columns
@@ -17,24 +29,36 @@ from jointwave.dem.leapfrog import make_stepper
 from jointwave.dem.loads import Loads
 from jointwave.dem.model import Model, State, held_by, samples_for, state_at_rest
 from jointwave.dem.stability import critical_time_step, squared_frequencies
-from jointwave.dem.static import (
-    NEVER,
-    STEP_FRACTION,
-    STEPS_BETWEEN_LOOKS,
-    UNBORNE,
-    Damped,
-    Rest,
-    relax,
-    settle,
-)
 from jointwave.dem.system import BlockSystem
 from jointwave.joints.law import IN_MOTION, sticking
 from jointwave.results.arrays import copied, fill
 
+STEPS_AT_ONCE = 10  # between two looks at the forces
+STEP_FRACTION = 0.9  # of the critical step: only the final state matters
+NEVER = 1 << 60  # steps between samples where none are taken
+UNBORNE = "what quiet boundaries bear of the weight is not found: fix the one below"
+#: A stall is this part of the most steps without progress, and at least as many as led there: what
+#: bears on ever fewer points comes to rest ever more slowly.
+PATIENCE = 80
+STEADY = 0.9  # of a way to that in the same time before: 1 at a constant speed, 3 from rest
 PARTS = 40  # in which walls of openings are released where joints may slip or open
 STUCK = 1e-4  # out-of-balance ratio of joints that neither slip nor open, before they may
 RESISTED = 1e-9  # of the largest resistance: below it there is none
 LOOKS = 0.3  # stretches of ten steps after each part, over the root of the number of blocks
+
+
+class Rest(NamedTuple):
+    """How a static state was reached: steps taken, largest unbalanced force over the scale; moving,
+    the block that moves ever farther, None where none does."""
+
+    steps: int
+    ratio: float
+    moving: str | None = None
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Attributes of a result."""
+        return {"static_steps": self.steps, "static_out_of_balance": self.ratio}
 
 
 def start(system: BlockSystem, state: State) -> Rest | None:
@@ -50,7 +74,7 @@ def start(system: BlockSystem, state: State) -> Rest | None:
         relaxation = BlockRelaxation(system, static)
         walls = relaxation.walls
         before = relaxation.stick() if walls is None else relaxation.excavate(walls)
-        rest = settle(scene, relaxation)
+        rest = relaxation.settle()
         rest = rest._replace(steps=before + rest.steps)
         state.u[:] = relaxation.state.u
         if state.turn is not None:
@@ -70,7 +94,7 @@ def start(system: BlockSystem, state: State) -> Rest | None:
         state.v[:count, : len(blocks.gravity)] = -ahead * blocks.gravity
         if bears:
             relaxation = BlockRelaxation(system, True, sticks=True)
-            settle(scene, relaxation, UNBORNE)
+            relaxation.settle(UNBORNE)
             found, loads = relaxation.borne(), system.loads
             loads.add_steady(found)
             impulse = ahead * found @ loads.onto.T
@@ -115,19 +139,20 @@ def slowed(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarr
 
 
 class BlockRelaxation:
-    """The blocks under their static forces, as `dem.static` relaxes them.
+    """The blocks under their static forces.
 
     Where a wall holds its group, a block has the mass that gives it the critical step of the
-    stiffest: only weights and stiffness count, and no small block holds up the others (Underwood,
-    see `dem.static`). Damping and rates do not affect a static state: dashpots, also of quiet
-    sides, and local damping are zero, and friction is independent of rate. Quiet sides that bear
-    the weight are held: their blocks do not move as these do not let them. The kernel is that of
-    the motion, so that a first run compiles one, but where that is composed of stages. sticks :
-    whether the weight alone acts, and no joint opens, slips or breaks.
+    stiffest: only weights and stiffness count, and no small block holds up the others (Underwood).
+    Damping and rates do not affect a static state: dashpots, also of quiet sides, and local damping
+    are zero, and friction is independent of rate. Quiet sides that bear the weight are held: their
+    blocks do not move as these do not let them. The kernel is that of the motion, so that a first
+    run compiles one, but where that is composed of stages. sticks : whether the weight alone acts,
+    and no joint opens, slips or breaks.
     """
 
     def __init__(self, system: BlockSystem, weighed: bool, sticks: bool = False) -> None:
         blocks, model, loads = system.blocks, system.model, system.loads
+        self.scene = blocks.scene
         columns = blocks.columns._replace(time_constants=None)
         masses = blocks.masses * slowed(blocks.contacts, columns, blocks.masses)
         dt = STEP_FRACTION * critical_time_step(blocks.contacts, columns, masses, 0.0)
@@ -159,7 +184,7 @@ class BlockRelaxation:
         form = model.form._replace(stages=1)
         self.model = model._replace(form=form, blocks=own, laws=laws, held=held)
         self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 0)
-        self.count, most = len(own.inertia), STEPS_BETWEEN_LOOKS
+        self.count, most = len(own.inertia), STEPS_AT_ONCE
         self._drive = np.zeros((most, *self.steady.shape))
         shake = np.zeros((most, model.walls, blocks.dim)) if model.form.shaken else None
         self._take = make_stepper(
@@ -185,12 +210,12 @@ class BlockRelaxation:
         whole, looks = self.steady, ceil(LOOKS * np.sqrt(self.count))
         for part in range(1, PARTS):
             self.steady = whole + (1 - part / PARTS) * walls
-            damped = Damped(self)
+            now = self.look()
             for _ in range(looks):
-                damped.advance()
-            self.stop()
+                now = self.damp(*now)
+            self.state.v[:] = 0.0
         self.steady = whole
-        return (PARTS - 1) * looks * STEPS_BETWEEN_LOOKS
+        return (PARTS - 1) * looks * STEPS_AT_ONCE
 
     def stick(self) -> int:
         """Go to the static state of joints that neither slip nor open, where some can, and return
@@ -200,7 +225,7 @@ class BlockRelaxation:
         before, own = copied(self.state), self.model.laws.copy()
         self.model.laws[:] = sticking(own)
         self.state.history[:] = state_at_rest(self.model).history
-        rest = relax(self, STUCK, self.most_steps)
+        rest = self.relax(STUCK)
         self.model.laws[:] = own
         at = self.state if rest.ratio <= STUCK else before
         fill(self.state, before._replace(u=at.u, turn=at.turn))
@@ -214,6 +239,79 @@ class BlockRelaxation:
         if not force.max() <= tolerance * self.scale:
             fill(self.state, before)
 
+    def settle(self, unborne: str = "") -> Rest:
+        """Bring the blocks to rest under gravity and prestress.
+
+        unborne : what to do where sudden gravity does not come to rest on sides that bear it.
+        Raises SceneError where there is no static state within numerics.dem.static_tolerance: a
+        block that moves on is another thing than a residual that is still too large.
+        """
+        scene, tolerance = self.scene, self.scene.numerics.dem.static_tolerance
+        rest = self.relax(tolerance)
+        if rest.ratio <= tolerance:
+            return rest
+        key, remedy = "gravity", unborne or "static = false starts without it"
+        if not unborne and (scene.gravity is None or not scene.gravity.static):
+            where = " around the openings" if scene.excavated else ""
+            key, remedy = "prestress", f"the joints{where} cannot carry it"
+        why = (
+            f"has not come to rest: out-of-balance ratio {rest.ratio:.1e} after {rest.steps} steps,"
+            f" above numerics.dem.static_tolerance = {tolerance:.1e}: raise it to accept this state"
+        )
+        if rest.moving is not None:
+            why = (
+                f"no static state: {rest.moving} moves on after {rest.steps} steps of dynamic "
+                f"relaxation: it slides, tips or is unsupported; {remedy}"
+            )
+        raise SceneError(scene.where, key, None, why)
+
+    def relax(self, tolerance: float) -> Rest:
+        """Relax until the out-of-balance ratio is within the tolerance.
+
+        It ends earlier after `most_steps`, or once the ratio no longer falls and a block moves: it
+        goes farther in as many steps as led there than until then, or on the same way at no less
+        speed.
+        """
+        u, force = self.look()
+        start, ratio, steps, begin, moving = u, self.ratio(force), 0, 0, None
+        best, at_begin, at_half = ratio, start, start
+        while tolerance < ratio and steps < self.most_steps and moving is None:
+            before = u
+            u, force = self.damp(u, force)
+            steps, ratio = steps + STEPS_AT_ONCE, self.ratio(force)
+            patience = max(self.most_steps / PATIENCE, begin)
+            if steps - begin <= patience / 2:
+                at_half = u
+            elif steps - begin > patience:
+                first, second, until = at_half - at_begin, u - at_half, at_begin - start
+                farther = self.mass @ (first + second) ** 2 > self.mass @ until**2
+                if farther or self.mass @ (first * (second - STEADY * first)) > 0:
+                    moving = self.fastest(u - before)
+            if ratio < 0.9 * best or steps - begin > patience:
+                best, begin, at_begin = min(best, ratio), steps, u
+        self.state.v[:] = 0.0
+        return Rest(steps, ratio, None if ratio <= tolerance else moving)
+
+    def ratio(self, force: np.ndarray) -> float:
+        """Return the out-of-balance ratio of unbalanced forces."""
+        largest = float(np.abs(force).max())
+        return largest / self.scale if largest else 0.0
+
+    def look(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return displacements and rotations (m, rad), and the unbalanced forces (N, N m)."""
+        return (self.rotation * self.state.u[: self.count]).ravel(), self.unbalanced()
+
+    def damp(self, u: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Take steps under damping that is critical for the mode that moved before; return what
+        `look` does, which was u and force before."""
+        self.advance(STEPS_AT_ONCE, self.alpha)
+        now, left = self.look()
+        change = now - u
+        inertia = float(change @ (self.mass * change))
+        stiffness = max(float(change @ (force - left)), 0.0)
+        self.alpha = 2 * sqrt(stiffness / inertia) if inertia > 0 else 0.0
+        return now, left
+
     def advance(self, steps: int, alpha: float) -> None:
         """Take steps under mass-proportional damping alpha, 1/s."""
         drag = 0.5 * self.model.blocks.dt * alpha
@@ -224,7 +322,7 @@ class BlockRelaxation:
     def unbalanced(self) -> np.ndarray:
         """Return the net force and moment on every freedom, from the step that they would cause."""
         kept = copied(self.state)
-        self.stop()
+        self.state.v[:] = 0.0
         self.advance(1, 0.0)
         gain = self.masses @ self.state.v[: self.count, :, None]
         fill(self.state, kept)
@@ -241,14 +339,6 @@ class BlockRelaxation:
         own = self.onto @ self.bearing
         stretched = np.linalg.pinv(own, rcond=1e-9, hermitian=True) @ missing[:, :, None]
         return (self.bearing @ stretched)[:, :, 0]
-
-    def displacement(self) -> np.ndarray:
-        """Return displacements (m) and rotations (rad)."""
-        return (self.rotation * self.state.u[: self.count]).ravel()
-
-    def stop(self) -> None:
-        """Set all velocities to zero."""
-        self.state.v[:] = 0.0
 
     def fastest(self, change: np.ndarray) -> str:
         """Return the block that moves farthest."""

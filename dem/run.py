@@ -164,7 +164,7 @@ def look(
 ) -> None:
     """Check the motion after samples first .. last - 1, all of which may be invalid, and its energy
     where the ledger is exact."""
-    stride, limit = system.time.stride, monitor.limit.view(np.float64)
+    stride, limit = system.time.stride, monitor.limit
     if samples.energy is not None and system.model.form.stages == 1:
         audit(monitor, samples.energy, first, last, stride)
     if monitor.found[0] < 0 and not _energies(system, state).max(initial=0.0) <= limit[0]:
