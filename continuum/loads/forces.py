@@ -119,7 +119,7 @@ def _on_line(body: Body, facets: Facets, start: np.ndarray, end: np.ndarray) -> 
 
 
 class Loads:
-    """All forces that are known before a run, `problem.Forces`.
+    """All forces that are known before a run.
 
     Attributes
     ----------

@@ -19,7 +19,7 @@ from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.evaluation import nodes_of_cells
-from jointwave.continuum.space.model import Body, Facets, directions
+from jointwave.continuum.space.model import Body, Facets, at_nodes, directions
 from jointwave.continuum.stepping.problem import Dashpots, Held, Springs
 from jointwave.joints.ends import half_spring
 
@@ -121,14 +121,11 @@ def _matched(scene: AnyScene, facets: Facets, z: np.ndarray) -> Dashpots:
 def bearing_sides(scene: AnyScene, body: Body) -> csr_matrix | None:
     """Return the areas [freedoms, freedoms] of quiet sides that bear the weight beside their
     dashpots, m2; None without."""
-    facets, dim = absorbing(scene, body), body.components
+    facets = absorbing(scene, body)
     bears = facets.weight[:, None] * borne(scene, facets.normal)
     if not bears.any():
         return None
-    tensors = along_and_across(facets.normal, bears)
-    own = dim * facets.node[:, None] + np.arange(dim)
-    row, column = np.repeat(own, dim, axis=1), np.tile(own, dim)
-    return csr_matrix((tensors.ravel(), (row.ravel(), column.ravel())), body.stiffness.shape)
+    return at_nodes(facets.node, along_and_across(facets.normal, bears), body.mass.size)
 
 
 def held_sides(scene: AnyScene, body: Body, time: Clock | None = None) -> Held | None:

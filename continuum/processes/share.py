@@ -13,7 +13,6 @@ from jointwave.continuum.space.model import JumpOperator
 from jointwave.continuum.stepping.problem import (
     OF_POINTS,
     Dashpots,
-    Forces,
     Problem,
     Readings,
     Springs,
@@ -35,10 +34,10 @@ class Share(NamedTuple):
 
 
 class SomeForces:
-    """Those of some forces that act on freedoms of a process, `problem.Forces`; number : int array
-    [freedoms], of these in its share, -1 of others."""
+    """Those of a problem's forces that act on freedoms of a process; number : int array [freedoms],
+    of these in its share, -1 of others."""
 
-    def __init__(self, forces: Forces, number: np.ndarray) -> None:
+    def __init__(self, forces: Any, number: np.ndarray) -> None:
         self.forces, there = forces, number[forces.freedom]
         self.kept = np.flatnonzero(there >= 0)
         self.freedom = there[self.kept]

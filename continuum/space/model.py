@@ -106,6 +106,14 @@ def in_motion(vectors: np.ndarray, components: int) -> np.ndarray:
     return vectors if vectors.shape[1] == components else vectors * [0.0, 1.0, 0.0]
 
 
+def at_nodes(node: np.ndarray, tensors: np.ndarray, size: int) -> csr_matrix:
+    """Return the matrix [size, size] of tensors [n, d, d] at nodes, which add up there."""
+    dim = tensors.shape[1]
+    own = dim * node[:, None] + np.arange(dim)
+    row, column = np.repeat(own, dim, axis=1), np.tile(own, dim)
+    return csr_matrix((tensors.ravel(), (row.ravel(), column.ravel())), (size, size))
+
+
 def forces_on(body: Body, facets: Facets, traction: np.ndarray) -> np.ndarray:
     """Return the force on every freedom of tractions [n, d] (Pa) on facets at their nodes, N."""
     dim, found = body.components, np.zeros(body.stiffness.shape[0])

@@ -9,6 +9,7 @@ from jointwave.continuum.stepping.problem import Readings
 from jointwave.continuum.stepping.product import Table
 from jointwave.continuum.stepping.tractions import Points
 from jointwave.joints.law import LawFlags
+from jointwave.results.rock_mass import TERMS
 
 #: Rows of the sums of a ledger, J: what was dissipated and what went in.
 VISCOUS, FRICTION, BOUNDARY, WORK = range(4)
@@ -33,14 +34,6 @@ class StepFlags(NamedTuple):
     ledger: bool
     sprung: bool = False
     width: int = 0
-
-
-class Sparse(NamedTuple):
-    """A matrix, CSR. start, column : int arrays. value : float array."""
-
-    start: np.ndarray
-    column: np.ndarray
-    value: np.ndarray
 
 
 class Jumps(NamedTuple):
@@ -75,7 +68,7 @@ class Constants(NamedTuple):
     memory : of the rock. stiffness, damping : `product.Table`. jumps : B; points :
     `tractions.Points`. steady : float array [n], N. driven : int array [k], freedoms of forces with
     a history. fixed : int array [f], freedoms whose motion is given: direction [f] times what moves
-    in a step. receivers : with `Sparse` matrices, empty ones of what is absent.
+    in a step. receivers : with a `Table` in place of each matrix, empty where it is absent.
     """
 
     dt: float
@@ -140,3 +133,10 @@ class Samples(NamedTuple):
     traction: np.ndarray
     jump: np.ndarray
     energy: np.ndarray
+
+
+def samples_for(readings: Readings, samples: int, energy: bool) -> Samples:
+    """Return empty samples."""
+    read = readings.motion, readings.motion, readings.stress, readings.traction, readings.jump
+    shapes = [(one.shape[0], samples) for one in read]
+    return Samples(*map(np.zeros, [*shapes, (len(TERMS), samples if energy else 0)]))

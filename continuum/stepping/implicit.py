@@ -15,12 +15,12 @@ A step that does not converge is taken in halves.
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.sparse import diags
 
 from jointwave.cases.errors import StoppedError
-from jointwave.continuum.stepping.arrays import BOUNDARY, FRICTION, VISCOUS, WORK
-from jointwave.continuum.stepping.balance import LAST_DIGITS, Balance, Factors, Forces, newton
-from jointwave.continuum.stepping.leapfrog import samples_for
-from jointwave.continuum.stepping.memory import memory_of
+from jointwave.continuum.stepping.arrays import BOUNDARY, FRICTION, VISCOUS, WORK, samples_for
+from jointwave.continuum.stepping.balance import LAST_DIGITS, Balance, Forces
+from jointwave.continuum.stepping.newton import Factors, newton
 from jointwave.continuum.stepping.problem import Held, Problem
 from jointwave.results.arrays import copied, fill, size_of
 
@@ -72,10 +72,9 @@ class Implicit:
         self.problem, self.dt, self.rho, self.scheme = problem, dt, rho, scheme(rho)
         self.balance, self.counts = Balance(problem), np.zeros(3, np.int64)
         self.samples = samples_for(problem.readings, samples, energy)
-        n = problem.body.stiffness.shape[0]
-        still, own = np.zeros(n), self.balance
-        forces = own.forces(still, still, still, dt, own.past, still)
-        self.now = Moment(still.copy(), still.copy(), still.copy(), copied(forces), np.zeros(4))
+        own, (u, v, a, none) = self.balance, np.zeros((4, problem.body.mass.size))
+        forces = own.forces(u, v, u, dt, own.past, none)
+        self.now = Moment(u, v, a, copied(forces), np.zeros(4))
         self._factors: tuple[float, np.ndarray, Factors] | None = None
         self._weighs, self._motion = problem.stiffness.diagonal(), np.zeros((3, 1))
         weight, carried = own.points.weight, np.abs(own.points.carried)
@@ -100,7 +99,8 @@ class Implicit:
     @property
     def strained(self) -> np.ndarray:
         """Displacement by which elastic rock would have the same stress at the last step, m."""
-        return self.balance.strained(self.now.u, self.now.forces.past.elongation)
+        memory = self.balance.memory(self.dt)
+        return memory.strained(self.now.u, self.now.forces.past.elongation)
 
     @property
     def parts(self) -> tuple:
@@ -118,7 +118,7 @@ class Implicit:
     def bytes(self) -> int:
         """The size of matrices, without their factors, and state."""
         own = self.balance
-        every = own.stiffness, own.damping, own.quiet, own.mass, own.jumps
+        every = own.stiffness, own.damping, own.quiet, own.jumps
         return size_of(self.now, own.points, *((m.data, m.indices, m.indptr) for m in every))
 
     def start(self, u: np.ndarray, history: np.ndarray) -> None:
@@ -126,8 +126,9 @@ class Implicit:
         now, own = self.now, self.balance
         now.u[:] = u
         now.forces.past.history[:] = history
-        if own.mechanisms is not None:
-            now.sums[VISCOUS] = own.stored(u, own.past, self.dt)
+        memory = own.memory(self.dt)
+        if memory.share.size:
+            now.sums[VISCOUS] = memory.energy(own.stiffness, u, own.past.elongation)
 
     def take(self, first: int, last: int, stride: int) -> None:
         """Go to the steps first .. last - 1, with a sample at each that `stride` divides."""
@@ -146,8 +147,7 @@ class Implicit:
         self._hold(now, 0, 0.0)
         past, external = copied(now.forces.past), self._external(0, 0.0)
         forces = own.forces(now.u, now.v, 0 * now.u, self.dt, past, external)
-        rest = (forces.whole - own.mass @ now.a)[own.free]
-        now.a[own.free] += rest / self.problem.body.mass[own.free]
+        now.a[own.free] = (forces.whole / own.mass)[own.free]
         fill(now.forces, forces)
 
     def _reach(self, n: int, begin: float, end: float, stride: int) -> None:
@@ -174,7 +174,7 @@ class Implicit:
         trial, external = copied(now), self._external(n, end)
         self._hold(trial, n, end)
         drift = dt * now.v + (0.5 - beta) * dt**2 * now.a
-        before = alpha_f * now.forces.whole - alpha_m * (own.mass @ now.a)
+        before = alpha_f * now.forces.whole - alpha_m * (own.mass * now.a)
         forces, r, free = [now.forces], gamma / (beta * dt), own.free
 
         def residual(moved: np.ndarray) -> tuple[np.ndarray, float]:
@@ -182,7 +182,7 @@ class Implicit:
             trial.u[free] = now.u[free] + moved
             trial.v[free] = now.v[free] + dt * ((1 - gamma) * now.a + gamma * trial.a)[free]
             forces[0] = own.forces(trial.u, trial.v, trial.u - now.u, dt, now.forces.past, external)
-            inertia = own.mass @ trial.a
+            inertia = own.mass * trial.a
             rest = (1 - alpha_f) * forces[0].whole + before - (1 - alpha_m) * inertia
             size = max(forces[0].size[0], now.forces.size[0], np.abs(inertia).max(initial=0.0))
             weighs = np.abs(self._weighs * trial.u).max(initial=0.0) + self._carried
@@ -207,11 +207,9 @@ class Implicit:
             if last == dt and np.array_equal(known, tangents):
                 return factors
         alpha_m, alpha_f, beta, _ = self.scheme
-        own = self.balance
-        inertia = (1 - alpha_m) / (beta * dt**2) * own.mass
-        rock = memory_of(own.mechanisms, dt).tangent(dt) * own.stiffness
-        forces = rock + r * (own.damping + own.quiet) + own.of_springs(dt)
-        found = own.with_joints(inertia + (1 - alpha_f) * forces, tangents, 1 - alpha_f)
+        own, share = self.balance, 1 - alpha_f
+        inertia = (1 - alpha_m) / (beta * dt**2) * diags(own.mass)
+        found = own.factors(inertia + share * own.resistance(dt, r), share * tangents)
         self._factors = dt, tangents, found
         self.counts[1] += 1
         return found
@@ -225,12 +223,12 @@ class Implicit:
         sums[WORK] += (now.forces.external + forces.external) @ moved / 2
         sums[FRICTION] += forces.energies[2]
         if held.size:
-            gained = (self.balance.mass @ (trial.v - now.v))[held] @ (now.v + trial.v)[held]
+            gained = (self.balance.mass * (trial.v - now.v))[held] @ (now.v + trial.v)[held]
             sums[WORK] += (gained - (now.forces.whole + forces.whole)[held] @ moved[held]) / 2
 
     def _external(self, n: int, share: float) -> np.ndarray:
         """Return the forces with a history at step n and a share of the next."""
-        found, forces = np.zeros(self.balance.stiffness.shape[0]), self.problem.forces
+        found, forces = np.zeros(self.balance.mass.size), self.problem.forces
         if forces is not None:
             first, last = forces.at(n, n + 2)
             found[forces.freedom] = (1 - share) * first + share * last
@@ -254,17 +252,19 @@ class Implicit:
         if read.viscous is not None:
             out.stress[:, s] += read.viscous @ now.v
         if read.inertia is not None:
-            balancing = self.balance.acceleration(forces.whole, now.a)
+            balancing = forces.whole / self.balance.mass
+            balancing[self.problem.fixed] = now.a[self.problem.fixed]
             out.stress[:, s] += read.inertia @ (balancing + self.problem.alpha * now.v)
-        out.traction[:, s] = read.traction @ (forces.loads + forces.drags) + read.carried
+        out.traction[:, s] = read.traction @ forces.loads + read.carried
         out.jump[:, s] = read.jump @ forces.jump
         if out.energy.size:
             viscous, friction, boundary, work = now.sums
             joints, spent, _ = forces.energies
-            rock = self.balance.stored(now.u, forces.past, self.dt)
-            if self.balance.mechanisms is not None:
+            memory = self.balance.memory(self.dt)
+            rock = memory.energy(self.balance.stiffness, now.u, forces.past.elongation)
+            if memory.share.size:
                 viscous -= rock
-            kinetic = 0.5 * (now.v @ (self.balance.mass @ now.v))
+            kinetic = 0.5 * (now.v @ (self.balance.mass * now.v))
             fallen = self.balance.steady @ now.u
             terms = kinetic, rock + joints, viscous, friction, spent, boundary, -fallen, work
             out.energy[:, s] = terms

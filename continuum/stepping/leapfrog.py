@@ -15,28 +15,20 @@ from jointwave.continuum.stepping.arrays import (
     Constants,
     Jumps,
     Quiet,
-    Samples,
-    Sparse,
     State,
     StepFlags,
     Work,
+    samples_for,
 )
 from jointwave.continuum.stepping.explicit import leapfrog_for
 from jointwave.continuum.stepping.memory import memory_of
-from jointwave.continuum.stepping.problem import OF_POINTS, Dashpots, Problem, Readings
+from jointwave.continuum.stepping.problem import OF_POINTS, Problem, Readings
 from jointwave.continuum.stepping.product import ROWS, Product, Table, product_of, table_of
 from jointwave.continuum.stepping.tractions import history_at_rest
 from jointwave.numerics.cache_lines import zeros
 from jointwave.results.arrays import size_of
-from jointwave.results.rock_mass import TERMS
 
 BUFFER = 500_000  # numbers: forces with a history that are in memory at a time
-
-
-def sparse(matrix: csr_matrix, place: np.ndarray | None = None) -> Sparse:
-    """Return a matrix as kernels take it, with columns where `place` has them."""
-    column = matrix.indices if place is None else place[matrix.indices]
-    return Sparse(matrix.indptr.astype(np.int64), column.astype(np.int64), matrix.data)
 
 
 def alike(matrix: csr_matrix, place: np.ndarray) -> Jumps:
@@ -62,33 +54,35 @@ class Leapfrog:
     work_of_a_step = 1
 
     def __init__(self, problem: Problem, dt: float, samples: int, energy: bool = True) -> None:
-        self.problem, self.dt, body = problem, dt, problem.body
-        (self.product, self._damping), (rows, columns) = (
-            products_for_steps(body),
-            body.stiffness.shape,
-        )
-        self.halo = columns - rows
+        self.problem, self.dt, body, parts = problem, dt, problem.body, problem.parts
+        self.product, self._damping = products_for_steps(body)
+        self.halo = body.stiffness.shape[1] - body.stiffness.shape[0]
         self.samples = samples_for(problem.readings, samples, energy)
-        self.constants = self._constants()
-        parts, damped = problem.parts, body.damping is not None
-        stressed, many = self.constants.points.carried.size > 0, self.constants.memory.share.size
-        springs, kind = self.constants.quiet.stiffness, self.product.kind
-        rock = damped, many > 0, energy, len(springs) > 0, self.constants.jumps.column.shape[1]
-        self.flags = StepFlags(body.components, kind, parts, stressed, *rock)
-        n, jumps = self.product.size + self.halo, len(self.constants.jumps.column)
+        self.constants = c = self._constants()
+        many, springs, damped = c.memory.share.size, c.quiet.stiffness, body.damping is not None
+        jumps, width = c.jumps.column.shape
+        self.flags = StepFlags(
+            dim=body.components,
+            product=self.product.kind,
+            law=parts,
+            stressed=c.points.carried.size > 0,
+            damped=damped,
+            relaxing=many > 0,
+            ledger=energy,
+            sprung=len(springs) > 0,
+            width=width,
+        )
+        n = self.product.size + self.halo
         dashpots, limited = (parts.dashpots, parts.limited) if parts else (False, False)
-        viscous = n if damped or dashpots else 0
-        relaxing = n if many else 0
-        of_rock = n, viscous, viscous, relaxing, relaxing
-        sizes = *of_rock, jumps, jumps * limited, jumps * dashpots, jumps
-        vectors = [zeros(size) for size in (*sizes, jumps * dashpots)]
-        braking = np.zeros(self.constants.quiet.freedom.shape)
-        self.work = Work(*vectors, braking)  # type: ignore[call-arg]
+        viscous, relaxing = n * (damped or dashpots), n * (many > 0)
+        of_points = jumps, jumps * limited, jumps * dashpots, jumps, jumps * dashpots
+        vectors = [zeros(size) for size in (n, viscous, viscous, relaxing, relaxing, *of_points)]
+        self.work = Work(*vectors, np.zeros(c.quiet.freedom.shape))  # type: ignore[call-arg]
         history = np.zeros((0, 0))
         if parts is not None:
-            history = history_at_rest(self.constants.points, parts, body.components)
-        motion, elongation = (zeros(n), zeros(n), zeros(n)), zeros((many, n))
-        self.state = State(*motion, elongation, history, np.zeros(4), np.zeros_like(springs))
+            history = history_at_rest(c.points, parts, body.components)
+        memory = zeros((many, n)), history, np.zeros(4), np.zeros_like(springs)
+        self.state = State(zeros(n), zeros(n), zeros(n), *memory)
 
     def take(self, first: int, last: int, stride: int) -> None:
         """Take the steps first .. last - 1, with a sample at each that `stride` divides."""
@@ -181,9 +175,9 @@ class Leapfrog:
     def _constants(self) -> Constants:
         problem, place, dt = self.problem, self.product.place, self.dt
         body, held, forces = problem.body, problem.held, problem.forces
-        braked = 1 + problem.alpha * dt / 2
+        braked, nothing = 1 + problem.alpha * dt / 2, csr_matrix((0, body.mass.size))
         inverse = self._placed(dt / (body.mass * braked))
-        nothing = csr_matrix((0, body.mass.size))
+        columns = np.append(place, self.product.size + np.arange(self.halo))
         return Constants(
             dt=dt,
             mass=self._placed(body.mass),
@@ -193,7 +187,7 @@ class Leapfrog:
             memory=memory_of(problem.mechanisms, dt),
             stiffness=self.product.table,
             damping=self._damping,
-            jumps=alike(nothing if body.joints is None else body.joints.matrix, self.columns),
+            jumps=alike(body.joints.matrix if body.joints else nothing, columns),
             points=problem.points(),
             steady=np.zeros(0) if problem.steady is None else self._placed(problem.steady),
             driven=np.zeros(0, np.int64) if forces is None else place[forces.freedom],
@@ -203,19 +197,13 @@ class Leapfrog:
             receivers=receivers(problem.readings, place),
         )
 
-    @property
-    def columns(self) -> np.ndarray:
-        """The place of each column of the body's matrices."""
-        return np.append(self.product.place, self.product.size + np.arange(self.halo))
-
     def _placed(self, values: np.ndarray) -> np.ndarray:
         found = zeros(self.product.size)
         found[self.product.place] = values
         return found
 
     def _quiet(self, inverse: np.ndarray) -> Quiet:
-        dim = self.problem.body.components
-        quiet = self.problem.quiet or Dashpots(np.zeros(0, np.int64), np.zeros((0, dim, dim)))
+        quiet, dim = self.problem.dashpots, self.problem.body.components
         own, springs = quiet.freedom, 3 * (np.zeros((0, dim)),)
         if quiet.springs is not None:
             springs = quiet.springs(self.dt)[:3]
@@ -245,15 +233,8 @@ def receivers(readings: Readings, place: np.ndarray) -> Readings:
     """Return readings with matrices as kernels take them, empty ones of what is absent."""
     found: dict[str, Any] = {}
     for name, value in readings._asdict().items():
-        if value is None:
-            value = csr_matrix((0, len(place)))
-        if isinstance(value, csr_matrix):
-            found[name] = sparse(value, None if name in OF_POINTS else place)
+        if not isinstance(value, np.ndarray):
+            own = csr_matrix((0, 0)) if value is None else value
+            column = own.indices if name in OF_POINTS else place[own.indices]
+            found[name] = Table(own.indptr.astype(np.int64), column.astype(np.uint32), own.data)
     return readings._replace(**found)
-
-
-def samples_for(readings: Readings, samples: int, energy: bool) -> Samples:
-    """Return empty samples."""
-    read = readings.motion, readings.motion, readings.stress, readings.traction, readings.jump
-    shapes = [(one.shape[0], samples) for one in read]
-    return Samples(*map(np.zeros, [*shapes, (len(TERMS), samples if energy else 0)]))

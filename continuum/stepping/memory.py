@@ -33,6 +33,10 @@ class Memory(NamedTuple):
         """Return the share of K that resists a displacement within a step (s)."""
         return self.relaxed + float(self.share @ self.gain) / dt
 
+    def strained(self, u: np.ndarray, elongation: np.ndarray) -> np.ndarray:
+        """Return the displacement by which elastic rock would have the same stress, m."""
+        return self.relaxed * u + self.share @ elongation
+
     def energy(self, stiffness: csr_matrix, u: np.ndarray, elongation: np.ndarray) -> float:
         """Return the energy of all springs, J; stiffness : K, N/m."""
         of_mechanisms = np.einsum("ln,ln->l", elongation, (stiffness @ elongation.T).T)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix, diags
@@ -52,22 +52,6 @@ class Held(NamedTuple):
     moved: Callable[[np.ndarray], np.ndarray] | None = None
 
 
-class Forces(Protocol):
-    """Forces that each have a history.
-
-    freedom : int array [k].
-    """
-
-    freedom: np.ndarray
-
-    def at(self, first: int, last: int) -> np.ndarray:
-        """Return the forces of steps first .. last - 1 [steps, k], N."""
-
-    def impulse(self, mass: np.ndarray, steps: int, stride: int) -> float:
-        """Return about the integral of |F| over so many steps in the norm of 1 / m, sqrt(J), by
-        one step in `stride`; mass : of all freedoms, kg."""
-
-
 class Readings(NamedTuple):
     """How receivers read a body: motion [m d, freedoms]; stress [rows, freedoms], Pa, compression
     positive, and what is at u = 0 [rows]; traction [joints d, points d] of forces, Pa/N, and what
@@ -95,8 +79,10 @@ class Problem(NamedTuple):
     Pa/m, a number or an array. stress : float array [d, d], Pa, compression positive, that rock
     and joints bear at u = 0. alpha : of mass-proportional damping, 1/s. mechanisms : of the
     relaxation of rock, whose stiffness is then the unrelaxed one. steady : float array [freedoms],
-    N. comm : mpi4py's, of processes that share the run. counted : points whose energies a process
-    counts, the first ones; None of all. Absent parts are None.
+    N. forces : with a history, of `freedom`, int array [k]: `at(first, last)` returns those of
+    steps [steps, k], N, and `impulse` is as of `loads.forces.Loads`. comm : mpi4py's, of processes
+    that share the run. counted : points whose energies a process counts, the first ones; None of
+    all. Absent parts are None.
     """
 
     body: Body
@@ -108,7 +94,7 @@ class Problem(NamedTuple):
     mechanisms: Mechanisms | None = None
     steady: np.ndarray | None = None
     quiet: Dashpots | None = None
-    forces: Forces | None = None
+    forces: Any = None
     held: Held | None = None
     comm: Any = None
     counted: int | None = None
@@ -121,6 +107,12 @@ class Problem(NamedTuple):
         return parts_of(self.law)._replace(planar=self.body.components == 2)
 
     @property
+    def dashpots(self) -> Dashpots:
+        """Those of quiet sides, of no nodes without."""
+        none = Dashpots(np.zeros(0, np.int64), np.zeros((0, *2 * (self.body.components,))))
+        return self.quiet or none
+
+    @property
     def fixed(self) -> np.ndarray:
         """Freedoms whose motion is given."""
         return np.zeros(0, np.int64) if self.held is None else self.held.freedom
@@ -128,7 +120,8 @@ class Problem(NamedTuple):
     def of_joints(self, normal: Any, shear: Any) -> csr_matrix:
         """Return B^T W k B of normal and shear values k of each column, or one of all."""
         joints, dim = self.body.joints, self.body.components
-        assert joints is not None
+        if joints is None:
+            return csr_matrix(self.body.stiffness.shape)
         values = np.zeros((len(joints.weight), dim))
         for c, value in enumerate([normal, *(dim - 1) * [0.0 if shear is None else shear]]):
             values[:, c] = joints.weight * (value[joints.column] if np.ndim(value) else value)
@@ -139,7 +132,7 @@ class Problem(NamedTuple):
         """The stiffness of rock and joints, closed as far as is in reach, N/m, and of springs of
         sides."""
         found = self.body.stiffness
-        if self.law is not None and self.body.joints is not None:
+        if self.law is not None:
             found = csr_matrix(found + self.of_joints(*self.stiffest))
         if self.quiet is not None and self.quiet.springs is not None:
             of_sides = np.zeros(found.shape[0])
@@ -151,7 +144,7 @@ class Problem(NamedTuple):
     def viscosity(self) -> csr_matrix | None:
         """The viscosity of rock and joints, N s/m; None without dashpots."""
         law, found = self.law, self.body.damping
-        if law is not None and law.normal_viscosity is not None and self.body.joints is not None:
+        if law is not None and law.normal_viscosity is not None:
             joints = self.of_joints(law.normal_viscosity, law.shear_viscosity)
             found = joints if found is None else csr_matrix(found + joints)
         return found
@@ -167,22 +160,11 @@ class Problem(NamedTuple):
         if self.law is None or joints is None:
             none = np.zeros(0)
             return Points(none, none.astype(np.int64), np.zeros((0, 0)), none, 0)
-        table = law_table(self.law)
-        column = joints.column if table.shape[1] > 1 else np.zeros(len(joints.weight), np.int64)
-        carried = self.carried()
-        return Points(
-            joints.weight,
-            column.astype(np.int64),
-            table,
-            np.zeros(0) if carried is None else carried,
-            len(joints.weight) if self.counted is None else self.counted,
-        )
-
-    def carried(self) -> np.ndarray | None:
-        """Return the tractions that points carry at u = 0 [points * d], Pa; None without."""
-        if self.stress is None or self.body.joints is None:
-            return None
-        return self.body.joints.carried(self.stress)
+        table, count = law_table(self.law), len(joints.weight)
+        column = joints.column.astype(np.int64) * (table.shape[1] > 1)
+        carried = np.zeros(0) if self.stress is None else joints.carried(self.stress)
+        counted = count if self.counted is None else self.counted
+        return Points(joints.weight, column, table, carried, counted)
 
 
 def any_motion(body: Body) -> np.ndarray:

@@ -16,12 +16,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, diags
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
-from jointwave.continuum.stepping.balance import LAST_DIGITS, Balance, Outcome, newton
+from jointwave.continuum.stepping.balance import LAST_DIGITS, Balance
+from jointwave.continuum.stepping.newton import Outcome, newton
 from jointwave.continuum.stepping.problem import Problem
+from jointwave.joints.law import IN_MOTION, Law
 
 TOLERANCE = 1e-10  # of the residual, over the largest summed force
 LEAST_PART = 2.0**-4  # of the steady forces
@@ -60,8 +62,7 @@ def elastic_rest(problem: Problem, weight: np.ndarray, hold: csr_matrix | None) 
     slips."""
     own, u = _Static(problem, hold), np.zeros_like(weight)
     free = own.balance.free
-    factors = own.balance.with_joints(own.matrix, own.balance.sticking())
-    u[free] = factors.solve(weight[free])
+    u[free] = own.balance.factors(own.matrix + own.sticking).solve(weight[free])
     return u
 
 
@@ -123,6 +124,18 @@ def _refusal(scene: AnyScene, what: str, why: str) -> SceneError:
     return SceneError(scene.where, key, None, f"{what} {of}: {why}: {remedy}")
 
 
+def _at_rest(problem: Problem) -> Problem:
+    """Return a problem without what resists motion: with relaxed rock, and no dashpots."""
+    body, law, relaxes = problem.body._replace(damping=None), problem.law, problem.mechanisms
+    if relaxes is not None:
+        body = body._replace(stiffness=csr_matrix(relaxes.relaxed * body.stiffness))
+    if law is not None:
+        names = (Law._fields[row] for row in IN_MOTION)
+        still = {name: 0.0 * value for name in names if (value := getattr(law, name)) is not None}
+        law = law._replace(**still)
+    return problem._replace(body=body, law=law, mechanisms=None, alpha=0.0, quiet=None)
+
+
 class _Static:
     """The forces of a problem at rest, without what absorbs and without loads.
 
@@ -132,16 +145,19 @@ class _Static:
     """
 
     def __init__(self, problem: Problem, hold: csr_matrix | None) -> None:
-        self.problem, self.balance, self.hold = problem, Balance(problem, at_rest=True), hold
-        own, dim = self.balance, problem.body.components
-        k, m = own.stiffness.diagonal(), own.mass.diagonal()
-        self.stiffest, self.size, self.allowed = float((k[m > 0] / m[m > 0]).max()), 0.0, 0.0
+        problem = _at_rest(problem)
+        self.problem, self.balance, self.hold = problem, Balance(problem), hold
+        own, dim, law = self.balance, problem.body.components, problem.law
+        k, self.sticking = own.stiffness.diagonal(), csr_matrix(own.stiffness.shape)
+        if law is not None:
+            self.sticking = problem.of_joints(law.normal_stiffness, law.shear_stiffness)
+        self.stiffest, self.size, self.allowed = float((k / own.mass).max()), 0.0, 0.0
         self.u, self.past = np.zeros_like(k), own.past
         self.matrix, self.carries = own.stiffness, k
         if hold is not None:
             self.matrix, self.carries = csr_matrix(self.matrix + hold), k + hold.diagonal()
         elif np.unique(problem.fixed % dim).size < dim:
-            self.matrix = csr_matrix(self.matrix + LOOSE * self.stiffest * own.mass)
+            self.matrix = csr_matrix(self.matrix + LOOSE * self.stiffest * diags(own.mass))
         self.moved = np.zeros_like(k)
 
     def settle(self, share: float, drag: float = 0.0) -> Outcome:
@@ -157,17 +173,18 @@ class _Static:
             self.size, after, force = float(found.size[0]), found.past, found.whole
             if self.hold is not None:
                 force = force - self.hold @ trial
-            borne = drag * (own.mass @ (trial - self.u))
+            borne = drag * own.mass * (trial - self.u)
             digits = LAST_DIGITS * float((self.carries * np.abs(trial)).max(initial=0.0))
             self.allowed = TOLERANCE * self.size + min(digits, MOST_LEFT * self.size)
             left = max(self.allowed, ROUGH * float(np.abs(borne).max(initial=0.0)))
             return (force - borne)[free], left
 
         def correction(rest: np.ndarray) -> np.ndarray:
-            tangents = own.sticking()  # rock at rest on joints without friction could be anywhere
-            if trial.any():
-                tangents = own.of_joints(trial, still, 1.0, 0.0, self.past.history)
-            return own.with_joints(self.matrix + drag * own.mass, tangents).solve(rest)
+            matrix = self.matrix + drag * diags(own.mass)
+            if not trial.any():  # rock at rest on joints without friction could be anywhere
+                return own.factors(matrix + self.sticking).solve(rest)
+            tangents = own.of_joints(trial, still, 1.0, 0.0, self.past.history)
+            return own.factors(matrix, tangents).solve(rest)
 
         outcome = newton(residual, correction, self.u[free])
         if outcome.converged:
