@@ -274,13 +274,10 @@ def keeper_at():
 def jointwave(monkeypatch, capsys, tmp_path_factory):
     """Return a function that runs the command in this process, checks its exit status, and returns
     what it has printed: `out` and `err`. Results are stored in a folder of this test."""
-    from jointwave.compare.cli import options
-    from jointwave.compare.cli.commands import experiments
+    from jointwave.compare.cli import inputs
     from jointwave.compare.cli.program import main
 
-    stored = tmp_path_factory.mktemp("out")
-    for module in (options, experiments):
-        monkeypatch.setattr(module, "RESULTS", stored)
+    monkeypatch.setattr(inputs, "RESULTS", tmp_path_factory.mktemp("out"))
 
     def run(*arguments, code=0):
         monkeypatch.setattr(sys, "argv", ["jointwave", *map(str, arguments)])

@@ -67,7 +67,7 @@ DOORS = {
     *(
         "numerics/cache.py",
         "compare/runs/checkpoint/signature.py",
-        "compare/cli/new.py",
+        "compare/cli/scene_files.py",
     ),  # of the program
     *(
         "compare/report/page.py",

@@ -13,7 +13,11 @@ from importlib.metadata import version
 from math import nan
 from typing import Any
 
+import typer
+
 from jointwave.cases.gmsh_file import INSTALL as GMSH
+from jointwave.compare.cli import terminal
+from jointwave.compare.cli.commands import Doctor
 from jointwave.compare.engines import solve
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.scenes import load
@@ -58,6 +62,14 @@ print(subprocess.check_output([command, "--version"], text=True).splitlines()[0]
 SEEN = "from mpi4py.MPI import COMM_WORLD as c; c.rank or print(c.size, 'processes in one job')"
 
 Facts = dict[str, Any]
+
+
+def doctor(asked: Doctor) -> None:
+    """Print what is installed, and end the program with 0 if both engines are right, else 1."""
+    with terminal.progress("looking"):
+        found = examine()
+    (terminal.print_json if asked.as_json else terminal.show_facts)(found)
+    raise typer.Exit(0 if found["well"] else 1)
 
 
 def examine() -> Facts:

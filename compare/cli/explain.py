@@ -1,4 +1,4 @@
-"""The facts of `jointwave explain`: a scene before any run."""
+"""`jointwave explain`: what a scene has, before any run; what it has not, and why, on request."""
 
 from itertools import pairwise
 from math import isfinite, sqrt
@@ -12,16 +12,54 @@ from jointwave.cases.material.block_summary import block_summary
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.engines import ENGINES, solver
+from jointwave.cases.size import spoken
+from jointwave.compare.cli.commands import Explain
+from jointwave.compare.cli.inputs import load
+from jointwave.compare.cli.terminal import print_json, say, show_facts
+from jointwave.compare.engines import ENGINES, in_words, label_of, solver
 from jointwave.compare.misfit.ranking import NOT_CHECKED, Reference, applicable, reference_of
 from jointwave.compare.readings.entering_wave import entering_waves
+from jointwave.compare.runs.jobs import options_of
 from jointwave.compare.solvers.limiting import limiting
-from jointwave.compare.solvers.record import Prepared
 from jointwave.compare.solvers.wave_speeds import speeds
+from jointwave.compare.text import in_seconds, percent
 
 UNCHECKED = Reference("", f"{NOT_CHECKED}: no other solution resolves more")
+#: The units of facts, and what facts are called whose names do not say it.
+UNITS = {
+    "m": "from to block length centroid width",
+    "m²": "area",
+    "m³": "volume",
+    "m/s": "bar_speed shear_speed intact_bar_speed velocity p_speed s_speed",
+    "Pa": "equivalent_modulus stress",
+    "Pa/m": "joint_stiffness",
+    "Pa s/m": "impedance",
+    "J/m²": "energy",
+    "bytes": "bytes",
+}
+LABELS = {key: f"{key} ({unit})" for unit, keys in UNITS.items() for key in keys.split()} | {
+    "bytes": "memory of the blocks (bytes)",
+    "bytes_at_most": "memory while they are cut, at most (bytes)",
+    "boundary": "contacts with the boundary",
+    "largest": "largest block",
+    "poisson": "Poisson's ratio",
+    "rigid_blocks_lack": "part of the intact rock's stiffness that rigid blocks cannot represent",
+    "smallest": "smallest block",
+    "source": "what enters",
+    "speeds": "speeds of P and S waves (m/s)",
+    "transmission": "transmission from the segment before",
+}
+APART = ["title", "variant", "effects", "steps", "limits_the_step", "cannot_run"]
+APART += ["solutions", "references"]
 
 Facts = dict[str, Any]
+
+
+def explain(asked: Explain) -> None:
+    """Print the facts of a scene."""
+    for scene in load(asked, every=False):
+        found = explanation(scene)
+        print_json(found) if asked.as_json else show_explanation(found, asked.every)
 
 
 def explanation(scene: AnyScene) -> Facts:
@@ -29,42 +67,10 @@ def explanation(scene: AnyScene) -> Facts:
 
     Raises SceneError where no engine that applies can run.
     """
-    about: Facts = {"title": scene.title, "variant": scene.name}
-    active = {e.name: {"active": e.active, "why": e.reason} for e in effects(scene)}
     answers = applicable(scene)
     able = [name for name, answer in answers.items() if answer]
     engines = [name for name in ENGINES if name in able]
-    runs, failures = _prepared(scene, engines)
-    references = {name: reference_of(name, able, scene) or UNCHECKED for name in engines}
-    if scene.is_column:
-        about |= _pillar(scene)
-    else:
-        found = {name: speeds(scene, ENGINES[name].rock) for name in runs}
-        about |= block_summary(scene) | {"speeds": found}
-    limits = {
-        name: limiting(name, ENGINES[name].model, scene)
-        for name, run in runs.items()
-        if run.scheme != "implicit"
-    }
-    return about | {
-        "enters": [wave._asdict() for wave in entering_waves(scene)],
-        "effects": active,
-        "steps": [
-            {"engine": name, "critical": r.critical, "dt": r.dt, "steps": r.steps, "bytes": r.bytes}
-            for name, r in runs.items()
-        ],
-        "limits_the_step": [{"engine": name, **facts} for name, facts in limits.items() if facts],
-        "cannot_run": failures,
-        "solutions": {k: {"applies": bool(a), "why_not": a.reason} for k, a in answers.items()},
-        "references": {name: r._asdict() for name, r in references.items()},
-    }
-
-
-def _prepared(scene: AnyScene, engines: list[str]) -> tuple[dict[str, Prepared], dict[str, str]]:
-    """Return the runs of engines before their first step, and why others cannot run; raises
-    SceneError of the first where none can."""
-    runs: dict[str, Prepared] = {}
-    errors: dict[str, SceneError] = {}
+    runs, errors = {}, {}
     for name in engines:
         try:
             runs[name] = solver(name).prepare(scene)
@@ -72,7 +78,32 @@ def _prepared(scene: AnyScene, engines: list[str]) -> tuple[dict[str, Prepared],
             errors[name] = error
     if errors and not runs:
         raise next(iter(errors.values()))
-    return runs, {name: str(error) for name, error in errors.items()}
+    if scene.is_column:
+        about = _pillar(scene)
+    else:
+        found = {name: speeds(scene, ENGINES[name].rock) for name in runs}
+        about = block_summary(scene) | {"speeds": found}
+    limits = {
+        name: limiting(name, ENGINES[name].model, scene)
+        for name, run in runs.items()
+        if run.scheme != "implicit"
+    }
+    references = {name: reference_of(name, able, scene) or UNCHECKED for name in engines}
+    return {
+        "title": scene.title,
+        "variant": scene.name,
+        **about,
+        "enters": [wave._asdict() for wave in entering_waves(scene)],
+        "effects": {e.name: {"active": e.active, "why": e.reason} for e in effects(scene)},
+        "steps": [
+            {"engine": name, "critical": r.critical, "dt": r.dt, "steps": r.steps, "bytes": r.bytes}
+            for name, r in runs.items()
+        ],
+        "limits_the_step": [{"engine": name, **facts} for name, facts in limits.items() if facts],
+        "cannot_run": {name: str(error) for name, error in errors.items()},
+        "solutions": {k: {"applies": bool(a), "why_not": a.reason} for k, a in answers.items()},
+        "references": {name: r._asdict() for name, r in references.items()},
+    }
 
 
 def _pillar(scene: Scene) -> Facts:
@@ -100,3 +131,67 @@ def _pillar(scene: Scene) -> Facts:
         for (start, stop), one, other in zip(pairwise(ends), p.each, before, strict=False)
     ]
     return {"segments": segments}
+
+
+def show_explanation(found: Facts, every: bool) -> None:
+    """Print the facts of a scene; every : also effects and solutions that it has not, and why."""
+    say(f"{found['title']} {found['variant']}".rstrip(), "bold")
+    facts = {key: value for key, value in found.items() if key not in APART}
+    if speeds := {label_of(name): one for name, one in found.get("speeds", {}).items()}:
+        facts["speeds"] = speeds
+    show_facts(facts, LABELS)
+    effects = [{"effect": name, **one} for name, one in found["effects"].items()]
+    _show("effects are not active", effects, "active", every)
+    steps = [
+        {
+            "engine": label_of(run["engine"]),
+            "step": in_seconds(run["dt"]),
+            "critical_step": in_seconds(run["critical"]) if run["critical"] else None,
+            "steps": run["steps"],
+            "memory": spoken(run["bytes"]),
+        }
+        for run in found["steps"]
+    ]
+    say("")
+    show_facts({"steps": steps})
+    for limit in found["limits_the_step"]:
+        say(_limit(**limit))
+    for name, why in found["cannot_run"].items():
+        say(f"{label_of(name)} cannot run: {why}", "red")
+    solutions = {
+        name: {
+            "solution": label_of(name),
+            "applies": one["applies"],
+            "options": " ".join(options_of(name)),
+            "why_not": in_words(one["why_not"]),
+        }
+        for name, one in found["solutions"].items()
+    }
+    _show("solutions do not apply", [*solutions.values()], "applies", every)
+    for name, one in solutions.items():
+        if name in ENGINES and not (every or one["applies"]):
+            say(f"not by {one['solution']}: {one['why_not']}", "dim")
+    for name, reference in found["references"].items():
+        by, why = label_of(reference["name"]), reference["reason"]
+        say(f"reference of {label_of(name)}: {f'{by} ({why})' if by else why}")
+
+
+def _show(rest: str, rows: list[dict[str, Any]], key: str, every: bool) -> None:
+    """Print the rows that hold by a key, and how many do not, in words; every : all of them."""
+    say("")
+    empty = {name for name in rows[0] if all(not row[name] for row in rows if row[key])}
+    few = [{k: v for k, v in row.items() if k not in {key, *empty}} for row in rows if row[key]]
+    show_facts({rest: rows if every else few})
+    if (left := len(rows) - len(few)) and not every:
+        say(f"{left} other {rest}; which, and why: --all", "dim")
+
+
+def _limit(engine: str, at: list[float], size: float, longer_step: float, mass_added: float) -> str:
+    """Return what limits a step, and what lifting it costs, as a sentence."""
+    part = "block" if solver(engine).has_rigid_blocks else "element"
+    place = ", ".join(f"{round(x, 9) + 0.0:.4g}" for x in at)
+    return (
+        f"the step of {label_of(engine)} is limited by the {part} at {place} m, {size:.3g} m in "
+        f"size: {percent(mass_added)} % more mass, on at most 5 % of the {part}s, would make it "
+        f"{longer_step:.3g} times as long"
+    )

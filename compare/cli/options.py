@@ -1,47 +1,30 @@
-"""The program `jointwave`, what its commands take, and how they read scenes."""
+"""The program `jointwave`, and the options that several commands share.
 
-import inspect
+A command is a class: its fields are the options, its docstring the help, and what carries it out is
+imported when it is called. Help and completion thus import nothing that reads, computes or draws.
+"""
+
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable
 from enum import StrEnum
 from importlib.metadata import version
+from inspect import Parameter, Signature
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from pkgutil import resolve_name
+from types import SimpleNamespace
+from typing import Annotated, Any, TypeVar, get_type_hints
 
 import typer
 
-from jointwave.cases.errors import SceneError, all_of
-from jointwave.cases.scene_type import AnyScene
-from jointwave.compare import scenes
-from jointwave.compare.cli.terminal import say_warnings
+from jointwave.cases.errors import SceneError
 from jointwave.compare.engines import selection
 from jointwave.compare.runs.processes import started
 from jointwave.compare.scenes import shipped
 
-#: The commands in the order in which a new user meets them.
-ORDER = (
-    *("new", "list", "explain", "picture", "run", "compare", "view", "animate", "figure"),
-    *("report", "plan", "effects", "study", "fit", "doctor"),
-)
+C = TypeVar("C", bound=type)
 
+app = typer.Typer(pretty_exceptions_enable=False, rich_markup_mode=None)
 
-class Commands(typer.core.TyperGroup):
-    """The commands, in their order."""
-
-    def list_commands(self, ctx: Any) -> list[str]:
-        """Return the names of all commands."""
-        return sorted(super().list_commands(ctx), key=ORDER.index)
-
-
-app = typer.Typer(cls=Commands, pretty_exceptions_enable=False, rich_markup_mode=None)
-
-SceneArgument = Annotated[
-    str,
-    typer.Argument(
-        help="A scene file, or a shipped scene such as guo-li-2002/fig-03.",
-        autocompletion=shipped,
-    ),
-]
 #: What can simulate or solve a scene, as --engine selects it.
 Engine = StrEnum("Engine", list(selection()))  # type: ignore[misc]
 EngineOption = Annotated[
@@ -51,14 +34,6 @@ EngineOption = Annotated[
 ModelOption = Annotated[
     list[str] | None,
     typer.Option(help="Continuum model (jointed, equivalent) or name of an exact solution."),
-]
-SetOption = Annotated[
-    list[str],
-    typer.Option("--set", metavar="KEY=VALUE", help="Change a key in every variant; repeatable."),
-]
-VariantOption = Annotated[
-    str | None,
-    typer.Option(help="Only this variant ('': the base scene)."),
 ]
 WithOption = Annotated[
     list[str],
@@ -80,34 +55,32 @@ FreshOption = Annotated[
     bool, typer.Option("--fresh", help="Compute again what could be read from a folder.")
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print machine-readable JSON.")]
-
 CORES = os.cpu_count() or 1
-RESULTS = Path("out")  # default folder of the results of all scenes, each in a folder of its name
 
 
-class SceneOptions(NamedTuple):
+class SceneOptions(SimpleNamespace):
     """A scene, its variant and its changed keys."""
 
-    scene: SceneArgument
-    changes: SetOption = []
-    variant: VariantOption = None
+    scene: Annotated[
+        str,
+        typer.Argument(
+            help="A scene file, or a shipped scene such as guo-li-2002/fig-03.",
+            autocompletion=shipped,
+        ),
+    ]
+    changes: Annotated[
+        list[str],
+        typer.Option(
+            "--set", metavar="KEY=VALUE", help="Change a key in every variant; repeatable."
+        ),
+    ] = []
+    variant: Annotated[str | None, typer.Option(help="Only this variant ('': the base scene).")] = (
+        None
+    )
     strict: StrictOption = False
 
-    def load(self, every: bool = True) -> list[AnyScene]:
-        """Return the variant that is named, with `--set` applied, warned of; without one all or, if
-        not `every`, the base scene."""
-        from jointwave.cases.read import parse_override
 
-        overrides = dict(parse_override(text) for text in self.changes)
-        if self.variant is None and every:
-            found = scenes.load_variants(self.scene, overrides)
-        else:
-            found = [scenes.load(self.scene, self.variant or "", overrides)]
-        warn(found, self.strict)
-        return found
-
-
-class SweepOptions(NamedTuple):
+class SweepOptions(SceneOptions):
     """Points of a sweep, members of an ensemble, and the processes that share them."""
 
     swept: Annotated[
@@ -134,7 +107,7 @@ class SweepOptions(NamedTuple):
     workers: WorkersOption = CORES
 
 
-class StoredOptions(NamedTuple):
+class StoredOptions(SceneOptions):
     """The folder that results are read from, and whether they are."""
 
     results: Annotated[
@@ -146,39 +119,40 @@ class StoredOptions(NamedTuple):
     ] = None
     fresh: FreshOption = False
 
-    def folder(self, scene: str, out: Path | None = None) -> Any:
-        """Return the `ResultFolder` of a scene; out : where it is, if not said otherwise."""
-        from jointwave.compare.runs.reuse import ResultFolder
 
-        return ResultFolder(results_of(scene, self.results or out), self.fresh)
-
-
-class PrintOptions(NamedTuple):
+class PrintOptions(SimpleNamespace):
     """What is printed: estimates in place of results, or JSON."""
 
     dry: DryOption = False
     as_json: JsonOption = False
 
 
-def command(work: Callable[..., None]) -> Callable[..., None]:
-    """Return a command of the program, in which each group of options above is its options."""
-    groups, flat = {}, list[inspect.Parameter]()
-    for own in inspect.signature(work).parameters.values():
-        if hasattr(own.annotation, "_fields"):
-            groups[own.name] = own.annotation
-            flat += inspect.signature(own.annotation).parameters.values()
-        else:
-            flat.append(own)
+def command(work: str) -> Callable[[C], C]:
+    """Return a decorator that adds a class of options as the command of its name.
 
-    def run(**given: Any) -> None:
-        made = {name: of(*map(given.pop, of._fields)) for name, of in groups.items()}
-        work(**made, **given)
+    work : the function that is given them, "module:name" in this package. The options of base
+    classes come first, those of the last one before all others.
+    """
 
-    run.__name__, run.__doc__ = work.__name__, work.__doc__
-    by_name = [one.replace(kind=inspect.Parameter.KEYWORD_ONLY) for one in flat]
-    run.__signature__ = inspect.Signature(by_name)  # type: ignore[attr-defined]
-    run.__annotations__ = {one.name: one.annotation for one in flat}
-    return app.command()(run)
+    def add(of: C) -> C:
+        def run(**given: Any) -> None:
+            resolve_name(f"{__package__}.{work}")(of(**given))
+
+        run.__doc__, run.__annotations__ = of.__doc__, get_type_hints(of, include_extras=True)
+        fields = [
+            Parameter(
+                name,
+                Parameter.KEYWORD_ONLY,
+                default=getattr(of, name, Parameter.empty),
+                annotation=hint,
+            )
+            for name, hint in run.__annotations__.items()
+        ]
+        run.__signature__ = Signature(fields)  # type: ignore[attr-defined]
+        app.command(of.__name__.lower())(run)
+        return of
+
+    return add
 
 
 def _print_version(wanted: bool) -> None:
@@ -209,29 +183,3 @@ def root(
     if command not in ("run", "study") and started().comm is not None:
         allowed = f"jointwave {command} runs in one process; only run and study support mpiexec"
         raise SceneError("mpiexec", "", None, allowed)
-
-
-def results_of(scene: str, given: Path | None = None) -> Path:
-    """Return the folder of a scene's results: as given, else the default one."""
-    return given or RESULTS / Path(scene).stem
-
-
-def warn(
-    scenes: Sequence[AnyScene],
-    strict: bool = False,
-    of: Callable[[AnyScene], Iterable[str]] | None = None,
-) -> None:
-    """Print what scenes say but hardly mean, each line once; strict : it is an error.
-
-    of : returns the lines of a scene; None: what the scene itself says. Raises SceneError of all
-    lines.
-    """
-    from jointwave.cases.warnings import warnings
-    from jointwave.compare.solvers.incident import side_warnings
-
-    of = of or (lambda scene: [*warnings(scene), *side_warnings(scene)])
-    lines = list(dict.fromkeys(line for scene in scenes for line in of(scene)))
-    if strict and lines:
-        where, why = scenes[0].where, "(an error by --strict)"
-        raise all_of(SceneError(where, "", None, f"{line} {why}") for line in lines)
-    say_warnings(lines)

@@ -1,4 +1,4 @@
-"""The terminal: progress, tables that stay readable, or JSON; rich is imported where it is used.
+"""The terminal: progress, tables that stay readable, or JSON.
 
 Titles and names come from others: no text gets here that is not `printable`.
 """
@@ -14,6 +14,11 @@ from math import inf
 from textwrap import fill
 from time import monotonic
 from typing import TYPE_CHECKING, Any
+
+from rich import progress as rich
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
 
 from jointwave.cases.errors import SceneError, printable
 from jointwave.cases.files import is_number
@@ -58,9 +63,6 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
 
 @contextmanager
 def _bar(label: str) -> Iterator[Callable[[float], None]]:
-    from rich import progress as rich
-    from rich.markup import escape
-
     columns = *rich.Progress.get_default_columns(), rich.TextColumn("left")
     with rich.Progress(*columns, console=_console(stderr=True), transient=True) as bar:
         task = bar.add_task(escape(printable(label)), total=1.0)
@@ -106,8 +108,6 @@ def show_table(columns: list[str], rows: list[list[str]]) -> None:
     Long cells are folded to the terminal's width. Short ones are not: a terminal that is too narrow
     wraps whole lines, which can still be read and copied.
     """
-    from rich.table import Table
-
     widths = (max(map(len, column)) + 2 for column in zip(columns, *rows, strict=True))
     if len(rows) <= TURNED and sum(widths) - 2 > _console().width:
         (first, *columns), *rows = map(list, zip(columns, *rows, strict=True))
@@ -184,9 +184,7 @@ def print_json(value: Any) -> None:
     print(text.replace("\x7f", "\\u007f"))
 
 
-def _console(width: int | None = None, stderr: bool = False) -> Any:
-    from rich.console import Console
-
+def _console(width: int | None = None, stderr: bool = False) -> Console:
     console = Console(markup=False, highlight=False, emoji=False, stderr=stderr)
     if width or not console.is_terminal:
         console.width = width or PIPE

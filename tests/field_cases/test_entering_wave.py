@@ -11,7 +11,7 @@ import pytest
 import jointwave as jw
 from jointwave.cases.errors import SceneError
 from jointwave.cases.warnings import warnings
-from jointwave.compare.cli.new import starter
+from jointwave.compare.cli.scene_files import starter
 from jointwave.compare.readings.entering_wave import entering_waves
 
 DENSITY, MODULUS = 2400.0, 2400.0 * 1350.0**2

@@ -172,11 +172,11 @@ def mesh(data: bytes, folder: Path) -> str:
 SOLVERS = (
     "jointwave.compare.runs.run.execute",
     "jointwave.compare.runs.comparison.compare",
-    "jointwave.compare.cli.study_view.on_pool",
+    "jointwave.compare.cli.studies.on_pool",
     "jointwave.compare.studies.plan.plan",
     "jointwave.compare.report.report.build",
     "jointwave.compare.runs.comparison.solved",
-    "jointwave.compare.figures.animation.snapshots.take",
+    "jointwave.compare.cli.animation.take",
     "jointwave.compare.cli.explain.explanation",
     "jointwave.compare.cli.doctor.examine",
 )

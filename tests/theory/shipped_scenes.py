@@ -8,7 +8,7 @@ import numpy as np
 
 from jointwave import cases
 from jointwave.cases.effects import active_effects
-from jointwave.compare.cli.pytest_plugin import PairItem, SceneFile
+from jointwave.compare.cli.scene_tests import PairItem, SceneFile
 from jointwave.compare.engines import ENGINES, applies
 from jointwave.compare.misfit.metrics import misfit, relative_l2
 from jointwave.compare.scenes import shipped_files

@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from jointwave.compare.cli.explain import explanation
-from jointwave.compare.cli.new import starter
+from jointwave.compare.cli.scene_files import starter
 
 SCENE = "guo-li-2002/fig-03"
 SHORT = ("--set", "time.duration=0.02")

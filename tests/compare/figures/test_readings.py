@@ -7,7 +7,7 @@ import pytest
 
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.read import load_tables
-from jointwave.compare.cli.comparison_view import show_comparisons
+from jointwave.compare.cli.compare import show_comparisons
 from jointwave.compare.engines import solve
 from jointwave.compare.figures.tables import READINGS, reading_frame
 from jointwave.compare.misfit.alignment import align_curve

@@ -11,7 +11,7 @@ from jointwave.cases.schema.keys import keys
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.warnings import warnings
-from jointwave.compare.cli.new import starter, write_new
+from jointwave.compare.cli.scene_files import starter, write_new
 from jointwave.compare.engines import solve
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.scenes import SHIPPED

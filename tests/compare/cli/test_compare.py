@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from jointwave.compare.cli.comparison_view import show_comparisons
+from jointwave.compare.cli.compare import show_comparisons
 from jointwave.compare.engines import label_of
 from jointwave.compare.misfit.alignment import AlignedCurve
 from jointwave.compare.misfit.pairs import Comparison, measure, measure_curves

@@ -10,6 +10,7 @@ from jointwave.cases.size import spoken
 from jointwave.compare.cli.terminal import print_json, progress, say, show_frame
 from jointwave.compare.runs.timings import each
 from jointwave.compare.studies.forecast import Run, forecasts
+from jointwave.compare.studies.forecast import runs_of as runs_of
 from jointwave.compare.text import in_seconds
 
 SPARE = 5.0  # s, in which kinds of runs that were never timed are tried

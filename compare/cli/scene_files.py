@@ -1,16 +1,43 @@
-"""The scene files that `jointwave new` writes: a template, or a copy of a scene."""
+"""Scene files: the shipped ones, and those that `jointwave new` writes, a template or a copy."""
 
 import json
 from pathlib import Path
 from shlex import quote
+from typing import Any
 
 from jointwave import cases
 from jointwave.cases.errors import SceneError
+from jointwave.compare.cli import terminal
+from jointwave.compare.cli.commands import List, New
 from jointwave.compare.runs.output import create
-from jointwave.compare.scenes import find, load_variants
+from jointwave.compare.scenes import find, load_variants, shipped
 
 TEMPLATES = Path(__file__).parent / "templates"
 TITLE = "my-scene"  # of the templates
+
+
+def list_scenes(asked: List) -> None:
+    """Print the shipped scenes and their variants."""
+    facts: list[dict[str, Any]] = [
+        {"scene": name, "title": base.title, "variants": [one.name for one in variants]}
+        for name, (base, *variants) in ((name, cases.load(find(name))) for name in shipped())
+    ]
+    if asked.as_json:
+        terminal.print_json(facts)
+        return
+    for one in facts:
+        terminal.say_wrapped(f"{one['scene']}: {one['title']}", " " * 4)
+        if one["variants"]:
+            terminal.say_wrapped(f"    variants: {'; '.join(one['variants'])}", " " * 6)
+
+
+def new(asked: New) -> None:
+    """Write a scene and say which files these are."""
+    if asked.rock_mass and asked.source is not None:
+        raise SceneError("--rock-mass", "", None, "has no meaning with --from")
+    template = "rock-mass" if asked.rock_mass else "pillar"
+    for path in write_new(asked.name, asked.source, template):
+        terminal.say(f"wrote {path}")
 
 
 def write_new(name: str, source: str | None = None, template: str = "pillar") -> list[Path]:

@@ -1,18 +1,88 @@
-"""Output of `jointwave compare`: the verdict on each engine, every distance on request, or JSON."""
+"""`jointwave compare`: the verdict on each engine, every distance on request, or JSON."""
 
 import json
+from functools import partial
 from typing import Any
 
-from jointwave.compare.cli.terminal import print_json, say, say_warnings, show_facts, show_frame
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.cli.commands import Compare
+from jointwave.compare.cli.forecast import runs_of, show_forecasts
+from jointwave.compare.cli.inputs import load, stored_in, warn
+from jointwave.compare.cli.sweeps import sweep
+from jointwave.compare.cli.terminal import (
+    print_json,
+    progress,
+    say,
+    say_warnings,
+    show_facts,
+    show_frame,
+)
 from jointwave.compare.engines import ENGINES, in_words, label_of
-from jointwave.compare.figures.tables import alignment_frame, reading_frame
+from jointwave.compare.figures.tables import alignment_frame, reading_frame, write_comparisons
+from jointwave.compare.misfit.alignment import common_times
+from jointwave.compare.misfit.external import Curves, doubts, read_curves
 from jointwave.compare.misfit.pairs import GIVEN, Comparison
+from jointwave.compare.misfit.ranking import applicable, deciding
 from jointwave.compare.report.tables import distance_table, reason_table, run_table, verdict_table
 from jointwave.compare.report.verdict import EngineScore, engine_scores, score
+from jointwave.compare.runs import comparison
+from jointwave.compare.studies.sweep import Work, compare_scene
 from jointwave.results.dataset import energy_residual, open_ledger
 
 WORST = "worst misfit (%)"
 HINT = "all misfits, and solutions that do not apply: --all; as JSON: --json"
+
+
+def compare(asked: Compare) -> None:
+    """Compare the solutions of a scene or of every case of a sweep, or print what it would cost."""
+    if asked.swept or asked.members:
+
+        def work_of(scenes: list[AnyScene]) -> Work:
+            curves = curves_of(asked.given, scenes, asked.strict, asked.align)
+            return partial(compare_scene, spectral=asked.spectral, curves=curves, align=asked.align)
+
+        writes = ("distances", "tables")[: 1 if asked.out is None else 2]
+        sweep(asked, asked.out, work_of, applicable, writes)
+        return
+    scenes = load(asked)
+    curves = curves_of(asked.given, scenes, asked.strict, asked.align)
+    folder = stored_in(asked, asked.out)
+    shows_all = asked.every or asked.as_json or asked.out is not None or bool(curves)
+    if asked.dry:
+        wanted = applicable if shows_all else deciding
+        runs = [run for one in scenes for run in runs_of(wanted(one), one, folder)]
+        parts = {"distances": len(scenes) * shows_all, "tables": len(scenes) * bool(asked.out)}
+        show_forecasts(runs, asked.as_json, parts)
+        return
+    found = []
+    for one in scenes:
+        with progress(one.name or one.title) as tell:
+            if shows_all:
+                options = tell, asked.align, asked.spectral, folder
+                found.append(comparison.compare(one, curves, *options))
+            else:
+                found.append(comparison.solved(one, deciding(one), tell, folder))
+    if asked.out is not None:
+        write_comparisons(found, asked.out)
+    show_comparisons(found, asked.every, asked.as_json, asked.reads)
+
+
+def curves_of(
+    given: list[str], scenes: list[AnyScene], strict: bool, align: bool = False
+) -> list[Curves]:
+    """Read what `--with` names; what is wrong with it is said before anything is solved."""
+    if not given:
+        if align:
+            raise SceneError("--align", "", None, "needs --with: there is no curve to align")
+        return []
+    curves = read_curves(given, scenes)
+    if not align:
+        for scene in scenes:
+            for one in curves:
+                common_times(one, scene)
+    warn(scenes, strict, lambda scene: doubts(curves, scene))
+    return curves
 
 
 def show_comparisons(

@@ -1,0 +1,399 @@
+"""The commands, in the order in which a new user meets them."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Annotated
+
+import typer
+
+from jointwave.compare.cli.options import (
+    CORES,
+    DryOption,
+    Engine,
+    EngineOption,
+    FreshOption,
+    JsonOption,
+    ModelOption,
+    PrintOptions,
+    SceneOptions,
+    StoredOptions,
+    StrictOption,
+    SweepOptions,
+    WithOption,
+    WorkersOption,
+    command,
+)
+from jointwave.compare.cli.options import app as app
+from jointwave.compare.scenes import shipped
+from jointwave.compare.solvers.dem import DEM
+
+FRAMES = 201  # of an animation, where the scene records no snapshots
+
+ScaleOption = Annotated[
+    float | None,
+    typer.Option(metavar="X", help="Exaggeration of displacements (default: visible)."),
+]
+MapOption = Annotated[
+    str | None,
+    typer.Option(
+        "--map",
+        metavar="QUANTITY",
+        help="Colours: stress (default for a pillar), speed (default for a rock mass) or, for a "
+        "pillar, across: the velocity across its axis.",
+    ),
+]
+
+
+@command("scene_files:new")
+class New(SimpleNamespace):
+    """Write a scene to start from, NAME.toml, with every key explained.
+
+    It runs as it is. Existing files are not overwritten.
+    """
+
+    name: Annotated[str, typer.Argument(help="File name, with or without .toml.")]
+    source: Annotated[
+        str | None,
+        typer.Option(
+            "--from",
+            metavar="SCENE",
+            help="Copy this scene with its comments and files.",
+            autocompletion=shipped,
+        ),
+    ] = None
+    rock_mass: Annotated[
+        bool, typer.Option("--rock-mass", help="Write a rock mass with one joint, not a pillar.")
+    ] = False
+
+
+@command("scene_files:list_scenes")
+class List(SimpleNamespace):
+    """List the shipped scenes and their variants."""
+
+    as_json: JsonOption = False
+
+
+@command("explain:explain")
+class Explain(SceneOptions):
+    """Print what a scene has, its time steps, and what can solve it.
+
+    These are its rock and its blocks, the waves that enter, the active effects, the step of each
+    engine and what limits it, the solutions that apply with the options that select them, and the
+    reference of each engine. Nothing is run.
+    """
+
+    every: Annotated[
+        bool,
+        typer.Option("--all", help="Also absent effects and solutions that do not apply, and why."),
+    ] = False
+    as_json: JsonOption = False
+
+
+@command("picture:picture")
+class Picture(SceneOptions):
+    """Draw a scene, or a map of its results.
+
+    A scene is drawn with its joints, boundaries, receivers, loads and waves. Variants that look
+    different have a drawing each. Results with snapshots (`run --set record.fields=1e-3`) are drawn
+    as a map of the whole body: peak particle velocity, or speed, stress or slip at one instant. The
+    results of two engines are drawn side by side, with their difference.
+    """
+
+    scene: Annotated[
+        str,
+        typer.Argument(
+            metavar="SCENE|FOLDER",
+            help="A scene; or results of `run` with snapshots, as a folder or a file.",
+            autocompletion=shipped,
+        ),
+    ]
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help=".png, .svg or .pdf (default: NAME.png, of results NAME-MAP.png).",
+        ),
+    ] = None
+    quantity: Annotated[
+        str | None,
+        typer.Option("--map", help="Map of results: ppv (the default), speed, stress or slip."),
+    ] = None
+    time: Annotated[
+        float | None,
+        typer.Option(metavar="T", help="Instant of the map, s (default: where it is strongest)."),
+    ] = None
+    explode: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            max=10.0,
+            metavar="X",
+            help="Of a scene in space: move blocks apart, by X times their distance.",
+        ),
+    ] = None
+
+
+@command("run:run")
+class Run(PrintOptions, SweepOptions):
+    """Simulate a scene and write its results as NetCDF files.
+
+    The files are DIR/[variant/]ENGINE[-MODEL].nc. With record.fields, snapshots are written as
+    well, as a .pvd file for ParaView. Under mpiexec the processes share each run of the
+    continuum; the first process does everything else.
+
+    Results that are stored already are read; --fresh computes them again. With --resume a killed
+    run continues from its last checkpoint, with a bit-identical result. Ctrl-C saves the partial
+    result.
+
+    --sweep runs the scene for every value of a key, each in DIR/KEY=VALUE/, in several
+    processes. Finished points are not run again; failed ones are listed. --ensemble runs a
+    scene with random joints for several seeds.
+    """
+
+    engine: EngineOption = [Engine(DEM.engine)]
+    model: ModelOption = None
+    out: Annotated[Path | None, typer.Option(help="Folder for results (default: out/SCENE).")] = (
+        None
+    )
+    every: Annotated[
+        float,
+        typer.Option(
+            "--checkpoint-every",
+            metavar="SECONDS",
+            min=0.0,
+            help="Time between two checkpoints; 0: none.",
+        ),
+    ] = 60.0
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Continue an interrupted run from its checkpoint.")
+    ] = False
+    fresh: FreshOption = False
+
+
+@command("compare:compare")
+class Compare(PrintOptions, StoredOptions, SweepOptions):
+    """Solve a scene by all that applies; say how far apart, and why.
+
+    Prints a line per engine: its worst misfit from the finest physics, with variant and receiver,
+    its reference, its own numerical error, the stepping time, and the verdict. --all, --json, --out
+    and --with also run all other solvers. --all prints the misfit of every pair, and the peak ratio
+    of data and model for external curves.
+
+    --with adds a waveform of another code, figure or experiment: a table with a header such as
+    "time [ms], stress@20 [MPa]", a seismogram, or a NetCDF file. A label names the curve of a file
+    without names, or selects one of several: curve.csv:stress@20, "run.nc:-velocity@20.25 [mm/s]".
+    With the header of a column in front it selects that column: "gauge.csv:CH 3=stress@20 [MPa]".
+    Receivers of a rock mass have two coordinates: "velocity_x@[20,30]", "stress_xx@[20,30] [MPa]",
+    "gap@[20,20]". The default unit is SI. Stress is positive in compression; a minus sign inverts
+    a curve. Only the overlap in time is compared. Amplitudes are never scaled; times are shifted
+    only by --align.
+
+    --sweep compares the scene for every value of a key, in several processes, and writes one
+    table. --ensemble compares a scene with random joints for several seeds, with statistics.
+    """
+
+    every: Annotated[
+        bool, typer.Option("--all", help="Also every misfit, and why other solutions do not apply.")
+    ] = False
+    reads: Annotated[
+        bool, typer.Option("--read", help="Also peak velocity, Arias intensity, spectra, speeds.")
+    ] = False
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for tables, curves, figure and, without --results, results."),
+    ] = None
+    spectral: Annotated[
+        bool, typer.Option(help="Add envelope and phase misfit (Kristekova et al. 2006).")
+    ] = True
+    given: WithOption = []
+    align: Annotated[
+        bool, typer.Option("--align", help="Align each --with curve by cross-correlation.")
+    ] = False
+
+
+@command("animation:view")
+class View(StoredOptions):
+    """Show a scene by both engines, displaced and coloured by the wave.
+
+    Pillars and scenes in space are shown in three dimensions, other rock masses in their plane, on
+    one colour scale.
+    Opens a window of PyVista with a slider over time. With --out, or without a display or PyVista,
+    writes an image of the snapshot nearest to T: one of record.fields, else one of 201.
+    """
+
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write this .png, open no window."),
+    ] = None
+    time: Annotated[
+        float | None,
+        typer.Option(metavar="T", help="Instant, s (default: the middle of the scene)."),
+    ] = None
+    quantity: MapOption = None
+    scale: ScaleOption = None
+    dry: DryOption = False
+
+
+@command("animation:animate")
+class Animate(StoredOptions):
+    """Animate the blocks and the wave of both engines as MP4 or GIF.
+
+    Both engines share one colour scale. Each frame gives the exaggeration of displacements and the
+    part that exceeds the scale. The continuum is the jointed rock if it applies, else the
+    homogenised rock. If neither applies, the frames give the reason.
+    """
+
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help=".mp4 or .gif (default: SCENE.mp4).")
+    ] = None
+    quantity: MapOption = None
+    scale: ScaleOption = None
+    frames: Annotated[
+        int | None,
+        typer.Option(min=2, max=5000, help=f"Frames (default: of record.fields, else {FRAMES})."),
+    ] = None
+    seconds: Annotated[float, typer.Option(help="Duration of the film.")] = 10.0
+    dry: DryOption = False
+
+
+@command("figure:figure")
+class Figure(StoredOptions):
+    """Draw the waveforms of a scene as a figure for a paper.
+
+    A panel for each variant and receiver, two side by side from a width of 170 mm. Files need no
+    installed fonts. Without --engine, all solvers that apply are drawn.
+    """
+
+    out: Annotated[Path, typer.Option(help="Output file: .pdf, .svg or .png.")]
+    engine: EngineOption = []
+    model: ModelOption = None
+    given: WithOption = []
+    width: Annotated[float, typer.Option(min=60, max=1000, help="Width, mm.")] = 90.0
+    font_size: Annotated[float, typer.Option(min=4, max=40, help="Size of letters, pt.")] = 8.0
+    dry: DryOption = False
+
+
+@command("report:report")
+class Report(PrintOptions):
+    """Write scenes, their figures, misfits and costs as one HTML page.
+
+    The page needs no other file. Without a scene: the figures of Guo & Li (2002), the paper's
+    claims, and all studies. Results are read from and stored in out/SCENE, points of studies in
+    DIR.
+    """
+
+    scenes: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="SCENE",
+            help="Scene files or shipped scenes (default: the figures of Guo & Li (2002)).",
+            autocompletion=shipped,
+        ),
+    ] = None
+    out: Annotated[Path, typer.Option(help="Folder for results.")] = Path("report")
+    fresh: FreshOption = False
+    peers: Annotated[
+        Path | None,
+        typer.Option(help="Table of make bench-peers (default: out/peers/points.csv if present)."),
+    ] = None
+    strict: StrictOption = False
+
+
+@command("studies:plan")
+class Plan(SceneOptions):
+    """Find the cheapest engine, elements and step that meet a misfit.
+
+    Runs from the cheapest one on, until one meets the misfit, and prints the command for that run.
+    """
+
+    misfit: Annotated[
+        float,
+        typer.Option(min=0.0, help="Largest misfit, relative L2: 0.02 is 2 %."),
+    ]
+    seconds: Annotated[
+        float | None,
+        typer.Option(min=0.0, help="Limit of stepping, s: the best run within it."),
+    ] = None
+
+
+@command("studies:effects")
+class Effects(PrintOptions, SceneOptions):
+    """Measure what every effect of a scene costs and changes.
+
+    For each effect this is its part of the time of a step, and the misfit of the result without it.
+    The scene is a pillar, or a rock mass that rigid blocks can represent. Results are saved in DIR
+    and not measured again.
+    """
+
+    out: Annotated[Path, typer.Option(help="Folder for table, diagram and points.")] = Path(
+        "effects"
+    )
+
+
+@command("studies:study")
+class Study(PrintOptions):
+    """Run a study of accuracy against cost; without a name, list them.
+
+    A scene is solved in many ways, each with its error and its cost, in a table and a diagram.
+    Finished points are saved in DIR/NAME/ and not run again. Under mpiexec the processes share
+    the points; those of a timed study are run one at a time. The study `stability` runs both
+    engines on hard cases, each with a criterion from theory. `oblique-joint` compares reflection
+    and transmission of P and SV waves at one joint with theory, `parallel-joints` at several.
+    """
+
+    name: Annotated[
+        str | None,
+        typer.Argument(help="A shipped study or a study's TOML file."),
+    ] = None
+    out: Annotated[Path, typer.Option(help="Folder for tables and points.")] = Path("studies")
+    workers: WorkersOption = CORES
+
+
+@command("fit:fit")
+class Fit(PrintOptions, SceneOptions):
+    """Fit keys of a scene to measured waveforms by least squares.
+
+    Values come with 95 % intervals, for independent residuals. Keys that the waveforms cannot
+    distinguish and keys that stop at a bound are named. A search that does not converge ends with
+    exit code 3.
+
+    --free names keys by their dotted path, such as joints.normal_stiffness or
+    soft_layers.0.spacing_stiffness, in a rock mass joint_sets.0.normal_stiffness or
+    waves.0.amplitude, optionally with start and bounds: KEY=START or KEY=LOW:START:HIGH. The key
+    clock is a shift of the times of the files in s, and starts from cross-correlation. --with is
+    that of compare: quantity, place, sign and unit of every column. Amplitudes are never scaled.
+
+    Without --engine the scene is solved by rigid blocks, in a short chain by their exact solution
+    (lattice).
+
+    --out writes fit.csv: values, intervals and correlations. The last line printed is a command
+    that compares the fitted scene with the same files.
+    """
+
+    given: WithOption
+    free: Annotated[
+        list[str],
+        typer.Option(
+            "--free",
+            metavar="KEY",
+            help="A key of the scene, or clock; repeatable, or separated by commas.",
+        ),
+    ]
+    engine: Annotated[
+        Engine | None,
+        typer.Option(help="dem: rigid blocks (default); continuum: rock; exact: exact solutions."),
+    ] = None
+    model: ModelOption = None
+    out: Annotated[Path | None, typer.Option(help="Folder for the table fit.csv.")] = None
+
+
+@command("doctor:doctor")
+class Doctor(SimpleNamespace):
+    """Print what is installed, and check both engines.
+
+    The engines are checked against exact solutions, and missing or broken parts are listed. The
+    exit code is 0 if both engines pass, else 1. The first run compiles kernels, which takes up to a
+    minute.
+    """
+
+    as_json: JsonOption = False

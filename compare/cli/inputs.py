@@ -1,0 +1,60 @@
+"""What commands read: scenes with changed keys, their warnings, and results that are stored."""
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+from jointwave.cases.errors import SceneError, all_of
+from jointwave.cases.read import parse_override
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.warnings import warnings
+from jointwave.compare import scenes
+from jointwave.compare.cli.options import SceneOptions, StoredOptions
+from jointwave.compare.cli.terminal import say_warnings
+from jointwave.compare.runs.reuse import ResultFolder
+from jointwave.compare.solvers.incident import side_warnings
+
+RESULTS = Path("out")  # default folder of the results of all scenes, each in a folder of its name
+
+
+def load(asked: SceneOptions, every: bool = True) -> list[AnyScene]:
+    """Return the variant that is named, with `--set` applied, warned of; without one all or, if not
+    `every`, the base scene."""
+    changes = dict(map(parse_override, asked.changes))
+    if asked.variant is None and every:
+        found = scenes.load_variants(asked.scene, changes)
+    else:
+        found = [scenes.load(asked.scene, asked.variant or "", changes)]
+    warn(found, asked.strict)
+    return found
+
+
+def stored_in(asked: StoredOptions, out: Path | None = None) -> ResultFolder:
+    """Return the stored results of a scene; out : where they are, if not said otherwise."""
+    return ResultFolder(results_of(asked.scene, asked.results or out), asked.fresh)
+
+
+def results_of(scene: str = "", given: Path | None = None) -> Path:
+    """Return the folder of a scene's results, as given, else the default one; without a scene the
+    folder of all of them."""
+    return given or RESULTS / Path(scene).stem
+
+
+def scene_warnings(scene: AnyScene) -> list[str]:
+    """Return what a scene says but hardly means."""
+    return [*warnings(scene), *side_warnings(scene)]
+
+
+def warn(
+    scenes: Sequence[AnyScene],
+    strict: bool = False,
+    of: Callable[[AnyScene], Iterable[str]] = scene_warnings,
+) -> None:
+    """Print the warnings of scenes, each line once; strict : they are errors.
+
+    of : returns the lines of a scene. Raises SceneError of all lines.
+    """
+    lines = list(dict.fromkeys(line for scene in scenes for line in of(scene)))
+    if strict and lines:
+        where, why = scenes[0].where, "(an error by --strict)"
+        raise all_of(SceneError(where, "", None, f"{line} {why}") for line in lines)
+    say_warnings(lines)

@@ -1,0 +1,114 @@
+"""The tests of a scene file: the distance of each pair of its [expect], beside its bound."""
+
+import shlex
+from collections.abc import Iterator
+from math import isnan
+from pathlib import Path
+from typing import Any
+from warnings import warn
+
+import pytest
+
+from jointwave.cases.errors import SceneError, UnstableError
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.cli.inputs import scene_warnings
+from jointwave.compare.cli.pytest_plugin import SceneWarning
+from jointwave.compare.engines import applies, solve
+from jointwave.compare.misfit.differences import distance_of
+from jointwave.compare.scenes import bound_of, load_variants
+from jointwave.results.dataset import scene_hash
+
+
+class Misfit(Exception):
+    """A pair that is further apart than its scene expects, or that cannot be measured."""
+
+
+class SceneFile(pytest.File):
+    """One scene file; its tests are the keys of [expect] in each variant that they apply to.
+
+    results : by scene hash and name, while the tests of this file run.
+    """
+
+    def setup(self) -> None:
+        """Begin without results."""
+        self.results: dict[tuple[str, str], Any] = {}
+
+    def teardown(self) -> None:
+        """Release the results: those of all scenes together take gigabytes."""
+        self.results.clear()
+
+    def collect(self) -> Iterator["PairItem"]:
+        """Yield the tests; one that fails for a file that is no scene, and for each key that
+        applies to no variant."""
+        try:
+            scenes = load_variants(self.path)
+        except SceneError as error:
+            yield PairItem.from_parent(self, name="scene", reason=str(error))
+            return
+        reasons: dict[str, list[str]] = {}
+        for scene in scenes:
+            for key, most in scene.expect.items():
+                reason = _reason(key, scene)
+                reasons.setdefault(key, []).append(reason)
+                if not reason:
+                    name = f"{scene.name}: {key}" if scene.name else key
+                    yield PairItem.from_parent(self, name=name, scene=scene, key=key, most=most)
+        for key, each in reasons.items():
+            if all(each):
+                reason = f"{key} does not apply to any variant: {each[0]}"
+                yield PairItem.from_parent(self, name=key, reason=reason)
+
+
+class PairItem(pytest.Item):
+    """The distance of one pair in one variant, compared with its bound."""
+
+    def __init__(self, *, scene=None, key="", most=0.0, reason="", **kwargs) -> None:
+        super().__init__(**kwargs)
+        self.scene, self.key, self.most, self.reason = scene, key, most, reason
+
+    def runtest(self) -> None:
+        """Measure the pair; raises Misfit with all that the user needs to know."""
+        if self.reason:
+            raise Misfit(self.reason)
+        for line in scene_warnings(self.scene):
+            warn(SceneWarning(f"{self.scene.where}: {line}"), stacklevel=1)
+        try:
+            bound = bound_of(self.key)
+            one, other = self._solved(bound.one), self._solved(bound.other)
+        except (SceneError, UnstableError) as error:
+            raise Misfit(f"{self.key}: {error}") from None
+        found = distance_of(bound.of, one, other)
+        self.user_properties.append(("misfit", float(found.misfit)))
+        if isnan(found.misfit) and found.place is None:
+            raise Misfit(f"{self.key}: no receiver of the scene records it")
+        if not found.misfit <= self.most:
+            far = f"misfit {found.misfit:.3g} of {found.where} exceeds the bound {self.most:g}"
+            command = ["compare", str(self.path), "--variant", self.scene.name, "--out", "misfit"]
+            raise Misfit(f"{self.key}: {far}\n{shlex.join(['jointwave', *command])}")
+        if not found.judged <= self.most:
+            least = f"the reference's own error is {found.floor:.2g}; it can verify ten times that"
+            raise Misfit(f"{self.key}: {least}; the bound is {self.most:g}")
+
+    def _solved(self, name: str):
+        """Return a result; each engine runs once for the same scene of a file."""
+        assert isinstance(self.parent, SceneFile)
+        results, key = self.parent.results, (scene_hash(self.scene), name)
+        if key not in results:
+            results[key] = solve(name, self.scene)
+        return results[key]
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style=None):
+        """Return the message without a traceback."""
+        if isinstance(excinfo.value, Misfit | SceneWarning):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, None, str]:
+        """Return the location of the test."""
+        return self.path, None, self.name
+
+
+def _reason(key: str, scene: AnyScene) -> str:
+    """Return why a key does not apply to a variant; "" if it does."""
+    answers = {name: applies(name, scene) for name in bound_of(key)[:2]}
+    return "; ".join(f"{name}: {answer.reason}" for name, answer in answers.items() if not answer)

@@ -1,0 +1,120 @@
+"""`jointwave study`, `effects` and `plan`: accuracy against cost over many runs."""
+
+import shlex
+from contextlib import ExitStack
+from pathlib import Path
+
+from jointwave.compare.cli.commands import Effects, Plan, Study
+from jointwave.compare.cli.forecast import show_forecasts
+from jointwave.compare.cli.inputs import load
+from jointwave.compare.cli.options import CORES, PrintOptions
+from jointwave.compare.cli.terminal import (
+    print_json,
+    progress,
+    say,
+    show_facts,
+    show_frame,
+    show_table,
+)
+from jointwave.compare.engines import label_of
+from jointwave.compare.runs.checkpoint.lock import locked
+from jointwave.compare.runs.jobs import options_of
+from jointwave.compare.runs.processes import started
+from jointwave.compare.studies import catalogue
+from jointwave.compare.studies import effects as measuring
+from jointwave.compare.studies import plan as plans
+from jointwave.compare.studies.experiment import Experiment
+from jointwave.compare.studies.reference import Reference
+from jointwave.compare.studies.store import on_pool, plain
+from jointwave.compare.text import percent
+
+
+def study(asked: Study) -> None:
+    """Run a study and show its summary; without a name, list the studies."""
+    if asked.name is None:
+        found = catalogue.listed()
+        print_json(found) if asked.as_json else show_facts({"studies": found})
+        return
+    one = catalogue.experiment(asked.name, asked.out)
+    run_and_show(one, asked.out / Path(asked.name).stem, asked.workers, asked)
+
+
+def effects(asked: Effects) -> None:
+    """Measure the effects of a scene and show their summary."""
+    wanted = [(asked.scene, one) for one in load(asked, every=False)]
+    run_and_show(
+        measuring.experiment(wanted[0][1].title, wanted, asked.out), asked.out, CORES, asked
+    )
+
+
+def run_and_show(one: Experiment, out: Path | None, workers: int, shown: PrintOptions) -> None:
+    """Show the summary of a study, or the estimates of its runs; of several MPI processes only the
+    first does.
+
+    out : a folder, locked meanwhile; None writes nothing.
+    """
+    if shown.dry:
+        others = {"diagrams": 1, "processes": workers * (workers > 1 and one.shares)}
+        show_forecasts(one.planned(), shown.as_json, others)
+        return
+    processes = started()
+    with ExitStack() as held, progress(one.title) as advance:
+        if out is not None:
+            processes.by_first(lambda: held.enter_context(locked(out)))
+        found = on_pool(processes, workers, lambda pool: one.make(pool, advance))
+    if found is None:
+        return
+    if shown.as_json:
+        print_json(plain(found.facts))
+        return
+    show_frame(found.table)
+    for line in filter(None, [found.legend, *found.sentences]):
+        say(line)
+    for line in found.failed:
+        say(f"failed: {line}", "red")
+    if found.note:
+        say(found.note)
+    if found.files:
+        say(f"written: {', '.join(map(str, found.files))}")
+
+
+def plan(asked: Plan) -> None:
+    """Find the cheapest run that meets a misfit, and print the command that runs it."""
+    for scene in load(asked, every=False):
+        with progress(scene.name or scene.title) as advance:
+            found = plans.plan(scene, asked.misfit, asked.seconds, advance)
+        _show_plan(found, asked)
+
+
+def _show_plan(one: plans.Plan, asked: Plan) -> None:
+    say(", ".join(filter(None, [one.scene.title, one.scene.name])))
+    why = "" if one.finest.settings else f" ({one.reason})"
+    say(f"modelling error: against {_named(one.finest)}{why}")
+    best, misfit = one.chosen, percent(one.asked)
+    if best is None:
+        for reason in dict.fromkeys(one.skipped.values()):
+            say(f"skipped: {reason}")
+        say(
+            f"{misfit} % is not met: no engine's model is near enough to the finest physics in time"
+        )
+        return
+    say(f"numerical error: against {_named(best.reference)}, the engine's own model")
+    errors = [percent(x) for x in (best.numerical, best.modelling, best.misfit, one.misfit)]
+    columns = ["numerical", "modelling", "sum", "sum with smaller steps"]
+    columns = ["engine", *(f"{name} (%)" for name in columns), "stepping (s)"]
+    show_table(columns, [[label_of(best.elements.name), *errors, f"{best.seconds:.3g}"]])
+    chosen = ["jointwave", "run", asked.scene, "--variant", one.scene.name]
+    chosen += options_of(best.elements.name)
+    chosen += [part for text in [*asked.changes, *best.options] for part in ("--set", text)]
+    say(shlex.join(chosen))
+    met = "the sum of errors meets" if one.is_met else "the nearest run, whose sum misses,"
+    say(f"{met} {misfit} %; planning took {len(one.runs)} runs and {one.planning:.2g} s")
+
+
+def _named(reference: Reference) -> str:
+    """Describe the reference of errors, its accuracy, and its time limit."""
+    words = label_of(reference.name) + f" at {reference.settings}" * bool(reference.settings)
+    if reference.error:
+        words += f", accurate to {percent(reference.error)} %"
+    until = reference.result.attrs.get("known_until")
+    return words if until is None else f"{words}, valid until {float(until):.3g} s"
