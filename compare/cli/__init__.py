@@ -1,1 +1,5 @@
-"""The command line."""
+"""The command line, and scene files as tests."""
+
+
+class SceneWarning(UserWarning):
+    """A probable mistake in a scene that is a test."""

@@ -10,16 +10,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from jointwave.compare.cli import SceneWarning as SceneWarning
+
 if TYPE_CHECKING:
     from jointwave.compare.cli.scene_tests import SceneFile
 
 LARGEST_FILE = 10_000_000  # bytes, as of any scene
 #: Of a pillar or a rock mass, and of what is tested; each as a table or as a key.
 KEYS = "pillar|domain", r"(variants\.)?expect"
-
-
-class SceneWarning(UserWarning):
-    """A probable mistake in a scene."""
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "SceneFile | None":

@@ -11,8 +11,8 @@ import pytest
 
 from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.cli import SceneWarning
 from jointwave.compare.cli.inputs import scene_warnings
-from jointwave.compare.cli.pytest_plugin import SceneWarning
 from jointwave.compare.engines import applies, solve
 from jointwave.compare.misfit.differences import distance_of
 from jointwave.compare.scenes import bound_of, load_variants
