@@ -2,7 +2,6 @@
 
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Annotated
 
 import typer
 
@@ -29,20 +28,6 @@ from jointwave.compare.solvers.dem import DEM
 
 FRAMES = 201  # of an animation, where the scene records no snapshots
 
-ScaleOption = Annotated[
-    float | None,
-    typer.Option(metavar="X", help="Exaggeration of displacements (default: visible)."),
-]
-MapOption = Annotated[
-    str | None,
-    typer.Option(
-        "--map",
-        metavar="QUANTITY",
-        help="Colours: stress (default for a pillar), speed (default for a rock mass) or, for a "
-        "pillar, across: the velocity across its axis.",
-    ),
-]
-
 
 @command("scene_files:new")
 class New(SimpleNamespace):
@@ -51,19 +36,17 @@ class New(SimpleNamespace):
     It runs as it is. Existing files are not overwritten.
     """
 
-    name: Annotated[str, typer.Argument(help="File name, with or without .toml.")]
-    source: Annotated[
-        str | None,
-        typer.Option(
-            "--from",
-            metavar="SCENE",
-            help="Copy this scene with its comments and files.",
-            autocompletion=shipped,
-        ),
-    ] = None
-    rock_mass: Annotated[
-        bool, typer.Option("--rock-mass", help="Write a rock mass with one joint, not a pillar.")
-    ] = False
+    name: str = typer.Argument(..., help="File name, with or without .toml.")
+    source: str | None = typer.Option(
+        None,
+        "--from",
+        metavar="SCENE",
+        help="Copy this scene with its comments and files.",
+        autocompletion=shipped,
+    )
+    rock_mass: bool = typer.Option(
+        False, "--rock-mass", help="Write a rock mass with one joint, not a pillar."
+    )
 
 
 @command("scene_files:list_scenes")
@@ -82,10 +65,9 @@ class Explain(SceneOptions):
     reference of each engine. Nothing is run.
     """
 
-    every: Annotated[
-        bool,
-        typer.Option("--all", help="Also absent effects and solutions that do not apply, and why."),
-    ] = False
+    every: bool = typer.Option(
+        False, "--all", help="Also absent effects and solutions that do not apply, and why."
+    )
     as_json: JsonOption = False
 
 
@@ -99,38 +81,30 @@ class Picture(SceneOptions):
     results of two engines are drawn side by side, with their difference.
     """
 
-    scene: Annotated[
-        str,
-        typer.Argument(
-            metavar="SCENE|FOLDER",
-            help="A scene; or results of `run` with snapshots, as a folder or a file.",
-            autocompletion=shipped,
-        ),
-    ]
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help=".png, .svg or .pdf (default: NAME.png, of results NAME-MAP.png).",
-        ),
-    ] = None
-    quantity: Annotated[
-        str | None,
-        typer.Option("--map", help="Map of results: ppv (the default), speed, stress or slip."),
-    ] = None
-    time: Annotated[
-        float | None,
-        typer.Option(metavar="T", help="Instant of the map, s (default: where it is strongest)."),
-    ] = None
-    explode: Annotated[
-        float | None,
-        typer.Option(
-            min=0.0,
-            max=10.0,
-            metavar="X",
-            help="Of a scene in space: move blocks apart, by X times their distance.",
-        ),
-    ] = None
+    scene: str = typer.Argument(
+        ...,
+        metavar="SCENE|FOLDER",
+        help="A scene; or results of `run` with snapshots, as a folder or a file.",
+        autocompletion=shipped,
+    )
+    out: Path | None = typer.Option(
+        None,
+        metavar="FILE",
+        help=".png, .svg or .pdf (default: NAME.png, of results NAME-MAP.png).",
+    )
+    quantity: str | None = typer.Option(
+        None, "--map", help="Map of results: ppv (the default), speed, stress or slip."
+    )
+    time: float | None = typer.Option(
+        None, metavar="T", help="Instant of the map, s (default: where it is strongest)."
+    )
+    explode: float | None = typer.Option(
+        None,
+        min=0.0,
+        max=10.0,
+        metavar="X",
+        help="Of a scene in space: move blocks apart, by X times their distance.",
+    )
 
 
 @command("run:run")
@@ -152,21 +126,17 @@ class Run(PrintOptions, SweepOptions):
 
     engine: EngineOption = [Engine(DEM.engine)]
     model: ModelOption = None
-    out: Annotated[Path | None, typer.Option(help="Folder for results (default: out/SCENE).")] = (
-        None
+    out: Path | None = typer.Option(None, help="Folder for results (default: out/SCENE).")
+    every: float = typer.Option(
+        60.0,
+        "--checkpoint-every",
+        metavar="SECONDS",
+        min=0.0,
+        help="Time between two checkpoints; 0: none.",
     )
-    every: Annotated[
-        float,
-        typer.Option(
-            "--checkpoint-every",
-            metavar="SECONDS",
-            min=0.0,
-            help="Time between two checkpoints; 0: none.",
-        ),
-    ] = 60.0
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Continue an interrupted run from its checkpoint.")
-    ] = False
+    resume: bool = typer.Option(
+        False, "--resume", help="Continue an interrupted run from its checkpoint."
+    )
     fresh: FreshOption = False
 
 
@@ -192,27 +162,42 @@ class Compare(PrintOptions, StoredOptions, SweepOptions):
     table. --ensemble compares a scene with random joints for several seeds, with statistics.
     """
 
-    every: Annotated[
-        bool, typer.Option("--all", help="Also every misfit, and why other solutions do not apply.")
-    ] = False
-    reads: Annotated[
-        bool, typer.Option("--read", help="Also peak velocity, Arias intensity, spectra, speeds.")
-    ] = False
-    out: Annotated[
-        Path | None,
-        typer.Option(help="Folder for tables, curves, figure and, without --results, results."),
-    ] = None
-    spectral: Annotated[
-        bool, typer.Option(help="Add envelope and phase misfit (Kristekova et al. 2006).")
-    ] = True
+    every: bool = typer.Option(
+        False, "--all", help="Also every misfit, and why other solutions do not apply."
+    )
+    reads: bool = typer.Option(
+        False, "--read", help="Also peak velocity, Arias intensity, spectra, speeds."
+    )
+    out: Path | None = typer.Option(
+        None, help="Folder for tables, curves, figure and, without --results, results."
+    )
+    spectral: bool = typer.Option(
+        True, help="Add envelope and phase misfit (Kristekova et al. 2006)."
+    )
     given: WithOption = []
-    align: Annotated[
-        bool, typer.Option("--align", help="Align each --with curve by cross-correlation.")
-    ] = False
+    align: bool = typer.Option(
+        False, "--align", help="Align each --with curve by cross-correlation."
+    )
+
+
+class WaveOptions(StoredOptions):
+    """How the wave in a scene is shown."""
+
+    quantity: str | None = typer.Option(
+        None,
+        "--map",
+        metavar="QUANTITY",
+        help="Colours: stress (default for a pillar), speed (default for a rock mass) or, for a "
+        "pillar, across: the velocity across its axis.",
+    )
+    scale: float | None = typer.Option(
+        None, metavar="X", help="Exaggeration of displacements (default: visible)."
+    )
+    dry: DryOption = False
 
 
 @command("animation:view")
-class View(StoredOptions):
+class View(WaveOptions):
     """Show a scene by both engines, displaced and coloured by the wave.
 
     Pillars and scenes in space are shown in three dimensions, other rock masses in their plane, on
@@ -221,21 +206,14 @@ class View(StoredOptions):
     writes an image of the snapshot nearest to T: one of record.fields, else one of 201.
     """
 
-    out: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Write this .png, open no window."),
-    ] = None
-    time: Annotated[
-        float | None,
-        typer.Option(metavar="T", help="Instant, s (default: the middle of the scene)."),
-    ] = None
-    quantity: MapOption = None
-    scale: ScaleOption = None
-    dry: DryOption = False
+    out: Path | None = typer.Option(None, metavar="FILE", help="Write this .png, open no window.")
+    time: float | None = typer.Option(
+        None, metavar="T", help="Instant, s (default: the middle of the scene)."
+    )
 
 
 @command("animation:animate")
-class Animate(StoredOptions):
+class Animate(WaveOptions):
     """Animate the blocks and the wave of both engines as MP4 or GIF.
 
     Both engines share one colour scale. Each frame gives the exaggeration of displacements and the
@@ -243,17 +221,11 @@ class Animate(StoredOptions):
     homogenised rock. If neither applies, the frames give the reason.
     """
 
-    out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help=".mp4 or .gif (default: SCENE.mp4).")
-    ] = None
-    quantity: MapOption = None
-    scale: ScaleOption = None
-    frames: Annotated[
-        int | None,
-        typer.Option(min=2, max=5000, help=f"Frames (default: of record.fields, else {FRAMES})."),
-    ] = None
-    seconds: Annotated[float, typer.Option(help="Duration of the film.")] = 10.0
-    dry: DryOption = False
+    out: Path | None = typer.Option(None, metavar="FILE", help=".mp4 or .gif (default: SCENE.mp4).")
+    frames: int | None = typer.Option(
+        None, min=2, max=5000, help=f"Frames (default: of record.fields, else {FRAMES})."
+    )
+    seconds: float = typer.Option(10.0, help="Duration of the film.")
 
 
 @command("figure:figure")
@@ -264,12 +236,12 @@ class Figure(StoredOptions):
     installed fonts. Without --engine, all solvers that apply are drawn.
     """
 
-    out: Annotated[Path, typer.Option(help="Output file: .pdf, .svg or .png.")]
+    out: Path = typer.Option(..., help="Output file: .pdf, .svg or .png.")
     engine: EngineOption = []
     model: ModelOption = None
     given: WithOption = []
-    width: Annotated[float, typer.Option(min=60, max=1000, help="Width, mm.")] = 90.0
-    font_size: Annotated[float, typer.Option(min=4, max=40, help="Size of letters, pt.")] = 8.0
+    width: float = typer.Option(90.0, min=60, max=1000, help="Width, mm.")
+    font_size: float = typer.Option(8.0, min=4, max=40, help="Size of letters, pt.")
     dry: DryOption = False
 
 
@@ -282,20 +254,17 @@ class Report(PrintOptions):
     DIR.
     """
 
-    scenes: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="SCENE",
-            help="Scene files or shipped scenes (default: the figures of Guo & Li (2002)).",
-            autocompletion=shipped,
-        ),
-    ] = None
-    out: Annotated[Path, typer.Option(help="Folder for results.")] = Path("report")
+    scenes: list[str] | None = typer.Argument(
+        None,
+        metavar="SCENE",
+        help="Scene files or shipped scenes (default: the figures of Guo & Li (2002)).",
+        autocompletion=shipped,
+    )
+    out: Path = typer.Option(Path("report"), help="Folder for results.")
     fresh: FreshOption = False
-    peers: Annotated[
-        Path | None,
-        typer.Option(help="Table of make bench-peers (default: out/peers/points.csv if present)."),
-    ] = None
+    peers: Path | None = typer.Option(
+        None, help="Table of make bench-peers (default: out/peers/points.csv if present)."
+    )
     strict: StrictOption = False
 
 
@@ -306,14 +275,10 @@ class Plan(SceneOptions):
     Runs from the cheapest one on, until one meets the misfit, and prints the command for that run.
     """
 
-    misfit: Annotated[
-        float,
-        typer.Option(min=0.0, help="Largest misfit, relative L2: 0.02 is 2 %."),
-    ]
-    seconds: Annotated[
-        float | None,
-        typer.Option(min=0.0, help="Limit of stepping, s: the best run within it."),
-    ] = None
+    misfit: float = typer.Option(..., min=0.0, help="Largest misfit, relative L2: 0.02 is 2 %.")
+    seconds: float | None = typer.Option(
+        None, min=0.0, help="Limit of stepping, s: the best run within it."
+    )
 
 
 @command("studies:effects")
@@ -325,9 +290,7 @@ class Effects(PrintOptions, SceneOptions):
     and not measured again.
     """
 
-    out: Annotated[Path, typer.Option(help="Folder for table, diagram and points.")] = Path(
-        "effects"
-    )
+    out: Path = typer.Option(Path("effects"), help="Folder for table, diagram and points.")
 
 
 @command("studies:study")
@@ -341,11 +304,8 @@ class Study(PrintOptions):
     and transmission of P and SV waves at one joint with theory, `parallel-joints` at several.
     """
 
-    name: Annotated[
-        str | None,
-        typer.Argument(help="A shipped study or a study's TOML file."),
-    ] = None
-    out: Annotated[Path, typer.Option(help="Folder for tables and points.")] = Path("studies")
+    name: str | None = typer.Argument(None, help="A shipped study or a study's TOML file.")
+    out: Path = typer.Option(Path("studies"), help="Folder for tables and points.")
     workers: WorkersOption = CORES
 
 
@@ -371,20 +331,17 @@ class Fit(PrintOptions, SceneOptions):
     """
 
     given: WithOption
-    free: Annotated[
-        list[str],
-        typer.Option(
-            "--free",
-            metavar="KEY",
-            help="A key of the scene, or clock; repeatable, or separated by commas.",
-        ),
-    ]
-    engine: Annotated[
-        Engine | None,
-        typer.Option(help="dem: rigid blocks (default); continuum: rock; exact: exact solutions."),
-    ] = None
+    free: list[str] = typer.Option(
+        ...,
+        "--free",
+        metavar="KEY",
+        help="A key of the scene, or clock; repeatable, or separated by commas.",
+    )
+    engine: Engine | None = typer.Option(
+        None, help="dem: rigid blocks (default); continuum: rock; exact: exact solutions."
+    )
     model: ModelOption = None
-    out: Annotated[Path | None, typer.Option(help="Folder for the table fit.csv.")] = None
+    out: Path | None = typer.Option(None, help="Folder for the table fit.csv.")
 
 
 @command("doctor:doctor")

@@ -9,7 +9,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli.commands import Compare
 from jointwave.compare.cli.forecast import runs_of, show_forecasts
 from jointwave.compare.cli.inputs import load, stored_in, warn
-from jointwave.compare.cli.sweeps import sweep
+from jointwave.compare.cli.studies import sweep
 from jointwave.compare.cli.terminal import (
     print_json,
     progress,

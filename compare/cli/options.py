@@ -61,62 +61,49 @@ CORES = os.cpu_count() or 1
 class SceneOptions(SimpleNamespace):
     """A scene, its variant and its changed keys."""
 
-    scene: Annotated[
-        str,
-        typer.Argument(
-            help="A scene file, or a shipped scene such as guo-li-2002/fig-03.",
-            autocompletion=shipped,
-        ),
-    ]
-    changes: Annotated[
-        list[str],
-        typer.Option(
-            "--set", metavar="KEY=VALUE", help="Change a key in every variant; repeatable."
-        ),
-    ] = []
-    variant: Annotated[str | None, typer.Option(help="Only this variant ('': the base scene).")] = (
-        None
+    scene: str = typer.Argument(
+        ...,
+        help="A scene file, or a shipped scene such as guo-li-2002/fig-03.",
+        autocompletion=shipped,
     )
+    changes: list[str] = typer.Option(
+        [], "--set", metavar="KEY=VALUE", help="Change a key in every variant; repeatable."
+    )
+    variant: str | None = typer.Option(None, help="Only this variant ('': the base scene).")
     strict: StrictOption = False
 
 
 class SweepOptions(SceneOptions):
     """Points of a sweep, members of an ensemble, and the processes that share them."""
 
-    swept: Annotated[
-        list[str],
-        typer.Option(
-            "--sweep",
-            metavar="KEY=VALUES",
-            help="Sweep a key over FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C; repeatable for all "
-            "combinations. Writes a folder for each point, and sweep.csv.",
-        ),
-    ] = []
-    members: Annotated[
-        int,
-        typer.Option(
-            "--ensemble",
-            metavar="N",
-            min=0,
-            max=10_000,
-            help="Run N scenes with consecutive seeds of random joints: mean and percentiles of "
-            "every number (ensemble.csv) and waveform (NAME-ensemble.nc).",
-            show_default=False,
-        ),
-    ] = 0
+    swept: list[str] = typer.Option(
+        [],
+        "--sweep",
+        metavar="KEY=VALUES",
+        help="Sweep a key over FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C; repeatable for all "
+        "combinations. Writes a folder for each point, and sweep.csv.",
+    )
+    members: int = typer.Option(
+        0,
+        "--ensemble",
+        metavar="N",
+        min=0,
+        max=10_000,
+        help="Run N scenes with consecutive seeds of random joints: mean and percentiles of "
+        "every number (ensemble.csv) and waveform (NAME-ensemble.nc).",
+        show_default=False,
+    )
     workers: WorkersOption = CORES
 
 
 class StoredOptions(SceneOptions):
     """The folder that results are read from, and whether they are."""
 
-    results: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="DIR",
-            help="Folder where results of the scene are read and stored (default: out/SCENE).",
-        ),
-    ] = None
+    results: Path | None = typer.Option(
+        None,
+        metavar="DIR",
+        help="Folder where results of the scene are read and stored (default: out/SCENE).",
+    )
     fresh: FreshOption = False
 
 

@@ -61,12 +61,10 @@ def _told(error: BaseException) -> tuple[list[str], int]:
         case SceneError():
             lines, more = [str(one) for one in error.each], len(error.each) - MOST_LISTED
             return [*lines[:MOST_LISTED], *([f"and {more:,} more"] if more > 0 else [])], 2
-        case InterruptedRun():
+        case InterruptedRun() | Ended():
             return [str(error)], error.code
         case UnstableError():
             return [str(error)], 3
-        case Ended():
-            return [str(error)], error.code
         case KeyboardInterrupt():  # before the program has begun to watch for signals
             return ["interrupted"], 130
         case OSError():

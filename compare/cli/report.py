@@ -14,7 +14,7 @@ def report(asked: Report) -> None:
     """Write the page and print what it begins with, or what it would cost."""
     scenes, out = asked.scenes or [], asked.out
     for name in scenes:
-        load(SceneOptions(scene=name, strict=asked.strict))
+        load(SceneOptions(scene=name, changes=[], variant=None, strict=asked.strict))
     stored = ResultFolder(results_of(), asked.fresh)
     if asked.dry:
         runs, parts = pages.planned(out, scenes, stored)

@@ -30,7 +30,7 @@ def run(asked: Run) -> None:
     out = results_of(asked.scene, asked.out)
     wanted = jobs.wanted([e.value for e in asked.engine], asked.model or [])
     if asked.swept or asked.members:
-        from jointwave.compare.cli.sweeps import sweep
+        from jointwave.compare.cli.studies import sweep
         from jointwave.compare.studies.sweep import run_scene
 
         def solvers(one: AnyScene) -> list[str]:

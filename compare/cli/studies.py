@@ -1,12 +1,15 @@
-"""`jointwave study`, `effects` and `plan`: accuracy against cost over many runs."""
+"""Many runs in one command: `jointwave study`, `effects` and `plan`, and all with `--sweep`."""
 
 import shlex
+from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from pathlib import Path
+from typing import Any
 
+from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli.commands import Effects, Plan, Study
-from jointwave.compare.cli.forecast import show_forecasts
-from jointwave.compare.cli.inputs import load
+from jointwave.compare.cli.forecast import Run, runs_of, show_forecasts
+from jointwave.compare.cli.inputs import load, warn
 from jointwave.compare.cli.options import CORES, PrintOptions
 from jointwave.compare.cli.terminal import (
     print_json,
@@ -20,12 +23,14 @@ from jointwave.compare.engines import label_of
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.runs.jobs import options_of
 from jointwave.compare.runs.processes import started
+from jointwave.compare.runs.reuse import ResultFolder
 from jointwave.compare.studies import catalogue
 from jointwave.compare.studies import effects as measuring
 from jointwave.compare.studies import plan as plans
 from jointwave.compare.studies.experiment import Experiment
 from jointwave.compare.studies.reference import Reference
 from jointwave.compare.studies.store import on_pool, plain
+from jointwave.compare.studies.sweep import Work, cases_of, experiment
 from jointwave.compare.text import percent
 
 
@@ -76,6 +81,38 @@ def run_and_show(one: Experiment, out: Path | None, workers: int, shown: PrintOp
         say(found.note)
     if found.files:
         say(f"written: {', '.join(map(str, found.files))}")
+
+
+def sweep(
+    asked: Any,
+    out: Path | None,
+    work_of: Callable[[list[AnyScene]], Work],
+    solvers: Callable[[AnyScene], Iterable[str]],
+    parts: Iterable[str] = (),
+) -> None:
+    """Run every case of a sweep and show its table, or only estimates.
+
+    asked : the options of `run` or `compare`. work_of : returns what is done with a case, for the
+    scenes of all. solvers : returns the names of a scene's solvers. parts : what else each case
+    does, see `show_forecasts`. Raises SceneError if all cases fail.
+    """
+    cases = cases_of(asked.scene, asked.changes, asked.variant, asked.swept, out, asked.members)
+    scenes = [case.scene for case in cases if case.scene is not None]
+    work = work_of(scenes)
+    warn(scenes, asked.strict)
+    if asked.dry:
+        runs: list[Run] = []
+        for case in cases:
+            if case.scene is not None:
+                stored = ResultFolder(case.folder, asked.fresh)
+                runs += runs_of(solvers(case.scene), case.scene, stored, point=case.point)
+        failing = {case.point: case.message for case in cases if case.scene is None}
+        others = {"processes": asked.workers * (asked.workers > 1)}
+        others |= dict.fromkeys(parts, len(scenes))
+        show_forecasts(runs, asked.as_json, others, failing)
+        return
+    one = experiment(asked.scene, cases, out, asked.fresh, work)
+    run_and_show(one, out, asked.workers, asked)
 
 
 def plan(asked: Plan) -> None:
