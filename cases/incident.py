@@ -180,19 +180,17 @@ def tractions(
     impedance: np.ndarray,
     times: np.ndarray,
 ) -> FaceTractions:
-    """Return sigma n + rho a v_n + rho b v_s of a field at points [m, d] of outward normals [m, d].
+    """Return sigma n + Z v of a field at points [m, d] of outward normals [m, d].
 
-    impedance : rho a and rho b of the dashpots there, Pa s/m, [m, 2]. times : equally spaced, s.
+    impedance : Z of the dashpots there, [m, d, d], Pa s/m. times : equally spaced, s.
     """
     velocity, stress = field(points, times)
-    normals, Z = np.asarray(normals)[:, :, None], np.asarray(impedance)[:, :, None, None]
+    normals, Z = np.asarray(normals)[:, :, None], np.asarray(impedance)
     values = np.empty((len(times), *normals.shape[:2]))
     tensor = COMPONENT[normals.shape[1]]
     for k in range(0, len(normals), AT_ONCE):
         some = slice(k, k + AT_ONCE)
         n, v = normals[some], velocity[some]
         pulled = (stress[some][:, tensor] * n[:, None]).sum(axis=2)
-        along = (v * n).sum(axis=1, keepdims=True) * n
-        total = pulled + Z[some, 0] * along + Z[some, 1] * (v - along)
-        values[:, some] = np.moveaxis(total, 2, 0)
+        values[:, some] = np.moveaxis(pulled + Z[some] @ v, 2, 0)
     return FaceTractions(np.asarray(times), values)

@@ -110,10 +110,8 @@ def dashpots(
     """Return the resultants of the dashpots at points, by the velocity and its gradient of the
     block of each row, with the sign of a resistance [count, d + d^2, d + d^2].
 
-    impedance : along the normal and across it [m, 2], Pa s/m. row : of each point [m].
+    impedance : there [m, d, d], Pa s/m. row : of each point [m].
     """
-    normal = points.normal[:, :, None] * points.normal[:, None]
-    Z_n, Z_s = (impedance * points.area[:, None]).T[:, :, None, None]
     to = levers(points.arm)
-    found = to @ (Z_n * normal + Z_s * (np.eye(normal.shape[1]) - normal)) @ to.swapaxes(1, 2)
+    found = to @ (impedance * points.area[:, None, None]) @ to.swapaxes(1, 2)
     return summed(found.swapaxes(0, 1), row, count).swapaxes(0, 1)

@@ -16,6 +16,7 @@ import numpy as np
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import Properties
 from jointwave.cases.material.jointed_rock import JointedRock
+from jointwave.cases.material.quiet_sides import along_and_across
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.tables import LEAN
 from jointwave.dem.boundaries import BoundaryPoints
@@ -65,10 +66,12 @@ def surroundings_of(
     parts = [_points_on(one, centroid, face) for one in ends]
     each, along = 2 ** (dim - 1), [0, 1, 2] if dim == 3 else [1]
     bears = np.repeat(np.array(scene.bears, dtype=float), each)
+    points = BoundaryPoints(*map(np.concatenate, zip(*parts, strict=True)))
+    dashpots = np.repeat([_dashpots(one) for one in ends], each, axis=0)
     return Surroundings(
-        points=BoundaryPoints(*map(np.concatenate, zip(*parts, strict=True))),
-        impedance=np.repeat([_dashpots(one) for one in ends], each, axis=0),
-        borne=np.stack([bears, bears], axis=1),
+        points=points,
+        impedance=along_and_across(points.normal, dashpots),
+        borne=bears[:, None, None] * np.eye(dim),
         moves=np.repeat([shaken, False], each),
         patterns=[*([] if shaken else [_push(scene, p, ends[0])]), *_reactions(ends, p, stress)],
         bases=[Base("start", scene.load, np.array(scene.load.direction)[along])] * shaken,

@@ -83,7 +83,7 @@ def load_pattern(
     if load.kind == "base":
         assert load.direction is not None
         impedance = impedances(scene, points.normal, blocks.body.region[points.block])
-        traction = base_traction(points.normal, impedance, load.direction)
+        traction = base_traction(impedance, load.direction)
     else:
         traction = -points.normal
     return Pattern(points.block, points.arm, points.area[:, None] * traction, history)

@@ -49,8 +49,8 @@ class EndSpring(NamedTuple):
 class Surroundings(NamedTuple):
     """What acts on blocks from outside.
 
-    points : where dashpots act, sides that waves pass among them. impedance : there, along the
-    normal and across it [m, 2], Pa s/m. borne : whether they bear the weight, likewise, 1 or 0.
+    points : where dashpots act, sides that waves pass among them. impedance : there
+    [m, d, d], Pa s/m. borne : what bears the weight there, likewise, of 1 or 0.
     moves : which of them are before the first base, bool array [m]. patterns : forces. opened : by
     which walls of openings hold their blocks before these are excavated; None without. bases :
     walls that move. springs : before dashpots. waves : of a field, the blocks of the rows and the

@@ -64,7 +64,7 @@ def incoming(
 ) -> list[Source]:
     """Return what a field does at the points of quiet sides.
 
-    period : the shortest of its waves, s; None: none. impedance : of the dashpots there [m, 2],
+    period : the shortest of its waves, s; None: none. impedance : of the dashpots there [m, d, d],
     Pa s/m. rows : held blocks [h]. Plane waves are known at every step; another field is asked
     once, at the samples of a run or more.
     """

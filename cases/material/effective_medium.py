@@ -137,6 +137,13 @@ def speeds(C: np.ndarray, density: float, directions: np.ndarray) -> tuple[np.nd
     return np.sqrt(np.maximum(squares, 0.0)), shapes
 
 
+def impedance(C: np.ndarray, density: float, directions: np.ndarray) -> np.ndarray:
+    """Return the impedances of plane waves along directions [..., d], tensors [..., d, d] in
+    Pa s/m: the root of density times Christoffel's tensor."""
+    values, shapes = np.linalg.eigh(density * christoffel(C, directions))
+    return np.einsum("...ik,...k,...jk->...ij", shapes, np.sqrt(np.maximum(values, 0.0)), shapes)
+
+
 def tensor(C: np.ndarray) -> np.ndarray:
     """Return C_ijkl [d, d, d, d] of Voigt's form."""
     d = {3: 2, 6: 3}[len(C)]

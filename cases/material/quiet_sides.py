@@ -1,7 +1,7 @@
-"""Impedances of the dashpots of quiet sides: rho a and rho b of the waves along their normals.
+"""Impedances of the dashpots of quiet sides, of plane waves along their normals.
 
-The speeds are, region by region, those of the intact rock where `numerics.dem.block` cuts it, since
-a lattice has them at its sides, else those of the effective medium of the joint sets.
+They are, region by region, those of the effective medium of all joint sets that have a spacing, and
+of a pillar's bar: rho a along the normal and rho b across it where rock has no such sets.
 """
 
 from math import isfinite
@@ -9,7 +9,7 @@ from math import isfinite
 import numpy as np
 
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.material.effective_medium import compliant, speeds, stiffness
+from jointwave.cases.material.effective_medium import compliant, impedance, stiffness
 from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.joints import within
@@ -18,27 +18,50 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.tables import LEAN
 
 
-def impedances(scene: RockMass, normals: np.ndarray, region: np.ndarray) -> np.ndarray:
-    """Return rho a and rho b of the dashpots of sides of outward normals [m, d], of rock in these
-    regions [m]: [m, 2], Pa s/m; as rigid blocks have them."""
-    smeared = scene.numerics.dem.block is None
-    return medium_impedances(scene, normals, region, smeared)
+def impedances(scene: AnyScene, normals: np.ndarray, region: np.ndarray) -> np.ndarray:
+    """Return the dashpots of sides of outward normals [m, d], of rock in these regions [m]: tensors
+    [m, d, d] that make the traction of a wave along the normal from its velocity, Pa s/m."""
+    if scene.is_column:
+        ends = [(one.impedance, one.shear_impedance) for _, one in _ends(scene, normals)]
+        return along_and_across(normals, np.array(ends).reshape(-1, 2))
+    dim = normals.shape[1]
+    found, scenes = np.zeros((len(normals), dim, dim)), within(scene, scene.joint_sets)
+    for own in np.unique(region):
+        there = region == own
+        found[there] = _of_one_rock(scenes[own], normals[there])
+    return found
+
+
+def _of_one_rock(scene: RockMass, normals: np.ndarray) -> np.ndarray:
+    rock, dim = elastic_rock(scene.rock), normals.shape[1]
+    sets = compliant(scene.joint_sets, dim)
+    if not sets:
+        pair = np.array([[rock.p_impedance, rock.s_impedance]])
+        return along_and_across(normals, pair.repeat(len(normals), axis=0))
+    return impedance(stiffness(rock, sets, dim), scene.rock.density, normals)
+
+
+def along_and_across(normal: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return tensors [n, d, d] of a value along the normal and another across it, [n, 2]."""
+    along = np.einsum("qi,qj->qij", normal, normal)
+    across = np.eye(normal.shape[1]) - along
+    return values[:, 0, None, None] * along + values[:, 1, None, None] * across
 
 
 def borne(scene: AnyScene, normals: np.ndarray) -> np.ndarray:
     """Return whether quiet sides of outward normals [m, d] bear what gravity puts on them along
-    their normal and along themselves, 1 or 0 [m, 2]; d = 1 along a pillar.
+    their normal and along themselves, tensors [m, d, d] of 1 or 0; d = 1 along a pillar.
 
     Both below the rock, the first beside it: there is rock beyond, too. None above it. The ends of
     a pillar bear both or none.
     """
     gravity = scene.gravity
     if gravity is None or not gravity.acceleration:
-        return np.zeros((len(normals), 2))
+        return np.zeros((*normals.shape, normals.shape[1]))
     pull = np.array(gravity.direction, dtype=float)
     lean = normals @ (pull[1:2] if normals.shape[1] == 1 else pull[: normals.shape[1]])
     least = -LEAN, -LEAN if scene.is_column else LEAN
-    return (lean[:, None] > least).astype(float)
+    return along_and_across(normals, (lean[:, None] > least).astype(float))
 
 
 def half_joints(scene: AnyScene, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -61,41 +84,10 @@ def _ends(scene: AnyScene, normals: np.ndarray) -> list[tuple[str, JointedRock]]
     return [start if one < 0 else end for one in along]
 
 
-def medium_impedances(
-    scene: AnyScene, normals: np.ndarray, region: np.ndarray, smeared: bool = True
-) -> np.ndarray:
-    """Return the same of the effective medium of all sets that have a spacing, in space rho b of
-    the mean of both S speeds, and of a pillar's bar; smeared : whether there is one, else of the
-    intact rock."""
-    if scene.is_column:
-        ends = [(one.impedance, one.shear_impedance) for _, one in _ends(scene, normals)]
-        return np.array(ends).reshape(-1, 2)
-    found, scenes = np.zeros((len(normals), 2)), within(scene, scene.joint_sets)
-    for own in np.unique(region):
-        there = region == own
-        found[there] = _of_one_rock(scenes[own], normals[there], smeared)
-    return found
-
-
-def _of_one_rock(scene: RockMass, normals: np.ndarray, smeared: bool) -> np.ndarray:
-    rock, density, dim = elastic_rock(scene.rock), scene.rock.density, normals.shape[1]
-    sets = compliant(scene.joint_sets, dim)
-    if not smeared or not sets or not len(normals):
-        return np.tile([rock.p_impedance, rock.s_impedance], (len(normals), 1))
-    found, shapes = speeds(stiffness(rock, sets, dim), density, normals)
-    longitudinal = np.abs((shapes * normals[:, :, None]).sum(axis=1)).argmax(axis=1)
-    p = np.arange(dim) == longitudinal[:, None]
-    s = found[~p].reshape(len(normals), dim - 1).mean(axis=1)
-    return density * np.stack([found[p], s], axis=1)
-
-
-def base_traction(normals: np.ndarray, impedance: np.ndarray, direction: list[float]) -> np.ndarray:
+def base_traction(impedance: np.ndarray, direction: list[float]) -> np.ndarray:
     """Return the tractions [m, d] on a compliant base for each m/s that comes up, Pa s/m.
 
-    2 rho a of its normal component and 2 rho b of the other: the dashpots take half of them, and
-    the other half enters (Mejia & Dawson, 4th FLAC Symposium, 2006). normals : [m, d]. impedance :
-    [m, 2].
+    Twice what its dashpots [m, d, d] take of it: the other half enters (Mejia & Dawson, 4th FLAC
+    Symposium, 2006).
     """
-    moved = np.array(direction)
-    along = (normals @ moved)[:, None] * normals
-    return 2 * (impedance[:, :1] * along + impedance[:, 1:] * (moved - along))
+    return 2 * impedance @ np.array(direction)

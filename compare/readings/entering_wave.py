@@ -96,11 +96,13 @@ def _through_side(scene: RockMass, table: str, load: PlaneLoad) -> Iterator[Ente
     density = rocks_of(scene)[region[0]].density
     quiet = getattr(scene.boundaries, load.side or "") == "quiet"
     history, moved = velocity_of(load, load.amplitude), np.array(load.direction or -normal[0])
-    along = abs(float(normal[0] @ moved))
-    parts = zip((along, float(np.sqrt(max(1 - along**2, 0.0)))), "PS", strict=True)
-    for (share, kind), Z in zip(parts, impedances(scene, normal, region)[0], strict=True):
-        gain = 1.0 if load.kind == "base" else (0.5 if quiet else 1.0) / Z
+    along = (normal[0] @ moved) * normal[0]
+    dashpot = impedances(scene, normal, region)[0]
+    for part, kind in zip((along, moved - along), "PS", strict=True):
+        share = float(np.linalg.norm(part))
         if share > WITHIN:
+            Z = part @ dashpot @ part / share**2
+            gain = 1.0 if load.kind == "base" else (0.5 if quiet else 1.0) / Z
             gains = share * gain, density, float(Z) / density
             yield _wave(f"{table}, {kind}", history, *gains, scene.time.duration)
 

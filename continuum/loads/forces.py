@@ -76,7 +76,7 @@ def _base(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:
     assert load.side is not None and load.direction is not None
     facets = facets_on(body, [load.side])
     impedance = impedances_of(scene, body, facets)
-    return forces_on(body, facets, base_traction(facets.normal, impedance, load.direction))
+    return forces_on(body, facets, base_traction(impedance, load.direction))
 
 
 def _force(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:

@@ -1,9 +1,9 @@
 """The sides of a body: where rock is held, absorbs waves, or bears its weight.
 
-Quiet sides carry dashpots of rho a along their normal and rho b along themselves (Lysmer &
-Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969) at the nodes: of the effective medium of the joint
-sets that have a spacing, and of the bar at the ends of a pillar. In jointed rock a matched end has
-half a joint in front of them, as the rock beyond would have (`joints.ends`).
+Quiet sides carry dashpots at the nodes (Lysmer & Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969): of
+the effective medium of the joint sets that have a spacing, and of the bar at the ends of a pillar.
+In jointed rock a matched end has half a joint in front of them, as the rock beyond would have
+(`joints.ends`).
 """
 
 from collections.abc import Callable
@@ -13,7 +13,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from jointwave.cases.loads import base_steps
-from jointwave.cases.material.quiet_sides import borne, half_joints, medium_impedances
+from jointwave.cases.material.quiet_sides import borne, half_joints, impedances
 from jointwave.cases.partition.joints import region_at
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
@@ -69,33 +69,22 @@ def inside(body: Body, facets: Facets) -> np.ndarray:
 
 
 def impedances_of(scene: AnyScene, body: Body, facets: Facets) -> np.ndarray:
-    """Return rho a and rho b of the rock behind facets [n, 2], Pa s/m."""
-    region = region_at(scene.regions, inside(body, facets))
-    return medium_impedances(scene, facets.normal, region)
-
-
-def along_and_across(normal: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return tensors [n, d, d] of a value along the normal and another across it, [n, 2]."""
-    along = np.einsum("qi,qj->qij", normal, normal)
-    across = np.eye(normal.shape[1]) - along
-    return values[:, 0, None, None] * along + values[:, 1, None, None] * across
+    """Return the impedances of the rock behind facets, tensors [n, d, d], Pa s/m."""
+    return impedances(scene, facets.normal, region_at(scene.regions, inside(body, facets)))
 
 
 def quiet_sides(
     scene: AnyScene,
     body: Body,
     model: str = "jointed",
-    impedances: Callable[[Facets], np.ndarray] | None = None,
+    of_rock: Callable[[Facets], np.ndarray] | None = None,
 ) -> Dashpots | None:
-    """Return the dashpots of sides that absorb waves, None without any; impedances : of rock that
-    is not the scene's, tensors [n, d, d], Pa s/m."""
+    """Return the dashpots of sides that absorb waves, None without any; of_rock : impedances of
+    rock that is not the scene's, tensors [n, d, d], Pa s/m."""
     facets = absorbing(scene, body)
     if not len(facets.node):
         return None
-    if impedances is None:
-        tensors = along_and_across(facets.normal, impedances_of(scene, body, facets))
-    else:
-        tensors = impedances(facets)
+    tensors = impedances_of(scene, body, facets) if of_rock is None else of_rock(facets)
     if model == "jointed" and scene.boundaries.sides("matched"):
         return _matched(scene, facets, np.einsum("nii->ni", tensors))
     node, group = np.unique(facets.node, return_inverse=True)
@@ -122,10 +111,8 @@ def bearing_sides(scene: AnyScene, body: Body) -> csr_matrix | None:
     """Return the areas [freedoms, freedoms] of quiet sides that bear the weight beside their
     dashpots, m2; None without."""
     facets = absorbing(scene, body)
-    bears = facets.weight[:, None] * borne(scene, facets.normal)
-    if not bears.any():
-        return None
-    return at_nodes(facets.node, along_and_across(facets.normal, bears), body.mass.size)
+    tensors = facets.weight[:, None, None] * borne(scene, facets.normal)
+    return at_nodes(facets.node, tensors, body.mass.size) if tensors.any() else None
 
 
 def held_sides(scene: AnyScene, body: Body, time: Clock | None = None) -> Held | None:

@@ -11,7 +11,7 @@ import numpy as np
 import ufl
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.effective_medium import PAIRS, tensor
+from jointwave.cases.material.effective_medium import PAIRS, impedance
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.model import Forms
@@ -110,8 +110,6 @@ def _refuse(scene: AnyScene, why: str, key: str = "rock") -> None:
 
 def impedances_along(materials: list[Material], normal: np.ndarray) -> np.ndarray:
     """Return the impedances of plane waves along normals [n, d], Pa s/m: of material n each,
-    tensors [n, d, d], the root of rho C_ijkl n_j n_l (Christoffel)."""
-    moduli = np.array([tensor(one.stiffness) for one in materials])
-    density = np.array([one.density for one in materials])[:, None, None]
-    values, shapes = np.linalg.eigh(density * np.einsum("nijkl,nj,nl->nik", moduli, normal, normal))
-    return np.einsum("nik,nk,njk->nij", shapes, np.sqrt(values), shapes)
+    tensors [n, d, d]."""
+    each = zip(materials, normal, strict=True)
+    return np.array([impedance(one.stiffness, one.density, n) for one, n in each])

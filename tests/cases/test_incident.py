@@ -49,7 +49,7 @@ def test_a_face_that_a_wave_enters_feels_twice_its_stress(tmp_path):
     scene = scene_with(tmp_path, P_UP)
     wave, field = plane_wave(scene, scene.waves[0]), free_field(scene)
     rock, times = wave.rock, np.linspace(0, 2e-3, 50)
-    Z = np.tile([rock.p_impedance, rock.s_impedance], (2, 1))
+    Z = np.tile(np.diag([rock.s_impedance, rock.p_impedance]), (2, 1, 1))
     points, normals = np.array([[1.0, 0.0], [1.0, 3.0]]), np.array([[0.0, -1.0], [0.0, 1.0]])
     found = tractions(field, points, normals, Z, times)
     assert found.values[1:, 0] == pytest.approx(np.tile([0.0, 2e6], (49, 1)), rel=1e-12)
@@ -63,7 +63,7 @@ def test_tractions_between_samples_are_of_fourth_order(tmp_path):
     )
     scene = scene_with(tmp_path, wave)
     field, exact_at = free_field(scene), np.linspace(1e-3, 2e-3, 777)
-    normals, Z = np.array([[0.0, -1.0]]), np.array([[1e7, 6e6]])
+    normals, Z = np.array([[0.0, -1.0]]), np.diag([6e6, 1e7])[None]
     exact = tractions(field, np.array([[1.0, 0.0]]), normals, Z, exact_at).values
     errors = []
     for count in (200, 400):

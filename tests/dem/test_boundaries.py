@@ -11,6 +11,7 @@ from jointwave.cases.geometry.cut import cut, one_plane
 from jointwave.cases.histories import Ricker
 from jointwave.cases.incident import FreeField, PlaneWave
 from jointwave.cases.loads import history_of
+from jointwave.cases.material.quiet_sides import along_and_across
 from jointwave.cases.material.rock import ElasticRock, elastic_rock
 from jointwave.cases.partition.scene import blocks_of_scene, shape_of
 from jointwave.cases.sampling import Clock
@@ -95,7 +96,7 @@ def test_dashpots_take_the_power_of_a_rigid_motion(dim):
     rng, blocks = np.random.default_rng(dim), polytope(dim)
     edge, Z = blocks.boundary, rng.uniform(1e6, 9e6, 2)
     points = points_on(blocks, np.arange(len(edge)))
-    impedance = np.tile(Z, (len(points.block), 1))
+    impedance = along_and_across(points.normal, np.tile(Z, (len(points.block), 1)))
     onto = freedoms(dim, ROTATIONS[dim])
     C = onto @ dashpots(points, impedance, points.block, 1)[0] @ onto.T
     velocity = rng.normal(size=len(onto))
@@ -117,7 +118,7 @@ def test_dashpots_of_a_face_of_a_box():
     """A face b by c at a distance h from the centroid: in closed form, all 36 numbers."""
     blocks, (Z_n, Z_s) = whole(3), (7e6, 4e6)
     points = points_on(blocks, facets_on(blocks, SIDES, ["right"]))
-    C = dashpots(points, np.tile([Z_n, Z_s], (4, 1)), np.zeros(4, int), 1)[0]
+    C = dashpots(points, np.tile(np.diag([Z_n, Z_s, Z_s]), (4, 1, 1)), np.zeros(4, int), 1)[0]
     C, (a, b, c) = freedoms(3, 3) @ C @ freedoms(3, 3).T, SIZE
     h, expected = a / 2, np.diag([Z_n, Z_s, Z_s, 0.0, 0.0, 0.0])
     expected[[3, 4, 5], [3, 4, 5]] = np.array([Z_s * b**2, Z_n * c**2, Z_n * b**2]) / 12
@@ -136,7 +137,8 @@ def test_a_wave_pushes_a_quiet_side_by_twice_its_impedance(dim, kind):
     along, moves = np.eye(dim)[0], np.eye(dim)[0 if kind == "P" else dim - 1]
     wave = FreeField((PlaneWave(rock, along, moves, speed, np.zeros(dim), pulse),))
     points = points_on(blocks, facets_on(blocks, SIDES, ["left"]))
-    impedance = np.tile([rock.p_impedance, rock.s_impedance], (len(points.block), 1))
+    pair = np.tile([rock.p_impedance, rock.s_impedance], (len(points.block), 1))
+    impedance = along_and_across(points.normal, pair)
     rows, onto = np.zeros(1, int), freedoms(dim, ROTATIONS[dim])
     made = (wave, lambda places, times: wave(places, times))
     delayed, sampled = (

@@ -7,6 +7,7 @@ wave, sigma = rho c v and sigma^2 / (rho c) integrated over time, by both engine
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import jointwave as jw
 from jointwave.cases.errors import SceneError
@@ -103,7 +104,7 @@ ON_SIDES = [
 
 def rock_mass(bottom, key, one):
     """Return rock between periodic sides, cut by all but rigid joints, and what acts below."""
-    rigid = {"normal_stiffness": 1e13, "shear_stiffness": 1e13}
+    rigid = {"normal_stiffness": 3e14, "shear_stiffness": 3e14}
     return {
         "title": "what enters from below",
         "domain": {"size": [2.0, 20.0]},
@@ -176,3 +177,42 @@ def test_a_new_scene_enters_what_it_says_and_explain_says_it(tmp_path, jointwave
     assert wave.stress == pytest.approx(1e6) and wave.source.startswith(source)
     if template == "pillar":
         assert "load, along the axis  1e+06        0.3086" in jointwave("explain", path).out
+
+
+STIFF = {"normal_stiffness": 1e10, "shear_stiffness": 5e9}
+JOINTS = {"name": "joints", "spacing": 2.0, "through": [1.0, 1.0, 1.0], **STIFF}
+SETS = {"across": {"dip": 90.0, "dip_direction": 90.0}, "along": {"dip": 0.0}}
+
+
+@pytest.mark.parametrize(
+    ("joints", "direction", "speed"),
+    [
+        ("across", [0.0, 1.0, 0.0], 2774.0),
+        ("across", [1.0, 0.0, 0.0], 1601.0),
+        ("along", [0.6, 0.8, 0.0], 1601.0),
+    ],
+)
+@pytest.mark.parametrize("engine", ["dem", "continuum-jointed"])
+def test_a_shear_wave_enters_jointed_rock_in_space_as_it_is_given(engine, joints, direction, speed):
+    """Joints across the quiet base soften one of both polarisations, joints along it both, to
+    1 / (rho b^2) = 1 / 20e9 + 1 / (2 m x 5e9), b = 1601 m/s; the other has 2774 m/s. The wave that
+    comes up has the velocity of the base, as long as it is, and its own speed."""
+    pulse = {"shape": "ricker", "period": 0.03, "amplitude": 0.1, "quantity": "velocity"}
+    sides = dict.fromkeys(["left", "right", "front", "back"], "periodic")
+    scene = jw.load(
+        {
+            "title": "a base below joints",
+            "domain": {"size": [2.0, 2.0, 24.0]},
+            "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.25},
+            "joint_sets": [JOINTS | SETS[joints]],
+            "loads": [{"kind": "base", "side": "bottom", "direction": direction, **pulse}],
+            "boundaries": {"bottom": "quiet", "top": "quiet", **sides},
+            "time": {"duration": 0.09},
+            "numerics": {"dem": {"block": 1.0}, "continuum": {"size": 2.0}},
+            "record": {"points": [[0.7, 0.7, 3.9], [0.7, 0.7, 15.9]], "interval": 1e-4},
+        }
+    )
+    moved = jw.simulate(scene, engine).velocity @ xr.DataArray(direction, dims="axis")
+    assert moved.max("time").values == pytest.approx([0.1, 0.1], rel=0.03)
+    below, above = moved.idxmax("time").values
+    assert 12.0 / (above - below) == pytest.approx(speed, rel=0.03)

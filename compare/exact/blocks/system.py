@@ -30,6 +30,7 @@ from scipy.sparse import bsr_array, csr_array, diags, eye, hstack, vstack
 
 from jointwave.cases.geometry.blocks import Blocks, Facets
 from jointwave.cases.geometry.cell_complex import OUTSIDE
+from jointwave.cases.material.quiet_sides import along_and_across
 
 #: e_k x e_i as [i, :, k]: what a rotation about k moves at the end of an arm along i.
 TURN = np.cross(np.eye(3)[None], np.eye(3)[:, None]).swapaxes(1, 2)
@@ -41,7 +42,7 @@ class Contacts(NamedTuple):
     blocks : int array [c, 2]; OUTSIDE is the ground, at rest. arm : [c, 2, d], from the centroids
     of i and j to that of the contact, m. normal : [c, d]. area : [c], m^(d-1). second : [c, d, d],
     second moments of its points about its centroid, m^(d+1). springs, dashpots : [c, 2], normal and
-    shear, Pa/m and Pa s/m.
+    shear, or tensors [c, d, d], Pa/m and Pa s/m.
     """
 
     blocks: np.ndarray
@@ -63,7 +64,7 @@ def contacts_of(
 ) -> Contacts:
     """Return pieces of the surfaces of blocks as contacts, those of the boundary with the ground.
 
-    springs, dashpots : [c, 2], of `Contacts`. bending : part of the second moments that the points
+    springs, dashpots : of `Contacts`. bending : part of the second moments that the points
     of each contact have [c]. shift : by which blocks j stand elsewhere, m [d].
     """
     i, j = facets.blocks.T
@@ -136,11 +137,10 @@ def relative(contacts: Contacts, bodies: int, freedoms: int) -> csr_array:
 
 
 def resistance(contacts: Contacts, values: np.ndarray, freedoms: int) -> csr_array:
-    """Return D or V of contacts, sparse; values : normal and shear, [c, 2], Pa/m or Pa s/m."""
-    (count, dim), (normal, shear) = contacts.normal.shape, values.T[..., None, None]
+    """Return D or V of contacts, sparse; values : as in `Contacts`, Pa/m or Pa s/m."""
+    count, dim = contacts.normal.shape
+    k = values if values.ndim == 3 else along_and_across(contacts.normal, values)
     each, turn = np.zeros((count, freedoms, freedoms)), _turn(dim, freedoms)
-    n = contacts.normal
-    k = shear * np.eye(dim) + (normal - shear) * n[:, :, None] * n[:, None]
     each[:, :dim, :dim] = contacts.area[:, None, None] * k
     each[:, dim:, dim:] = np.einsum("cab,aik,cij,bjl->ckl", contacts.second, turn, k, turn)
     return csr_array(bsr_array((each, np.arange(count), np.arange(count + 1))))

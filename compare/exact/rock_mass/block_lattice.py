@@ -117,7 +117,8 @@ def _between_blocks(scene: RockMass, blocks: Blocks) -> list[Contacts]:
         shifts = np.tile(shift, (len(weld[0]), 1))
         k[rock] = np.stack(welds(scene, blocks, further, *weld, shifts), axis=1)
         share[rock] = 1.0
-        parts.append(contacts_of(blocks, facets, k, 0 * k, share, shift))
+        none = np.zeros((len(k), *2 * facets.normal.shape[1:]))
+        parts.append(contacts_of(blocks, facets, k, none, share, shift))
     return parts
 
 
@@ -126,10 +127,10 @@ def _quiet(scene: RockMass, blocks: Blocks) -> tuple[Contacts, np.ndarray]:
     first along its first edge [c, d - 1, d]."""
     outer, held = blocks.boundary, scene.boundaries.model_dump()
     own = np.array([held.get(name) == "quiet" for name in shape_of(scene.domain).sides])[outer.side]
-    impedance = np.zeros((len(own), 2))
+    impedance = np.zeros((len(own), *2 * outer.normal.shape[1:]))
     regions = blocks.body.region[outer.blocks[own, 0]]
     impedance[own] = impedances(scene, outer.normal[own], regions)
-    found = contacts_of(blocks, outer, 0 * impedance, impedance)
+    found = contacts_of(blocks, outer, np.zeros((len(own), 2)), impedance)
     corners, first, normal = *outer.outlines, outer.normal[own]
     edge = (corners[first[:-1] + 1] - corners[first[:-1]])[own]
     edge = edge / np.linalg.norm(edge, axis=1)[:, None]
