@@ -3,7 +3,7 @@
 It is that of the parallel planes of the scene: joints with the stiffness that they have at first,
 boundaries of layers and a free face. If joints cross and all have a spacing it is that of the waves
 in their effective medium, since the rock beyond transmits no wave of intact rock; else that of the
-waves in intact rock. One joint that stiffens at normal incidence has its own exact field.
+waves in intact rock. One joint that stiffens or slips at normal incidence has its own exact field.
 
 It acts on all quiet sides, and is exact there where the planes are all that there is and joints
 stay linear: errors inside are then the engine's own. 1000 points and 2000 times of one joint take
@@ -40,7 +40,7 @@ from jointwave.compare.exact.rock_mass.conditions import (
     normals_of,
 )
 from jointwave.compare.exact.rock_mass.effective_medium import medium_field
-from jointwave.compare.exact.rock_mass.normal_incidence import ClosingField
+from jointwave.compare.exact.rock_mass.normal_incidence import NormalField
 from jointwave.compare.exact.rock_mass.stack import JointStack, scatters_otherwise, stack_of
 
 
@@ -73,7 +73,7 @@ def field_of(scene: RockMass) -> IncidentField:
     if not scene.waves:
         return free_field(scene)
     if normal_incidence.applies(scene):
-        return ClosingField(scene)
+        return NormalField(scene)
     planes = _planes_in_space(scene) if scene.in_space else planes_of(scene)
     waves = tuple(plane_wave(scene, one) for one in scene.waves)
     if planes.joint_sets or planes.regions:
