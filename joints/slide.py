@@ -44,17 +44,15 @@ class Trial(NamedTuple):
 
 
 @formula
-def after_slide(
-    law, parts, t_n, tau, gap, gap_rate, opening, cohesion, path, ex, ez, rate_x, rate_z, dt
-):
+def after_slide(law, parts, start, rate, cohesion, dt):
     """Return normal traction and strength (Pa) and the path (m) at the end of a step.
 
-    t_n, tau, path : at its beginning, but for the gap, that is the gap (m) of its end less the
-    lift at its beginning. opening, cohesion : as for `shear_strength`; the rest for `shear_return`.
+    start : the `Trial` of the step without slide. rate : of the jump, m/s. cohesion : left, Pa.
     """
-    t_x, t_z = shear_traction(law, parts, ex, ez, rate_x, rate_z)
+    t_n, tau, path = start.t_n, start.tau, start.path
+    t_x, t_z = shear_traction(law, parts, start.x, start.z, rate[1], rate[2])
     size, a = size_of(parts, t_x, t_z), resistance(law, parts, dt)
-    pressed = t_n > 0.0 and gap <= 0.0
+    pressed = t_n > 0.0 and start.gap <= 0.0
     if parts.rate_state and law.direct_effect > 0.0:
         after, state = tau, path
         if pressed:
@@ -70,7 +68,15 @@ def after_slide(
         return t_n, after if wears else tau, further if wears else path
     if not wears:
         return t_n, tau, path
-    low, high, way, before = 0.0, size / a, 0.0, lift(law, path)
+    return lifted_slide(law, parts, start, rate[0], cohesion, size, dt)
+
+
+@formula
+def lifted_slide(law, parts, start, gap_rate, cohesion, size, dt):
+    """Return the same of a joint that dilates, whose slide lifts the faces; size : |T*|, Pa."""
+    gap, opening, path, t_n = start.gap, start.opening, start.path, start.t_n
+    a, before = resistance(law, parts, dt), lift(law, start.path)
+    low, high, way = 0.0, size / a, 0.0
     for _ in range(MOST):
         up = lift(law, path + way) - before
         t_n = normal_traction(law, parts, gap - up, gap_rate - up / dt, opening)
@@ -134,10 +140,8 @@ def trial_for(shear: bool, path: bool) -> Callable:
             still = shear_strength(law, parts, t_n, gap, opening, history.cohesion, way)
             tau = still
         if path and parts.path:
-            t_n, tau, way = after_slide(
-                law, parts, t_n, still, gap, rate[0], opening, history.cohesion, way,
-                x, z, rate[1], rate[2], dt,
-            )  # fmt: skip
+            start = Trial(gap, opening, x, z, still, t_n, still, way)
+            t_n, tau, way = after_slide(law, parts, start, rate, history.cohesion, dt)
         return Trial(gap, opening, x, z, still, t_n, tau, way)
 
     return trial
