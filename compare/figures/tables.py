@@ -22,8 +22,8 @@ from jointwave.compare.readings import (
     response_spectrum,
     wave_speed,
 )
-from jointwave.compare.readings.attenuation import sampling, waveforms
-from jointwave.compare.readings.recordings import dataset_of
+from jointwave.compare.readings.attenuation import waveforms
+from jointwave.compare.readings.recordings import dataset_of, sampling
 from jointwave.compare.runs import timings
 from jointwave.compare.runs.output import write_csv
 

@@ -11,6 +11,7 @@ solution that then fits best. Amplitudes: never scaled.
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import nan
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -30,8 +31,7 @@ UNEVEN = 0.01  # of the sampling interval: rounding error of printed times
 Results = dict[str, xr.Dataset]
 
 
-@dataclass(frozen=True)
-class Shift:
+class Shift(NamedTuple):
     """The shift added to a curve's times, s; the solution that it then fits, and how well.
 
     onto : empty if nothing could be correlated: no shift. correlation : normalised,

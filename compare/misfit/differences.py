@@ -12,7 +12,6 @@ import numpy as np
 import xarray as xr
 
 from jointwave.compare.misfit.metrics import (
-    Pairing,
     Worst,
     pairings,
     shared_waveforms,
@@ -43,15 +42,18 @@ def peak_differences(one: xr.Dataset, other: xr.Dataset) -> dict[str, PeakDiffer
     have; the second is the reference."""
     found, shared = {}, pairings(one, other)
     for name, quantities in PEAKS.items():
-        there: dict[Position, list[Pairing]] = {}
+        there: dict[Position, list[Worst]] = {}
         for pair in (p for p in shared if p.place.quantity in quantities):
             there.setdefault(pair.place.at, []).append(pair)
-        ours = {at: _peak({p.place.component: p.one for p in some}) for at, some in there.items()}
         peaks = {
-            at: _peak({p.place.component: p.other for p in some}) for at, some in there.items()
+            at: [
+                _peak({p.place.component: getattr(p, side) for p in some})
+                for side in ("one", "other")
+            ]
+            for at, some in there.items()
         }
-        least = FAINT * max(peaks.values(), default=0.0)
-        off = {at: abs(ours[at] / b - 1) for at, b in peaks.items() if b > 0 and b >= least}
+        least = FAINT * max((theirs for _, theirs in peaks.values()), default=0.0)
+        off = {at: abs(a / b - 1) for at, (a, b) in peaks.items() if b > 0 and b >= least}
         if off:
             at = max(off, key=lambda at: off[at])
             found[name] = PeakDifference(sum(off.values()) / len(off), off[at], at)

@@ -30,8 +30,11 @@ from jointwave.results.labels import QUANTITIES
 
 READ_CURVES = "curves of `read_curves`"  # what functions accept
 LEAST_SAMPLES = 3  # needed for a parabola through the peak of a correlation
-EXAMPLES = "stress@20, -stress@20 [MPa] or velocity_x@20.25 [mm/s]"
-EXAMPLES_IN_PLANE = "velocity_x@[20,30], -stress_xx@[20,30] [MPa] or traction_n@[20,20]"
+#: Names of columns, by the kind of the scene.
+EXAMPLES = {
+    "pillar": "stress@20, -stress@20 [MPa] or velocity_x@20.25 [mm/s]",
+    "rock mass": "velocity_x@[20,30], -stress_xx@[20,30] [MPa] or traction_n@[20,20]",
+}
 
 
 @dataclass(frozen=True)
@@ -141,8 +144,9 @@ def _require_recorded(curves: Curves, scenes: Sequence[AnyScene]) -> None:
         return
     place, scene = next(iter(curves.waveforms)), scenes[0]
     if not hasattr(scene.record, place.key):
-        wanted = EXAMPLES if scene.is_column else EXAMPLES_IN_PLANE
-        allowed = f"is not a receiver of a {scene.kind}; columns are named as {wanted}"
+        allowed = (
+            f"is not a receiver of a {scene.kind}; columns are named as {EXAMPLES[scene.kind]}"
+        )
         raise SceneError(curves.file, str(place), None, allowed)
     held = ", ".join(place._replace(at=at).receiver for at in recorded(scene, place.key)) or "none"
     allowed = (
@@ -188,11 +192,16 @@ def _selected(table: Columns, choice: Selection) -> list[tuple[Place, np.ndarray
     columns = [column for column in table.rest if choice.fits(column)]
     alone = len(columns) == 1 and (bool(choice.column) or len(table.rest) == 1)
     label, unit = split_unit(choice.label)
-    wanted, found = _place(label), []
+    wanted, found = parsed(label.removeprefix("-")), []
     for column in columns if wanted or not label else []:
-        place, said = _place(column.name), column.name.lower()
+        place, said = parsed(column.name.removeprefix("-")), column.name.lower()
         if place is None and wanted is None:
-            raise _without_place(column, choice, table)
+            which = f"{column.name}=" if column.name else ""
+            allowed = (
+                f"must be named as {', in a rock mass as '.join(EXAMPLES.values())}, or its place "
+                f"be given as {choice.path}:{which}stress@20; the file holds {_listed(table)}"
+            )
+            raise SceneError(str(choice.path), column.name or "second column", None, allowed)
         bare = alone and said not in QUANTITIES
         if wanted and not place and (bare or said == wanted.quantity):
             place = wanted
@@ -202,27 +211,13 @@ def _selected(table: Columns, choice: Selection) -> list[tuple[Place, np.ndarray
             found.append((place, sign * values))
     if not found:
         held = f"{choice.path} holds {_listed(table)}"
-        allowed = f"must be a label, such as {EXAMPLES}, a column or COLUMN=LABEL; {held}"
+        allowed = f"must be a label, such as {EXAMPLES['pillar']}, a column or COLUMN=LABEL; {held}"
         if wanted and not choice.column:
             allowed = f"{held}; {wanted} must be one of them"
         else:
             allowed = f"{choice.column or label!r} {allowed}"
         raise SceneError("--with", choice.text, None, allowed)
     return found
-
-
-def _place(header: str) -> Place | None:
-    """Return the place that a header or a label names, without its sign; None if it names none."""
-    return parsed(header.removeprefix("-"))
-
-
-def _without_place(column: Column, choice: Selection, table: Columns) -> SceneError:
-    which = f"{column.name}=" if column.name else ""
-    allowed = (
-        f"must be named as {EXAMPLES}, in a rock mass as {EXAMPLES_IN_PLANE}, or its place be "
-        f"given as {choice.path}:{which}stress@20; the file holds {_listed(table)}"
-    )
-    return SceneError(str(choice.path), column.name or "second column", None, allowed)
 
 
 def _listed(table: Columns) -> str:

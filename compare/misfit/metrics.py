@@ -8,7 +8,7 @@ function takes a waveform or result first and its reference second, equally samp
 
 from collections.abc import Sequence
 from math import inf
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -58,16 +58,22 @@ def relative_l2(one: np.ndarray, other: np.ndarray) -> float:
 
 
 class Worst(NamedTuple):
-    """The worst waveform of two results; `place` is None without motion.
+    """The misfit of a waveform from its reference, or that of the worst one of two results.
 
-    of_all : whether the misfit is relative to all motion of the quantity at the receiver, since the
-    component itself carries less than 5 % of it in the reference.
+    misfit : relative L2 distance, or relative to all motion of the quantity at the receiver, then
+    `of_all`, since the component itself carries less than 5 % of it in the reference. place : None
+    without motion. floor : relative error of the reference itself, 0 for a closed form. faint :
+    whether the waveform is too weak to decide the misfit of the results. one, other : the waveform
+    and its reference [n], both minus their static state.
     """
 
     misfit: float
-    place: Place | None = None
+    place: Any = None
     floor: float = 0.0
     of_all: bool = False
+    faint: bool = False
+    one: Any = None
+    other: Any = None
 
     @property
     def judged(self) -> float:
@@ -80,28 +86,6 @@ class Worst(NamedTuple):
         if self.place is None:
             return "nowhere"
         return self.place.words + ", of all motion there" * self.of_all
-
-
-class Pairing(NamedTuple):
-    """One waveform [n] of a result and that of its reference, both minus their static state.
-
-    misfit : relative L2 distance; of a small component that decides, relative to all motion there,
-    then `of_all`. floor : relative error of the reference itself, 0 for a closed form. faint :
-    whether the waveform is too weak to decide the misfit of the results.
-    """
-
-    place: Place
-    one: np.ndarray
-    other: np.ndarray
-    misfit: float
-    floor: float
-    faint: bool = False
-    of_all: bool = False
-
-    @property
-    def worst(self) -> Worst:
-        """The misfit, with its place."""
-        return Worst(self.misfit, self.place, self.floor, self.of_all)
 
 
 def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
@@ -124,12 +108,11 @@ def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
 def worst(one: xr.Dataset, other: xr.Dataset, quantities: Sequence[str] = QUANTITIES) -> Worst:
     """Return the worst waveform of two results among those that carry the motion, of some
     quantities."""
-    of_them = (p for p in pairings(one, other) if p.place.quantity in quantities)
-    found = [p.worst for p in of_them if not p.faint]
-    return max(found, key=lambda w: w.judged, default=Worst(0.0))
+    found = [p for p in pairings(one, other) if p.place.quantity in quantities and not p.faint]
+    return max(found, key=lambda w: w.judged, default=Worst(0.0))._replace(one=None, other=None)
 
 
-def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
+def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Worst]:
     """Return every waveform that both results have, while the reference is known.
 
     Left out is what the scene does not excite: what is zero in both, and what the reference keeps
@@ -144,27 +127,18 @@ def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
         return []
     weight = weigh([place for place, *_ in found], np.array([rms(b) for *_, b in found]))
     kept, errors = [], waveforms(other, "_error")
-    numbers = (each.tolist() for each in weight)
-    for (place, a, b), norm, least, excited in zip(found, *numbers, strict=True):
+    for (place, a, b), norm, least, excited in zip(
+        found, *map(np.ndarray.tolist, weight), strict=True
+    ):
         error = float(errors[place][0]) if place in errors else 0.0
-        pairing = _judged(shown(place, one), a, b, error, norm, least)
-        if (excited or not pairing.faint) and (a.any() or b.any()):
-            kept.append(pairing)
+        here, whole = shown(place, one), norm or inf
+        decides = Worst(rms(a - b) / whole, here, error / whole, True, False, a, b)
+        if not 0 < least <= decides.judged:
+            floor = _ratio(error, rms(b)) if error else 0.0
+            decides = Worst(relative_l2(a, b), here, floor, False, least > 0, a, b)
+        if (excited or not decides.faint) and (a.any() or b.any()):
+            kept.append(decides)
     return kept
-
-
-def _judged(
-    place: Place, one: np.ndarray, other: np.ndarray, error: float, norm: float, least: float
-) -> Pairing:
-    """Return a pairing with its misfit. error : bound on the reference's root-mean-square error;
-    norm, least : what a misfit that decides is relative to, and from where on it decides."""
-    floor = _ratio(error, rms(other)) if error else 0.0
-    alone = Pairing(place, one, other, relative_l2(one, other), floor, faint=least > 0)
-    if least == 0:
-        return alone
-    whole = norm or inf
-    decides = Pairing(place, one, other, rms(one - other) / whole, error / whole, of_all=True)
-    return alone if decides.worst.judged < least else decides
 
 
 def shared_waveforms(

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
 
 from jointwave.compare.misfit.places import Place
 from jointwave.results.labels import UNITS
@@ -41,7 +42,10 @@ def weigh(places: Sequence[Place], moved: np.ndarray) -> Weight:
     unit_of = {quantity: k for k, unit in enumerate(UNITS) for quantity in unit}
     vectors = [(_ONE_VECTOR.get(p.quantity, p.quantity), p.at) for p in places]
     twice = np.array([2.0 if len(set(p.component)) == 2 else 1.0 for p in places])
-    motion = np.sqrt(_sums(vectors, twice * moved**2))
+    squares = pd.Series(twice * moved**2, dtype=float)
+    motion = np.sqrt(
+        squares.groupby(pd.factorize(pd.Series(vectors, dtype=object))[0]).transform("sum")
+    ).to_numpy()
     units = np.array([unit_of[p.quantity] for p in places], dtype=int)
     loudest = np.zeros(len(UNITS))
     np.maximum.at(loudest, units, motion)
@@ -52,15 +56,5 @@ def weigh(places: Sequence[Place], moved: np.ndarray) -> Weight:
     carries = heard & (moved >= CARRIES * motion)
     norm = np.where(carries, moved, np.where(heard, motion, largest))
     least = np.where(carries, 0.0, np.where(heard, CARRIES, FAINT))
-    return Weight(
-        norm,
-        np.where(at_rest, np.inf, least),
-        (moved >= EXCITED * largest) & ~at_rest,
-    )
-
-
-def _sums(keys: Sequence[object], values: np.ndarray) -> np.ndarray:
-    """Return for each value the sum of all that have the same key."""
-    index = {key: i for i, key in enumerate(dict.fromkeys(keys))}
-    group = np.array([index[key] for key in keys], dtype=int)
-    return np.bincount(group, values, len(index))[group]
+    excited = (moved >= EXCITED * largest) & ~at_rest
+    return Weight(norm, np.where(at_rest, np.inf, least), excited)

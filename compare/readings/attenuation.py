@@ -9,7 +9,7 @@ import xarray as xr
 from jointwave.cases.errors import SceneError
 from jointwave.cases.units import UNITS
 from jointwave.compare.misfit.metrics import delay, motion
-from jointwave.compare.readings.recordings import Recording, recording
+from jointwave.compare.readings.recordings import Recording, recording, sampling
 from jointwave.results.labels import RECEIVERS
 
 HEARD = 0.01  # of the largest amplitude of the first record: frequencies that are read
@@ -37,17 +37,9 @@ def waveforms(
         if axis and axis not in named:
             raise SceneError("result", "axis", axis, f"must be one of {', '.join(named)}")
         found = found.isel({components: named.index(axis) if axis else int(loudest)})
-    along = np.array(
-        [result[name].values - result[name].values[0] for name in places if name in result]
-    )
+    along = np.array([result[n].values - result[n].values[0] for n in places if n in result])
     found = found.transpose(receiver, "time").rename({receiver: "receiver"})
     return found.assign_coords(distance=("receiver", np.hypot.reduce(along, axis=0)))
-
-
-def sampling(of: xr.DataArray | xr.Dataset) -> float:
-    """Return the time between samples, s."""
-    time = of["time"].values
-    return float(time[-1] - time[0]) / (len(time) - 1)
 
 
 def spectra(result: Recording, quantity: str = "velocity", axis: str | None = None) -> xr.DataArray:
@@ -82,8 +74,8 @@ def wave_speed(
     one, other : receivers by number. quantity, axis : of which waveforms, as `waveforms` has
     them. Negative where the other one is reached first.
     """
-    row = waveforms(result, quantity, axis)
-    return _way(row, one, other) / _delay(row, one, other)
+    way, late = _passage(waveforms(result, quantity, axis), one, other)
+    return way / late
 
 
 def transfer_function(
@@ -101,7 +93,7 @@ def transfer_function(
     & Wiggins, Geophys. J. R. Astr. Soc. 47, 1976).
     """
     row = waveforms(result, quantity, axis)
-    first, last = (np.fft.rfft(wave.values) for wave in _pair(row, one, other))
+    first, last = np.fft.rfft(_pair(row, one, other))
     level = water_level * np.abs(first).max()
     ratio = last * first.conj() / np.maximum(np.abs(first), level) ** 2
     attrs = {"long_name": f"transfer function of the {quantity}", "units": "1"}
@@ -122,14 +114,12 @@ def quality_factor(
     Quantitative Seismology, 2002, 5.5). What joints reflect is lost to Q as heat is.
     """
     row = waveforms(result, quantity, axis)
-    first, last = (np.fft.rfft(wave.values) for wave in _pair(row, one, other))
-    frequency, way, late = _frequencies(row), _way(row, one, other), _delay(row, one, other)
+    (first, last), frequency = np.fft.rfft(_pair(row, one, other)), _frequencies(row)
+    way, late = _passage(row, one, other)
     heard = np.abs(first) > HEARD * np.abs(first).max()
     heard[0] = False
-    omega = 2 * np.pi * frequency.values[heard]
-    ratio = last[heard] / first[heard]
-    rest = np.angle(ratio * np.exp(1j * omega * late))  # below half a turn
-    lag = omega * late - rest
+    omega, ratio = 2 * np.pi * frequency.values[heard], last[heard] / first[heard]
+    lag = omega * late - np.angle(ratio * np.exp(1j * omega * late))  # to half a turn of `late`
     loss = -np.log(np.abs(ratio))
     with np.errstate(divide="ignore"):  # nothing is lost
         quality = lag / (2 * loss)
@@ -151,20 +141,6 @@ def variables(
     }
 
 
-def _frequencies(row: xr.DataArray) -> xr.Variable:
-    frequency = np.fft.rfftfreq(row.sizes["time"], sampling(row))
-    return xr.Variable("frequency", frequency, {"long_name": "frequency", "units": "Hz"})
-
-
-def _pair(row: xr.DataArray, *receivers: int) -> list[xr.DataArray]:
-    """Return the waveforms at receivers by number."""
-    count = row.sizes["receiver"]
-    for one in receivers:
-        if not -count <= one < count:
-            raise SceneError("result", "receiver", one, f"must be from {-count} to {count - 1}")
-    return [row[one] for one in receivers]
-
-
 def known_distances(row: xr.DataArray) -> np.ndarray:
     """Return the receivers' distances from the first one, m; raises SceneError without them."""
     found = row["distance"].values
@@ -174,14 +150,23 @@ def known_distances(row: xr.DataArray) -> np.ndarray:
     return found
 
 
-def _way(row: xr.DataArray, one: int, other: int) -> float:
-    distance = known_distances(row)
-    _pair(row, one, other)
+def _frequencies(row: xr.DataArray) -> xr.Variable:
+    frequency = np.fft.rfftfreq(row.sizes["time"], sampling(row))
+    return xr.Variable("frequency", frequency, {"long_name": "frequency", "units": "Hz"})
+
+
+def _pair(row: xr.DataArray, *receivers: int) -> np.ndarray:
+    """Return the waveforms at receivers by number [receiver, time]."""
+    count = row.sizes["receiver"]
+    for one in receivers:
+        if not -count <= one < count:
+            raise SceneError("result", "receiver", one, f"must be from {-count} to {count - 1}")
+    return row.values[[*receivers]]
+
+
+def _passage(row: xr.DataArray, one: int, other: int) -> tuple[float, float]:
+    """Return the distance of two receivers, m, and how much later the other one moves, s."""
+    distance, (first, last) = known_distances(row), _pair(row, one, other)
     if distance[other] == distance[one]:
         raise SceneError("result", "receivers", f"{one} and {other}", "must be two places")
-    return float(distance[other] - distance[one])
-
-
-def _delay(row: xr.DataArray, one: int, other: int) -> float:
-    first, last = _pair(row, one, other)
-    return delay(last.values, first.values, sampling(row))
+    return float(distance[other] - distance[one]), delay(last, first, sampling(row))

@@ -19,7 +19,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import pillar_of
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.bars import bar_of
@@ -68,12 +68,12 @@ def deconvolve(scene: AnySource, surface: xr.DataArray, water_level: float = 1e-
 def _column(scene: Scene) -> tuple[Bar, float]:
     """Return a scene's column and the impedance of the rock behind its start, Pa s/m."""
     p, load = calibrate(scene), scene.load
-    slips = p.friction is not None or p.cohesion is not None
+    ends, slips = (
+        (scene.ends.start, scene.ends.end),
+        p.friction is not None or p.cohesion is not None,
+    )
     reasons = [
-        (
-            (scene.ends.start, scene.ends.end) != ("quiet", "free"),
-            "the ends are not quiet and free",
-        ),
+        (ends != ("quiet", "free"), "the ends are not quiet and free"),
         (load.is_across and scene.motion.rotation != "none", "motion.rotation is not 'none'"),
         (load.is_across and bool(load.direction[1]), "the load is neither along nor across"),
         (load.is_across and slips, "a joint may slip"),
@@ -83,14 +83,10 @@ def _column(scene: Scene) -> tuple[Bar, float]:
     bar, impedance = bar_of(scene, resolved=p.own_stiffness is not None), p.at_start.impedance
     if scene.is_uniform and load.is_across:
         (rock,), impedance = bar.rocks, p.shear_impedance
-        modulus, compliance = _sheared(scene, p)
-        sheared = rock._replace(modulus=modulus)
-        bar = replace(bar, rocks=(sheared,), joint_compliance=compliance)
+        modulus = p.shear_modulus
+        compliance = 1 / p.shear_stiffness - 1 / p.regular_shear_stiffness
+        if p.own_shear_stiffness is not None and p.intact_modulus is not None:
+            modulus = p.intact_modulus / (2 * (1 + scene.rock.intact_poisson))
+            compliance = 1 / p.own_shear_stiffness
+        bar = replace(bar, rocks=(rock._replace(modulus=modulus),), joint_compliance=compliance)
     return replace(bar, start=end_of("quiet", impedance), end=end_of("free", impedance)), impedance
-
-
-def _sheared(scene: Scene, p: Properties) -> tuple[float, np.ndarray]:
-    """Return the modulus (Pa) and the compliance of every joint (m/Pa) in shear across the axis."""
-    if p.own_shear_stiffness is None or p.intact_modulus is None:
-        return p.shear_modulus, 1 / p.shear_stiffness - 1 / p.regular_shear_stiffness
-    return p.intact_modulus / (2 * (1 + scene.rock.intact_poisson)), 1 / p.own_shear_stiffness

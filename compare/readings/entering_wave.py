@@ -1,27 +1,25 @@
 """The plane waves that the loads and waves of a scene send into its rock, before any run."""
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.histories import Gabor, LoadHistory, Ricker, Step
 from jointwave.cases.incident import WITHIN, plane_wave
-from jointwave.cases.loads import load_history, velocity_of
+from jointwave.cases.loads import velocity_of
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.quiet_sides import impedances
 from jointwave.cases.partition.joints import region_at, rocks_of
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.scene import Scene
-from jointwave.cases.schema.sources import PlaneLoad
-from jointwave.compare.exact.bar.images import ENTERS
+from jointwave.cases.schema.sources import Wave
 from jointwave.compare.exact.rock_mass.effective_medium import MediumField
 from jointwave.compare.exact.rock_mass.field import field_of
 
 SAMPLES = 20_000  # of a pulse: its peak to 1e-7, its energy to 1e-6
+ABSORBS = "quiet", "matched"  # half of a pressure on it
 SEEN = 0.01  # of the peak of a wavelet, which never quite begins or ends
 
 
@@ -43,34 +41,15 @@ class EnteringWave(NamedTuple):
 def entering_waves(scene: AnyScene) -> list[EnteringWave]:
     """Return the plane waves that enter a scene; none of a couple, a force at a point, or a
     pressure on an opening or on a part of a side."""
-    if scene.is_column:
-        return list(_along_pillar(scene))
-    loads = (
-        wave
-        for i, one in enumerate(scene.loads)
-        if one.amplitude and one.side is not None and one.between is None
-        for wave in _through_side(scene, f"loads[{i}]", one)
-    )
-    return [*_of_waves(scene), *loads]
+    found = [*_of_waves(scene)]
+    for key, load in scene.sources.items():
+        whole = scene.is_column or (not isinstance(load, Wave) and load.side and not load.between)
+        if whole and load.amplitude and getattr(load, "arm", None) is None:
+            found += _of_load(scene, key, load)
+    return found
 
 
-def _along_pillar(scene: Scene) -> Iterator[EnteringWave]:
-    load, p, history = scene.load, calibrate(scene).at_start, load_history(scene)
-    if not load.amplitude or load.arm is not None:
-        return
-    x, y, z = load.direction
-    parts = [(abs(y), p.bar_speed, "along"), (float(np.hypot(x, z)), p.shear_speed, "across")]
-    for share, speed, way in parts:
-        if scene.shakes_base:
-            history, gain = velocity_of(load, load.amplitude), 1.0
-        else:
-            gain = ENTERS[scene.ends.start] / (p.density * speed)
-        if share:
-            gains = share * gain, p.density, speed
-            yield _wave(f"load, {way} the axis", history, *gains, scene.time.duration)
-
-
-def _of_waves(scene: RockMass) -> Iterator[EnteringWave]:
+def _of_waves(scene: AnyScene) -> Iterator[EnteringWave]:
     try:
         field = field_of(scene) if scene.waves else None
     except SceneError:  # no engine takes them, which says why
@@ -86,25 +65,32 @@ def _of_waves(scene: RockMass) -> Iterator[EnteringWave]:
             yield _wave(name, pulse, 1.0, density, speed, scene.time.duration)
 
 
-def _through_side(scene: RockMass, table: str, load: PlaneLoad) -> Iterator[EnteringWave]:
-    """Yield the P and the S wave of a load on the first face of a side."""
-    outline = shape_of(scene.domain)
-    corners, out = outline.faces_of(load.side)[0]
-    normal = out[None]
-    inside = corners.mean(axis=0) - WITHIN * outline.size * normal
-    region = region_at(scene.regions, inside)
-    density = rocks_of(scene)[region[0]].density
-    quiet = getattr(scene.boundaries, load.side or "") == "quiet"
-    history, moved = velocity_of(load, load.amplitude), np.array(load.direction or -normal[0])
-    along = (normal[0] @ moved) * normal[0]
-    dashpot = impedances(scene, normal, region)[0]
-    for part, kind in zip((along, moved - along), "PS", strict=True):
-        share = float(np.linalg.norm(part))
+def _of_load(scene: AnyScene, key: str, load: Any) -> Iterator[EnteringWave]:
+    """Yield the waves of a load along and across the normal of the first face that it acts on."""
+    if scene.is_column:
+        p, out, held = calibrate(scene).at_start, np.array([0.0, -1.0, 0.0]), scene.ends.start
+        density, impedance = p.density, (p.impedance, p.shear_impedance)
+        kinds = "along the axis", "across the axis"
+    else:
+        outline, held = shape_of(scene.domain), getattr(scene.boundaries, load.side)
+        corners, out = outline.faces_of(load.side)[0]
+        region = region_at(
+            scene.regions, (corners.mean(axis=0) - WITHIN * outline.size * out)[None]
+        )
+        density, impedance = (
+            rocks_of(scene)[region[0]].density,
+            impedances(scene, out[None], region)[0],
+        )
+        kinds = "P", "S"
+    along = abs(float(out @ np.array(load.direction or -out)))
+    halved = held in ABSORBS and load.quantity != "incident-stress"
+    shares = along, float(np.sqrt(max(1 - along**2, 0.0)))
+    for share, kind, Z in zip(shares, kinds, impedance, strict=True):
+        moves = load.quantity in ("velocity", "acceleration")
+        gain = share * (1.0 if moves else (0.5 if halved else 1.0) / Z)
         if share > WITHIN:
-            Z = part @ dashpot @ part / share**2
-            gain = 1.0 if load.kind == "base" else (0.5 if quiet else 1.0) / Z
-            gains = share * gain, density, float(Z) / density
-            yield _wave(f"{table}, {kind}", history, *gains, scene.time.duration)
+            history, speed = velocity_of(load, load.amplitude), float(Z) / density
+            yield _wave(f"{key}, {kind}", history, gain, density, speed, scene.time.duration)
 
 
 def _wave(

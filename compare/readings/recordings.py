@@ -141,3 +141,9 @@ def _even(result: xr.Dataset) -> xr.Dataset:
         allowed = f"is {steps.min():g} s; must give at most {MOST_SAMPLES:,} samples"
         raise SceneError("recording", "smallest interval", None, allowed)
     return result.interp(time=np.linspace(time[0], time[-1], count))
+
+
+def sampling(of: xr.DataArray | xr.Dataset) -> float:
+    """Return the time between samples, s."""
+    time = of["time"].values
+    return float(time[-1] - time[0]) / (len(time) - 1)

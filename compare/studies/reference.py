@@ -9,7 +9,7 @@ import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import ENGINES, EXACT, applies, solver
-from jointwave.compare.misfit.metrics import Pairing, pairings, relative_l2, worst
+from jointwave.compare.misfit.metrics import Worst, pairings, relative_l2, worst
 from jointwave.compare.misfit.ranking import applicable, finest, own_exact
 from jointwave.compare.runs.timings import solved
 from jointwave.compare.studies.study import FINEST, NONE, FineRun, Study, StudyPoint
@@ -138,7 +138,7 @@ def _misfit(one: xr.Dataset, other: xr.Dataset, study: Study) -> float:
     time and all its receivers, of the worst component."""
     if study.quantity is None:
         return worst(one, other).misfit
-    by_component: dict[str, list[Pairing]] = {}
+    by_component: dict[str, list[Worst]] = {}
     for pair in pairings(one, other):
         if pair.place.quantity == study.quantity:
             by_component.setdefault(pair.place.component, []).append(pair)
