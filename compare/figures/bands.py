@@ -9,8 +9,7 @@ from matplotlib.figure import Figure
 
 from jointwave.compare.engines import in_order, label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading
-from jointwave.compare.figures.style import style
-from jointwave.compare.figures.units import UNITS
+from jointwave.compare.figures.style import UNITS, style
 from jointwave.compare.misfit.places import Place, waveforms
 
 SEEN = ("stress", "velocity", "traction", "gap", "slip")  # of a result

@@ -17,18 +17,15 @@ from jointwave.compare.engines import names, solver
 from jointwave.compare.figures.animation.bodies import Body, body_of
 from jointwave.compare.figures.animation.settings import (
     PEAK,
-    PRINCIPAL,
     SLIP,
     SPEED,
-    STRESS,
     Quantity,
+    quantities_of,
     settings_for,
 )
-from jointwave.compare.figures.drawing.bodies import seen
+from jointwave.compare.figures.drawing.plane import seen
 from jointwave.results.snapshots import snapshots_of
 
-#: By name; a pillar's stress is that along it.
-QUANTITIES = {"ppv": PEAK, "speed": SPEED, "stress": PRINCIPAL, "slip": SLIP}
 #: Tables that decide no geometry, and a load over time instead of one whose file is not at hand.
 ASIDE = ("waves", "loads", "boundaries", "gravity", "prestress", "expect")
 LOAD = dict.fromkeys(("cycles", "rise", "decay", "file"))
@@ -42,7 +39,7 @@ class Map(NamedTuple):
 
     corners : of the faces [faces, corners, 2]. joints : in pieces [pieces, 2, 2]. values : of the
     faces or, for slip, of the joints' pieces, in the unit of the quantity. time : s, of the
-    snapshot; None for a peak over all.
+    snapshot; None for a peak over all. axes : their names. stretch : of what is up.
     """
 
     corners: np.ndarray
@@ -50,12 +47,14 @@ class Map(NamedTuple):
     values: np.ndarray
     time: float | None
     quantity: Quantity
+    axes: tuple[str, str]
+    stretch: float
 
     @property
     def sizes(self) -> np.ndarray:
         """The areas (m2) of the faces, or lengths (m) of the joints' pieces, that have values."""
         if self.quantity == SLIP:
-            return _lengths(self.joints)
+            return np.linalg.norm(self.joints[:, 1] - self.joints[:, 0], axis=1)
         return shapely.area(shapely.polygons(self.corners))
 
 
@@ -76,18 +75,21 @@ def maps_of(
     scene: AnyScene, results: Sequence[xr.Dataset], quantity: str, time: float | None = None
 ) -> dict[str, Map]:
     """Return the maps of results of one body by their names; raises SceneError as `plot_map`."""
-    shown = QUANTITIES.get(quantity)
-    if shown is None:
-        allowed = f"must be one of {', '.join(QUANTITIES)}"
-        raise SceneError(scene.title, "map", quantity, allowed)
-    if shown == PEAK and time is not None:
+    stress = quantities_of(scene)["stress"]
+    known = {"ppv": PEAK, "speed": SPEED, "stress": stress, "slip": SLIP}
+    if quantity not in known:
+        raise SceneError(scene.title, "map", quantity, f"must be one of {', '.join(known)}")
+    if quantity == "ppv" and time is not None:
         why = "is of one instant, ppv the largest of all: choose speed, stress or slip"
         raise SceneError(scene.title, "time", time, why)
-    if scene.is_column and shown == PRINCIPAL:
-        shown = STRESS
+    engines, variants = ([str(one.attrs[key]) for one in results] for key in ("engine", "variant"))
+    called = [solver(name).label if name in names() else name for name in engines]
+    for more in (variants, [str(k + 1) for k in range(len(called))]):
+        if len(set(called)) < len(called):
+            called = [", ".join(filter(None, both)) for both in zip(called, more, strict=True)]
     found: dict[str, Map] = {}
-    for result, name in zip(results, _names(results), strict=True):
-        found[name] = one = _map(scene, result, shown, time)
+    for result, name in zip(results, called, strict=True):
+        found[name] = one = _map(scene, result, known[quantity], time)
         time = time if one.time is None else one.time
     ends = [(one.corners.min((0, 1)), one.corners.max((0, 1))) for one in found.values()]
     for end in ends[1:]:
@@ -96,34 +98,30 @@ def maps_of(
     return found
 
 
-def _names(results: Sequence[xr.Dataset]) -> list[str]:
-    """Return what results are called: by their solvers, of equal ones also by variant or number."""
-    engines, variants = ([str(one.attrs[key]) for one in results] for key in ("engine", "variant"))
-    found = [solver(name).label if name in names() else name for name in engines]
-    for more in (variants, [str(k + 1) for k in range(len(found))]):
-        if len(set(found)) < len(found):
-            found = [", ".join(filter(None, both)) for both in zip(found, more, strict=True)]
-    return found
-
-
 def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | None) -> Map:
     """Return the map of a result's snapshots, of the one nearest to a time."""
     s = snapshots_of(result)
-    if s is None or (s.stress is None and quantity in (STRESS, PRINCIPAL)):
+    if s is None or (s.stress is None and quantity == quantities_of(scene)["stress"]):
         why = "is needed for a map: the result has no snapshots"
         raise SceneError(scene.title, "record.fields", None, why)
-    settings = settings_for(scene, {"": s})._replace(scale=1.0, stretch=1.0, quantity=quantity)
-    body = body_of(s, scene, settings).front()
-    corners, joints = body.rest[body.faces][..., [0, 2]], _joints(scene)
-    values = body.values
+    view = settings_for(scene, {"": s})
+    body = body_of(s, view._replace(scale=1.0, stretch=1.0, quantity=quantity)).front()
+    corners, joints, values = body.rest[body.faces][..., [0, 2]], _joints(scene), body.values
     if quantity == SLIP:
         if not len(joints) or (scene.is_column and not is_spatial(scene)):
             why = "is of joints along which something moves; this body has none"
             raise SceneError(scene.title, "map", "slip", why)
-        recorded = "field_slip" in result
-        slip = _recorded_slip(result, joints) if recorded else _slip(body, corners, joints)
+        if "field_slip" in result:
+            # Rigid blocks have it without the strain of the rock, which parts them as well.
+            lines = shapely.linestrings(result["field_joints"].values[..., :2])
+            middle = shapely.points(joints.mean(axis=1))
+            nearest = shapely.STRtree(lines).query_nearest(middle, all_matches=False)[1]
+            slip = np.abs(result["field_slip"].values[:, nearest])
+        else:
+            slip = _slip(body, corners, joints)
         values = quantity.factor * slip
-    found = Map(corners, joints, values[0], None, quantity)
+    axes = ("y", "") if view.side else ("x", "y")
+    found = Map(corners, joints, values[0], None, quantity, axes, view.stretch)
     if quantity == PEAK:
         return found
     if time is None:
@@ -139,30 +137,18 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
 def _joints(scene: AnyScene) -> np.ndarray:
     """Return the joints of a scene as they are seen, in pieces [n, 2, 2], m."""
     blocks, turn = seen(scene)
-    sets = 1 + len(scene.soft_layers) if scene.is_column else len(scene.joint_sets)
-    ends = blocks.contacts.ends[blocks.contacts.of_joints(sets)][..., turn]
+    ends = blocks.contacts.ends[blocks.contacts.joint_set >= 0][..., turn]
     longest = float(np.ptp(blocks.outlines.corners, axis=0).max()) / PIECES
     lines = shapely.segmentize(shapely.linestrings(ends), longest)
     places, line = shapely.get_coordinates(lines, return_index=True)
     return np.stack([places[:-1], places[1:]], axis=1)[line[1:] == line[:-1]]
 
 
-def _lengths(pieces: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(pieces[:, 1] - pieces[:, 0], axis=1)
-
-
-def _recorded_slip(result: xr.Dataset, joints: np.ndarray) -> np.ndarray:
-    """Return the size of the slip that a result has of joints, m [snapshots, pieces]: that of rigid
-    blocks is without the strain of the rock, which parts the blocks as well."""
-    tree = shapely.STRtree(shapely.linestrings(result["field_joints"].values[..., :2]))
-    nearest = tree.query_nearest(shapely.points(joints.mean(axis=1)), all_matches=False)[1]
-    return np.abs(result["field_slip"].values[:, nearest])
-
-
 def _slip(body: Body, corners: np.ndarray, joints: np.ndarray) -> np.ndarray:
     """Return the size of the displacement along joints of one side against the other, m [snapshots,
     pieces]; that of a face is read as linear between its corners."""
-    along = (joints[:, 1] - joints[:, 0]) / _lengths(joints)[:, None]
+    along = joints[:, 1] - joints[:, 0]
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
     normal = np.stack([-along[:, 1], 0 * along[:, 0], along[:, 0]], axis=1)  # right, away, up
     beside = CLOSE * np.ptp(corners) * normal[:, [0, 2]]
     moved = []

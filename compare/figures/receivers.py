@@ -8,7 +8,7 @@ import pandas as pd
 import xarray as xr
 
 from jointwave.compare.engines import in_order
-from jointwave.compare.figures.units import UNITS
+from jointwave.compare.figures.style import UNITS
 from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.metrics import motion
 from jointwave.compare.misfit.pairs import Comparison
@@ -165,4 +165,9 @@ def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
         for panel in row
         for name, curve in [*panel.recorded.items(), *panel.given.items()]
     }
-    return pd.DataFrame(columns).rename_axis("time (s)").reset_index()
+    return table_of(columns, "time (s)")
+
+
+def table_of(columns: dict[str, pd.Series], index: str) -> pd.DataFrame:
+    """Return curves by the header of their column, with their common index before them."""
+    return pd.DataFrame(columns).rename_axis(index).reset_index()

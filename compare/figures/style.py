@@ -1,4 +1,5 @@
-"""Styles of figures: one hue per model, one pattern per kind of solution.
+"""Styles and units of figures: one hue per model, one pattern per kind of solution; drawn numbers
+in a multiple of the unit suited to their size.
 
 Engines are wide, light and solid, nested by width so that none hides another where they coincide;
 exact solutions are thin, dark and dashed over them. Hues are those of Okabe & Ito (2008), safe for
@@ -7,47 +8,20 @@ all kinds of colour blindness.
 
 from typing import Any, NamedTuple
 
-from matplotlib import rcParams
-
 from jointwave.compare.engines import names, solver
+from jointwave.compare.solvers.record import LINE, Line, thin
+from jointwave.results.labels import QUANTITIES, label
 
 WIDTH = 11.0  # inches of the page's figures, which it shows at the width of its column
-SIZE, LINE = 9.0, 1.5  # points, of the page's letters, and of lines whose style has width 1.5
-
-
-class Style(NamedTuple):
-    """A curve: colour, width in points, dash pattern, its order, the last drawn on top, and the
-    marker of its samples, if any."""
-
-    colour: str
-    width: float
-    dashes: Any
-    order: int
-    marker: str = ""
-
-    def of_line(self) -> dict[str, Any]:
-        """Return the arguments of matplotlib's plot."""
-        return {
-            "color": self.colour,
-            "linewidth": self.width * rcParams["lines.linewidth"] / LINE,
-            "linestyle": self.dashes,
-            "dash_capstyle": "butt",
-            "zorder": 2 + self.order,
-            "marker": self.marker,
-            "markersize": 3.0,
-            "markerfacecolor": "none",
-        }
-
-
-PERIOD = 18.0  # of the dash patterns, in line widths
+SIZE = 9.0  # points of the page's letters
 
 #: Styles of external curves, in order of files: black and grey, which no solution has, drawn
 #: between engines and exact solutions.
 GIVEN = (
-    Style("#000000", 0.9, "-", 3, "o"),
-    Style("#6e6e6e", 0.9, (0, (6, 2)), 3, "x"),
-    Style("#000000", 0.9, (0, (1.5, 1.5)), 3, "s"),
-    Style("#6e6e6e", 0.9, (0, (6, 2, 1.5, 2)), 3, "+"),
+    Line("#000000", 0.9, 3, "-", "o"),
+    Line("#6e6e6e", 0.9, 3, (0, (6, 2)), "x"),
+    Line("#000000", 0.9, 3, (0, (1.5, 1.5)), "s"),
+    Line("#6e6e6e", 0.9, 3, (0, (6, 2, 1.5, 2)), "+"),
 )
 MOST_MARKS = 150  # largest number of samples with markers
 
@@ -107,23 +81,41 @@ def printed(width: float, size: float) -> dict[Any, Any]:
     }
 
 
-def style(name: str) -> Style:
-    """Return the style of an engine or exact solution; grey for one without a style.
-
-    Every exact solution fills its own part of each period of dashes: where all of them coincide,
-    their dashes alternate.
-    """
-    if name not in names():
-        return Style("#777777", 1.1, (PERIOD, (9, PERIOD - 9)), 3)
-    line = solver(name).line
-    if not line.slot:
-        return Style(line.colour, line.width, "-", line.order)
-    first, last = line.slot
-    dashes = (PERIOD - first, (last - first, PERIOD - (last - first)))
-    return Style(line.colour, line.width, dashes, line.order)
+def style(name: str) -> Line:
+    """Return the line of an engine or exact solution; grey for any other name."""
+    return solver(name).line if name in names() else thin("#777777", 3, (0, 9))
 
 
-def given_style(k: int, samples: int) -> Style:
-    """Return the style of the k-th external file with this many samples."""
-    found = GIVEN[k % len(GIVEN)]
-    return found if samples <= MOST_MARKS else found._replace(marker="")
+MULTIPLES = {"G": 1e9, "M": 1e6, "k": 1e3, "": 1.0, "m": 1e-3, "µ": 1e-6, "n": 1e-9}
+
+#: SI units of the quantities of waveforms.
+UNITS = {name: label(name)["units"] for name in QUANTITIES}
+
+
+class Unit(NamedTuple):
+    """A multiple of an SI unit ("kPa") and its size in SI units."""
+
+    name: str
+    size: float
+
+
+#: Units of waveforms on the page, by SI unit: the same for all scenes.
+DRAWN = {
+    "Pa": Unit("MPa", 1e6),
+    "m/s": Unit("m/s", 1.0),
+    "m": Unit("mm", 1e-3),
+    "rad": Unit("mrad", 1e-3),
+}
+
+
+def in_unit(value: float, si: str) -> str:
+    """Return a value with the multiple of its unit that suits it, in words."""
+    unit = unit_for(si, abs(value))
+    return f"{value / unit.size:.3g} {unit.name}"
+
+
+def unit_for(si: str, largest: float) -> Unit:
+    """Return the multiple of a unit that brings `largest` between 1 and 1000, or the unit itself
+    if there is none."""
+    units = (Unit(prefix + si, size) for prefix, size in MULTIPLES.items())
+    return next((one for one in units if 1 <= largest / one.size < 1000), Unit(si, 1.0))

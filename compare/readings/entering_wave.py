@@ -41,15 +41,15 @@ class EnteringWave(NamedTuple):
 def entering_waves(scene: AnyScene) -> list[EnteringWave]:
     """Return the plane waves that enter a scene; none of a couple, a force at a point, or a
     pressure on an opening or on a part of a side."""
-    found = [*_of_waves(scene)]
-    for key, load in scene.sources.items():
+    found, sources = [*_of_waves(scene)], dict[str, Any](scene.sources)
+    for key, load in sources.items():
         whole = scene.is_column or (not isinstance(load, Wave) and load.side and not load.between)
         if whole and load.amplitude and getattr(load, "arm", None) is None:
             found += _of_load(scene, key, load)
     return found
 
 
-def _of_waves(scene: AnyScene) -> Iterator[EnteringWave]:
+def _of_waves(scene: Any) -> Iterator[EnteringWave]:
     try:
         field = field_of(scene) if scene.waves else None
     except SceneError:  # no engine takes them, which says why

@@ -64,22 +64,44 @@ class Answer(NamedTuple):
         return not self.reason
 
 
-class Line(NamedTuple):
-    """The curve of a solver; widths in points, dashes in line widths, empty: solid.
+LINE = 1.5  # points, of a line whose width is 1.5
+PERIOD = 18.0  # of the dash patterns of exact solutions, in line widths
 
-    slot : the part of each period of dashes that an exact solution's line fills. order : the
-    largest is drawn on top.
-    """
+
+class Line(NamedTuple):
+    """A curve: colour, width in points, its order, the largest on top, the pattern of its dashes in
+    line widths, and the marker of its samples, if any."""
 
     colour: str
     width: float
     order: int
-    slot: tuple[float, ...] = ()
+    dashes: Any = "-"
+    marker: str = ""
+
+    def of_line(self) -> dict[str, Any]:
+        """Return the arguments of matplotlib's plot."""
+        from matplotlib import rcParams  # slow to import
+
+        return {
+            "color": self.colour,
+            "linewidth": self.width * rcParams["lines.linewidth"] / LINE,
+            "linestyle": self.dashes,
+            "dash_capstyle": "butt",
+            "zorder": 2 + self.order,
+            "marker": self.marker,
+            "markersize": 3.0,
+            "markerfacecolor": "none",
+        }
 
 
-def thin(colour: str, order: int, slot: tuple[float, ...]) -> Line:
-    """Return the line of an exact solution: thin and dashed, over those of the engines."""
-    return Line(colour, 1.1, order, slot)
+def thin(colour: str, order: int, slot: tuple[float, float]) -> Line:
+    """Return the line of an exact solution: thin and dashed, over those of the engines.
+
+    slot : the part of each period of dashes that it fills: where all solutions coincide, their
+    dashes alternate.
+    """
+    first, last = slot
+    return Line(colour, 1.1, order, (PERIOD - first, (last - first, PERIOD - (last - first))))
 
 
 class Prepared(NamedTuple):

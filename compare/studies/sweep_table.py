@@ -8,7 +8,7 @@ import pandas as pd
 
 from jointwave.cases.errors import SceneError
 from jointwave.compare.engines import in_words
-from jointwave.compare.figures.units import UNITS
+from jointwave.compare.figures.style import UNITS
 from jointwave.compare.misfit.metrics import Distance
 from jointwave.compare.misfit.places import Place
 from jointwave.compare.runs.output import write_csv

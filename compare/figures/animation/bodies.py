@@ -1,6 +1,7 @@
 """Bodies as the faces of their cells: moved, coloured, and projected onto a picture; of maps and
 films alike."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,6 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 
-from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.figures.animation.settings import (
     PEAK,
     PRINCIPAL,
@@ -72,32 +72,24 @@ class Body(NamedTuple):
         return values.groupby(along.round(9)).mean().T
 
 
-def body_of(s: Snapshots, scene: AnyScene, settings: ViewSettings) -> Body:
+def body_of(s: Snapshots, settings: ViewSettings) -> Body:
     """Return the body of snapshots; lines and sheets of a pillar have its thickness."""
-    up, right = settings.up, np.array([1.0, 0.0, 0.0])
-    if scene.is_column:
-        s, right = _solid(s, scene.pillar.side), np.array([0.0, 1.0, 0.0])
-    axes = np.stack([right, np.cross(up, right), up], axis=1)
+    if settings.side:
+        s = _solid(s, settings.side)
+    axes = np.stack([settings.right, np.cross(settings.up, settings.right), settings.up], axis=1)
     thick = np.array([1.0, settings.stretch, settings.stretch])
     faces, cells = _outside(s)
-    values = _values(s, settings, faces, cells)
-    motion = settings.scale * thick * (s.displacement @ axes)
-    values = settings.quantity.factor * values
-    return Body(thick * (s.points @ axes), motion, faces, values, s.block[cells])
-
-
-def _values(
-    s: Snapshots, settings: ViewSettings, faces: np.ndarray, cells: np.ndarray
-) -> np.ndarray:
-    """Return what the colours show of faces, SI [snapshots, faces]; of a peak a single one."""
     quantity, speed = settings.quantity, np.linalg.norm(s.velocity, axis=2)
     if quantity in (STRESS, PRINCIPAL):
         assert s.stress is not None
-        return (s.stress if s.stress.ndim == 2 else _principal(s.stress))[:, cells]
-    if quantity == VELOCITY:
-        return (s.velocity @ settings.up)[:, faces].mean(axis=2)
-    speed = speed.max(axis=0, keepdims=True) if quantity == PEAK else speed
-    return speed[:, faces].mean(axis=2)
+        values = (s.stress if s.stress.ndim == 2 else _principal(s.stress))[:, cells]
+    elif quantity == VELOCITY:
+        values = (s.velocity @ settings.up)[:, faces].mean(axis=2)
+    else:
+        speed = speed.max(axis=0, keepdims=True) if quantity == PEAK else speed
+        values = speed[:, faces].mean(axis=2)
+    motion = settings.scale * thick * (s.displacement @ axes)
+    return Body(thick * (s.points @ axes), motion, faces, quantity.factor * values, s.block[cells])
 
 
 def _principal(stress: np.ndarray) -> np.ndarray:
@@ -133,37 +125,44 @@ def _normals(corners: np.ndarray) -> np.ndarray:
 def _solid(s: Snapshots, side: float) -> Snapshots:
     """Return snapshots with lines along y, and then sheets, thickened to the side of a section."""
     for kind, thick, axis in (("line", "quad", 0), ("quad", "hexahedron", 2)):
-        if s.kind != kind:
-            continue
-        half, other = np.zeros(3), s.cells + len(s.points)
-        half[axis] = side / 2
-        ends = (s.cells, other[:, ::-1]) if kind == "line" else (s.cells, other)
-        s = s._replace(
-            kind=thick,
-            points=np.concatenate([s.points - half, s.points + half]),
-            cells=np.concatenate(ends, axis=1),
-            displacement=np.concatenate([s.displacement, s.displacement], axis=1),
-            velocity=np.concatenate([s.velocity, s.velocity], axis=1),
-        )
+        if s.kind == kind:
+            half, other = side / 2 * np.eye(3)[axis], s.cells + len(s.points)
+            other = other[:, ::-1] if kind == "line" else other
+            s = s._replace(
+                kind=thick,
+                points=np.concatenate([s.points - half, s.points + half]),
+                cells=np.concatenate([s.cells, other], axis=1),
+                displacement=np.tile(s.displacement, (1, 2, 1)),
+                velocity=np.tile(s.velocity, (1, 2, 1)),
+            )
     return s
 
 
-def colours_of(every: list[np.ndarray], sign: str, colours: str | None = None) -> ScalarMappable:
-    """Return the colours of some values, symmetric around zero where they have a sign.
+def colours_of(
+    every: list[np.ndarray],
+    sign: str,
+    colours: str | None = None,
+    sizes: Sequence[np.ndarray] = (),
+) -> tuple[ScalarMappable, float]:
+    """Return the colours of some values, symmetric around zero where they have a sign, and the part
+    of the values beyond them.
 
     The last colour is at the largest value, or at a percentile of all if few exceed it by far;
-    then the colour bar ends in an arrow. colours : other ones than ours.
+    then the colour bar ends in an arrow. colours : other ones than ours. sizes : of the values of
+    each, of whose sum the part is; absent: all alike.
     """
-    sizes = [np.abs(values).ravel() for values in every]
-    most = max(float(one.max(initial=0.0)) for one in sizes)
-    peak = max(float(np.percentile(one, LOUDEST)) for one in sizes if one.size) if most else 1.0
+    found = [np.abs(values).ravel() for values in every]
+    most = max(float(one.max(initial=0.0)) for one in found)
+    peak = max(float(np.percentile(one, LOUDEST)) for one in found if one.size) if most else 1.0
     is_clipped = most > SPIKE * peak > 0
     peak = peak if is_clipped else most or 1.0
     shown = colormaps[colours or (FIELD if sign else UNSIGNED)].copy()
     if is_clipped:
         ends = "both" if sign else "max"
         shown.colorbar_extend = ends  # type: ignore[assignment]  # its stub has bool
-    return ScalarMappable(Normalize(-peak if sign else 0.0, peak), shown)
+    weight = np.concatenate(list(sizes) or [np.ones(len(one)) for one in found])
+    beyond = weight @ (np.concatenate(found) > peak * (1 + 1e-9)) / weight.sum()
+    return ScalarMappable(Normalize(-peak if sign else 0.0, peak), shown), float(beyond)
 
 
 class BodyView:

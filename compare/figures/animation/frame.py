@@ -13,14 +13,7 @@ from matplotlib.lines import Line2D
 
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import label_of
-from jointwave.compare.figures.animation.bodies import (
-    ABOVE,
-    FRONT,
-    OBLIQUE,
-    BodyView,
-    body_of,
-    colours_of,
-)
+from jointwave.compare.figures.animation import bodies
 from jointwave.compare.figures.animation.settings import (
     PRINCIPAL,
     STRESS,
@@ -30,8 +23,7 @@ from jointwave.compare.figures.animation.settings import (
 from jointwave.compare.figures.animation.snapshots import SceneSnapshots
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.receivers import panels
-from jointwave.compare.figures.style import RC, style
-from jointwave.compare.figures.units import UNITS, unit_for
+from jointwave.compare.figures.style import RC, UNITS, style, unit_for
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.results.snapshots import Snapshots
 
@@ -48,10 +40,10 @@ class Frame:
     def __init__(self, simulated: SceneSnapshots, settings: ViewSettings) -> None:
         self.simulated, self.settings, self.time = simulated, settings, simulated.time
         scene, found = simulated.scene, simulated.found
-        self.bodies = {name: body_of(s, scene, settings) for name, s in found.items()}
+        self.bodies = {name: bodies.body_of(s, settings) for name, s in found.items()}
         values = [body.values for body in self.bodies.values()]
-        self.colours = colours_of(values, settings.quantity.sign)
-        self.views: dict[str, BodyView] = {}
+        self.colours, beyond = bodies.colours_of(values, settings.quantity.sign)
+        self.views: dict[str, bodies.BodyView] = {}
         self.along: dict[str, pd.DataFrame] = {}
         self.profiles: dict[str, Line2D] = {}
         self.waveforms = pd.DataFrame()
@@ -63,14 +55,18 @@ class Frame:
                 self._add_pillars()
             else:
                 axes = self.figure.subplots(1, len(found), sharey=True, squeeze=False)[0]
-                self._add_bodies(axes, ABOVE if scene.in_space else FRONT)
+                self._add_bodies(axes, bodies.ABOVE if scene.in_space else bodies.FRONT)
                 up = "z (m)" if scene.in_space else "y (m)"
                 for ax in axes:
                     ax.set(anchor="N", xlabel="x (m)", ylabel=up * (ax is axes[0]))
-            axes, label = self.figure.axes, settings.quantity.label + self._beyond()
-            self.figure.colorbar(self.colours, ax=axes, label=label, aspect=50, panchor=False)
+            label = settings.quantity.label
+            label += f"; {100 * beyond:.2g} % is beyond" if beyond else ""
+            look: dict[str, Any] = {"aspect": 50, "panchor": False, "label": label}
+            self.figure.colorbar(self.colours, ax=self.figure.axes, **look)
             self.show(0)
-            self.moving = self._moving()
+            faces = [view.faces for view in self.views.values()]
+            moving = [*faces, self.clock, *self.profiles.values(), *self.traces.values()]
+            self.moving: list[Artist] = sorted(moving, key=lambda artist: artist.get_zorder())
             for artist in self.moving:
                 artist.set_animated(True)
             self.figure.canvas.draw()
@@ -98,11 +94,6 @@ class Frame:
             self.figure.draw_artist(artist)
         return np.array(canvas.buffer_rgba())
 
-    def _moving(self) -> list[Artist]:
-        faces = [view.faces for view in self.views.values()]
-        moving = [*faces, self.clock, *self.profiles.values(), *self.traces.values()]
-        return sorted(moving, key=lambda artist: artist.get_zorder())
-
     def _title(self) -> list[str]:
         """Return the lines of the title: the scene, how it is drawn, and what does not apply."""
         scene, caption = self.simulated.scene, self.settings.caption
@@ -116,24 +107,19 @@ class Frame:
         title = ", ".join(part for part in (scene.title, scene.name) if part)
         return [line for words in (title, caption, *missing) for line in wrap(words, LETTERS)]
 
-    def _beyond(self) -> str:
-        """Return how much the colours do not resolve, of all instants, in words; "" if nothing."""
-        most = float(self.colours.get_clim()[1] or 1.0) * (1 + 1e-9)
-        values = np.concatenate([np.abs(body.values).ravel() for body in self.bodies.values()])
-        share = float((values > most).mean())
-        return f"; {100 * share:.2g} % is beyond" if share else ""
-
     def _add_bodies(self, axes: list[Axes], per_away: tuple[float, float]) -> None:
         """Draw each body into axes, below its name."""
         for ax, (name, body) in zip(axes, self.bodies.items(), strict=True):
-            self.views[name] = BodyView(ax, body, self.colours, per_away)
+            self.views[name] = bodies.BodyView(ax, body, self.colours, per_away)
             ax.set_title(label_of(name), color=style(name).colour, fontweight="bold")
         self.clock = axes[-1].set_title("", loc="right", fontsize=14)
 
     def _add_pillars(self) -> None:
+        """Draw the pillars one below the other; below them the colours' quantity along them, and
+        the first receiver's waveform as recorded, to be drawn up to each instant."""
         count = len(self.bodies)
         *axes, profile, waveform = self.figure.subplots(count + 2, 1)
-        self._add_bodies(axes, OBLIQUE)
+        self._add_bodies(axes, bodies.OBLIQUE)
         low = np.min([view.low for view in self.views.values()], axis=0)
         high = np.max([view.high for view in self.views.values()], axis=0)
         height = min(SIZE[0] * (high - low)[1] / (high - low)[0], BODIES / count)
@@ -142,36 +128,27 @@ class Frame:
         for ax in axes:
             ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
             ax.set_axis_off()
-        self._add_profile(profile)
-        profile.set_xlim(low[0], high[0])
-        self._add_waveform(waveform)
-
-    def _add_profile(self, ax: Axes) -> None:
-        """Add the colours' quantity along the pillar."""
-        soft_layers = self.simulated.scene.soft_layers
+        soft_layers, quantity = self.simulated.scene.soft_layers, self.settings.quantity
         for name, body in self.bodies.items():
             self.along[name] = along = body.profile()
-            (self.profiles[name],) = ax.plot(along.columns, along.iloc[0], **style(name).of_line())
+            (line,) = profile.plot(along.columns, along.iloc[0], **style(name).of_line())
+            self.profiles[name] = line
         for layer in soft_layers:
-            ax.axvline(layer.y, color="#999999", linewidth=0.8, linestyle=":")
-        reach = 1.08 * max(float(along.abs().max(axis=None)) for along in self.along.values())
-        reach = reach or 1.0
-        least = 0.0 if not self.settings.quantity.sign else -reach
+            profile.axvline(layer.y, color="#999999", linewidth=0.8, linestyle=":")
+        most = max(float(along.abs().max(axis=None)) for along in self.along.values())
+        reach = 1.08 * most or 1.0
         dotted = f"; dotted: soft layer{'s' * (len(soft_layers) > 1)}" * bool(soft_layers)
-        ax.set(ylim=(least, reach), xlabel=f"y (m){dotted}")
-        ax.set_ylabel(self.settings.quantity.name.replace(" (", "\n("))
-
-    def _add_waveform(self, ax: Axes) -> None:
-        """Add the first receiver's waveform as it was recorded, to be drawn up to each instant."""
+        profile.set(xlim=(low[0], high[0]), ylim=(-reach if quantity.sign else 0.0, reach))
+        profile.set(xlabel=f"y (m){dotted}", ylabel=quantity.name.replace(" (", "\n("))
         first = panels([Comparison(self.simulated.scene, self.simulated.results)])[0][0]
         peak = float(first.curves.abs().max(axis=None))
         unit = unit_for(UNITS[first.place.quantity], 1.001 * peak)
         self.waveforms = first.curves / unit.size
-        self.traces = {n: ax.plot([], [], **style(n).of_line())[0] for n in self.waveforms}
+        self.traces = {n: waveform.plot([], [], **style(n).of_line())[0] for n in self.waveforms}
         reach = 1.08 * peak / unit.size or 1.0
-        ax.set(xlim=1e3 * self.time[[0, -1]], ylim=(-reach, reach))
-        ax.set_ylabel(f"{first.place.named}\n({unit.name})")
-        ax.set_xlabel(f"time (ms); at y = {first.place.at[0]:g} m")
+        waveform.set(xlim=1e3 * self.time[[0, -1]], ylim=(-reach, reach))
+        waveform.set_ylabel(f"{first.place.named}\n({unit.name})")
+        waveform.set_xlabel(f"time (ms); at y = {first.place.at[0]:g} m")
 
 
 def draw_snapshots(name: str, scene: AnyScene, s: Snapshots) -> Figure:
@@ -180,12 +157,12 @@ def draw_snapshots(name: str, scene: AnyScene, s: Snapshots) -> Figure:
     The pillar of instant i is the SVG group NAME-i.
     """
     settings = settings_for(scene, {"": s})
-    body = body_of(s, scene, settings)
-    colours = colours_of([body.values], settings.quantity.sign)
+    body = bodies.body_of(s, settings)
+    colours, _ = bodies.colours_of([body.values], settings.quantity.sign)
     with blank(HEAD + STRIP * len(s.time)) as figure:
         axes = figure.subplots(len(s.time), 1, squeeze=False)[:, 0]
         for i, (ax, time) in enumerate(zip(axes, s.time, strict=True)):
-            view = BodyView(ax, body, colours, OBLIQUE)
+            view = bodies.BodyView(ax, body, colours, bodies.OBLIQUE)
             view.show(i)
             view.faces.set_gid(f"{name}-{i}")
             ax.set(xticks=[], yticks=[], frame_on=False)

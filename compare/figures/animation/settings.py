@@ -9,7 +9,6 @@ import pandas as pd
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.results.snapshots import Snapshots
 
 #: Limits of drawn displacements: of any over the size of the scene; approach of two neighbours over
@@ -18,6 +17,7 @@ FARTHEST, CLOSER, TURNED = 0.04, 0.8, 0.35
 THIN = 0.045  # smallest legible ratio of the pillar's height to its length
 SILENT = 0.1  # axial stress over that of a plane wave of this motion: below it no axial wave
 DEGENERATE = 1.01  # ratio of the squared motions across the axis below which neither prevails
+X, Y, Z = np.eye(3)
 
 
 class Quantity(NamedTuple):
@@ -40,23 +40,22 @@ SPEED = Quantity("particle speed (m/s)")
 PEAK = Quantity("peak particle velocity (m/s)")
 PRINCIPAL = Quantity("larger principal stress (MPa)", 1e-6, "compression positive")
 SLIP = Quantity("slip of joints (mm)", 1e3)
-#: What the colours can show of a pillar, and of a rock mass.
-OF_PILLAR = {"stress": STRESS, "speed": SPEED, "across": VELOCITY}
-OF_ROCK_MASS = {"speed": SPEED, "stress": PRINCIPAL}
 
 
 class ViewSettings(NamedTuple):
     """Settings for drawing a scene.
 
-    up : unit vector [3], upward direction of the picture; y is to the right, x for a rock mass.
-    scale : of the displacements. stretch : of the pillar's thickness. quantity : shown by the
-    colours.
+    up, right : unit vectors [3] of the picture: y of a pillar is to the right, x of a rock mass.
+    scale : of the displacements. stretch : of the thickness as seen. quantity : shown by the
+    colours. side : of the section of a pillar, m, which its lines and sheets are drawn with.
     """
 
     up: np.ndarray
     scale: float
     stretch: float
     quantity: Quantity
+    right: np.ndarray = X
+    side: float = 0.0
 
     @property
     def caption(self) -> str:
@@ -66,8 +65,11 @@ class ViewSettings(NamedTuple):
 
 
 def quantities_of(scene: AnyScene) -> dict[str, Quantity]:
-    """Return what the colours can show of a scene, by name."""
-    return OF_PILLAR if scene.is_column else OF_ROCK_MASS
+    """Return what the colours can show of a pillar or of a rock mass, by name; the stress of a
+    pillar is that along it."""
+    if scene.is_column:
+        return {"stress": STRESS, "speed": SPEED, "across": VELOCITY}
+    return {"speed": SPEED, "stress": PRINCIPAL}
 
 
 def settings_for(
@@ -82,11 +84,21 @@ def settings_for(
     most of its motion across the axis is upwards, a rock mass in its plane or, in space, from the
     south.
     """
-    up, stretch, ours = np.eye(3)[2 if scene.in_space else 1], stretch_of(scene), SPEED
-    if scene.is_column:
-        up, ours = _upwards(found), _quantity(scene, found)
+    up, stretch = Z if scene.in_space else Y, stretch_of(scene)
     largest = min(_largest_scale(scene, s, stretch) for s in found.values())
-    return ViewSettings(up, scale or max(1.0, round_down(largest)), stretch, quantity or ours)
+    view = ViewSettings(up, scale or max(1.0, round_down(largest)), stretch, quantity or SPEED)
+    if not scene.is_column:
+        return view
+    across = next(iter(found.values())).displacement[..., [0, 2]].reshape(-1, 2)
+    squares, axes = np.linalg.eigh(across.T @ across)
+    x, z = axes[:, 1] if squares[1] > DEGENERATE * squares[0] else (1.0, 0.0)  # else x
+    up, plane = np.array([x, 0.0, z]) * np.sign(x + z or 1.0), calibrate(scene).impedance
+    silent = is_spatial(scene) and any(  # then the wave is transverse
+        s.stress is None or np.abs(s.stress).max() < SILENT * plane * np.abs(s.velocity).max()
+        for s in found.values()
+    )
+    ours = quantity or (VELOCITY if silent else STRESS)
+    return view._replace(up=up, right=Y, quantity=ours, side=scene.pillar.side)
 
 
 def stretch_of(scene: AnyScene) -> float:
@@ -94,24 +106,6 @@ def stretch_of(scene: AnyScene) -> float:
     if not scene.is_column:
         return 1.0
     return max(1.0, THIN * scene.pillar.length / scene.pillar.side)
-
-
-def _upwards(found: dict[str, Snapshots]) -> np.ndarray:
-    """Return the direction of most motion across the axis, x where none prevails."""
-    across = next(iter(found.values())).displacement[..., [0, 2]].reshape(-1, 2)
-    squares, axes = np.linalg.eigh(across.T @ across)
-    x, z = axes[:, 1] if squares[1] > DEGENERATE * squares[0] else (1.0, 0.0)
-    return np.array([x, 0.0, z]) * np.sign(x + z or 1.0)
-
-
-def _quantity(scene: Scene, found: dict[str, Snapshots]) -> Quantity:
-    """Return the axial stress, or the motion across if the wave is transverse."""
-    plane = calibrate(scene).impedance
-    silent = any(
-        s.stress is None or np.abs(s.stress).max() < SILENT * plane * np.abs(s.velocity).max()
-        for s in found.values()
-    )
-    return VELOCITY if is_spatial(scene) and silent else STRESS
 
 
 def _largest_scale(scene: AnyScene, s: Snapshots, stretch: float) -> float:

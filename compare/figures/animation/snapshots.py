@@ -10,7 +10,8 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.validate import checked
 from jointwave.compare.engines import ENGINES, Progress, applies
-from jointwave.compare.figures.units import UNITS
+from jointwave.compare.figures.style import UNITS
+from jointwave.compare.misfit.metrics import motion
 from jointwave.compare.runs.reuse import NOWHERE, SNAPSHOTS, ResultFolder
 from jointwave.results.snapshots import Snapshots, snapshots_of
 
@@ -57,7 +58,10 @@ def take(
     for name, result in stored.solve(shown, asked, progress, "" if interval is None else SNAPSHOTS):
         taken = snapshots_of(result)
         assert taken is not None
-        found[name] = taken._replace(stress=_less_static(result, taken.stress))
+        if taken.stress is not None:
+            field = result[["field_stress"]].rename(field_time="time", field_stress="stress")
+            taken = taken._replace(stress=motion(field)["stress"].values)
+        found[name] = taken
         results[name] = result[[q for q in UNITS if q in result]]
     return SceneSnapshots(asked, found, {} if len(found) > 1 else reasons, results)
 
@@ -72,13 +76,3 @@ def with_snapshots(scene: AnyScene, interval: float) -> AnyScene:
     between = interval / max(1, ceil(interval / scene.interval - 1e-9))
     record = scene.record.model_copy(update={"fields": interval, "interval": between})
     return checked(scene.model_copy(update={"record": record}))
-
-
-def _less_static(result: xr.Dataset, stress: np.ndarray | None) -> np.ndarray | None:
-    """Return the stress of the motion, of a pillar as `compare.misfit.metrics.motion` does for
-    waveforms, of a rock mass less that at its start."""
-    if stress is None:
-        return None
-    if stress.ndim > 2 or result.attrs.get("starts") == "at rest under gravity":
-        return stress - stress[:1]
-    return stress - result.attrs.get("prestress", 0.0)

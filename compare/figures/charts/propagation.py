@@ -8,21 +8,15 @@ pillar (`dispersion_theory`).
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib.figure import Figure
 
+from jointwave.compare import readings
 from jointwave.compare.engines import in_order, label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading
 from jointwave.compare.figures.export import SceneFigure
+from jointwave.compare.figures.receivers import table_of
 from jointwave.compare.figures.style import style
 from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.pairs import Comparison
-from jointwave.compare.readings import (
-    dispersion,
-    dispersion_theory,
-    quality_factor,
-    transfer_function,
-    wave_speed,
-)
 from jointwave.compare.readings.attenuation import waveforms
 
 LEAST = 3  # receivers of a row
@@ -52,14 +46,19 @@ def propagation(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     rows = {variant: curves for variant, one in named(comparisons) if (curves := curves_of(one))}
     if not rows:
         return []
-    columns = {
-        f"{solution} | {what} | {variant}": curve
-        for variant, row in rows.items()
-        for solution, curves in row.items()
-        for what, curve in curves.items()
-    }
-    table = pd.DataFrame(columns).rename_axis("frequency (Hz)").reset_index()
-    return [SceneFigure(f"{name}-propagation", TITLE, CAPTION, _draw(rows), table, folded=True)]
+    columns: dict[str, pd.Series] = {}
+    with chart(len(rows), len(NAMES), [2.1], "frequency (Hz)") as (figure, axes):
+        for row, (variant, found) in zip(axes[:, 0], rows.items(), strict=True):
+            for solution, curves in found.items():
+                look = style(THEORY.get(solution, solution)).of_line()
+                for what, curve in curves.items():
+                    row[NAMES.index(what)].plot(curve, label=label_of(solution), **look)
+                    columns[f"{solution} | {what} | {variant}"] = curve
+            for ax, what in zip(row, NAMES, strict=True):
+                set_heading(ax, variant)
+                ax.set_ylabel(what)
+    table = table_of(columns, "frequency (Hz)")
+    return [SceneFigure(f"{name}-propagation", TITLE, CAPTION, figure, table, folded=True)]
 
 
 def curves_of(comparison: Comparison) -> Curves:
@@ -74,7 +73,7 @@ def curves_of(comparison: Comparison) -> Curves:
     scene = comparison.scene
     if found and scene.is_column and not scene.segments:
         frequency = next(iter(found.values()))[TRANSFER].index.values
-        theory = dispersion_theory(scene, frequency)
+        theory = readings.dispersion_theory(scene, frequency)
         for rock in theory.rock.values:
             speed, quality = (theory.sel(rock=rock)[n] for n in ("phase_speed", "quality"))
             curves = {SPEED: speed.to_series(), LOSS: 1 / quality.to_series()}
@@ -85,25 +84,12 @@ def curves_of(comparison: Comparison) -> Curves:
 def _measured(result: xr.Dataset, row: xr.DataArray) -> dict[str, pd.Series]:
     """Return one result's curves at the frequencies that the first receiver has; row : its
     velocities."""
-    first = np.abs(np.fft.rfft(row[0].values))
-    transfer, speed = abs(transfer_function(result)), dispersion(result).phase_speed
-    nearest = float(row["distance"].diff("receiver").min())
-    speed = speed[speed.frequency.values < TOLD_APART * abs(wave_speed(result)) / (2 * nearest)]
+    first, transfer = np.abs(np.fft.rfft(row[0].values)), abs(readings.transfer_function(result))
+    speed, nearest = readings.dispersion(result).phase_speed, row["distance"].diff("receiver").min()
+    apart = abs(readings.wave_speed(result)) / (2 * float(nearest))
+    speed = speed[speed.frequency.values < TOLD_APART * apart]
     heard = (first > HEARD * first.max()) & (transfer.frequency.values > 0)
-    every = transfer, speed, 1 / quality_factor(result).quality
+    every = transfer, speed, 1 / readings.quality_factor(result).quality
     found = (pd.Series(one.values, one.frequency.values) for one in every)
     series = (one.reindex(transfer.frequency.values[heard]).dropna() for one in found)
     return dict(zip(NAMES, series, strict=True))
-
-
-def _draw(rows: dict[str, Curves]) -> Figure:
-    with chart(len(rows), len(NAMES), [2.1], "frequency (Hz)") as (figure, axes):
-        for row, (variant, found) in zip(axes[:, 0], rows.items(), strict=True):
-            for ax, what in zip(row, NAMES, strict=True):
-                set_heading(ax, variant)
-                ax.set_ylabel(what)
-                for name, curves in found.items():
-                    if what in curves:
-                        look = style(THEORY.get(name, name)).of_line()
-                        ax.plot(curves[what], label=label_of(name), **look)
-    return figure

@@ -7,15 +7,13 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import ENGINES, in_order, label_of
 from jointwave.compare.figures.export import SceneFigure, blank
 from jointwave.compare.figures.receivers import FORCES, MOTION, ROTATION, by_component, peaks
-from jointwave.compare.figures.style import DIFFERENCE, FIELD
-from jointwave.compare.figures.units import UNITS, Unit, unit_for
+from jointwave.compare.figures.style import DIFFERENCE, FIELD, UNITS, Unit, unit_for
 from jointwave.compare.misfit.pairs import pairs
 from jointwave.compare.misfit.ranking import own_exact
 
@@ -102,13 +100,6 @@ def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneF
     """
     title = f"{shown.words} along the pillar over time, {variant}"
     title = f"Numerical error of {title}" if shown.exact else f"{title[0].upper()}{title[1:]}"
-    y, time = np.meshgrid(shown.y, shown.time, indexing="ij")
-    values = {f"{d.name} ({d.unit.name})": d.values.ravel() for d in shown.diagrams}
-    table = pd.DataFrame({"y (m)": y.ravel(), "time (s)": time.ravel(), **values})
-    return SceneFigure(name, title, CAPTION, _draw(scene, shown), table, shown.exact)
-
-
-def _draw(scene: Scene, shown: Diagrams) -> Figure:
     columns, ms = max(len(shown.diagrams), 2), 1e3 * shown.time
     with blank(HEIGHT) as figure:
         axes = figure.subplots(1, columns, sharex=True, sharey=True, squeeze=False)[0]
@@ -131,4 +122,7 @@ def _draw(scene: Scene, shown: Diagrams) -> Figure:
         for ax in axes[len(shown.diagrams) :]:
             ax.set_visible(False)
         axes[0].set_ylabel("y (m)")
-    return figure
+    y, time = np.meshgrid(shown.y, shown.time, indexing="ij")
+    values = {f"{d.name} ({d.unit.name})": d.values.ravel() for d in shown.diagrams}
+    table = pd.DataFrame({"y (m)": y.ravel(), "time (s)": time.ravel(), **values})
+    return SceneFigure(name, title, CAPTION, figure, table, shown.exact)

@@ -1,7 +1,6 @@
 """Amplitude spectra of the waveforms, with the characteristic frequencies of the scene."""
 
 from math import pi
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -13,9 +12,8 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.compare.engines import label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading
 from jointwave.compare.figures.export import SceneFigure
-from jointwave.compare.figures.receivers import Panel, in_rows
-from jointwave.compare.figures.style import GREY, style
-from jointwave.compare.figures.units import DRAWN
+from jointwave.compare.figures.receivers import Panel, in_rows, table_of
+from jointwave.compare.figures.style import DRAWN, GREY, style
 from jointwave.compare.misfit.pairs import Comparison
 
 HEIGHT = 2.1  # inches
@@ -23,35 +21,26 @@ DECADES = 5  # drawn below the largest amplitude
 NEAR = 1.25  # ratio of two marks below which their names are on opposite sides
 TAPERED = 0.1  # of the waveform, at its end
 PADDED = 2  # times its length, at least, to the next power of two
-BEYOND = 2.5  # times the highest mark: where spectra end
-OF_LOAD = 25.0  # times the load's frequency, at least
+#: Marks in words, and where spectra end over the frequency of a mark.
+LOAD, CUT_OFF = "load", "chain cut-off"
+MEANING = {LOAD: "1/T of the load", CUT_OFF: "cut-off of the chain of blocks"}
+BEYOND = {LOAD: 25.0, CUT_OFF: 2.5}
 
 
-class Frequency(NamedTuple):
-    """A frequency (Hz) that is marked, and its meaning, short and in words."""
-
-    name: str
-    frequency: float
-    words: str
-
-
-def marks_of(panel: Panel) -> list[Frequency]:
-    """Return the marks of a panel in order of frequency: of the load and, of a pillar, the cut-off
-    of a chain, omega = 2 sqrt(k/m) = 2 c/d (Brillouin 1946), of the least c/d: that of longitudinal
-    waves or, if blocks do not rotate, of shear waves."""
+def marks_of(panel: Panel) -> list[tuple[str, float]]:
+    """Return the marks of a panel, name and frequency (Hz), in order: of the load and, of a pillar,
+    the cut-off of a chain, omega = 2 sqrt(k/m) = 2 c/d (Brillouin 1946), of the least c/d: that of
+    longitudinal waves or, if blocks do not rotate, of shear waves."""
     scene, (quantity, component, _) = panel.comparison.scene, panel.place
-    periods = {one.period for one in scene.pulses if one.period}
-    found, rate = [Frequency("load", 1 / period, "1/T of the load") for period in periods], 0.0
+    found = [(LOAD, 1 / one.period) for one in scene.pulses if one.period]
     if scene.is_column:
         p = calibrate(scene)
         along = quantity in ("stress", "velocity") and component in ("", "y")
         if along or len(p.each) > 1:
-            rate = min(one.bar_speed / one.spacing for one in p.each)
+            found.append((CUT_OFF, min(one.bar_speed / one.spacing for one in p.each) / pi))
         elif scene.motion.rotation == "none" and quantity != "rotation":
-            rate = p.shear_speed / p.spacing
-    if rate:
-        found.append(Frequency("chain cut-off", rate / pi, "cut-off of the chain of blocks"))
-    return sorted(found, key=lambda mark: mark.frequency)
+            found.append((CUT_OFF, p.shear_speed / p.spacing / pi))
+    return sorted(found, key=lambda mark: mark[1])
 
 
 def tapered(values: np.ndarray) -> np.ndarray:
@@ -80,8 +69,8 @@ def spectra_of(panel: Panel) -> pd.DataFrame:
     frequency (Hz), from one wave in the duration to beyond the marks."""
     time = panel.curves.index.values
     frequency, amplitude = spectrum(panel.curves.to_numpy(), float(time[1] - time[0]))
-    ends = [(OF_LOAD if m.name == "load" else BEYOND) * m.frequency for m in marks_of(panel)]
-    drawn = (frequency >= 1 / (time[-1] - time[0])) & (frequency <= max(ends, default=np.inf))
+    end = max((BEYOND[name] * at for name, at in marks_of(panel)), default=np.inf)
+    drawn = (frequency >= 1 / (time[-1] - time[0])) & (frequency <= end)
     return pd.DataFrame(amplitude[drawn], np.round(frequency[drawn], 9), panel.curves.columns)
 
 
@@ -91,8 +80,8 @@ def spectra(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     found = [one for row in grid for one in row]
     if not any(curves.to_numpy().any() for _, curves in found):
         return []
-    marks = {mark.name: mark for panel, _ in found for mark in marks_of(panel)}.values()
-    known = ", ".join(f"{mark.words} {mark.frequency:.4g} Hz" for mark in marks)
+    marks = dict(mark for panel, _ in found for mark in marks_of(panel))
+    known = ", ".join(f"{MEANING[mark]} {frequency:.4g} Hz" for mark, frequency in marks.items())
     caption = (
         "Fourier amplitude of each waveform, its last tenth tapered by half a cosine and padded "
         "with zeros to twice its length or more." + (f" Dotted: {known}." if known else "")
@@ -102,45 +91,39 @@ def spectra(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
         for panel, curves in found
         for solution, curve in curves.items()
     }
-    table = pd.DataFrame(columns).rename_axis("frequency (Hz)").reset_index()
-    title = "Amplitude spectra"
-    return [SceneFigure(f"{name}-spectra", title, caption, _draw(grid), table, folded=True)]
+    table = table_of(columns, "frequency (Hz)")
+    return [SceneFigure(f"{name}-spectra", "Amplitude spectra", caption, _draw(grid), table, True)]
 
 
 def _draw(grid: list[list[tuple[Panel, pd.DataFrame]]]) -> Figure:
-    peaks = pd.Series({panel.unit: 0.0 for row in grid for panel, _ in row})
+    peaks: dict[str, float] = {}  # of all panels of one unit, SI
     for panel, curves in (one for row in grid for one in row):
-        peaks[panel.unit] = max(peaks[panel.unit], curves.max(axis=None))
+        peaks[panel.unit] = max(peaks.get(panel.unit, 0.0), curves.max(axis=None))
     with chart(len(grid), max(map(len, grid)), [HEIGHT], "frequency (Hz)") as (figure, axes):
         for row, found in zip(axes[:, 0], grid, strict=True):
             for ax, (panel, curves) in zip(row, found, strict=False):
-                _draw_spectra(ax, panel, curves, peaks[panel.unit] or 1.0)
+                unit, peak = DRAWN[panel.unit], peaks[panel.unit] or 1.0
+                set_heading(ax, panel.heading)
+                for name, curve in (curves / unit.size).items():
+                    ax.loglog(curve, label=label_of(str(name)), **style(str(name)).of_line())
+                top = peak / unit.size
+                ax.set(ylabel=f"{unit.name}/Hz", ylim=(10.0**-DECADES * top, 2 * top))
+                ax.yaxis.set_minor_locator(NullLocator())
+                _draw_marks(ax, panel, curves.max(axis="columns"), 10.0 ** (-DECADES / 4) * peak)
     return figure
 
 
-def _draw_spectra(ax: Axes, panel: Panel, curves: pd.DataFrame, peak: float) -> None:
-    """Draw the spectra of a panel and its marks; peak : of all panels with its unit, SI."""
-    unit = DRAWN[panel.unit]
-    set_heading(ax, panel.heading)
-    for name, curve in (curves / unit.size).items():
-        ax.loglog(curve, label=label_of(str(name)), **style(str(name)).of_line())
-    top = peak / unit.size
-    ax.set(ylabel=f"{unit.name}/Hz", ylim=(10.0**-DECADES * top, 2 * top))
-    ax.yaxis.set_minor_locator(NullLocator())
-    _draw_marks(ax, marks_of(panel), curves.max(axis="columns"), 10.0 ** (-DECADES / 4) * peak)
-
-
-def _draw_marks(ax: Axes, marks: list[Frequency], largest: pd.Series, middle: float) -> None:
+def _draw_marks(ax: Axes, panel: Panel, largest: pd.Series, middle: float) -> None:
     """Draw the marks; a name is to the left if the next mark is near, and at the top where the
     curves, at most `largest`, are below `middle`."""
-    following = [mark.frequency for mark in marks[1:]] + [np.inf]
-    for mark, after in zip(marks, following, strict=True):
-        is_left = after < NEAR * mark.frequency
-        is_high = np.interp(mark.frequency, largest.index, largest) < middle
-        ax.axvline(mark.frequency, color=GREY, linewidth=0.8, linestyle=":", zorder=1)
+    marks = marks_of(panel)
+    following = [at for _, at in marks[1:]] + [np.inf]
+    for (name, at), after in zip(marks, following, strict=True):
+        is_left, is_high = after < NEAR * at, np.interp(at, largest.index, largest) < middle
+        ax.axvline(at, color=GREY, linewidth=0.8, linestyle=":", zorder=1)
         ax.annotate(
-            mark.name,
-            (mark.frequency, 0.97 if is_high else 0.03),
+            name,
+            (at, 0.97 if is_high else 0.03),
             (-2 if is_left else 2, 0),
             xycoords=("data", "axes fraction"),
             textcoords="offset points",

@@ -16,9 +16,19 @@ from jointwave.compare.engines import ENGINES, in_order, label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading, share
 from jointwave.compare.figures.export import SceneFigure
 from jointwave.compare.figures.receivers import Panel, curve_table, in_rows, panels
-from jointwave.compare.figures.style import PALE, RC, Style, given_style, printed, style
-from jointwave.compare.figures.units import DRAWN, UNITS, Unit, unit_for
+from jointwave.compare.figures.style import (
+    DRAWN,
+    GIVEN,
+    MOST_MARKS,
+    PALE,
+    RC,
+    UNITS,
+    printed,
+    style,
+    unit_for,
+)
 from jointwave.compare.misfit.pairs import A_COMPARISON, Comparison
+from jointwave.compare.solvers.record import Line
 
 #: Keys of a scene that do not change its physics, or only its numerical solution.
 ASIDE = {"title", "source", "name", "expect", "numerics", "record", "where"}
@@ -33,7 +43,7 @@ VARIANTS = (
     *("#9ad14b", "#e0559f", "#3b6fd4", "#1b0c3f"),
     *("#a5d65a", "#e68ab8", "#3f8fd6", "#b5432e", "#4b3fa8", "#000000"),
 )
-DOTS = Style("#000000", 0.9, (0, (1.0, 2.0)), 12)  # of references under variants
+DOTS = Line("#000000", 0.9, 12, (0, (1.0, 2.0)))  # of references under variants
 
 TITLE = "Waveforms at the receivers"
 STYLES = (
@@ -50,7 +60,7 @@ class Trace(NamedTuple):
     """A waveform, SI over time (s), and its residual from the reference, if it has one."""
 
     label: str
-    style: Style
+    style: Line
     curve: pd.Series
     residual: pd.Series | None = None
 
@@ -106,10 +116,9 @@ def figure(
     width : mm. font_size : points.
     """
     given: Any = comparisons if isinstance(comparisons, list | tuple) else [comparisons]
-    found = list(given)
-    for one in found or [None]:
+    for one in given or [None]:
         require(one, Comparison, "figure", "type", A_COMPARISON)
-    return draw_solutions(found, False, printed(width, font_size))
+    return draw_solutions([*given], False, printed(width, font_size))
 
 
 def draw_solutions(
@@ -136,8 +145,8 @@ def draw_overlays(
             share(upper for _, upper, *_ in pairs)
         for overlay, upper, *lower in pairs:
             draw_waveforms(upper, overlay)
-            if lower:
-                _draw_residuals(lower[0], overlay)
+            for ax in lower:
+                _draw_residuals(ax, overlay)
     return figure
 
 
@@ -149,28 +158,30 @@ def draw_waveforms(ax: Axes, overlay: Overlay) -> None:
     rest = f"\nless {overlay.at_rest / unit.size:.4g} at rest" if rests else ""
     set_heading(ax, overlay.heading)
     ax.set_ylabel(f"{overlay.quantity} ({unit.name}){rest}")
-    _plot(ax, unit, [(t.curve, t.style, t.label) for t in overlay.traces])
+    _plot(ax, unit.size, overlay.traces)
 
 
 def _draw_residuals(ax: Axes, overlay: Overlay) -> None:
-    found = [(t, t.residual) for t in overlay.traces if t.residual is not None]
-    if not found:
-        return
-    largest = max(float(residual.abs().max()) for _, residual in found)
-    peak = max(float(t.curve.abs().max()) for t in overlay.traces)
-    unit = unit_for(UNITS[overlay.quantity], largest)
-    size = f", ≤ {100 * largest / peak:.2g}\u00a0% of the peak" if peak else ""
-    set_heading(ax, f"less {overlay.reference} ({unit.name}){size}", small=True)
-    ax.locator_params(axis="y", nbins=4)
-    thin = [(r, t.style._replace(width=min(t.style.width, THIN)), t.label) for t, r in found]
-    _plot(ax, unit, thin)
+    found = [
+        t._replace(curve=t.residual, style=t.style._replace(width=min(t.style.width, THIN)))
+        for t in overlay.traces
+        if t.residual is not None
+    ]
+    if found:
+        largest, peak = (
+            max(float(t.curve.abs().max()) for t in some) for some in (found, overlay.traces)
+        )
+        unit = unit_for(UNITS[overlay.quantity], largest)
+        size = f", ≤ {100 * largest / peak:.2g}\u00a0% of the peak" if peak else ""
+        set_heading(ax, f"less {overlay.reference} ({unit.name}){size}", small=True)
+        ax.locator_params(axis="y", nbins=4)
+        _plot(ax, unit.size, found)
 
 
-def _plot(ax: Axes, unit: Unit, curves: list[tuple[pd.Series, Style, str]]) -> None:
+def _plot(ax: Axes, size: float, traces: list[Trace]) -> None:
     ax.axhline(0, color=PALE, linewidth=0.4 * rcParams["lines.linewidth"], zorder=1)
-    for curve, drawn, label in curves:
-        time = 1e3 * curve.index.to_numpy()
-        ax.plot(time, curve / unit.size, label=label, **drawn.of_line())
+    for label, drawn, curve, _ in traces:
+        ax.plot(1e3 * curve.index.to_numpy(), curve / size, label=label, **drawn.of_line())
 
 
 def by_solution(panel: Panel) -> Overlay:
@@ -182,11 +193,11 @@ def by_solution(panel: Panel) -> Overlay:
     ]
     for k, beside in enumerate(panel.comparison.besides):
         if (name := beside.curves.name) in panel.given:
-            drawn = given_style(k, len(beside.time))
+            drawn = GIVEN[k % len(GIVEN)]
+            drawn = drawn if len(beside.time) <= MOST_MARKS else drawn._replace(marker="")
             traces.append(Trace(name, drawn, panel.given[name]))
-    return Overlay(
-        panel.heading, panel.place.quantity, panel.at_rest, label_of(panel.reference), traces
-    )
+    reference = label_of(panel.reference)
+    return Overlay(panel.heading, panel.place.quantity, panel.at_rest, reference, traces)
 
 
 def by_variant(comparisons: list[Comparison]) -> list[list[Overlay]]:
@@ -205,29 +216,28 @@ def by_variant(comparisons: list[Comparison]) -> list[list[Overlay]]:
 
 def _of_engine(engine: str, row: list[Panel]) -> Overlay:
     """Return an engine's waveform in every variant, and the reference of each as dots."""
-    traces, references = [], list[tuple[str, Trace]]()
+    traces, references = list[Trace](), list[tuple[str, Trace]]()
     for panel, drawn in zip(row, variant_styles(len(row)), strict=True):
         curves, known = panel.curves, panel.reference
-        if engine not in curves:
-            continue
-        traces.append(Trace(panel.variant, drawn, curves[engine], panel.residuals.get(engine)))
-        if known != engine and known in curves:
-            references.append((known, Trace(REFERENCE, DOTS, curves[known])))
-    rest = {panel.at_rest for panel in row}
+        if engine in curves:
+            traces.append(Trace(panel.variant, drawn, curves[engine], panel.residuals.get(engine)))
+            if known != engine and known in curves:
+                references.append((known, Trace(REFERENCE, DOTS, curves[known])))
+    rest, place = {panel.at_rest for panel in row}, row[0].place
     at_rest = rest.pop() if len(rest) == 1 else 0.0
-    traces += [dots for _, dots in references]
-    several, place = len({name for name, _ in references}) != 1, row[0].place
+    several = len({name for name, _ in references}) != 1
     words = f"the {REFERENCE}" if several else label_of(references[0][0])
+    traces += [dots for _, dots in references]
     return Overlay(f"{label_of(engine)}, {place.heading}", place.quantity, at_rest, words, traces)
 
 
-def variant_styles(count: int) -> list[Style]:
+def variant_styles(count: int) -> list[Line]:
     """Return the styles of superposed variants: the first wide and light, the last thin and dark,
     so that each is visible where they coincide."""
     few = VARIANTS[:4] if count <= 4 else VARIANTS[4:]
     at = np.linspace(0, len(few) - 1, count).round().astype(int)
     widths = np.linspace(3.4, 1.0, count).round(2).tolist()
-    return [Style(few[k], w, "-", i) for i, (k, w) in enumerate(zip(at, widths, strict=True))]
+    return [Line(few[k], w, i) for i, (k, w) in enumerate(zip(at, widths, strict=True))]
 
 
 def changed_key(comparisons: list[Comparison]) -> str | None:

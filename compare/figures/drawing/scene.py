@@ -13,8 +13,7 @@ from jointwave.cases.schema.pulse import Pulse
 from jointwave.compare.figures.drawing import plane, space
 from jointwave.compare.figures.drawing.sketch import LOAD, Sketch
 from jointwave.compare.figures.export import SceneFigure, blank
-from jointwave.compare.figures.style import WIDTH
-from jointwave.compare.figures.units import unit_for
+from jointwave.compare.figures.style import WIDTH, unit_for
 from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.pairs import Comparison
 
@@ -24,6 +23,7 @@ CAPTION = (
     "Drawn from the scene file; blue marks: receivers, red: loads and waves, as over time beside."
 )
 PULSE, LOW, FOOT, TALLEST = 1.3, 0.75, 0.55, 3.6  # inches: pulse, lowest drawing, below, tallest
+FLAT = 0.3  # height over width of drawings, below which they are one below the other
 ENTRIES, LINE = 6, 0.25  # of the legend in a line, and inches of one
 SAMPLES = 400
 UNITS = {
@@ -65,9 +65,8 @@ def sketch_of(scene: AnyScene, explode: float = 0.0) -> Sketch:
 
 
 def _figure(scenes: dict[str, AnyScene], sketches: list[Sketch]) -> Figure:
-    """Draw pillars one below the other, rock masses in pairs, each with its pulse beside it."""
-    one = next(iter(scenes.values())).is_column or len(scenes) == 1
-    pairs = 1 if one else 2
+    """Draw flat scenes one below the other, others in pairs, each with its pulse beside it."""
+    pairs = 1 if len(scenes) == 1 or sketches[0].ratio < FLAT else 2
     rows = [sketches[k : k + pairs] for k in range(0, len(sketches), pairs)]
     width = WIDTH / pairs - PULSE - 0.9
     ratios = (max(sketch.ratio for sketch in row) for row in rows)
@@ -82,9 +81,6 @@ def _figure(scenes: dict[str, AnyScene], sketches: list[Sketch]) -> Figure:
             sketch.draw(ax)
             if len(scenes) > 1:
                 ax.set_title(f"({chr(97 + k)})  {words}")
-            if scene.is_column:
-                ax.set(yticks=[], ylabel=sketch.axes[1])
-                ax.spines["left"].set_visible(False)
             handles |= {artist.get_label(): artist for artist in ax.get_legend_handles_labels()[0]}
             _draw_pulse(beside, scene)
         for ax in axes[len(sketches) :].ravel():

@@ -24,6 +24,8 @@ SIDES: dict[str, tuple[float, Any]] = {
     "roller": (3.4, (0, (0.6, 0.6))),
     "periodic": (1.4, (0, (1.0, 1.5))),
 }
+#: Colours of joint sets, in order; safe for all kinds of colour blindness (Tol 2021, bright).
+SETS = ("#4477aa", "#ee6677", "#228833", "#aa3377", "#ccbb44", "#66ccee")
 MANY = 3000  # lines or blocks of one name above which they are an image in the drawing
 
 
@@ -32,8 +34,8 @@ class Sketch(NamedTuple):
 
     shapes : by the functions below, in drawing order; a name that begins with "_" is not in the
     legend. low, high : the shown rectangle [2]. axes : their names. stretch : of what is up.
-    size : in words. ticks : whether the axes are shown. image : of the rectangle [h, w, 4], below
-    all shapes, or None.
+    size : in words. ticks : the axes that have any, of "xy". image : of the rectangle [h, w, 4],
+    below all shapes, or None.
     """
 
     shapes: list[Artist]
@@ -42,7 +44,7 @@ class Sketch(NamedTuple):
     axes: tuple[str, str]
     stretch: float = 1.0
     size: str = ""
-    ticks: bool = True
+    ticks: str = "xy"
     image: np.ndarray | None = None
 
     @property
@@ -59,8 +61,11 @@ class Sketch(NamedTuple):
         ax.set(xlabel=f"{right}{self.size}", ylabel=up, aspect=self.stretch, anchor="S")
         if self.image is not None:
             ax.imshow(self.image, extent=(self.low[0], self.high[0], self.low[1], self.high[1]))
+        if "y" not in self.ticks:
+            ax.set(yticks=[], ylabel=self.axes[1])
+            ax.spines["left"].set_visible(False)
         if not self.ticks:
-            ax.set(xlabel=self.size, ylabel="", xticks=[], yticks=[], frame_on=False)
+            ax.set(xlabel=self.size, ylabel="", xticks=[], frame_on=False)
         ax.set(xlim=(self.low[0], self.high[0]), ylim=(self.low[1], self.high[1]))
 
     def table(self) -> pd.DataFrame:

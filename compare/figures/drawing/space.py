@@ -1,6 +1,5 @@
 """The drawing of a rock mass in space: its blocks from in front, by PyVista where installed."""
 
-from collections.abc import Iterator
 from importlib.util import find_spec
 
 import numpy as np
@@ -11,21 +10,10 @@ from matplotlib.colors import to_rgb
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.partition.scene import blocks_of_scene
-from jointwave.cases.partition.shape import SIDES, Shape, shape_of
+from jointwave.cases.partition.shape import SIDES, shape_of
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.compare.figures.drawing.bodies import SETS
-from jointwave.compare.figures.drawing.plane import LENGTH
-from jointwave.compare.figures.drawing.sketch import (
-    INK,
-    ROCKS,
-    Sketch,
-    arrow,
-    gravity,
-    lines,
-    note,
-    receivers,
-    shaking,
-)
+from jointwave.compare.figures.drawing.sketch import INK, ROCKS, SETS, Sketch, lines, note
+from jointwave.compare.figures.drawing.surroundings import surroundings
 
 TURN, RISE = np.radians([28.0, 24.0])  # of the viewer from the front to the right, and up
 RIGHT = np.array([np.cos(TURN), np.sin(TURN), 0.0])
@@ -55,30 +43,26 @@ def sketch_of(scene: RockMass, explode: float = 0.0) -> Sketch:
     low, high = places.min(axis=0), places.max(axis=0)
     margin = MARGIN * float((high - low).max())
     low, high = low - margin, high + margin
-    by_pyvista, record = find_spec("pyvista") is not None, scene.record
+    by_pyvista = find_spec("pyvista") is not None
     named = {one.name: SETS[k % len(SETS)] for k, one in enumerate(scene.joint_sets)}
     named = named if walls or explode else {}  # else no joint is bare
     named |= {one.name: ROCKS[(k + 1) % len(ROCKS)] for k, one in enumerate(scene.regions)}
     named |= {"opening": WALLS} if walls else {}
+    size = float((domain.high - domain.low).max())
     shapes = [
         *([] if by_pyvista else [_painted(faces, colours)]),
         *(PolyCollection([], facecolors=colour, label=name) for name, colour in named.items()),
-        *receivers("point", [ONTO @ one for one in record.points], "o"),
-        *receivers("point of a joint", [ONTO @ one for one in record.joints], "^"),
-        *_sources(scene, domain, 1 + explode),
+        *surroundings(scene, domain, ONTO, size, 1 + explode),
     ]
     foot = low + 0.6 * margin
     for name, axis in zip("xyz", ONTO.T, strict=True):
         shapes += lines(f"_{name}", [[foot, foot + 0.5 * margin * axis]], INK, 1.0)
         shapes.append(note(foot + 0.75 * margin * axis, name, "center"))
-    if scene.gravity is not None:
-        at, down = np.array([low[0] + 2 * margin, high[1] - 0.8 * margin]), scene.gravity.direction
-        shapes += gravity(at, ONTO @ down, 0.6 * margin, scene.gravity.acceleration)
     words = " × ".join(f"{x:g}" for x in domain.high - domain.low) + f" m, {blocks.count:,} blocks"
     words += f", moved apart by {explode:g} of their distance" if explode else ""
     words += "\ncut open through the middle of the openings" if walls else ""
     image = _rendered(faces, colours, low, high) if by_pyvista else None
-    return Sketch(shapes, low, high, ("right", "up"), size=words, ticks=False, image=image)
+    return Sketch(shapes, low, high, ("right", "up"), size=words, ticks="", image=image)
 
 
 def _faces(
@@ -137,26 +121,3 @@ def _rendered(
         plotter.camera.parallel_scale = height / 2
         plotter.reset_camera_clipping_range()
         return plotter.screenshot(return_img=True, transparent_background=True)
-
-
-def _sources(scene: RockMass, domain: Shape, wide: float) -> Iterator[Artist]:
-    """Yield the arrows of waves, and of loads on sides and at points; wide : by how much the blocks
-    are farther apart."""
-    middle, half = (domain.low + domain.high) / 2, (domain.high - domain.low) / 2
-    length = LENGTH * 2 * float(half.max())
-    for wave in scene.waves:
-        n = np.array(wave.direction)
-        with np.errstate(divide="ignore"):
-            tail = middle - (wide * float(np.min(half / np.abs(n))) + 1.1 * length) * n
-        yield arrow(ONTO @ tail, ONTO @ (tail + length * n))
-        yield note(ONTO @ (tail - 0.3 * length * n), wave.kind, "center")
-        if wave.polarisation is not None:
-            yield shaking(ONTO @ tail, ONTO @ wave.polarisation, length)
-    for load in (one for one in scene.loads if one.opening is None):
-        inwards = -domain.normals()[load.side][0] if load.side else np.array(load.direction)
-        at = middle - half * inwards if load.side else np.array(load.at)
-        at = middle + wide * (at - middle)
-        if load.kind == "base":
-            yield shaking(ONTO @ at, ONTO @ load.direction, 1.5 * length)
-        else:
-            yield arrow(ONTO @ (at - length * inwards), ONTO @ at)

@@ -10,10 +10,9 @@ from matplotlib.text import Annotation
 
 from jointwave import cases
 from jointwave.cases.read import load_tables
-from jointwave.compare.figures.drawing.bodies import SETS
 from jointwave.compare.figures.drawing.plane import THIN, sketch_of
 from jointwave.compare.figures.drawing.scene import pulse_curve, scene_figure
-from jointwave.compare.figures.drawing.sketch import INK, MANY
+from jointwave.compare.figures.drawing.sketch import INK, MANY, SETS
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.scenes import find
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from jointwave.compare.figures.units import unit_for
+from jointwave.compare.figures.style import unit_for
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from jointwave import cases
 from jointwave.compare.figures.animation.bodies import body_of
 from jointwave.compare.figures.animation.settings import (
     PRINCIPAL,
@@ -12,19 +11,16 @@ from jointwave.compare.figures.animation.settings import (
     VELOCITY,
     ViewSettings,
 )
-from jointwave.compare.scenes import find
 
-X, Z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+X, Y, Z = np.eye(3)
 
 
 @pytest.fixture
-def body_at(pillar):
+def body_at():
     """Return a function that gives the body of snapshots of a pillar of unit side."""
-    unit = {"length": 3.0, "side": 1.0, "block": 1.0}
-    scene = pillar(pillar=unit, record={"stress": [1.0]})
 
     def made(s, up=X, scale=1.0, stretch=1.0, quantity=STRESS):
-        return body_of(s, scene, ViewSettings(np.array(up), scale, stretch, quantity))
+        return body_of(s, ViewSettings(np.array(up), scale, stretch, quantity, Y, 1.0))
 
     return made
 
@@ -97,7 +93,6 @@ def test_the_principal_stress_of_larger_size_in_the_plane_and_in_space(row):
     of_space = [stress[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))]
     flat = [2e6, 1e6, 0.0, 3e6, 0.0, 0.0]
     settings = ViewSettings(Z, 1.0, 1.0, PRINCIPAL)
-    scene = cases.load_variant(find("rock-mass/one-joint"))
-    space = body_of(row(1, "quad", stress=[[of_space], [flat]]), scene, settings)
-    plane = body_of(row(1, "quad", stress=[[[0] * 3], [[2e6, 1e6, 3e6]]]), scene, settings)
+    space = body_of(row(1, "quad", stress=[[of_space], [flat]]), settings)
+    plane = body_of(row(1, "quad", stress=[[[0] * 3], [[2e6, 1e6, 3e6]]]), settings)
     np.testing.assert_allclose(space.values[:, 0], [-5.0, plane.values[1, 0]], rtol=1e-12)

@@ -37,7 +37,7 @@ def simulated():
 def test_cells_are_displaced_and_coloured_by_their_speed(simulated):
     """2 m/s."""
     settings = settings_for(simulated.scene, simulated.found, 1000.0)
-    body = body_of(simulated.found["dem"], simulated.scene, settings)
+    body = body_of(simulated.found["dem"], settings)
     np.testing.assert_allclose(body.values, [[0, 0], [0, 2.0]])
     corners = (body.rest + body.motion[1])[body.faces][..., [0, 2]]
     np.testing.assert_allclose(corners[0], SQUARE)
