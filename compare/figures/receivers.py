@@ -1,7 +1,7 @@
 """Waveforms of a comparison at its receivers, of all solutions: a panel for each that moves."""
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -168,6 +168,6 @@ def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
     return table_of(columns, "time (s)")
 
 
-def table_of(columns: dict[str, pd.Series], index: str) -> pd.DataFrame:
-    """Return curves by the header of their column, with their common index before them."""
+def table_of(columns: Any, index: str) -> pd.DataFrame:
+    """Return curves by header with their common index, which is named, in front of them."""
     return pd.DataFrame(columns).rename_axis(index).reset_index()

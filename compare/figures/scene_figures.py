@@ -19,8 +19,8 @@ from jointwave.compare.figures.charts.waveforms import (
 )
 from jointwave.compare.figures.drawing.scene import scene_figure, sketch_of
 from jointwave.compare.figures.export import SceneFigure, blank
-from jointwave.compare.figures.receivers import Panel
-from jointwave.compare.figures.variants import variant_names
+from jointwave.compare.figures.receivers import Panel, table_of
+from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import own_exact
 from jointwave.compare.runs.reuse import NOWHERE, ResultFolder
@@ -36,29 +36,20 @@ def figures_of(
     name : prefix of file names ("fig-03"). fields : of `along_pillar` for each variant; empty: no
     space-time diagrams.
     """
+    along = [
+        space_time(f"{name}-space-time-{k}{'-exact' * shown.exact}", one.scene, variant, shown)
+        for k, ((variant, one), field) in enumerate(zip(named(comparisons), fields, strict=False))
+        for shown in diagrams_of(one.scene, field)
+    ]
     return [
         scene_figure(name, comparisons),
         *peak_velocities(name, comparisons),
         *waveforms(name, comparisons),
-        *_space_time(name, comparisons, fields),
+        *(one._replace(folded=k > 0) for k, one in enumerate(along)),
         *spectra(name, comparisons),
         *propagation(name, comparisons),
         *energy(name, comparisons),
     ]
-
-
-def _space_time(
-    name: str, comparisons: list[Comparison], fields: list[dict[str, xr.Dataset]]
-) -> list[SceneFigure]:
-    variants = zip(comparisons, variant_names(comparisons), fields, strict=False)
-    figures = [
-        space_time(
-            f"{name}-space-time-{k}{'-exact' * shown.exact}", comparison.scene, variant, shown
-        )
-        for k, (comparison, variant, found) in enumerate(variants)
-        for shown in diagrams_of(comparison.scene, found)
-    ]
-    return figures[:1] + [one._replace(folded=True) for one in figures[1:]]
 
 
 def lead_figure(name: str, panel: Panel) -> SceneFigure:
@@ -71,8 +62,7 @@ def lead_figure(name: str, panel: Panel) -> SceneFigure:
         handles = right.get_legend_handles_labels()
         figure.legend(*handles, loc="outside lower center", ncols=4, handlelength=4.0)
     title = f"{panel.comparison.scene.title}: {panel.heading}"
-    curves = panel.recorded.rename(columns=panel.column)
-    table = curves.rename_axis("time (s)").reset_index()
+    table = table_of(panel.recorded.rename(columns=panel.column), "time (s)")
     return SceneFigure(f"{name}-lead", title, STYLES, figure, table)
 
 

@@ -106,37 +106,32 @@ def _velocities(comparison: Comparison) -> Iterator[tuple[str, xr.Dataset]]:
         if "velocity" in result and result["velocity"].size:
             yield name, result
     for curves in (beside.curves for beside in comparison.besides):
-        moving = [place for place in curves.waveforms if place.quantity == "velocity"]
-        for at in dict.fromkeys(place.at for place in moving):
-            here = [place for place in moving if place.at == at]
-            columns = [Column(str(place), "", curves.waveforms[place]) for place in here]
+        there: dict[tuple[float, ...], list[Column]] = {}
+        for place, values in curves.waveforms.items():
+            if place.quantity == "velocity":
+                there.setdefault(place.at, []).append(Column(str(place), "", values))
+        for columns in there.values():
             yield curves.name, dataset_of(curves.time, columns, "velocity")
 
 
 def _readings(result: xr.Dataset) -> Iterator[dict[str, float | str]]:
-    time = result["time"].values
+    time, row = result["time"].values, waveforms(result)
     periods = np.geomspace(SHORTEST * (time[1] - time[0]), time[-1] - time[0], PERIODS)
     acceleration = response_spectrum(result, periods)["pseudo_acceleration"].max("axis")
     peaks, intensities = ppv(result).values, arias(result).max("axis").values
-    for i, (at, values) in enumerate(
-        zip(places_of(result, "velocity")[0], acceleration.values, strict=True)
-    ):
-        apart = i and peaks[i] and peaks[0]
-        speed, Q = (wave_speed(result, 0, i), _quality(result, i)) if apart else (np.nan, np.nan)
-        top = int(values.argmax())
-        found = peaks[i], intensities[i], values[top], periods[top], speed, Q
+    size = np.abs(np.fft.rfft(row[0].values))
+    loudest = np.fft.rfftfreq(len(time), sampling(row))[1 + size[1:].argmax()]
+    places, _ = places_of(result, "velocity")
+    for i, (at, values) in enumerate(zip(places, acceleration.values, strict=True)):
+        speed = Q = np.nan
+        if i and peaks[i] and peaks[0]:
+            quality = quality_factor(result, 0, i).quality
+            lossy = quality.where((quality > 0) & (quality < np.inf))  # nan where nothing is lost
+            speed, Q = wave_speed(result, 0, i), lossy.sel(frequency=loudest, method="nearest")
+        k = int(values.argmax())
+        found = peaks[i], intensities[i], values[k], periods[k], speed, Q
         where = {"at": Place("velocity", "", at).receiver}
         yield where | dict(zip(READINGS, map(float, found), strict=True))
-
-
-def _quality(result: xr.Dataset, i: int) -> float:
-    """Return the apparent Q from the first receiver to another at the frequency that is loudest;
-    nan where nothing is lost there."""
-    row = waveforms(result)
-    size = np.abs(np.fft.rfft(row[0].values))
-    loudest = np.fft.rfftfreq(row.sizes["time"], sampling(row))[1 + size[1:].argmax()]
-    Q = float(quality_factor(result, 0, i).quality.sel(frequency=loudest, method="nearest"))
-    return Q if 0 < Q < np.inf else np.nan
 
 
 def write_comparisons(comparisons: list[Comparison], out: Path) -> None:

@@ -72,21 +72,10 @@ def align_curve(curves: Curves, scene: AnyScene, results: Results, align: bool) 
     Raises SceneError if curve and scene share fewer than three samples.
     """
     shift = _shift(curves, scene, results) if align else None
-    moved = _moved(curves, shift.seconds) if shift else curves
+    moved = replace(curves, time=curves.time + shift.seconds) if shift else curves
     time, own_times = common_times(moved, scene)
     outside = 1 - (time[-1] - time[0]) / (moved.time[-1] - moved.time[0])
     return AlignedCurve(moved, shift, time, own_times, max(0.0, outside))
-
-
-def distances(
-    beside: AlignedCurve, results: Results, spectral: bool = False
-) -> Iterator[tuple[str, Place, Distance]]:
-    """Yield the distance of every curve from every solution that has a waveform at its place."""
-    time, own = beside.time, beside.curves.time
-    for name, result in results.items():
-        for place, values, ours in _motions(beside.curves, result):
-            pair = np.interp(time, own, values), np.interp(time, result.time.values, ours)
-            yield name, place, distance_at(time, *pair, spectral)
 
 
 def common_times(curves: Curves, scene: AnyScene) -> tuple[np.ndarray, bool]:
@@ -135,7 +124,7 @@ def static_level(place: Place, result: xr.Dataset) -> float:
     return 0.0 if level is None else float(level[0])
 
 
-def _motions(curves: Curves, result: xr.Dataset) -> Iterator[tuple[Place, np.ndarray, np.ndarray]]:
+def motions(curves: Curves, result: xr.Dataset) -> Iterator[tuple[Place, np.ndarray, np.ndarray]]:
     """Yield the places of a curve in a solution, and the waveforms of both, without the solution's
     static state before its load: a prestress is not part of the motion."""
     for place, values in curves.waveforms.items():
@@ -168,7 +157,7 @@ def _shift_onto(name: str, result: xr.Dataset, curves: Curves, scene: AnyScene) 
 
     own, dt = curves.time, scene.interval
     even = own[0] + dt * np.arange(int((own[-1] - own[0]) / dt + 1e-6) + 1)
-    sizes = ((np.linalg.norm(ours), theirs, ours) for _, theirs, ours in _motions(curves, result))
+    sizes = ((np.linalg.norm(ours), theirs, ours) for _, theirs, ours in motions(curves, result))
     waves = [(theirs / size, ours / size) for size, theirs, ours in sizes if size > 0]
     total = sum(correlate(ours, np.interp(even, own, theirs)) for theirs, ours in waves)
     if not np.any(total):
@@ -176,7 +165,7 @@ def _shift_onto(name: str, result: xr.Dataset, curves: Curves, scene: AnyScene) 
     near = (int(np.argmax(total)) - len(even) + 1) * dt - even[0]
 
     def correlation(further: float) -> float:
-        moved = _moved(curves, near + further)
+        moved = replace(curves, time=own + near + further)
         time, _ = common_times(moved, scene)
         a = np.concatenate([np.interp(time, moved.time, theirs) for theirs, _ in waves])
         b = np.concatenate([np.interp(time, result.time.values, ours) for _, ours in waves])
@@ -192,7 +181,3 @@ def _shift_onto(name: str, result: xr.Dataset, curves: Curves, scene: AnyScene) 
     except SceneError:  # no overlap after this shift
         return Shift()
     return Shift(near + float(found.x), name, -float(found.fun))
-
-
-def _moved(curves: Curves, seconds: float) -> Curves:
-    return replace(curves, time=curves.time + seconds)

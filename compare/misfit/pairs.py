@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, NamedTuple
 
+import numpy as np
 import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import solver, solvers
-from jointwave.compare.misfit.alignment import AlignedCurve, distances
+from jointwave.compare.misfit.alignment import AlignedCurve, distance_at, motions
 from jointwave.compare.misfit.metrics import Distance, distance, pairings
 from jointwave.compare.misfit.places import Place, shown
 from jointwave.compare.misfit.ranking import kind_of
@@ -130,8 +131,10 @@ def measure_curves(
     beside: AlignedCurve, results: dict[str, xr.Dataset], spectral: bool = False
 ) -> list[Row]:
     """Return the distances of a file's curves from every solution that has a waveform there."""
-    rows = []
-    for name, place, found in distances(beside, results, spectral):
-        pair = Pair(beside.curves.name, name, GIVEN)
-        rows.append(Row(pair, shown(place, results[name]), found))
+    rows, time, own = [], beside.time, beside.curves.time
+    for name, result in results.items():
+        for place, values, ours in motions(beside.curves, result):
+            waves = np.interp(time, own, values), np.interp(time, result.time.values, ours)
+            found, pair = distance_at(time, *waves, spectral), Pair(beside.curves.name, name, GIVEN)
+            rows.append(Row(pair, shown(place, result), found))
     return rows

@@ -22,7 +22,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.scene_type import pillar_of
 from jointwave.compare.readings.attenuation import known_distances, variables, waveforms
@@ -52,7 +52,11 @@ def dispersion(
     k = np.linspace(-highest, highest, FINER * len(x) + 1)
     beams = np.abs(np.exp(1j * np.outer(k, x)) @ spectra[:, heard]) ** 2
     power = (beams / (len(x) * size[heard] ** 2)).T
-    peak, coherence = _peaks(k, power)
+    at, i = np.arange(len(power)), np.clip(power.argmax(axis=1), 1, len(k) - 2)
+    left, top, right = (power[at, i + step] for step in (-1, 0, 1))  # a parabola through them
+    bend = left - 2 * top + right
+    shift = np.divide(left - right, 2 * bend, out=np.zeros_like(top), where=bend < 0)
+    peak, coherence = k[i] + shift * (k[1] - k[0]), top - (left - right) * shift / 4
     with np.errstate(divide="ignore"):  # everywhere at once
         speed = 2 * np.pi * frequency / peak
     named = {
@@ -67,16 +71,6 @@ def dispersion(
     )
 
 
-def _peaks(k: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return where each row of P is largest and how large, by a parabola through three values."""
-    at = np.arange(len(power))
-    i = np.clip(power.argmax(axis=1), 1, len(k) - 2)
-    left, top, right = (power[at, i + step] for step in (-1, 0, 1))
-    bend = left - 2 * top + right
-    shift = np.divide(left - right, 2 * bend, out=np.zeros_like(top), where=bend < 0)
-    return k[i] + shift * (k[1] - k[0]), top - (left - right) * shift / 4
-
-
 def dispersion_theory(scene: AnySource, frequency: Sequence[float] | np.ndarray) -> xr.Dataset:
     """Return phase_speed (m/s), attenuation (1/m) and quality [rock, frequency] along an endless
     pillar of a scene's ordinary joints.
@@ -89,15 +83,18 @@ def dispersion_theory(scene: AnySource, frequency: Sequence[float] | np.ndarray)
     if pillar.segments:
         raise SceneError(pillar.where, "segments", None, "give each rock in its own scene")
     p, omega = calibrate(pillar), 2 * np.pi * np.asarray(frequency, dtype=float)
-    loss = 1 + 1j * omega * (p.time_constant or 0.0)
+    d, loss = p.spacing, 1 + 1j * omega * (p.time_constant or 0.0)
     rock, mass = (mechanisms_of(pillar, model) for model in ("jointed", "equivalent"))
     of_rock, of_mass = (loss if one is None else one.modulus(1j * omega) for one in (rock, mass))
     slowness = omega / p.bar_speed / np.sqrt(of_mass)
     k = {"bar": slowness}
     if rock is None:
-        k = {"rigid blocks": 2 / p.spacing * np.arcsin(slowness * p.spacing / 2 + 0j), **k}
+        k = {"rigid blocks": 2 / d * np.arcsin(slowness * d / 2 + 0j), **k}
     if p.intact_modulus is not None:
-        k["jointed rock"] = _jointed(p, omega, of_rock, loss)
+        q = omega / np.sqrt(p.intact_modulus * of_rock / p.density)
+        z, K = p.density * omega / q, p.regular_own_stiffness * loss
+        cosine = np.cos(q * d) - omega * z / (2 * K) * np.sin(q * d)
+        k["jointed rock"] = np.arccos(cosine) / d
     found = np.array(list(k.values()))
     speed, decay = omega / np.abs(found.real), np.abs(found.imag)
     with np.errstate(divide="ignore"):
@@ -109,16 +106,3 @@ def dispersion_theory(scene: AnySource, frequency: Sequence[float] | np.ndarray)
     }
     at = variables("frequency", {"frequency": (np.asarray(frequency), "frequency", "Hz")})
     return xr.Dataset(variables(("rock", "frequency"), named), {"rock": list(k), **at})
-
-
-def _jointed(
-    p: Properties, omega: np.ndarray, of_rock: np.ndarray, of_joints: np.ndarray
-) -> np.ndarray:
-    """Return the wavenumber of intact rock with a joint every d, 1/m; both by what makes their
-    stiffness complex."""
-    assert p.intact_modulus is not None
-    q = omega / np.sqrt(p.intact_modulus * of_rock / p.density)
-    z, K = p.density * omega / q, p.regular_own_stiffness * of_joints
-    return (
-        np.arccos(np.cos(q * p.spacing) - omega * z / (2 * K) * np.sin(q * p.spacing)) / p.spacing
-    )

@@ -100,27 +100,25 @@ def response_spectrum(
     if not (periods > 0).all():
         raise SceneError("response_spectrum", "periods", periods.min(), "must be positive")
     found = recording(result, quantity)
-    dt = sampling(found)
-    motion = _of(found, "acceleration" if "acceleration" in found else "velocity")
+    dt, accelerated = sampling(found), "acceleration" in found
+    motion = _of(found, "acceleration" if accelerated else "velocity")
     ground = motion.values
-    if "acceleration" not in found:
+    if not accelerated:
         ground = np.diff(ground, prepend=ground[..., :1], append=ground[..., -1:]) / dt
     peaks = [_largest_displacement(ground, dt, 2 * pi / T, damping) for T in periods]
-    displacement = motion.isel(time=0, drop=True).expand_dims(period=periods, axis=-1)
-    displacement = displacement.copy(data=np.stack(peaks, axis=-1))
-    omega = 2 * pi / displacement["period"]
-    spectra = {"displacement": "m", "pseudo_velocity": "m/s", "pseudo_acceleration": "m/s2"}
     of_period = {"long_name": "period of the oscillator", "units": "s"}
-    return xr.Dataset(
-        {
-            name: (displacement * omega**power).assign_attrs(
-                long_name=f"spectral {name.replace('_', '-')}", units=unit
-            )
-            for power, (name, unit) in enumerate(spectra.items())
-        },
-        {"period": ("period", periods, of_period)},
-        {"damping": damping},
-    )
+    dims = (*motion.dims[:-1], "period")
+    spectra = {"displacement": "m", "pseudo_velocity": "m/s", "pseudo_acceleration": "m/s2"}
+    variables = {
+        name: xr.Variable(
+            dims,
+            np.stack(peaks, axis=-1) * (2 * pi / periods) ** power,
+            {"long_name": f"spectral {name.replace('_', '-')}", "units": unit},
+        )
+        for power, (name, unit) in enumerate(spectra.items())
+    }
+    coords = {"period": ("period", periods, of_period), **motion.isel(time=0, drop=True).coords}
+    return xr.Dataset(variables, coords, {"damping": damping})
 
 
 def _largest_displacement(

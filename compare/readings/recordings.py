@@ -67,11 +67,10 @@ def _of_array(array: xr.DataArray, quantity: str) -> xr.Dataset:
 
 def _of_file(text: str, quantity: str) -> xr.Dataset:
     choice = selection(text)
-    path = choice.path
     try:
-        if is_netcdf(path):
-            return load_netcdf(path)
-        table = read_columns(path, gaps=False)
+        if is_netcdf(choice.path):
+            return load_netcdf(choice.path)
+        table = read_columns(choice.path, gaps=False)
         columns = [one for one in table.rest if choice.fits(one)]
         if choice.label and len(columns) == 1:
             name, unit = split_unit(choice.label)
@@ -79,10 +78,10 @@ def _of_file(text: str, quantity: str) -> xr.Dataset:
         if not columns:
             raise ValueError(f"has no column {choice.column!r}")
         return dataset_of(table.time.si(TIME), columns, quantity)
-    except SceneError:
-        raise
     except (OSError, ValueError, MemoryError) as error:
-        raise SceneError(str(path), "", None, str(error)) from None
+        if isinstance(error, SceneError):
+            raise
+        raise SceneError(str(choice.path), "", None, str(error)) from None
 
 
 def dataset_of(time: np.ndarray, columns: list[Column], quantity: str) -> xr.Dataset:

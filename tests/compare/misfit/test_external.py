@@ -13,7 +13,7 @@ from jointwave.compare.figures.charts.waveforms import draw_solutions
 from jointwave.compare.figures.export import DIGITS, write_csv
 from jointwave.compare.figures.receivers import curve_table, panels
 from jointwave.compare.figures.tables import write_comparisons
-from jointwave.compare.misfit.alignment import align_curve, distance_at, distances
+from jointwave.compare.misfit.alignment import align_curve, distance_at
 from jointwave.compare.misfit.external import doubts, read_curves
 from jointwave.compare.misfit.pairs import Comparison, measure_curves
 from jointwave.compare.misfit.places import Place
@@ -61,9 +61,9 @@ def the_distance(file, scene, align=False):
     (curves,) = read_curves([str(file)], [scene])
     results = {"lattice": row_of_blocks.solve(scene)}
     beside = align_curve(curves, scene, results, align)
-    ((name, place, found),) = distances(beside, results)
-    assert (name, place) == ("lattice", AT_20)
-    return found, beside
+    (row,) = measure_curves(beside, results)
+    assert (row.pair.other, row.place) == ("lattice", AT_20)
+    return row.distance, beside
 
 
 READABLE = {
