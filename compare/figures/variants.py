@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.misfit.pairs import Comparison
 
 
@@ -10,21 +9,17 @@ def variant_names(comparisons: list[Comparison]) -> list[str]:
     """Return the variants' names; the base scene is named by what its variants change, where that
     has words; alone it is the "base scene"."""
     base, *variants = (comparison.scene for comparison in comparisons)
-    names = [base.name or _base_name(base, variants), *(variant.name for variant in variants)]
-    return [name.replace("zeta ", "ζ = ") for name in names]
+    changed: list[str] = []
+    if base.is_column:
+        words, others = _words(base), [_words(variant) for variant in variants]
+        changed = [word for key, word in words.items() if any(one[key] != word for one in others)]
+    first = base.name or ", ".join(changed) or "base scene"
+    return [name.replace("zeta ", "ζ = ") for name in (first, *(one.name for one in variants))]
 
 
 def named(comparisons: list[Comparison]) -> list[tuple[str, Comparison]]:
     """Return the comparisons, each with the name of its variant."""
     return list(zip(variant_names(comparisons), comparisons, strict=True))
-
-
-def _base_name(base: AnyScene, variants: list[AnyScene]) -> str:
-    if not base.is_column:
-        return "base scene"
-    words, others = _words(base), [_words(variant) for variant in variants]
-    changed = [word for key, word in words.items() if any(one[key] != word for one in others)]
-    return ", ".join(changed) or "base scene"
 
 
 def _words(scene: Any) -> dict[str, str]:

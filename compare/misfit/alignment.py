@@ -71,7 +71,14 @@ def align_curve(curves: Curves, scene: AnyScene, results: Results, align: bool) 
 
     Raises SceneError if curve and scene share fewer than three samples.
     """
-    shift = _shift(curves, scene, results) if align else None
+    shift = None
+    if align:  # onto the solution that fits best then
+        if (curves.time[-1] - curves.time[0]) / scene.interval > MOST_SAMPLES:
+            allowed = f"must last at most {MOST_SAMPLES:,} intervals of the scene to be aligned"
+            raise SceneError(curves.file, "time", f"{curves.time[-1]:.6g} s", allowed)
+        every = (_shift_onto(name, result, curves, scene) for name, result in results.items())
+        fitting = [one for one in every if one.onto]
+        shift = max(fitting, key=lambda one: one.correlation, default=Shift())
     moved = replace(curves, time=curves.time + shift.seconds) if shift else curves
     time, own_times = common_times(moved, scene)
     outside = 1 - (time[-1] - time[0]) / (moved.time[-1] - moved.time[0])
@@ -132,17 +139,6 @@ def motions(curves: Curves, result: xr.Dataset) -> Iterator[tuple[Place, np.ndar
         if ours is not None:
             static = static_level(place, result)
             yield place, values - static, ours - static
-
-
-def _shift(curves: Curves, scene: AnyScene, results: Results) -> Shift:
-    """Return the shift onto the solution that fits best after cross-correlation."""
-    count = (curves.time[-1] - curves.time[0]) / scene.interval
-    if count > MOST_SAMPLES:
-        allowed = f"must last at most {MOST_SAMPLES:,} intervals of the scene to be aligned"
-        raise SceneError(curves.file, "time", f"{curves.time[-1]:.6g} s", allowed)
-    found = [_shift_onto(name, result, curves, scene) for name, result in results.items()]
-    fitting = [shift for shift in found if shift.onto]
-    return max(fitting, key=lambda shift: shift.correlation, default=Shift())
 
 
 def _shift_onto(name: str, result: xr.Dataset, curves: Curves, scene: AnyScene) -> Shift:

@@ -123,7 +123,9 @@ def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Worst]:
     n = int(np.searchsorted(other["time"].values, until, side="right"))
     found = [(p, a[:n], b[:n]) for p, a, b in shared_waveforms(motion(one), motion(other))]
     changed = [max(rms(a), rms(b)) for place, a, b in found if place.quantity in UNITS[0]]
-    if changed and max(changed) < EXCITED * _static_stress(other):
+    held = waveforms(static_state(other)) if _found_its_rest(other) else {}
+    still = [abs(float(v[0])) for place, v in held.items() if place.quantity in UNITS[0]]
+    if changed and max(changed) < EXCITED * max(still, default=0.0):
         return []
     weight = weigh([place for place, *_ in found], np.array([rms(b) for *_, b in found]))
     kept, errors = [], waveforms(other, "_error")
@@ -172,14 +174,6 @@ def _found_its_rest(result: xr.Dataset) -> bool:
     """Whether a result starts from a static state that was sought, and so has a tolerance."""
     starts, in_plane = result.attrs.get("starts"), result.attrs.get("kind") == "rock mass"
     return starts == "at rest under gravity" or (starts == "prestressed" and in_plane)
-
-
-def _static_stress(result: xr.Dataset) -> float:
-    """Return the largest component of the static stresses that were sought, Pa; 0 without."""
-    if not _found_its_rest(result):
-        return 0.0
-    held = waveforms(static_state(result)).items()
-    return max((abs(float(v[0])) for place, v in held if place.quantity in UNITS[0]), default=0.0)
 
 
 def rms(waveform: np.ndarray) -> float:

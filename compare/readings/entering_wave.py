@@ -43,8 +43,8 @@ def entering_waves(scene: AnyScene) -> list[EnteringWave]:
     pressure on an opening or on a part of a side."""
     found, sources = [*_of_waves(scene)], dict[str, Any](scene.sources)
     for key, load in sources.items():
-        whole = scene.is_column or (not isinstance(load, Wave) and load.side and not load.between)
-        if whole and load.amplitude and getattr(load, "arm", None) is None:
+        part = getattr(load, "arm", None) or getattr(load, "between", None)  # or a couple
+        if not isinstance(load, Wave) and load.side and load.amplitude and not part:
             found += _of_load(scene, key, load)
     return found
 

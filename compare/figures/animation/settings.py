@@ -84,7 +84,9 @@ def settings_for(
     most of its motion across the axis is upwards, a rock mass in its plane or, in space, from the
     south.
     """
-    up, stretch = Z if scene.in_space else Y, stretch_of(scene)
+    up, stretch = Z if scene.in_space else Y, 1.0
+    if scene.is_column:  # a thin one is drawn thicker
+        stretch = max(1.0, THIN * scene.pillar.length / scene.pillar.side)
     largest = min(_largest_scale(scene, s, stretch) for s in found.values())
     view = ViewSettings(up, scale or max(1.0, round_down(largest)), stretch, quantity or SPEED)
     if not scene.is_column:
@@ -99,13 +101,6 @@ def settings_for(
     )
     ours = quantity or (VELOCITY if silent else STRESS)
     return view._replace(up=up, right=Y, quantity=ours, side=scene.pillar.side)
-
-
-def stretch_of(scene: AnyScene) -> float:
-    """Return by how much the thickness of a thin pillar is drawn larger; 1 of a rock mass."""
-    if not scene.is_column:
-        return 1.0
-    return max(1.0, THIN * scene.pillar.length / scene.pillar.side)
 
 
 def _largest_scale(scene: AnyScene, s: Snapshots, stretch: float) -> float:

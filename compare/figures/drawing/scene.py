@@ -101,7 +101,7 @@ def _draw_pulse(ax: Axes, scene: AnyScene) -> None:
     ax.plot(1e3 * time, values / unit.size, color=LOAD, linewidth=1.3)
     kind = getattr(pulse, "kind", "load")
     words = f"{kind} wave" if kind in ("P", "S") else kind
-    ax.set(xlabel="time (ms)", title=f"{words}, {pulse.shape} ({unit.name})")
+    ax.set(xlabel="time (ms)", title=f"{words},\n{pulse.shape} ({unit.name})")
     ax.set(anchor="SW", box_aspect=0.6)
 
 

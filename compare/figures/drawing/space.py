@@ -1,6 +1,7 @@
 """The drawing of a rock mass in space: its blocks from in front, by PyVista where installed."""
 
 from importlib.util import find_spec
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -49,8 +50,13 @@ def sketch_of(scene: RockMass, explode: float = 0.0) -> Sketch:
     named |= {one.name: ROCKS[(k + 1) % len(ROCKS)] for k, one in enumerate(scene.regions)}
     named |= {"opening": WALLS} if walls else {}
     size = float((domain.high - domain.low).max())
-    shapes = [
-        *([] if by_pyvista else [_painted(faces, colours)]),
+    shapes = list[Artist]()
+    if not by_pyvista:
+        order = np.argsort([face.mean(axis=0) @ TOWARDS for face in faces])  # the farthest first
+        look: dict[str, Any] = {"edgecolors": EDGE, "linewidths": WIDTH, "zorder": 1}
+        look |= {"facecolors": colours[order], "label": "_blocks"}
+        shapes.append(PolyCollection([faces[i] @ ONTO.T for i in order], **look))
+    shapes += [
         *(PolyCollection([], facecolors=colour, label=name) for name, colour in named.items()),
         *surroundings(scene, domain, ONTO, size, 1 + explode),
     ]
@@ -88,15 +94,6 @@ def _faces(
         pieces = np.split(facets.outlines.corners, facets.outlines.first[1:-1])
         faces += [pieces[i] + shift[own[i]] for i in np.flatnonzero(seen)]
     return faces, np.concatenate(colours)
-
-
-def _painted(faces: list[np.ndarray], colours: np.ndarray) -> Artist:
-    """Return faces as polygons, the farthest first."""
-    order = np.argsort([face.mean(axis=0) @ TOWARDS for face in faces])
-    polygons = [faces[i] @ ONTO.T for i in order]
-    found = PolyCollection(polygons, facecolors=colours[order], label="_blocks", zorder=1)
-    found.set(edgecolors=EDGE, linewidths=WIDTH)
-    return found
 
 
 def _rendered(
