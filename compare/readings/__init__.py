@@ -8,12 +8,7 @@ from jointwave.compare.readings.attenuation import (
 )
 from jointwave.compare.readings.deconvolution import deconvolve
 from jointwave.compare.readings.dispersion import dispersion, dispersion_theory
-from jointwave.compare.readings.ground_motion import (
-    arias,
-    ppv,
-    ppv_map,
-    response_spectrum,
-)
+from jointwave.compare.readings.ground_motion import arias, ppv, ppv_map, response_spectrum
 from jointwave.compare.readings.recordings import recording
 
 __all__ = [
