@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from jointwave.cases.incident import IncidentField
     from jointwave.cases.schema.rock_mass import RockMass
     from jointwave.cases.schema.scene import Scene
-    from jointwave.compare.exact.rock_mass.side_error import SideError
 
 
 def incident(scene: Scene | RockMass) -> IncidentField | None:
@@ -25,17 +24,13 @@ def incident(scene: Scene | RockMass) -> IncidentField | None:
     return field_of(scene)
 
 
-def side_error(scene: Scene | RockMass) -> SideError | None:
-    """Return the error of the quiet sides of a rock mass that its receivers feel, None without."""
-    if not scene.in_plane or not scene.waves:
-        return None
-    from jointwave.compare.exact.rock_mass import side_error
-
-    return side_error.side_error(scene)
-
-
 def side_warnings(scene: Scene | RockMass) -> list[str]:
-    """Return that error in a line; none without."""
+    """Return the error of the quiet sides of a rock mass that its receivers feel in a line; none
+    without."""
+    if not scene.in_plane or not scene.waves:
+        return []
+    from jointwave.compare.exact.rock_mass.side_error import side_error
+
     found = side_error(scene)
     return [] if found is None else [found.words]
 

@@ -16,8 +16,9 @@ from hypothesis import strategies as st
 import jointwave as jw
 from closed_forms.slipping_joint import slipping_joint
 from jointwave.cases.errors import SceneError
+from jointwave.compare.exact.rock_mass.side_error import side_error
 from jointwave.compare.scenes import shipped_files
-from jointwave.compare.solvers.incident import incident, side_error, side_warnings
+from jointwave.compare.solvers.incident import incident, side_warnings
 
 ENGINES = ("dem", "continuum-jointed")
 SIDES = ("left", "right", "bottom", "top")
