@@ -1,5 +1,6 @@
 """The figure of a scene: a drawing for each appearance, its load over time and a legend."""
 
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ CAPTION = (
 PULSE, LOW, FOOT, TALLEST = 1.3, 0.75, 0.55, 3.6  # inches: pulse, lowest drawing, below, tallest
 FLAT = 0.3  # height over width of drawings, below which they are one below the other
 ENTRIES, LINE = 6, 0.25  # of the legend in a line, and inches of one
-SAMPLES = 400
+SAMPLES, LETTERS = 400, 24  # of the pulse, and in a line above it
 UNITS = {
     "stress": "Pa",
     "incident-stress": "Pa",
@@ -101,7 +102,8 @@ def _draw_pulse(ax: Axes, scene: AnyScene) -> None:
     ax.plot(1e3 * time, values / unit.size, color=LOAD, linewidth=1.3)
     kind = getattr(pulse, "kind", "load")
     words = f"{kind} wave" if kind in ("P", "S") else kind
-    ax.set(xlabel="time (ms)", title=f"{words},\n{pulse.shape} ({unit.name})")
+    title = fill(f"{words}, {pulse.shape} ({unit.name})", LETTERS)
+    ax.set(xlabel="time (ms)", title=title)
     ax.set(anchor="SW", box_aspect=0.6)
 
 

@@ -21,7 +21,7 @@ LAYER = {"y": 20.0, "spacing_stiffness": 4.375e8}
 
 def marks(comparison):
     """Return the marks of a comparison's first panel by name."""
-    return {m.name: m.frequency for m in marks_of(panels([comparison])[0][0])}
+    return dict(marks_of(panels([comparison])[0][0]))
 
 
 @pytest.mark.parametrize("frequency", [37.0, 100.0, 612.5])
