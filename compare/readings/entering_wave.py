@@ -69,28 +69,25 @@ def _of_load(scene: AnyScene, key: str, load: Any) -> Iterator[EnteringWave]:
     """Yield the waves of a load along and across the normal of the first face that it acts on."""
     if scene.is_column:
         p, out, held = calibrate(scene).at_start, np.array([0.0, -1.0, 0.0]), scene.ends.start
-        density, impedance = p.density, (p.impedance, p.shear_impedance)
+        density, dashpot = p.density, np.diag([p.shear_impedance, p.impedance, p.shear_impedance])
         kinds = "along the axis", "across the axis"
     else:
         outline, held = shape_of(scene.domain), getattr(scene.boundaries, load.side)
         corners, out = outline.faces_of(load.side)[0]
-        region = region_at(
-            scene.regions, (corners.mean(axis=0) - WITHIN * outline.size * out)[None]
-        )
-        density, impedance = (
-            rocks_of(scene)[region[0]].density,
-            impedances(scene, out[None], region)[0],
-        )
+        inside = corners.mean(axis=0) - WITHIN * outline.size * out
+        region = region_at(scene.regions, inside[None])
+        density = rocks_of(scene)[region[0]].density
+        dashpot = impedances(scene, out[None], region)[0]
         kinds = "P", "S"
-    along = abs(float(out @ np.array(load.direction or -out)))
-    halved = held in ABSORBS and load.quantity != "incident-stress"
-    shares = along, float(np.sqrt(max(1 - along**2, 0.0)))
-    for share, kind, Z in zip(shares, kinds, impedance, strict=True):
-        moves = load.quantity in ("velocity", "acceleration")
-        gain = share * (1.0 if moves else (0.5 if halved else 1.0) / Z)
+    history, moved = velocity_of(load, load.amplitude), np.array(load.direction or -out)
+    along, halved = (out @ moved) * out, held in ABSORBS and load.quantity != "incident-stress"
+    for part, kind in zip((along, moved - along), kinds, strict=True):
+        share = float(np.linalg.norm(part))
         if share > WITHIN:
-            history, speed = velocity_of(load, load.amplitude), float(Z) / density
-            yield _wave(f"{key}, {kind}", history, gain, density, speed, scene.time.duration)
+            Z = float(part @ dashpot @ part) / share**2
+            moves = load.quantity in ("velocity", "acceleration")
+            gain = share * (1.0 if moves else (0.5 if halved else 1.0) / Z)
+            yield _wave(f"{key}, {kind}", history, gain, density, Z / density, scene.time.duration)
 
 
 def _wave(
