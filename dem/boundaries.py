@@ -6,6 +6,7 @@ symmetric part the mean stress of the block. A quiet or matched side has the das
 Kuhlemeyer (1969), a traction -Z v, with the impedances of `cases.material.quiet_sides`.
 """
 
+from collections.abc import Sequence
 from itertools import product
 from typing import NamedTuple
 
@@ -29,19 +30,22 @@ class BoundaryPoints(NamedTuple):
     area: np.ndarray
 
 
-def facets_on(blocks: Blocks, sides: tuple[str, ...], names: list[str]) -> np.ndarray:
+def facets_on(blocks: Blocks, sides: tuple[str, ...], names: Sequence[str]) -> np.ndarray:
     """Return the boundary facets on some of the sides, int array; sides : all names, in order."""
     chosen = [k for k, name in enumerate(sides) if name in names]
     return np.flatnonzero(np.isin(blocks.boundary.side, chosen))
 
 
-def points_on(blocks: Blocks, facets: np.ndarray, parts: Outlines | None = None) -> BoundaryPoints:
+def points_on(
+    blocks: Blocks, facets: np.ndarray, parts: Outlines | None = None, share: float = 1.0
+) -> BoundaryPoints:
     """Return 2^(d-1) points on each of some boundary facets, exact for functions up to quadratic.
 
     They lie one standard deviation of the facet's area from its centroid along its first edge and
     across it, to both sides: on a rectangle they are Gauss points.
 
-    facets : int array. parts : what of each facet counts; absent: all of it.
+    facets : int array. parts : what of each facet counts; absent: all of it. share : of the second
+    moments that the points have.
     """
     edge = blocks.boundary
     size, centroid, second = (
@@ -49,7 +53,7 @@ def points_on(blocks: Blocks, facets: np.ndarray, parts: Outlines | None = None)
         if parts is None
         else outline_moments(parts)
     )
-    variance, axes = np.linalg.eigh(second / size[:, None, None])
+    variance, axes = np.linalg.eigh(share * second / size[:, None, None])
     deviation = (axes * np.sqrt(np.maximum(variance, 0.0))[:, None]) @ axes.swapaxes(1, 2)
     tangents = _tangents(edge.normal[facets], edge.outlines, facets)
     signs = np.array(list(product((-1.0, 1.0), repeat=tangents.shape[1])))

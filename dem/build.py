@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
+from jointwave.cases.geometry.blocks import Blocks as Cut
 from jointwave.cases.scene_type import AnyScene
 from jointwave.dem.boundaries import freedoms
 from jointwave.dem.chunks import Chunks, chunks_of
@@ -19,24 +22,26 @@ from jointwave.dem.surroundings import Surroundings
 from jointwave.joints.law import Law, parts_of
 from jointwave.joints.normal import gap_under
 
+#: Rotations of a block, by dimension.
+ROTATIONS = {1: 0, 2: 1, 3: 3}
+
 
 @dataclass(frozen=True, kw_only=True)
-class RigidBlocks:
+class RigidBlocks(ABC):
     """Rigid blocks, their contacts and what acts on them, before time discretisation.
 
-    centroid : of each block [N, d], m. size : of each [N], m. masses : matrices of mass, kg, and of
-    inertia, kg m2, of each block [N, F, F]. gravity : [d], m/s2. prestress : tensor [d, d], Pa;
-    None without. pressed : the largest force that this stands for, N. finite : whether they turn by
-    any angle. composed : whether steps are those of `dem.composition`. in_row : whether contacts
-    join them one after the other. placed : their displacement
-    [N, F] under the weight if all joints were elastic; None where that is not known beforehand.
-    static_steps : the most of dynamic relaxation. corners : of a block, in snapshots. counted_by :
-    the key of the scene that decides their number.
+    cut : the blocks, per metre of thickness in the plane; of a pillar always whole. sides : names
+    of the boundary's sides, in order. masses : matrices of mass, kg, and of inertia, kg m2, of each
+    block [N, F, F]. gravity : [d], m/s2. prestress : tensor [d, d], Pa; None without. pressed : the
+    largest force that this stands for, N. static_steps : the most of dynamic relaxation. finite :
+    whether blocks turn by any angle. composed : whether steps are those of `dem.composition`.
+    in_row : whether contacts join them one after the other. placed : their displacement [N, F]
+    under the weight if all joints were elastic; None where that is not known beforehand.
     """
 
-    scene: AnyScene
-    centroid: np.ndarray
-    size: np.ndarray
+    scene: Any
+    cut: Cut
+    sides: tuple[str, ...]
     contacts: Contacts
     columns: Columns
     masses: np.ndarray
@@ -45,12 +50,24 @@ class RigidBlocks:
     pressed: float
     around: Surroundings
     static_steps: int
-    corners: int
-    counted_by: str
     finite: bool = False
     composed: bool = False
     in_row: bool = False
     placed: np.ndarray | None = None
+
+    #: Corners of a block in snapshots, by dimension, and the key that decides how many there are.
+    corners: ClassVar[dict[int, int]]
+    counted_by: ClassVar[str]
+
+    @property
+    @abstractmethod
+    def receivers(self) -> Any:
+        """What is recorded; raises SceneError for a point outside the rock."""
+
+    @property
+    @abstractmethod
+    def bodies(self) -> Any:
+        """Its blocks as snapshots show them."""
 
     @property
     def count(self) -> int:
@@ -60,7 +77,19 @@ class RigidBlocks:
     @property
     def dim(self) -> int:
         """Number of dimensions."""
-        return self.centroid.shape[1]
+        return self.cut.body.dim
+
+    @property
+    def centroid(self) -> np.ndarray:
+        """Of each block [N, d], m."""
+        return self.cut.centroid
+
+    @property
+    def size(self) -> np.ndarray:
+        """Of each block [N], m; in a row its thickness."""
+        if self.in_row:
+            return self.cut.volume / self.contacts.area[:1]
+        return self.cut.volume ** (1 / self.dim)
 
     @cached_property
     def onto(self) -> np.ndarray:
@@ -90,6 +119,31 @@ class RigidBlocks:
     def points(self) -> np.ndarray:
         """`columns.points_on`."""
         return points_on(self.contacts, self.columns.rules)
+
+
+def masses_of(cut: Cut, density: np.ndarray, rotations: int) -> np.ndarray:
+    """Return the matrices of mass and inertia about the centroids [N, F, F] of blocks of densities
+    [N], kg/m3, with so many rotations."""
+    dim, second = cut.body.dim, cut.second_moment
+    found = np.zeros((cut.count, *[dim + rotations] * 2))
+    found[:, :dim, :dim] = cut.volume[:, None, None] * np.eye(dim)
+    polar = np.trace(second, axis1=1, axis2=2)
+    if rotations == 1:
+        found[:, 2, 2] = polar
+    elif rotations:
+        found[:, 3:, 3:] = polar[:, None, None] * np.eye(3) - second
+    return density[:, None, None] * found
+
+
+def steady_fields(scene: AnyScene, dim: int) -> tuple[np.ndarray, np.ndarray | None]:
+    """Return the gravity [d], m/s2, and the prestress [d, d], Pa, of a scene; None without."""
+    axes = np.array([1]) if scene.is_column and dim == 1 else np.arange(dim)
+    gravity, stress = np.zeros(dim), None
+    if scene.gravity is not None:
+        gravity = scene.gravity.acceleration * np.array(scene.gravity.direction)[axes]
+    if scene.prestress is not None:
+        stress = np.array(scene.prestress.tensor)[np.ix_(axes, axes)]
+    return gravity, stress
 
 
 def form_of(blocks: RigidBlocks) -> KernelFlags:

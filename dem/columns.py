@@ -15,8 +15,6 @@ from jointwave.cases.schema.joint import JointLaw
 from jointwave.dem.contacts import Contacts
 from jointwave.joints.law import Law, law, stiffest, uniform
 
-#: Corners of an edge and a square, by the number of tangents.
-AROUND = {1: np.array([[-1], [1]]), 2: np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])}
 #: Rule of points, and their number along each tangent.
 Rule = tuple[str, int | None]
 
@@ -110,9 +108,6 @@ def _grid(spread: np.ndarray, x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray,
 def _corners(contacts: Contacts, own: np.ndarray) -> np.ndarray:
     """Return the corners of some contacts, from the centre and along the tangents [c, k, d - 1], m;
     where they are fewer the last one is repeated."""
-    if contacts.outlines is None:
-        spread = np.diagonal(contacts.spread[own], axis1=1, axis2=2)
-        return np.sqrt(3 * spread)[:, None] * AROUND[spread.shape[1]]
     corners, first = contacts.outlines
     begin, end = first[own, None], first[own + 1, None]
     at = np.minimum(begin + np.arange((end - begin).max(initial=1)), end - 1)

@@ -2,34 +2,101 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from jointwave.cases.geometry.measure import Outlines
-from jointwave.dem.boundaries import freedoms, levers
+from jointwave.cases.geometry.blocks import Blocks, Facets
+from jointwave.cases.geometry.cell_complex import NO_SET
+from jointwave.cases.geometry.measure import Outlines, frames, joined
+from jointwave.dem.boundaries import facets_on, freedoms, levers
 
 
 class Contacts(NamedTuple):
     """Contacts [c], those of the blocks first and in their order.
 
-    blocks : i and j [c, 2]; a wall is a j beyond the last block. area : m^(d-1). centre : [c, d],
-    m, that of block i's face. frame : [c, d, d], the normal from i to j, then the tangents. arm :
-    [c, 2, d], from the centroids of i and j, where they touch, to the centre. spread : second
-    moments over the area, in the frame's tangents [c, d - 1, d - 1], m2. column : of the law [c].
-    walls : names of the sides or ends that stand still, or are shaken. outlines : corners of the
-    faces between blocks, m; None of rectangles along the tangents.
+    blocks : i and j [c, 2]; a wall is a j beyond the last block. area : m^(d-1). frame : [c, d, d],
+    the normal from i to j, then the tangents. arm : [c, 2, d], from the centroids of i and j, where
+    they touch, to the centre, m. centre : [c, d], m, that of block i's face. spread : second
+    moments over the area, in the frame's tangents [c, d - 1, d - 1], m2. column : of the law [c];
+    before there is one, the joint set, NO_SET for none. excess : what of the compliance is the
+    rock's beside the joint, normal and in shear [c, 2], m/Pa; None without. walls : names of the
+    sides or ends that stand still, or are shaken. outlines : corners of the faces, m.
     """
 
     blocks: np.ndarray
     area: np.ndarray
-    centre: np.ndarray
     frame: np.ndarray
     arm: np.ndarray
-    spread: np.ndarray
-    column: np.ndarray
-    walls: tuple[str, ...]
-    outlines: Outlines | None = None
+    centre: Any = None
+    spread: Any = None
+    column: Any = None
+    excess: Any = None
+    walls: tuple[str, ...] = ()
+    outlines: Any = None
+
+    def some(self, rows: np.ndarray) -> Contacts:
+        """Return some of the contacts, without their outlines."""
+        kept = (None if one is None else one[rows] for one in self[:-2])
+        return Contacts._make([*kept, self.walls, None])
+
+
+def contacts_of(
+    cut: Blocks,
+    across: Sequence[tuple[Facets, np.ndarray]],
+    sides: tuple[str, ...],
+    walls: tuple[str, ...],
+) -> Contacts:
+    """Return all contacts of blocks, with the joint set of each.
+
+    across : contacts across pairs of periodic sides, and by which blocks j stand elsewhere [d], m.
+    sides : names of the boundary's sides, in order. walls : of those that stand still.
+    """
+    parts, edges = [(cut.contacts, np.zeros(cut.body.dim)), *across], cut.boundary
+    pairs, area, centre, normal, second, joint_set = (
+        np.concatenate([getattr(one, key) for one, _ in parts])
+        for key in ("blocks", "area", "centroid", "normal", "second_moment", "joint_set")
+    )
+    shift = np.repeat([one for _, one in parts], [len(one) for one, _ in parts], axis=0)
+    held = facets_on(cut, sides, walls)
+    block, reach = edges.blocks[held, 0], edges.centroid[held] - cut.centroid[edges.blocks[held, 0]]
+    wall = np.array([walls.index(sides[k]) for k in edges.side[held]], dtype=int)
+    i, j = (centre - cut.centroid[one] for one in pairs.T)
+    area = np.concatenate([area, edges.area[held]])
+    frame = frames_of(np.concatenate([normal, edges.normal[held]]))
+    spread = np.concatenate([second, edges.second_moment[held]]) / area[:, None, None]
+    arms = np.stack([i, j - shift], axis=1), np.stack([reach, np.zeros_like(reach)], axis=1)
+    return Contacts(
+        blocks=np.concatenate([pairs, np.stack([block, cut.count + wall], axis=1)]),
+        area=area,
+        frame=frame,
+        arm=np.concatenate(arms),
+        centre=np.concatenate([centre, edges.centroid[held]]),
+        spread=frame[:, 1:] @ spread @ frame[:, 1:].swapaxes(1, 2),
+        column=np.concatenate([joint_set, np.full(len(held), NO_SET)]),
+        walls=walls,
+        outlines=joined([*(one.outlines for one, _ in parts), _some(edges.outlines, held)]),
+    )
+
+
+def _some(pieces: Outlines, rows: np.ndarray) -> Outlines:
+    """Return some of the pieces."""
+    size = np.diff(pieces.first)[rows]
+    first = np.append(0, np.cumsum(size))
+    at = np.arange(first[-1]) + np.repeat(pieces.first[rows] - first[:-1], size)
+    return Outlines(pieces.corners[at], first)
+
+
+def frames_of(normal: np.ndarray) -> np.ndarray:
+    """Return the frames of contacts [c, d, d] with these normals [c, d]: in the plane the tangent
+    is the normal rotated to the left, in space they are the strike and the line of dip."""
+    tangents: tuple[np.ndarray, ...] = ()
+    if (dim := normal.shape[1]) == 2:
+        tangents = (np.stack([-normal[:, 1], normal[:, 0]], axis=1),)
+    elif dim == 3:
+        tangents = frames(normal)
+    return np.stack([normal, *tangents], axis=1)
 
 
 def extents(contacts: Contacts, points: np.ndarray, blocks: int) -> np.ndarray:

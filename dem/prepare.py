@@ -81,7 +81,7 @@ def clock_of(blocks: RigidBlocks) -> Clock:
         blocks.counted_by: of_block * blocks.count,
         "record.interval": waveform_bytes(scene, dim > 1),
         "numerics.dem.step_fraction": load_bytes(scene, time.steps + time.stride),
-        "record.fields": snapshot_bytes(scene, blocks.corners * blocks.count),
+        "record.fields": snapshot_bytes(scene, blocks.corners[dim] * blocks.count),
     }
     refuse_beyond_memory(scene, parts)
     return time

@@ -16,9 +16,9 @@ from scipy.sparse import csr_matrix, kron
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import Blocks, Facets
 from jointwave.cases.geometry.locate import contact_at, rock_neighbours, sides_at
-from jointwave.cases.geometry.measure import frames
 from jointwave.cases.partition.lattice import squared
 from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.dem.contacts import Contacts
 
 #: Of the largest singular value of the neighbours' places: below it they lie on a line or a plane.
 FLAT = 0.05
@@ -27,33 +27,6 @@ FLAT = 0.05
 SHARED = 0.5
 #: Of a contact's size: the distance below which it shares a corner, or lies in one plane.
 SAME = 1e-6
-
-
-class Faces(NamedTuple):
-    """Contacts as they are read.
-
-    blocks : i and j [c, 2]; a j beyond the last block is a wall. area : [c], m^(d-1). frame :
-    [c, d, d], the unit normal from i to j, then the tangents. arm : [c, 2, d], from the centroids
-    of i and j, where they touch, to that of the contact, m. excess : [c, 2], what of its compliance
-    is the rock's beside the joint, normal and in shear, m/Pa.
-    """
-
-    blocks: np.ndarray
-    area: np.ndarray
-    frame: np.ndarray
-    arm: np.ndarray
-    excess: np.ndarray
-
-
-def frames_of(normal: np.ndarray) -> np.ndarray:
-    """Return the frames of contacts [c, d, d] with these normals [c, d]: in the plane the tangent
-    is the normal rotated to the left, in space they are the strike and the line of dip."""
-    tangents: tuple[np.ndarray, ...] = ()
-    if (dim := normal.shape[1]) == 2:
-        tangents = (np.stack([-normal[:, 1], normal[:, 0]], axis=1),)
-    elif dim == 3:
-        tangents = frames(normal)
-    return np.stack([normal, *tangents], axis=1)
 
 
 class Stencil(NamedTuple):
@@ -79,13 +52,13 @@ class Receivers(NamedTuple):
     volume: np.ndarray
     touching: np.ndarray
     watched: np.ndarray
-    faces: Faces
+    faces: Contacts
     motion: csr_matrix
     weights: csr_matrix
     joints: csr_matrix
 
 
-def receivers_of(scene: RockMass, blocks: Blocks, faces: Faces, onto: np.ndarray) -> Receivers:
+def receivers_of(scene: RockMass, blocks: Blocks, faces: Contacts, onto: np.ndarray) -> Receivers:
     """Return the receivers of a scene; raises SceneError for a point outside the rock.
 
     faces : all contacts, those of the blocks first. onto : of a block, by `boundaries.freedoms`.
@@ -168,7 +141,7 @@ def _stencil(
 
 def read_by(
     volume: np.ndarray,
-    faces: Faces,
+    faces: Contacts,
     onto: np.ndarray,
     points: list[Stencil],
     joints: list[Stencil],
@@ -192,14 +165,14 @@ def read_by(
         volume=volume[places],
         touching=np.stack([np.searchsorted(watched, contact), place, side], axis=1),
         watched=watched,
-        faces=Faces(*(array[watched] for array in faces)),
+        faces=faces.some(watched),
         motion=csr_matrix(motion),
         weights=weights,
         joints=_matrix(joints, watched),
     )
 
 
-def everywhere(volume: np.ndarray, faces: Faces) -> Receivers:
+def everywhere(volume: np.ndarray, faces: Contacts) -> Receivers:
     """Return receivers of all blocks and contacts, without points."""
     contact, side = np.nonzero(faces.blocks < len(volume))  # others are walls
     touching = np.stack([contact, faces.blocks[contact, side], side], axis=1)

@@ -4,58 +4,48 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import Blocks as Cut
-from jointwave.cases.geometry.cell_complex import GeometryError
+from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError
 from jointwave.cases.material.contact_points import CUT
-from jointwave.cases.material.rigid_blocks import RigidJoints, rigid_joints
-from jointwave.cases.material.rock_mass import Stiffness, set_time_constants
-from jointwave.cases.partition.joints import rocks_of
+from jointwave.cases.material.rigid_blocks import RigidJoints, rigid_joints, welds
+from jointwave.cases.material.rock import shear_modulus
+from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus, set_time_constants
+from jointwave.cases.partition.joints import ROCK, rocks_of
 from jointwave.cases.partition.lattice import further_sets
-from jointwave.cases.partition.scene import blocks_of_scene
+from jointwave.cases.partition.scene import across_periodic, blocks_of_scene
 from jointwave.cases.partition.shape import shape_of
-from jointwave.cases.schema.joint import JointLaw
+from jointwave.cases.schema.joint import JointLaw, JointSet
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.dem.build import RigidBlocks
+from jointwave.dem.build import ROTATIONS, RigidBlocks, masses_of, steady_fields
 from jointwave.dem.columns import Columns, Rule, columns_of
-from jointwave.dem.receivers import Faces, receivers_of
-from jointwave.dem.rock_contacts import contacts_of
+from jointwave.dem.contacts import Contacts, contacts_of
+from jointwave.dem.receivers import receivers_of
 from jointwave.dem.sides import surroundings_of
 from jointwave.dem.snapshots import Bodies, triangles
 from jointwave.dem.waveforms import PointsAndJoints
-
-#: Rotations of a block, by dimension.
-ROTATIONS = {1: 0, 2: 1, 3: 3}
-CORNERS = {2: 4, 3: 24}  # of a block, in snapshots
 
 
 @dataclass(frozen=True, kw_only=True)
 class BlocksOfRockMass(RigidBlocks):
     """A rock mass as rigid blocks.
 
-    cut : the blocks. sides : names of the boundary's sides, in order. joints : the stiffness
-    between blocks, and the homogenised stiffness.
+    left_over : the part of the intact rock's stiffness that they cannot have.
     """
 
     scene: RockMass
-    cut: Cut
-    sides: tuple[str, ...]
-    joints: RigidJoints
-
-    @cached_property
-    def faces(self) -> Faces:
-        """The contacts as they are read."""
-        met, excess = self.contacts, np.append(self.joints.excess, np.zeros((2, 1)), axis=1)
-        own = excess[:, np.minimum(met.column, excess.shape[1] - 1)].T
-        return Faces(met.blocks, met.area, met.frame, met.arm, own)
+    left_over: float
+    corners: ClassVar[dict[int, int]] = {2: 4, 3: 24}
+    counted_by: ClassVar[str] = "numerics.dem.block"
 
     @cached_property
     def receivers(self) -> PointsAndJoints:
         """What is recorded; raises SceneError for a point outside the rock."""
-        return PointsAndJoints(*receivers_of(self.scene, self.cut, self.faces, self.onto))
+        return PointsAndJoints(*receivers_of(self.scene, self.cut, self.contacts, self.onto))
 
     @property
     def bodies(self) -> Bodies:
@@ -86,49 +76,81 @@ def blocks_of(scene: RockMass) -> BlocksOfRockMass:
     further, sides = further_sets(scene), shape_of(scene.domain).sides
     cut = blocks_of_scene(scene, further)
     try:
-        contacts, kinds, others = contacts_of(scene, cut, sides, further)
+        across = [(one.contacts, one.shift) for one in across_periodic(scene, cut)]
     except GeometryError as error:  # periodic sides that do not fit each other
         raise SceneError(scene.where, error.key, None, str(error)) from None
+    present = {sides[k] for k in np.unique(cut.boundary.side)}
+    walls = tuple(one for one in scene.boundaries.sides("fixed", "roller") if one in present)
+    contacts = contacts_of(cut, across, sides, walls)
+    kinds, column = _columns(scene, cut, contacts, len(further))
+    alone = np.flatnonzero(column == NO_SET)
+    column[alone] = len(kinds) + np.arange(len(alone))
     joints = rigid_joints(scene, further, kinds)
-    density = np.array([one.density for one in rocks_of(scene)])[cut.body.region]
-    gravity, stress, pressed, dim = np.zeros(cut.body.dim), None, 0.0, cut.body.dim
-    if scene.gravity is not None:
-        gravity = scene.gravity.acceleration * np.array(scene.gravity.direction)
-    if scene.prestress is not None:
-        stress = np.array(scene.prestress.tensor)
-        pressed = float(np.abs(stress).max() * cut.boundary.area.sum())
+    excess = np.append(joints.excess, np.zeros((2, 1)), axis=1)[:, np.minimum(column, len(kinds))]
+    others = _without_set(scene, cut, further, contacts, alone)
+    density, dim = np.array([one.density for one in rocks_of(scene)])[cut.body.region], cut.body.dim
+    gravity, stress = steady_fields(scene, dim)
+    pressed = 0.0 if stress is None else float(np.abs(stress).max() * cut.boundary.area.sum())
     return BlocksOfRockMass(
         scene=scene,
-        centroid=cut.centroid,
-        size=cut.volume ** (1 / dim),
-        contacts=contacts,
+        cut=cut,
+        sides=sides,
+        contacts=contacts._replace(column=column, excess=excess.T),
         columns=columns_of_sets(scene, joints, others),
-        masses=masses_of(cut, density),
+        masses=masses_of(cut, density, ROTATIONS[dim]),
         gravity=gravity,
         prestress=stress,
         pressed=pressed,
         around=surroundings_of(scene, cut, sides),
         static_steps=40_000 + 40_000 * int(np.sqrt(cut.count)),
-        corners=CORNERS[dim],
-        counted_by="numerics.dem.block",
-        cut=cut,
-        sides=sides,
-        joints=joints,
+        left_over=joints.left_over,
     )
 
 
-def masses_of(cut: Cut, density: np.ndarray) -> np.ndarray:
-    """Return the matrices of mass and inertia about the centroids [N, F, F] of blocks of densities
-    [N], kg/m3."""
-    dim, second = cut.body.dim, cut.second_moment
-    found = np.zeros((cut.count, *[dim + ROTATIONS[dim]] * 2))
-    found[:, :dim, :dim] = cut.volume[:, None, None] * np.eye(dim)
-    polar = np.trace(second, axis1=1, axis2=2)
-    if dim == 2:
-        found[:, 2, 2] = polar
-    elif dim == 3:
-        found[:, 3:, 3:] = polar[:, None, None] * np.eye(3) - second
-    return density[:, None, None] * found
+def _columns(
+    scene: RockMass, cut: Cut, contacts: Contacts, further: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the kinds of joints, as `RigidJoints` has them [columns, 3], and the kind of each
+    contact [c], NO_SET for none."""
+    joint_set = contacts.column
+    if not scene.regions:
+        sets = len(scene.joint_sets) + further
+        return np.stack([np.arange(sets), *np.full((2, sets), ROCK)], axis=1), joint_set.copy()
+    found, column = joint_set != NO_SET, np.full(len(joint_set), NO_SET)
+    regions = np.sort(cut.body.region[contacts.blocks[found]], axis=1)
+    kinds, own = np.unique(
+        np.column_stack([joint_set[found], regions]), axis=0, return_inverse=True
+    )
+    column[found] = own.reshape(-1)  # numpy 2.0 gave it another shape
+    return kinds, column
+
+
+def _without_set(
+    scene: RockMass, cut: Cut, further: list[JointSet], contacts: Contacts, alone: np.ndarray
+) -> Stiffness:
+    """Return the stiffness of some contacts (int array), of rock where no set made the cut and then
+    of walls.
+
+    A fixed side is a wall behind the rock from each block's centroid to the side, as stiff as that
+    rock is: half a block. A roller side is such a wall without stiffness in shear.
+    """
+    pairs, centre, normal = contacts.blocks, contacts.centre, contacts.frame[:, 0]
+    cuts, held = alone[pairs[alone, 1] < cut.count], alone[pairs[alone, 1] >= cut.count]
+    j = pairs[cuts, 1]
+    shift = centre[cuts] - cut.centroid[j] - contacts.arm[cuts, 1]
+    inner = welds(scene, cut, further, pairs[cuts], centre[cuts], normal[cuts], shift)
+    block, wall = pairs[held].T
+    reach = (contacts.arm[held, 0] * normal[held]).sum(axis=1)
+    moduli = np.array(
+        [
+            (constrained_modulus(one), shear_modulus(one.intact_modulus, one.intact_poisson))
+            for one in rocks_of(scene)
+        ]
+    )
+    kinds = [getattr(scene.boundaries, one) for one in contacts.walls]
+    sticks = np.array([one == "fixed" for one in kinds], dtype=float)[wall - cut.count]
+    k_n, k_s = moduli[cut.body.region[block]].T / reach
+    return Stiffness(np.append(inner.normal, k_n), np.append(inner.shear, k_s * sticks))
 
 
 def columns_of_sets(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:

@@ -1,22 +1,24 @@
-"""Receivers of a pillar: stress at sections, motion at points, fragments."""
+"""Receivers of a pillar: stress at sections, motion at points, fragments between broken joints."""
 
 from __future__ import annotations
 
+import json
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from jointwave.cases.loads import with_load_itself
-from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import Interpolation, interpolation
-from jointwave.cases.schema.tables import Record
+from jointwave.cases.schema.scene import Scene
 from jointwave.dem.build import RigidBlocks
-from jointwave.dem.fragments import with_breaks
+from jointwave.dem.chunks import LANES
 from jointwave.dem.model import Samples, State
 from jointwave.dem.readings import acting, rotation_vectors
 from jointwave.dem.system import BlockSystem
 from jointwave.results.dataset import dataset
+from jointwave.results.labels import label
 from jointwave.results.rock_mass import TERMS
 
 
@@ -62,8 +64,9 @@ class Sections(NamedTuple):
         return with_breaks(found, system, state) if count == time.samples else found
 
 
-def sections_of(record: Record, p: Properties, walls: int) -> Sections:
+def sections_of(scene: Scene, walls: int) -> Sections:
     """Return the receivers of a pillar; walls : fixed ends."""
+    p, record = calibrate(scene), scene.record
     count = p.block_count
     sections = interpolation(p.contact_y, record.stress)
     points = interpolation(p.centre_y, record.velocity)
@@ -111,22 +114,29 @@ def stress_at(reads: Sections, system: BlockSystem, samples: Samples, first: int
     crossed = np.unique(np.concatenate([sections.left, sections.right]))
     dim, count, end = blocks.dim, samples.velocity.shape[-1], blocks.count
     inner = (crossed > 0) & (crossed < end)
-    force, own = np.zeros((len(crossed), dim, count)), np.searchsorted(reads.watched, crossed - 1)
-    axes = [0] if dim == 1 else [2, 0, 1]  # of the frame y, z, x
-    force[inner] = samples.contact[own[inner]][:, axes]
+    own = np.searchsorted(reads.watched, crossed[inner] - 1)
+    force = np.zeros((len(crossed), dim, count))
+    force[inner] = in_axes(blocks, crossed[inner] - 1, samples.contact[own])
     if not inner.all():
         ends = on_ends(reads, system, samples, first)
         force[crossed == 0], force[crossed == end] = ends[0], -ends[1]
     at = sections._replace(
         left=np.searchsorted(crossed, sections.left), right=np.searchsorted(crossed, sections.right)
     )
-    found = between(force / blocks.properties.area, at)
+    found = between(force / blocks.scene.pillar.area, at)
     if blocks.composed:
         return found
     times = time.times[first : first + count]
     if dim > 1:
         return with_load_itself(found, blocks.scene, sections, times, time.dt)
     return with_load_itself(found[:, 0], blocks.scene, sections, times, time.dt)[:, None]
+
+
+def in_axes(blocks: RigidBlocks, watched: np.ndarray, contact: np.ndarray) -> np.ndarray:
+    """Return the forces of watched contacts [w] on blocks j, along the axes [w, d, n], N, by their
+    samples [w, rows, n]."""
+    frame = blocks.contacts.frame[watched]
+    return frame.swapaxes(1, 2) @ contact[:, : blocks.dim]
 
 
 def on_ends(reads: Sections, system: BlockSystem, samples: Samples, first: int) -> np.ndarray:
@@ -137,8 +147,8 @@ def on_ends(reads: Sections, system: BlockSystem, samples: Samples, first: int) 
     own = samples._replace(displacement=moved, velocity=moving)
     found = acting(system, np.array(blocks), own, first)[:, :dim]
     for wall in np.flatnonzero(met.blocks[:, 1] >= system.blocks.count):
-        force = samples.contact[np.searchsorted(reads.watched, wall), :dim]
-        force = force if dim == 1 else met.frame[wall].T @ force
+        watched = np.searchsorted(reads.watched, [wall])
+        force = in_axes(system.blocks, np.array([wall]), samples.contact[watched])
         found[np.equal(blocks, met.blocks[wall, 0])] -= force
     return found
 
@@ -151,3 +161,48 @@ def ledger_of(system: BlockSystem, samples: Samples) -> dict[str, Any]:
     has = {"friction": parts.limited, "fracture": parts.softening, "gravity": gravity}
     rows = [row for row, term in enumerate(TERMS) if has.get(term, True)]
     return {"energy": samples.energy[rows], "terms": tuple(TERMS[row] for row in rows)}
+
+
+def with_breaks(result: xr.Dataset, system: BlockSystem, state: State) -> xr.Dataset:
+    """Return a result with its `fragments`, as JSON in an attribute, and the `break_time` of each
+    joint, s, nan where it holds, where joints soften."""
+    if not system.model.form.parts.softening:
+        return result
+    blocks, times = system.blocks, break_times(system, state)
+    p = calibrate(blocks.scene)
+    found = fragments(blocks, ~np.isnan(times), state.v[: blocks.count, : blocks.dim])
+    joints = ("joint_y", p.joint_y, label("joint_y"))
+    result = result.assign_attrs(fragments=json.dumps(found)).assign_coords(joint_y=joints)
+    return result.assign(break_time=("joint_y", times, label("break_time")))
+
+
+def break_times(system: BlockSystem, state: State) -> np.ndarray:
+    """Return when the joints of a row broke [N - 1], s, nan where they hold. A joint is broken when
+    all its contact points are."""
+    form, chunks, time = system.model.form, system.model.chunks, system.time
+    rows, place = form.history, chunks.place[: system.blocks.count - 1]
+    points = rows.point + rows.point_rows * np.arange(form.points) + place[:, None] % LANES
+    own = state.history[place // LANES]
+    opening, whole = (
+        np.take_along_axis(own, points + row, axis=1) for row in (rows.opening, rows.whole)
+    )
+    limit = np.resize(system.blocks.columns.law.critical_opening, len(place))
+    steps = np.where((opening >= limit[:, None]).all(axis=1), whole.max(axis=1), np.inf)
+    return np.where(steps <= time.steps, time.dt * steps, np.nan)
+
+
+def fragments(blocks: Any, broken: np.ndarray, velocity: np.ndarray) -> list[dict[str, Any]]:
+    """Return the fragments of a row between its broken joints (bool array [N - 1]), from the start
+    on; velocity : of every block [N, d], m/s.
+
+    Each has `from_y` and `to_y` (m, in the unloaded pillar), `mass` (kg) and `velocity` (m/s), of
+    its centre of mass: a number along y or three components.
+    """
+    first = np.concatenate([[0], np.flatnonzero(broken) + 1])
+    edges = calibrate(blocks.scene).contact_y[np.append(first, blocks.count)]
+    masses = blocks.inertia[:, :1]
+    mass, momentum = (np.add.reduceat(x, first) for x in (masses, masses * velocity))
+    mean = (momentum / mass).squeeze(axis=1) if blocks.dim == 1 else momentum / mass
+    values = edges[:-1].tolist(), edges[1:].tolist(), mass[:, 0].tolist(), mean.tolist()
+    names = "from_y", "to_y", "mass", "velocity"
+    return [dict(zip(names, one, strict=True)) for one in zip(*values, strict=True)]

@@ -30,6 +30,7 @@ from jointwave.dem.surroundings import EndSpring
 from jointwave.numerics.critical_step import critical_step
 
 ENOUGH_BLOCKS = 2000  # of a row of equal ones, for its critical step
+ALIKE = 1e-9  # relative, masses of equal blocks
 CLOSE_ENOUGH = 1e-14  # relative, to the largest eigenvalue
 
 
@@ -127,14 +128,16 @@ def begin_of(
     count, eta = len(masses), columns.time_constants
     joints, values = count - 1, [*columns.stiffest, *([] if eta is None else eta)]
     alike = all((one[:joints] == one[0]).all() for one in values)
-    if not alike or (masses != masses[0]).any() or count <= ENOUGH_BLOCKS:
+    if (
+        not alike
+        or not np.allclose(masses, masses[0], rtol=ALIKE, atol=0)
+        or count <= ENOUGH_BLOCKS
+    ):
         return contacts, masses
     last, few = ENOUGH_BLOCKS - 1, np.r_[: ENOUGH_BLOCKS - 1, joints : len(contacts.area)]
     pairs = np.minimum(contacts.blocks[few], [last, contacts.blocks.max()])
     pairs[last:, 1] -= count - ENOUGH_BLOCKS
-    names = "area", "frame", "arm", "spread", "column"
-    kept = {name: getattr(contacts, name)[few] for name in names}
-    return contacts._replace(blocks=pairs, **kept), masses[:ENOUGH_BLOCKS]
+    return contacts.some(few)._replace(blocks=pairs), masses[:ENOUGH_BLOCKS]
 
 
 def _coupled(

@@ -21,9 +21,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from jointwave.dem.contacts import Contacts, frames_of
 from jointwave.dem.model import Samples, State
 from jointwave.dem.readings import acting
-from jointwave.dem.receivers import Faces, Receivers, everywhere, frames_of
+from jointwave.dem.receivers import Receivers, everywhere
 from jointwave.dem.system import BlockSystem
 from jointwave.results.rock_mass import rock_mass_dataset
 from jointwave.results.stress import stress_components
@@ -36,7 +37,7 @@ class PointsAndJoints(Receivers):
 
     def of_all(self, blocks: Any) -> PointsAndJoints:
         """Return receivers of all blocks and contacts."""
-        return PointsAndJoints(*everywhere(blocks.cut.volume, blocks.faces))
+        return PointsAndJoints(*everywhere(blocks.cut.volume, blocks.contacts))
 
     def shown(
         self, system: BlockSystem, samples: Samples, sample: int
@@ -58,7 +59,7 @@ class PointsAndJoints(Receivers):
             quantities(self, samples.displacement, samples.velocity, contact, outside),
             samples.energy,
             scheme="leapfrog",
-            left_over=system.blocks.joints.left_over,
+            left_over=system.blocks.left_over,
             **attributes,
         )
 
@@ -152,7 +153,7 @@ def jumps(receivers: Receivers, contact: np.ndarray) -> np.ndarray:
     return moved + excess[:, None] * tractions(receivers, contact)
 
 
-def upwards(faces: Faces) -> np.ndarray:
+def upwards(faces: Contacts) -> np.ndarray:
     """Return what turns tractions and jumps of contacts, in their frames, into those on the side
     above the joint, relative to that below, in the frame of the normal that points up: matrices
     [w, d, d] for rows. Of a vertical joint the normal points along y, or else along x, instead.

@@ -12,6 +12,7 @@ import pytest
 
 from jointwave.dem import composition
 from jointwave.dem.chunks import chunks_of
+from jointwave.dem.contacts import Contacts, frames_of
 from jointwave.dem.leapfrog import march
 from jointwave.dem.model import (
     Blocks,
@@ -21,7 +22,6 @@ from jointwave.dem.model import (
     samples_for,
     state_at_rest,
 )
-from jointwave.dem.receivers import Faces, frames_of
 from jointwave.joints.law import law, parts_of, table_of
 
 SIDE, DENSITY, NORMAL, SHEAR = 2.0, 2500.0, 3e9, 1.1e9
@@ -38,12 +38,11 @@ def lattice(dim, points, turns=True):
     ]
     normals = np.repeat(np.eye(dim), count**dim, axis=0)
     area, second = SIDE ** (dim - 1), SIDE ** (dim + 1) / 12
-    faces = Faces(
+    faces = Contacts(
         blocks=np.concatenate(pairs),
         area=np.full(len(normals), area),
         frame=frames_of(normals),
         arm=SIDE / 2 * np.stack([normals, -normals], axis=1),
-        excess=np.zeros((len(normals), 2)),
     )
     gauss = SIDE / np.sqrt(12)
     places = np.array(list(product((gauss, -gauss), repeat=dim - 1)))

@@ -15,11 +15,10 @@ from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.compare.runs.field_files import write_pvd
 from jointwave.dem.boundaries import freedoms as freedoms_of
+from jointwave.dem.contacts import Contacts, frames_of
 from jointwave.dem.receivers import (
-    Faces,
     Stencil,
     everywhere,
-    frames_of,
     read_by,
     stencils_in_rock,
     stencils_on_joints,
@@ -69,12 +68,12 @@ def all_faces(found):
         )
         pairs.append(np.where(part.blocks < 0, found.count, part.blocks))
     normal, area = (np.concatenate([getattr(p, k) for p in parts]) for k in ("normal", "area"))
-    faces = Faces(
+    faces = Contacts(
         np.concatenate(pairs),
         area,
         frames_of(normal),
         np.concatenate(arms),
-        np.tile([1e-10, 3e-10], (len(area), 1)),
+        excess=np.tile([1e-10, 3e-10], (len(area), 1)),
     )
     centroid, second = (
         np.concatenate([getattr(p, k) for p in parts]) for k in ("centroid", "second_moment")
@@ -235,7 +234,7 @@ def test_what_acts_from_outside_counts_as_contacts_do(dim):
     part = mean_stress(outer, only)[:, 0] * -found.volume[:, None]
     for (i, j), values in zip(stress_components(dim).values(), part.T, strict=True):
         outside[:, i, j, 0] = outside[:, j, i, 0] = values
-    inner_faces = Faces(*(array[inner] for array in faces))
+    inner_faces = faces.some(inner)
     found_stress = mean_stress(everywhere(found.volume, inner_faces), contact[inner], outside)
     np.testing.assert_allclose(found_stress, whole, rtol=0, atol=1e-12 * np.abs(whole).max())
 
@@ -245,7 +244,7 @@ def test_a_rigid_rotation_gives_no_relative_motion_and_no_stress(dim):
     """Springs between blocks feel the motion of both at the contact, whose arms must fit."""
     found = blocks(dim)
     freedoms, draw = dim + ROTATIONS[dim], np.random.default_rng(5).normal
-    faces = Faces(*(array[: len(found.contacts)] for array in all_faces(found)[0]))
+    faces = all_faces(found)[0].some(np.arange(len(found.contacts)))
     phi = draw(size=freedoms - dim)
     turn = turning(found.centroid, freedoms)[..., dim:] @ phi
     motion = np.concatenate([turn, np.tile(phi, (found.count, 1))], axis=1)
@@ -277,7 +276,7 @@ def test_joint_receivers_read_the_nearest_contact_or_along_the_joint(dim):
     contact = np.zeros((inner, dim * (dim + 1), 1))
     contact[:, :dim, 0] = values * found.contacts.area[:, None]
     contact[:, -dim:, 0] = 7 * values
-    faces = Faces(*(array[:inner] for array in faces))
+    faces = faces.some(np.arange(inner))
     for along in (False, True):
         stencils = stencils_on_joints(found, points, 1, along)
         receivers = read_by(found.volume, faces, freedoms_of(dim, 0), [], stencils)
@@ -310,7 +309,7 @@ def test_traction_and_slip_do_not_depend_on_the_numbers_of_blocks(dim):
     for sign in (1.0, -1.0):
         frame = frames_of(sign * normal)
         rows = [np.einsum("cak,ck->ca", frame, sign * one) for one in (force, jump)]
-        faces = Faces(
+        faces = Contacts(
             np.tile([0, 1], (count, 1)),
             np.ones(count),
             frame,
