@@ -4,10 +4,10 @@ import numpy as np
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.loads import highest_frequency
-from jointwave.dem.build import carried
-from jointwave.dem.contacts import springs_of
-from jointwave.dem.model import State
-from jointwave.dem.shaking import variation
+from jointwave.dem.blocks.rigid import carried
+from jointwave.dem.contacts.faces import jumps_of, springs_of
+from jointwave.dem.kernel.model import State
+from jointwave.dem.sides.shaking import variation
 from jointwave.dem.system import BlockSystem
 from jointwave.numerics.divergence import speed_that
 from jointwave.numerics.small_motion import Moved, farthest, overlapping
@@ -40,17 +40,11 @@ def highest_energy(system: BlockSystem, state: State) -> float:
 def motion_of_contacts(system: BlockSystem, state: State) -> np.ndarray:
     """Return gap and slips (m) at the centres of all contacts, and their rotation, in their frames
     [c, F]."""
-    met, dim, u = system.blocks.contacts, system.blocks.dim, state.u
-    motion, (i, j) = u @ system.blocks.onto, met.blocks.T
-    at, gradient = motion[:, :dim], motion[:, dim:].reshape(-1, dim, dim)
-    moved = at[j] - at[i]
-    if dim > 1:
-        moved += np.einsum("ca,cab->cb", met.arm[:, 1], gradient[j])
-        moved -= np.einsum("ca,cab->cb", met.arm[:, 0], gradient[i])
-    turned = u[j, dim:] - u[i, dim:]
-    if turned.shape[1] > 1:
-        turned = np.einsum("cab,cb->ca", met.frame, turned)
-    return np.hstack([np.einsum("cab,cb->ca", met.frame, moved), turned])
+    met, u = system.blocks.contacts, state.u
+    rotations = u.shape[1] - system.blocks.dim
+    of_i, of_j = (jumps_of(met.frame, arm, rotations) for arm in met.arm.swapaxes(0, 1))
+    i, j = u[met.blocks.T, :, None]
+    return (of_j @ j - of_i @ i)[..., 0]
 
 
 def stored(system: BlockSystem, state: State) -> float:

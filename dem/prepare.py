@@ -14,15 +14,15 @@ from jointwave.cases.run_memory import (
 )
 from jointwave.cases.sampling import Clock, clock
 from jointwave.cases.scene_type import AnyScene
-from jointwave.dem.boundaries import dashpots
-from jointwave.dem.build import RigidBlocks, chunks, constants, form_of
-from jointwave.dem.composition import KICKS, table
-from jointwave.dem.loads import Loads
-from jointwave.dem.model import Held, Model, held_by
-from jointwave.dem.parts import thread_count
-from jointwave.dem.pillar import blocks_of as row_of
-from jointwave.dem.shaking import Shaking, shaking
-from jointwave.dem.surroundings import DashpotsOfBase
+from jointwave.dem.blocks.pillar import blocks_of as row_of
+from jointwave.dem.blocks.rigid import RigidBlocks, chunks, constants, form_of
+from jointwave.dem.kernel.composition import KICKS, table
+from jointwave.dem.kernel.model import Held, Model, held_by
+from jointwave.dem.kernel.parts import thread_count
+from jointwave.dem.sides.boundaries import dashpots
+from jointwave.dem.sides.loads import Loads
+from jointwave.dem.sides.shaking import Shaking, shaking
+from jointwave.dem.sides.surroundings import DashpotsOfBase
 from jointwave.dem.system import BlockSystem
 from jointwave.joints.law import table_of
 
@@ -63,10 +63,12 @@ def prepared(scene: AnyScene, incident: IncidentField | None = None) -> BlockSys
 
 
 def blocks_of(scene: AnyScene) -> Any:
-    """Return a scene as `build.RigidBlocks`; raises SceneError if they cannot be made."""
+    """Return a scene as `blocks.rigid.RigidBlocks`; raises SceneError if they cannot be made."""
     if scene.is_column:
         return row_of(scene)
-    from jointwave.dem.rock_mass import blocks_of as cut  # with shapely, which no pillar needs
+    from jointwave.dem.blocks.rock_mass import (
+        blocks_of as cut,  # with shapely, which no pillar needs
+    )
 
     return cut(scene)
 

@@ -21,14 +21,14 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from jointwave.cases.errors import SceneError
-from jointwave.dem.build import constants
-from jointwave.dem.chunks import LANES, Chunks
-from jointwave.dem.columns import Columns
-from jointwave.dem.contacts import Contacts
-from jointwave.dem.leapfrog import make_stepper
-from jointwave.dem.loads import Loads
-from jointwave.dem.model import Model, State, held_by, samples_for, state_at_rest
-from jointwave.dem.stability import critical_time_step, squared_frequencies
+from jointwave.dem.blocks.rigid import constants
+from jointwave.dem.contacts.chunks import LANES, Chunks
+from jointwave.dem.contacts.faces import Contacts
+from jointwave.dem.contacts.law import Columns
+from jointwave.dem.contacts.stability import critical_time_step, squared_frequencies
+from jointwave.dem.kernel.leapfrog import make_stepper
+from jointwave.dem.kernel.model import Model, State, held_by, samples_for, state_at_rest
+from jointwave.dem.sides.loads import Loads
 from jointwave.dem.system import BlockSystem
 from jointwave.joints.law import IN_MOTION, sticking
 from jointwave.results.arrays import copied, fill
@@ -83,8 +83,7 @@ def start(system: BlockSystem, state: State) -> Rest | None:
             rows, kept = form.history, form.history.jump
             state.history[:, kept:] = relaxation.state.history[:, kept:]
             if form.parts.softening:  # what has broken here, broke before the run
-                for p in range(form.points):
-                    first = rows.point + p * rows.point_rows + rows.whole
+                for first in range(rows.points + form.point.whole, rows.size, form.point.size):
                     state.history[:, first : first + LANES] = 0.0
         if static and bears:
             system.loads.add_steady(relaxation.borne())

@@ -16,12 +16,12 @@ from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.damping import NOT_OF_BLOCKS
 from jointwave.dem.bounds import highest_energy, moved_apart, refuse_large_rotation
-from jointwave.dem.leapfrog import make_stepper
-from jointwave.dem.model import Samples, State, first_of, samples_for, state_at_rest
-from jointwave.dem.parts import thread_count
+from jointwave.dem.kernel.leapfrog import make_stepper
+from jointwave.dem.kernel.model import Samples, State, first_of, samples_for, state_at_rest
+from jointwave.dem.kernel.parts import thread_count
 from jointwave.dem.prepare import blocks_of, clock_of, prepared
+from jointwave.dem.readings.snapshots import recorder
 from jointwave.dem.relaxation import start
-from jointwave.dem.snapshots import recorder
 from jointwave.dem.system import BlockSystem
 from jointwave.numerics.divergence import ENERGY, SPEED, Guard, audit, guard
 from jointwave.numerics.instability import Divergence, stopped
@@ -95,9 +95,6 @@ def simulate(
         step(first * time.stride, last * time.stride)
         look(system, state, samples, monitor, first, last)
         t = last * time.stride * time.dt
-        if monitor.found[0] >= 0:
-            speeds, places = _energies(system, state), system.blocks.centroid
-            refuse_beyond_bounds(scene, time, system.blocks.critical, monitor, speeds, places)
         refuse_large_rotation(system, state, t)
         if matters(scene):
             refuse_large_motion(scene, "the rigid blocks", moved_apart(system, state), t, first)
@@ -155,46 +152,24 @@ def stepper(system: BlockSystem, state: State, samples: Samples) -> Callable[[in
 
 
 def look(
-    system: BlockSystem,
-    state: State,
-    samples: Samples,
-    monitor: Guard,
-    first: int,
-    last: int,
+    system: BlockSystem, state: State, samples: Samples, monitor: Guard, first: int, last: int
 ) -> None:
     """Check the motion after samples first .. last - 1, all of which may be invalid, and its energy
-    where the ledger is exact."""
-    stride, limit = system.time.stride, monitor.limit
+    where the ledger is exact. Raises StoppedError out of bounds, at the block that has the most
+    energy."""
+    blocks, time, found = system.blocks, system.time, monitor.found
     if samples.energy is not None and system.model.form.stages == 1:
-        audit(monitor, samples.energy, first, last, stride)
-    if monitor.found[0] < 0 and not _energies(system, state).max(initial=0.0) <= limit[0]:
-        monitor.found[:] = last * stride, SPEED, first * stride - 1
-
-
-def _energies(system: BlockSystem, state: State) -> np.ndarray:
-    """Return sqrt(m) v of the fastest freedom of each block [N], sqrt(J)."""
-    masses, momenta = system.blocks.inertia, system.model.inertia
+        audit(monitor, samples.energy, first, last, time.stride)
+    masses, momenta = blocks.inertia, system.model.inertia
     if system.model.form.finite:
         masses = np.hstack([masses[:, :3], np.full_like(masses[:, 3:], masses[:, 3:].max())])
-    return (momenta / np.sqrt(masses) * np.abs(state.v[: len(masses)])).max(axis=1)
-
-
-def refuse_beyond_bounds(
-    scene: AnyScene,
-    time: Clock,
-    critical: float,
-    guard: Guard,
-    speed: np.ndarray,
-    places: np.ndarray,
-) -> None:
-    """Raise StoppedError for a run that a guard has found out of its bounds.
-
-    critical : step, s. speed : of each block [N], in any unit. places : of the blocks, y [N], or x
-    and y [N, 2], m.
-    """
-    step, what, sound = guard.found.tolist()
-    at = places[int(np.nan_to_num(speed, nan=np.inf).argmax())].tolist()
-    place = tuple(at) if isinstance(at, list) else at
+    fastest = (momenta / np.sqrt(masses) * np.abs(state.v[: len(masses)])).max(axis=1)  # sqrt(J)
+    if found[0] < 0 and not fastest.max(initial=0.0) <= monitor.limit[0]:
+        found[:] = last * time.stride, SPEED, first * time.stride - 1
+    if found[0] < 0:
+        return
+    step, what, sound = found.tolist()
+    place = tuple(blocks.centroid[int(np.nan_to_num(fastest, nan=np.inf).argmax())].tolist())
     key = "numerics.dem.step_fraction"
     seen = Divergence("the rigid blocks", key, step, sound, what == ENERGY, place)
-    raise stopped(scene, time, critical, seen)
+    raise stopped(blocks.scene, time, blocks.critical, seen)

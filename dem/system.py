@@ -5,10 +5,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from jointwave.cases.sampling import Clock
-from jointwave.dem.leapfrog import march
-from jointwave.dem.loads import Loads
-from jointwave.dem.model import Model, Samples, State, samples_for
-from jointwave.dem.shaking import Shaking
+from jointwave.dem.kernel.leapfrog import march
+from jointwave.dem.kernel.model import Model, Samples, State, samples_for
+from jointwave.dem.sides.loads import Loads
+from jointwave.dem.sides.shaking import Shaking
 from jointwave.results.arrays import copied
 
 

@@ -36,8 +36,8 @@ def limiting(name: str, model: str | None, scene: AnyScene) -> dict[str, Any] | 
 
 def _blocks(scene: AnyScene, model: Any) -> tuple:
     """Return the squared frequencies (1/s2), masses and places of rigid blocks, and their sizes."""
+    from jointwave.dem.contacts.stability import squared_frequencies
     from jointwave.dem.prepare import blocks_of
-    from jointwave.dem.stability import squared_frequencies
 
     blocks = blocks_of(scene)
     square = squared_frequencies(blocks.contacts, blocks.columns, blocks.masses)

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from jointwave.dem import chunks, leapfrog, parts
+from jointwave.dem.contacts import chunks
+from jointwave.dem.kernel import leapfrog, parts
 
 SHORT: dict[str, Any] = {
     "pillar__length": 8.0,

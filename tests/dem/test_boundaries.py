@@ -16,7 +16,7 @@ from jointwave.cases.material.rock import ElasticRock, elastic_rock
 from jointwave.cases.partition.scene import blocks_of_scene, shape_of
 from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.sources import PlaneLoad
-from jointwave.dem.boundaries import (
+from jointwave.dem.sides.boundaries import (
     TURNS,
     dashpots,
     facets_on,
@@ -24,10 +24,10 @@ from jointwave.dem.boundaries import (
     points_on,
     resultants,
 )
-from jointwave.dem.loads import Loads, reactions
-from jointwave.dem.shaking import Base, shaking
-from jointwave.dem.sides import load_pattern
-from jointwave.dem.waves import incoming
+from jointwave.dem.sides.domain import load_pattern
+from jointwave.dem.sides.loads import Loads, reactions
+from jointwave.dem.sides.shaking import Base, shaking
+from jointwave.dem.sides.waves import incoming
 
 SIZE = np.array([3.0, 2.0, 2.5])
 SIDES = ("left", "right", "front", "back", "bottom", "top")

@@ -11,8 +11,8 @@ import pytest
 
 from closed_forms.bloch import leapfrog, modes, periodic
 from jointwave.cases.validate import validated
-from jointwave.dem.leapfrog import march
-from jointwave.dem.model import samples_for, state_at_rest
+from jointwave.dem.kernel.leapfrog import march
+from jointwave.dem.kernel.model import samples_for, state_at_rest
 from jointwave.dem.prepare import prepared
 
 BED, HEAD = (2e10, 8e9), (1e10, 5e9)  # normal and shear stiffness, Pa/m

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from jointwave.cases.validate import validated
-from jointwave.dem import leapfrog, simulate
+from jointwave.dem import simulate
+from jointwave.dem.kernel import leapfrog
 
 SEVERAL = r" <\d+ x double>"  # of several contacts at once
 SQRT = r"(?:tail )?call \S+ @llvm\.sqrt\S*"

@@ -5,10 +5,17 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from jointwave.dem.chunks import chunks_of
-from jointwave.dem.contacts import Contacts, extents, frames_of
-from jointwave.dem.leapfrog import march
-from jointwave.dem.model import Blocks, KernelFlags, Model, held_by, samples_for, state_at_rest
+from jointwave.dem.contacts.chunks import chunks_of
+from jointwave.dem.contacts.faces import Contacts, extents, frames_of
+from jointwave.dem.kernel.leapfrog import march
+from jointwave.dem.kernel.model import (
+    Blocks,
+    KernelFlags,
+    Model,
+    held_by,
+    samples_for,
+    state_at_rest,
+)
 from jointwave.joints.law import law, parts_of, table_of
 
 SIDES, DENSITY, NORMAL, SHEAR = np.array([1.0, 1.3, 0.8]), 2500.0, 3e9, 1.1e9

@@ -10,11 +10,11 @@ from itertools import product
 import numpy as np
 import pytest
 
-from jointwave.dem import composition
-from jointwave.dem.chunks import chunks_of
-from jointwave.dem.contacts import Contacts, frames_of
-from jointwave.dem.leapfrog import march
-from jointwave.dem.model import (
+from jointwave.dem.contacts.chunks import chunks_of
+from jointwave.dem.contacts.faces import Contacts, frames_of
+from jointwave.dem.kernel import composition
+from jointwave.dem.kernel.leapfrog import march
+from jointwave.dem.kernel.model import (
     Blocks,
     KernelFlags,
     Model,

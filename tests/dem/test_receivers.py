@@ -14,18 +14,18 @@ from jointwave.cases.geometry.locate import blocks_at, contact_at, sides_at
 from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.compare.runs.field_files import write_pvd
-from jointwave.dem.boundaries import freedoms as freedoms_of
-from jointwave.dem.contacts import Contacts, frames_of
-from jointwave.dem.receivers import (
+from jointwave.dem.blocks.rock_mass import blocks_of as rigid_blocks
+from jointwave.dem.contacts.faces import Contacts, frames_of
+from jointwave.dem.readings.receivers import (
     Stencil,
     everywhere,
     read_by,
     stencils_in_rock,
     stencils_on_joints,
 )
-from jointwave.dem.rock_mass import blocks_of as rigid_blocks
-from jointwave.dem.snapshots import BlockFrame, BlockRecorder, corner_motion, triangles
-from jointwave.dem.waveforms import at_points, jumps, mean_stress, quantities
+from jointwave.dem.readings.snapshots import BlockFrame, BlockRecorder, corner_motion, triangles
+from jointwave.dem.readings.waveforms import at_points, jumps, mean_stress, quantities
+from jointwave.dem.sides.boundaries import freedoms as freedoms_of
 from jointwave.results.rock_mass import rock_mass_dataset
 from jointwave.results.snapshots import snapshots_of
 from jointwave.results.stress import stress_components

@@ -9,8 +9,8 @@ import pytest
 from jointwave.cases.validate import validated
 from jointwave.dem import simulate
 from jointwave.dem.bounds import motion_of_contacts
-from jointwave.dem.leapfrog import march
-from jointwave.dem.model import samples_for, state_at_rest
+from jointwave.dem.kernel.leapfrog import march
+from jointwave.dem.kernel.model import samples_for, state_at_rest
 from jointwave.dem.prepare import prepared
 
 LAW = {"normal_stiffness": 2e10, "shear_stiffness": 8e9}

@@ -23,7 +23,7 @@ ROOT = Path(joints.__file__).resolve().parent.parent
 
 
 @pytest.mark.parametrize(
-    "edited", ["joints/law.py", "dem/kernel.py", "continuum/stepping/explicit.py"]
+    "edited", ["joints/law.py", "dem/kernel/step.py", "continuum/stepping/explicit.py"]
 )
 def test_cache_follows_every_source(edited, tmp_path):
     """One character in any kernel's file, a callee's included, is another cache."""

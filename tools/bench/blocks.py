@@ -10,8 +10,8 @@ from kernels import SLIDES
 from rows import ELASTIC, changed, lattice, stretch
 from timing import Timed, in_turns, side_by_side
 
-from jointwave.dem.leapfrog import march
-from jointwave.dem.model import Model, samples_for, state_at_rest
+from jointwave.dem.kernel.leapfrog import march
+from jointwave.dem.kernel.model import Model, samples_for, state_at_rest
 from jointwave.dem.prepare import prepared
 
 COULOMB = ELASTIC | {"friction_angle": 30.0, "cohesion": 1e5}

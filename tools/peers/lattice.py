@@ -17,8 +17,8 @@ from job import ONE_THREAD
 from lammps_bonds import BODIES, SPHERES, bodies, bpm_bonds, stepping
 
 from jointwave import cases
-from jointwave.dem.leapfrog import march
-from jointwave.dem.model import Model, samples_for, state_at_rest
+from jointwave.dem.kernel.leapfrog import march
+from jointwave.dem.kernel.model import Model, samples_for, state_at_rest
 from jointwave.dem.prepare import prepared
 from jointwave.joints.law import law_of
 

@@ -1,5 +1,5 @@
 """Points of contacts as springs: the stiffness of each block against its neighbours, to which the
-bound of `dem.stability` and the rules of points are held."""
+bound of `dem.contacts.stability` and the rules of points are held."""
 
 import numpy as np
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jointwave.dem import simulate
-from jointwave.dem.model import state_at_rest
+from jointwave.dem.kernel.model import state_at_rest
 from jointwave.dem.prepare import prepared
 from jointwave.dem.relaxation import start
 

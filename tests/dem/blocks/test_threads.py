@@ -4,7 +4,7 @@ import pytest
 
 from jointwave.cases.errors import InterruptedRun, StoppedError
 from jointwave.dem import simulate
-from jointwave.dem.parts import divided
+from jointwave.dem.kernel.parts import divided
 from jointwave.dem.prepare import prepared
 
 SLIDES = {"friction_angle": 10.0, "cohesion": 2e5, "residual_cohesion": 0.0, "damping_ratio": 0.05}

@@ -1,0 +1,1 @@
+"""Rigid blocks of a scene, before time discretisation."""

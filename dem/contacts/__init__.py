@@ -1,0 +1,1 @@
+"""Contacts of rigid blocks: their faces, law, layout in chunks, and the critical step."""

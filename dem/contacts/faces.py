@@ -1,0 +1,152 @@
+"""Contacts between blocks, across periodic sides, and with walls, in any dimension."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from jointwave.cases.geometry.blocks import Blocks, Facets
+from jointwave.cases.geometry.cell_complex import NO_SET
+from jointwave.cases.geometry.measure import Outlines, frames, joined
+from jointwave.dem.sides.boundaries import facets_on, freedoms, levers
+
+
+class Contacts(NamedTuple):
+    """Contacts [c], those of the blocks first and in their order.
+
+    blocks : i and j [c, 2]; a wall is a j beyond the last block. area : m^(d-1). frame : [c, d, d],
+    the normal from i to j, then the tangents. arm : [c, 2, d], from the centroids of i and j, where
+    they touch, to the centre, m. centre : [c, d], m, that of block i's face. spread : second
+    moments over the area, in the frame's tangents [c, d - 1, d - 1], m2. column : of the law [c];
+    before there is one, the joint set, NO_SET for none. excess : what of the compliance is the
+    rock's beside the joint, normal and in shear [c, 2], m/Pa; None without. walls : names of the
+    sides or ends that stand still, or are shaken. outlines : corners of the faces, m.
+    """
+
+    blocks: np.ndarray
+    area: np.ndarray
+    frame: np.ndarray
+    arm: np.ndarray
+    centre: Any = None
+    spread: Any = None
+    column: Any = None
+    excess: Any = None
+    walls: tuple[str, ...] = ()
+    outlines: Any = None
+
+    def some(self, rows: np.ndarray) -> Contacts:
+        """Return some of the contacts, without their outlines."""
+        kept = (None if one is None else one[rows] for one in self[:-2])
+        return Contacts._make([*kept, self.walls, None])
+
+
+def contacts_of(
+    cut: Blocks,
+    across: Sequence[tuple[Facets, np.ndarray]],
+    sides: tuple[str, ...],
+    walls: tuple[str, ...],
+) -> Contacts:
+    """Return all contacts of blocks, with the joint set of each.
+
+    across : contacts across pairs of periodic sides, and by which blocks j stand elsewhere [d], m.
+    sides : names of the boundary's sides, in order. walls : of those that stand still.
+    """
+    parts, edges = [(cut.contacts, np.zeros(cut.body.dim)), *across], cut.boundary
+    pairs, area, centre, normal, second, joint_set = (
+        np.concatenate([getattr(one, key) for one, _ in parts])
+        for key in ("blocks", "area", "centroid", "normal", "second_moment", "joint_set")
+    )
+    shift = np.repeat([one for _, one in parts], [len(one) for one, _ in parts], axis=0)
+    held = facets_on(cut, sides, walls)
+    block, reach = edges.blocks[held, 0], edges.centroid[held] - cut.centroid[edges.blocks[held, 0]]
+    wall = np.array([walls.index(sides[k]) for k in edges.side[held]], dtype=int)
+    i, j = (centre - cut.centroid[one] for one in pairs.T)
+    area = np.concatenate([area, edges.area[held]])
+    frame = frames_of(np.concatenate([normal, edges.normal[held]]))
+    spread = np.concatenate([second, edges.second_moment[held]]) / area[:, None, None]
+    arms = np.stack([i, j - shift], axis=1), np.stack([reach, np.zeros_like(reach)], axis=1)
+    return Contacts(
+        blocks=np.concatenate([pairs, np.stack([block, cut.count + wall], axis=1)]),
+        area=area,
+        frame=frame,
+        arm=np.concatenate(arms),
+        centre=np.concatenate([centre, edges.centroid[held]]),
+        spread=frame[:, 1:] @ spread @ frame[:, 1:].swapaxes(1, 2),
+        column=np.concatenate([joint_set, np.full(len(held), NO_SET)]),
+        walls=walls,
+        outlines=joined([*(one.outlines for one, _ in parts), _some(edges.outlines, held)]),
+    )
+
+
+def _some(pieces: Outlines, rows: np.ndarray) -> Outlines:
+    """Return some of the pieces."""
+    size = np.diff(pieces.first)[rows]
+    first = np.append(0, np.cumsum(size))
+    at = np.arange(first[-1]) + np.repeat(pieces.first[rows] - first[:-1], size)
+    return Outlines(pieces.corners[at], first)
+
+
+def frames_of(normal: np.ndarray) -> np.ndarray:
+    """Return the frames of contacts [c, d, d] with these normals [c, d]: in the plane the tangent
+    is the normal rotated to the left, in space they are the strike and the line of dip."""
+    tangents: tuple[np.ndarray, ...] = ()
+    if (dim := normal.shape[1]) == 2:
+        tangents = (np.stack([-normal[:, 1], normal[:, 0]], axis=1),)
+    elif dim == 3:
+        tangents = frames(normal)
+    return np.stack([normal, *tangents], axis=1)
+
+
+def extents(contacts: Contacts, points: np.ndarray, blocks: int) -> np.ndarray:
+    """Return how far blocks j reach behind the centres of faces, and these along their tangents
+    [c, d], m: points of blocks i that move on beyond carry nothing.
+
+    A face reaches as far as the rectangle with its second moments, and half as far again as its
+    points: corners leave it as late as midpoints do. Walls reach everywhere.
+
+    points : as `law.points_on` has them. blocks : their number.
+    """
+    half = np.sqrt(3 * np.diagonal(contacts.spread, axis1=1, axis2=2))
+    farthest = 1.5 * np.abs(points[..., :-1]).max(axis=1)
+    behind = -2 * (contacts.arm[:, 1] * contacts.frame[:, 0]).sum(axis=1)
+    found = np.column_stack([behind, np.maximum(half, farthest)])
+    found[contacts.blocks[:, 1] >= blocks] = np.inf
+    return found
+
+
+def jumps_of(frame: np.ndarray, arm: np.ndarray, rotations: int) -> np.ndarray:
+    """Return the matrices [c, F, F] that make the motion of blocks their part of the jump at the
+    centres of faces with these frames [c, d, d], and of the rotation; arm : [c, d], m."""
+    count, dim = arm.shape
+    found = np.zeros((count, dim + rotations, dim + rotations))
+    found[:, :dim] = frame @ levers(arm).swapaxes(1, 2) @ freedoms(dim, rotations).T
+    if rotations:
+        found[:, dim:, dim:] = 1.0 if dim == 2 else frame
+    return found
+
+
+def springs_of(
+    normal: np.ndarray, shear: np.ndarray, area: np.ndarray, spread: np.ndarray, rotations: int
+) -> np.ndarray:
+    """Return the stiffness of faces against their jumps and rotations [c, F, F], N/m and N m.
+
+    normal, shear : Pa/m [c]. area : [c]. spread : as in `Contacts`.
+    """
+    dim = spread.shape[1] + 1
+    found = np.zeros((len(area), dim + rotations, dim + rotations))
+    found[:, 0, 0] = normal * area
+    for a in range(1, dim):
+        found[:, a, a] = shear * area
+    if rotations:
+        bent = (normal * area)[:, None, None] * spread
+        found[:, -1, -1] = bent[:, 0, 0]
+    if rotations == 3:
+        found[:, 3, 3] = shear * area * np.trace(spread, axis1=1, axis2=2)
+        found[:, 4, 4], found[:, 4, 5], found[:, 5, 4] = (
+            bent[:, 1, 1],
+            -bent[:, 0, 1],
+            -bent[:, 0, 1],
+        )
+    return found

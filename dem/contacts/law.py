@@ -1,0 +1,115 @@
+"""The law of contacts in columns, and the points of contacts by the rule of each column."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from jointwave.cases.material.contact_points import bending, points_of, vertex_points
+from jointwave.cases.material.properties import strength_of
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.joint import JointLaw
+from jointwave.dem.contacts.faces import Contacts
+from jointwave.joints.law import Law, law, stiffest, uniform
+
+#: Rule of points, and their number along each tangent.
+Rule = tuple[str, int | None]
+
+
+class Columns(NamedTuple):
+    """The law in its columns, and K_n and K_s of each [columns], Pa/m, as they are.
+
+    stiffest : K_n and K_s of joints that have closed as far as is in reach, and slide where that
+    lifts them [2, columns], Pa/m. time_constants : viscosity over stiffness, normal and in shear
+    [2, columns], s; None without dashpots. rules : of points and their number, one for all or one a
+    column. fails : whether points have a history of their own.
+    """
+
+    law: Law
+    normal: np.ndarray
+    shear: np.ndarray
+    stiffest: np.ndarray
+    time_constants: np.ndarray | None
+    rules: list[Rule]
+    fails: bool
+
+    @property
+    def bending(self) -> np.ndarray:
+        """Part of a face's second moments that its points have, by column."""
+        return np.resize([bending(*rule) for rule in self.rules], len(self.normal))
+
+
+def columns_of(
+    scene: AnyScene,
+    laws: Sequence[JointLaw],
+    which: np.ndarray,
+    stiffness: np.ndarray,
+    *,
+    eta: np.ndarray | None,
+    rock: np.ndarray | None,
+    rules: list[Rule],
+    shears: bool = True,
+) -> Columns:
+    """Return the law of contacts in columns, each of one of some joint laws (int array [columns]).
+
+    stiffness : normal and in shear [2, columns], Pa/m. eta : viscosity over these, s; None without
+    dashpots. rock : what rock has of the compliance, m/Pa; None where no joint stiffens. rules : as
+    in `Columns`. shears : whether there is motion along joints.
+    """
+    (normal, shear), tension = stiffness, np.array([one.tension is not False for one in laws])
+    strengths, tension = strength_of(laws, which).strengths(shears), tension[which]
+    across = shear if shears else None
+    found = law(normal, None, tension, shear_stiffness=across, rock_compliance=rock, **strengths)
+    if eta is not None:
+        found = found._replace(
+            normal_viscosity=uniform(eta[0] * normal),
+            shear_viscosity=uniform(eta[1] * shear) if shears else None,
+        )
+    most = [np.resize(0.0 if one is None else one, len(normal)) for one in stiffest(found, scene)]
+    fails = not tension.all() or bool(strengths)
+    return Columns(found, normal, shear * shears, np.array(most), eta, rules, fails)
+
+
+def points_on(contacts: Contacts, rules: list[Rule]) -> np.ndarray:
+    """Return places, m, from the centre and along the tangents, and the area of each point of all
+    contacts [c, points, d]; where they are fewer, points of no area fill them up.
+
+    rules : one for all or one a column.
+    """
+    which, parts = np.minimum(contacts.column, len(rules) - 1), []
+    for k, (rule, number) in enumerate(rules):
+        own = np.flatnonzero(which == k)
+        if rule == "vertices" and contacts.frame.shape[1] > 1:
+            parts.append((own, *vertex_points(_corners(contacts, own), contacts.spread[own])))
+        else:
+            parts.append((own, *_grid(contacts.spread[own], *points_of(rule, number))))
+    most = max(shares.shape[1] for _, _, shares in parts)
+    found = np.zeros((len(contacts.area), most, contacts.frame.shape[1]))
+    for own, places, shares in parts:
+        found[own, : shares.shape[1], :-1] = places
+        found[own, : shares.shape[1], -1] = contacts.area[own, None] * shares
+    return found
+
+
+def _grid(spread: np.ndarray, x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return places [c, points, d - 1] and shares [c, points] of a rule, places and weights on an
+    edge from 0 to 1, on edges and on the parallelograms with these second moments."""
+    axes = spread.shape[1]
+    variance, turn = np.linalg.eigh(spread)
+    half = (turn * np.sqrt(3 * np.maximum(variance, 0.0))[:, None]) @ turn.swapaxes(1, 2)
+    places = np.array(list(product(2 * x - 1, repeat=axes)))
+    shares = [np.prod(one) for one in product(w, repeat=axes)]
+    return places @ half, np.tile(shares, (len(spread), 1))
+
+
+def _corners(contacts: Contacts, own: np.ndarray) -> np.ndarray:
+    """Return the corners of some contacts, from the centre and along the tangents [c, k, d - 1], m;
+    where they are fewer the last one is repeated."""
+    corners, first = contacts.outlines
+    begin, end = first[own, None], first[own + 1, None]
+    at = np.minimum(begin + np.arange((end - begin).max(initial=1)), end - 1)
+    away = corners[at] - contacts.centre[own, None]
+    return away @ contacts.frame[own, 1:].swapaxes(1, 2)

@@ -1,0 +1,166 @@
+"""The critical step of a rock mass of rigid blocks.
+
+The critical step, with dashpots and what holds the sides, follows from a bound block by block, on
+stiffness and damping together. The energy of a spring between two blocks, k (a - b)^2, is at most
+2 k a^2 + 2 k b^2, so that the stiffness matrix is at most twice its own diagonal blocks K_i, each
+that of block i with its neighbours held:
+
+    max_i lambda(K_i, M_i)  <=  omega^2  <=  2 max_i lambda(K_i, M_i).
+
+The lower bound is the motion of one block alone. The step that follows from the upper one is thus
+never above the critical step and at most 30 % below it; in a square lattice where translation is
+fastest it is equal to it.
+
+Slip and opening only take stiffness away; joints that stiffen are as stiff as in the stiffest state
+in reach, and joints that dilate as in `joints.dilation.riding_stiffness`. Dashpots of quiet sides
+take the mean velocity of a step and change no bound, nor does mass-proportional damping; local
+damping alpha makes forces that turn a velocity round 1 + alpha times as large.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from scipy.linalg import LinAlgError, cholesky_banded
+
+from jointwave.dem.contacts.faces import Contacts, jumps_of, springs_of
+from jointwave.dem.contacts.law import Columns
+from jointwave.dem.sides.surroundings import EndSpring
+from jointwave.numerics.critical_step import critical_step
+
+ENOUGH_BLOCKS = 2000  # of a row of equal ones, for its critical step
+ALIKE = 1e-9  # relative, masses of equal blocks
+CLOSE_ENOUGH = 1e-14  # relative, to the largest eigenvalue
+
+
+def critical_time_step(
+    contacts: Contacts, columns: Columns, masses: np.ndarray, local: float
+) -> float:
+    """Return a lower bound of the critical step, s; masses : matrices of the blocks [N, F, F].
+    local : Cundall's damping."""
+    eta = columns.time_constants
+    own, damping = _stiffness(contacts, columns, columns.stiffest, masses)[0], None
+    if eta is not None:
+        viscosity = eta[0] * columns.normal, eta[1] * columns.shear
+        damping = _stiffness(contacts, columns, viscosity, masses)[0]
+
+    def largest(a: float, b: float) -> float:
+        both = a * own if damping is None else a * own + b * damping
+        return (1 + local) * float(_highest(both, masses).max())
+
+    return critical_step(largest, damping is not None)
+
+
+def squared_frequencies(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
+    """Return the bound of each block on the square of the largest frequency [N], 1/s2."""
+    return _highest(_stiffness(contacts, columns, columns.stiffest, masses)[0], masses)
+
+
+def _highest(matrices: np.ndarray, masses: np.ndarray) -> np.ndarray:
+    """Return twice the largest eigenvalue of each block's matrix [N, F, F] over its inertia."""
+    back = np.linalg.inv(np.linalg.cholesky(masses))
+    return 2 * np.linalg.eigvalsh(back @ matrices @ back.swapaxes(1, 2))[:, -1]
+
+
+def _stiffness(
+    contacts: Contacts, columns: Columns, values: Iterable[np.ndarray], masses: np.ndarray
+) -> np.ndarray:
+    """Return the matrix of each block against what it touches, and, where contacts are those of a
+    row, of the next one's motion in what acts on it [2, N, F, F], of stiffness or viscosity per
+    area in each column, normal and in shear, with the second moments of the points."""
+    rotations = masses.shape[1] - contacts.frame.shape[1]
+    spread = columns.bending[contacts.column, None, None] * contacts.spread
+    normal, shear = (x[contacts.column] for x in values)
+    springs = springs_of(normal, shear, contacts.area, spread, rotations)
+    found, (i, j) = np.zeros((2, *masses.shape)), contacts.blocks.T
+    of_i, of_j = (jumps_of(contacts.frame, arm, rotations) for arm in contacts.arm.swapaxes(0, 1))
+    inner = j < len(masses)
+    np.add.at(found[0], i, of_i.swapaxes(1, 2) @ springs @ of_i)
+    np.add.at(found[0], j[inner], (of_j.swapaxes(1, 2) @ springs @ of_j)[inner])
+    found[1, i[inner]] = -(of_j.swapaxes(1, 2) @ springs @ of_i)[inner]
+    return found
+
+
+def critical_step_of_row(
+    contacts: Contacts,
+    columns: Columns,
+    masses: np.ndarray,
+    local: float,
+    springs: Sequence[EndSpring],
+) -> float:
+    """Return the critical step (s) of blocks one after the other, as `critical_time_step` has it,
+    to the last digits; springs : of their ends."""
+    contacts, masses = begin_of(contacts, columns, masses)
+    eta, local, last = columns.time_constants, 1 + local, len(masses) - 1
+    back = np.linalg.inv(np.linalg.cholesky(masses))
+
+    def band(normal: np.ndarray, shear: np.ndarray, held: float) -> np.ndarray:
+        found = _stiffness(contacts, columns, (normal, shear), masses)
+        for one in springs:
+            found[0, min(one.block, last)] += held * one.critical
+        found[0] = back @ found[0] @ back.swapaxes(1, 2)
+        found[1, :-1] = back[1:] @ found[1, :-1] @ back[:-1].swapaxes(1, 2)
+        return lower_band(found)
+
+    (normal, shear), damping = columns.stiffest, np.zeros(1)
+    own = band(normal, shear, 1.0)
+    if eta is not None:
+        damping = band(eta[0] * columns.normal, eta[1] * columns.shear, 0.0)
+    return critical_step(
+        lambda a, b: local * largest_eigenvalue(a * own + b * damping), eta is not None
+    )
+
+
+def begin_of(
+    contacts: Contacts, columns: Columns, masses: np.ndarray
+) -> tuple[Contacts, np.ndarray]:
+    """Return contacts and matrices of a row with the critical step of the whole: of equal blocks
+    and joints, the first; no longer one has an eigenvalue larger by 1e-6."""
+    count, eta = len(masses), columns.time_constants
+    joints, values = count - 1, [*columns.stiffest, *([] if eta is None else eta)]
+    alike = all((one[:joints] == one[0]).all() for one in values)
+    if (
+        not alike
+        or not np.allclose(masses, masses[0], rtol=ALIKE, atol=0)
+        or count <= ENOUGH_BLOCKS
+    ):
+        return contacts, masses
+    last, few = ENOUGH_BLOCKS - 1, np.r_[: ENOUGH_BLOCKS - 1, joints : len(contacts.area)]
+    pairs = np.minimum(contacts.blocks[few], [last, contacts.blocks.max()])
+    pairs[last:, 1] -= count - ENOUGH_BLOCKS
+    return contacts.some(few)._replace(blocks=pairs), masses[:ENOUGH_BLOCKS]
+
+
+def lower_band(matrices: np.ndarray) -> np.ndarray:
+    """Return the lower band [2 F, N F] of a symmetric matrix, of its diagonal blocks and those
+    below them [2, N, F, F]."""
+    _, count, size, _ = matrices.shape
+    found = np.zeros((2 * size, count, size))
+    for below, block in enumerate(matrices):
+        for row in range(size):
+            for column in range(size):
+                if (off := below * size + row - column) >= 0:
+                    found[off, :, column] = block[:, row, column]
+    return found.reshape(2 * size, -1)
+
+
+def largest_eigenvalue(band: np.ndarray) -> float:
+    """Return the largest eigenvalue of a symmetric matrix by its lower band, by bisection for the
+    shift that makes s - K positive definite.
+
+    A long row has its largest eigenvalues so close together that Lanczos takes minutes.
+    """
+    whole = np.abs(band).sum(axis=0)
+    for off in range(1, len(band)):
+        whole[off:] += np.abs(band[off, :-off])
+    low, high = float(band[0].max()), float(whole.max())
+    while high - low > CLOSE_ENOUGH * high:
+        shifted = -band
+        shifted[0] += (low + high) / 2
+        try:
+            cholesky_banded(shifted, overwrite_ab=True, lower=True, check_finite=False)
+            high = (low + high) / 2
+        except LinAlgError:
+            low = (low + high) / 2
+    return high

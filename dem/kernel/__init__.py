@@ -1,0 +1,1 @@
+"""The compiled step of rigid blocks, its constants and its state."""

@@ -1,0 +1,324 @@
+"""The constants and the state of rigid blocks in one, two or three dimensions.
+
+A block has `dim` displacements and, if it turns, one rotation in the plane and three in space: its
+freedoms. Masses and forces are per metre of thickness in the plane.
+"""
+
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from jointwave.dem.contacts.chunks import LANES, Chunks
+from jointwave.joints.law import Law, LawFlags
+from jointwave.numerics.cache_lines import zeros
+from jointwave.results.rock_mass import TERMS
+
+
+def rows(**sizes: int) -> Any:
+    """Return where groups of so many rows begin, in numbers, and their `size`."""
+    begins = LANES * np.append(0, np.cumsum([*sizes.values()]))
+    return SimpleNamespace(**dict(zip((*sizes, "size"), begins.tolist(), strict=True)))
+
+
+class KernelFlags(NamedTuple):
+    """The effects of a system of blocks: compile-time constants of its kernel.
+
+    dim : 1, 2 or 3. turns : whether blocks rotate. parts : of the joint law. points : points of a
+    contact; 0 where joints always hold, which need none. mass_damping, local_damping, gravity : of
+    the blocks. held : whether some blocks have dashpots of their own, or forces; matched : dashpots
+    behind springs. ledger : whether energies are kept. stressed : whether contacts start under a
+    traction. shaken : whether walls move. relaxed : whether the same kernel brings the blocks to
+    rest first, for which it can damp their motion, without a place in the ledger. in_row : whether
+    contacts mostly join block after block. oblique : whether rotations of a block have inertia in
+    common. stages : of a step, 1 of leapfrog. finite : whether blocks in space turn by any angle;
+    their contacts then have points.
+    """
+
+    dim: int
+    turns: bool
+    parts: LawFlags
+    points: int
+    mass_damping: bool
+    local_damping: bool
+    gravity: bool
+    held: bool
+    ledger: bool
+    stressed: bool = False
+    shaken: bool = False
+    relaxed: bool = False
+    in_row: bool = False
+    oblique: bool = False
+    matched: bool = False
+    stages: int = 1
+    finite: bool = False
+
+    @property
+    def rotations(self) -> int:
+        """Rotations of a block."""
+        return self.turns * self.dim * (self.dim - 1) // 2
+
+    @property
+    def freedoms(self) -> int:
+        """Displacements and rotations of a block."""
+        return self.dim + self.rotations
+
+    @property
+    def motions(self) -> int:
+        """Numbers of the motion of one block against another at a contact."""
+        return self.dim + (self.spread_rows if self.finite else self.rotations)
+
+    @property
+    def rated(self) -> bool:
+        """Whether forces or the ledger need rates of relative motion."""
+        p = self.parts
+        return p.dashpots or (self.points > 0 and (self.ledger or p.path))
+
+    @property
+    def drags(self) -> bool:
+        """Whether the dashpots' share of forces is kept apart."""
+        return self.parts.dashpots and self.ledger
+
+    @property
+    def spread_rows(self) -> int:
+        """First moments of the traction over a face."""
+        return self.turns * self.dim * (self.dim - 1)
+
+    @property
+    def recorded(self) -> int:
+        """Rows of a contact's samples: its force on block j in its frame, first moments of it about
+        the face's centre, gap and slip."""
+        return 2 * self.dim + self.spread_rows
+
+    @property
+    def table(self) -> Any:
+        """Rows of the table of contacts.
+
+        frame : axes n and tangents, the tangent left out in the plane. arm_i, arm_j : from
+        centroids to the centre of the face, m. area : m2. extent : how far block j reaches behind
+        the centre of the face and along its tangents, m, where points may leave it. start : gap and
+        slip that stand for what a contact carries at first, m. second : second moments along the
+        first tangent, along the second, and mixed, m4. point : place in the face, m, and area of
+        each point.
+        """
+        dim, arms = self.dim, self.dim * self.turns
+        return rows(
+            frame=(0, 2, 9)[dim - 1],
+            arm_i=arms,
+            arm_j=arms,
+            area=1,
+            extent=dim * self.finite,
+            start=dim * self.stressed,
+            second=dim * (dim - 1) // 2 * (self.turns and not self.points),
+            point=dim * self.points,
+        )
+
+    @property
+    def buffer(self) -> Any:
+        """Rows of a chunk's buffer.
+
+        law : parameters of the law, where joints differ. gathered : of the motion of blocks, with
+        finite rotations the scalar parts of quaternions last. jump, rate, now : relative motion at
+        the step, its rates half a step before and now. force, spread : in the frame, and first
+        moments about the face's centre. drag : the dashpots' force and moment. on_j, on_i : force
+        on block j and moments. spare : of one block. before : velocities of the tile before the
+        step, on its end. Points add to what is from force to on_j.
+        """
+        m = self.motions
+        found = rows(
+            law=len(Law._fields) * self.parts.varied,
+            gathered=self.dim + 2 * self.rotations + 2 * self.finite,
+            jump=m,
+            rate=m,
+            now=m,
+            force=self.dim,
+            spread=self.spread_rows,
+            drag=m * self.drags,
+            on_j=self.freedoms,
+            on_i=self.rotations,
+            spare=1,
+        )
+        found.before = found.size
+        return found
+
+    @property
+    def history(self) -> Any:
+        """Rows of what contacts remember.
+
+        rate : of relative motion one and a half steps before. drag : the dashpots' force and moment
+        at the last step. jump : relative motion at the last step, with finite rotations. points :
+        what each point has, in `point`.
+        """
+        rates = self.motions * self.parts.dashpots
+        return rows(
+            rate=rates,
+            drag=rates * self.ledger,
+            jump=self.motions * (self.finite and self.rated),
+            points=self.points * self.point.size // LANES,
+        )
+
+    @property
+    def point(self) -> Any:
+        """Rows of what a point remembers: what has slid, m, its largest opening, m, steps until it
+        broke, cohesion, Pa, and path, m."""
+        p = self.parts
+        return rows(
+            slid=self.dim - 1,
+            opening=p.softening,
+            whole=p.softening,
+            cohesion=p.residual,
+            path=p.path,
+        )
+
+
+class Held(NamedTuple):
+    """Blocks with boundary dashpots or external forces.
+
+    block : int array [h], ascending. matrices : float array [h, 3, freedoms, freedoms]: what is
+    left of its velocity in a step, the share of the velocity without its dashpots, and all its
+    dashpots, N s/m. springs : float array [h, 3, freedoms, freedoms], of dashpots behind springs:
+    what a step leaves of the closures, what it adds to them over the velocity, s, and the force
+    that these take from the block, N/m; None where there are none.
+    """
+
+    block: np.ndarray
+    matrices: np.ndarray
+    springs: Any = None
+
+
+class Blocks(NamedTuple):
+    """Constants of the blocks.
+
+    inertia : float array [N, freedoms], mass (kg) and moments of inertia (kg m2). dt : s. keep :
+    what mass-proportional damping leaves of a velocity in a step. local : Cundall's damping.
+    gravity : float array [dim], m/s2. tensor : float array [N, 3, 3], kg m2, of inertia; None where
+    no rotations of a block have inertia in common. mass : of what gravity pulls [N], kg, where that
+    is not what moves; else None. stages : kick and drift of each stage of a step that is composed
+    of them [stages, 2], s; None of leapfrog.
+    """
+
+    inertia: np.ndarray
+    dt: float
+    keep: float
+    local: float
+    gravity: np.ndarray
+    tensor: Any = None
+    mass: Any = None
+    stages: Any = None
+
+
+class Model(NamedTuple):
+    """The constants of a run.
+
+    laws : the parameters of the joint law [field, column], one column where all joints are alike.
+    held : None where nothing acts on blocks from outside. places, watched : int arrays [r] and [w],
+    recorded blocks and contacts.
+
+    Contacts may name blocks beyond the last that has an inertia: walls, which stand still or are
+    shaken.
+    """
+
+    form: KernelFlags
+    blocks: Blocks
+    chunks: Chunks
+    laws: np.ndarray
+    held: Any
+    places: np.ndarray
+    watched: np.ndarray
+    walls: int = 0
+
+    @property
+    def inertia(self) -> np.ndarray:
+        """Momenta over what the state has as velocities [N, freedoms]."""
+        found = self.blocks.inertia
+        return np.hstack([found[:, :3], np.ones((len(found), 3))]) if self.form.finite else found
+
+
+class State(NamedTuple):
+    """The state: displacement u [N, freedoms] at a whole step, velocity v [N, freedoms] half a step
+    before it, or with it in composed steps, of the blocks and then the walls. With finite rotations
+    those in u are the vector parts of unit quaternions, with the scalar parts in turn [N], else
+    None, and those in v angular momenta, N m s.
+
+    history : float array [chunks, rows LANES], what contacts remember; None where that is nothing.
+    sums : float array [terms], J, what has been dissipated or put in; None without a ledger.
+    closure : float array [h, freedoms], m, of the springs of held blocks; None without.
+    """
+
+    u: np.ndarray
+    v: np.ndarray
+    history: Any
+    sums: Any
+    closure: Any = None
+    turn: Any = None
+
+
+class Samples(NamedTuple):
+    """What is recorded: displacement and velocity of blocks [place, freedoms, sample], as in
+    `State`, with scalar parts of quaternions as a further displacement, contacts [watched,
+    `KernelFlags.recorded`, sample], the ledger [term, sample], J, and the closures of held blocks
+    [h, freedoms, sample], m; None without."""
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+    contact: np.ndarray
+    energy: Any
+    closure: Any = None
+
+
+def held_by(
+    dashpot: np.ndarray,
+    block: np.ndarray,
+    masses: np.ndarray,
+    dt: float,
+    keep: float = 1.0,
+    springs: np.ndarray | None = None,
+) -> Held:
+    """Return held blocks from their dashpots [h, freedoms, freedoms], N s/m, and their numbers [h],
+    ascending; masses : matrices of mass and inertia of all blocks [N, freedoms, freedoms]. keep :
+    what mass-proportional damping leaves of a velocity in a step. springs : as in `Held`.
+
+    Their dashpots see the mean velocity of both half steps: with a = dt (1 + keep) / 4,
+    (1 + a M^-1 C) v[n+1/2] = v - a M^-1 C v[n-1/2], v the velocity without them.
+    """
+    lost = 0.25 * dt * (1 + keep) * np.linalg.solve(masses[block], dashpot)
+    moves = np.linalg.inv(np.eye(dashpot.shape[1]) + lost)
+    return Held(block, np.stack([-moves @ lost, moves, dashpot], axis=1), springs)
+
+
+def state_at_rest(model: Model) -> State:
+    """Return the state at rest, without arrays for absent effects."""
+    form, pair = model.form, model.chunks.pair
+    count, size, history = len(model.blocks.inertia) + model.walls, form.history.size, None
+    if size:
+        history = zeros((len(pair), size))
+        if form.parts.residual:
+            cohesion = model.laws[Law._fields.index("cohesion")]
+            own = cohesion[pair[:, 2 * LANES :] if form.parts.varied else 0]
+            for first in range(form.history.points + form.point.cohesion, size, form.point.size):
+                history[:, first : first + LANES] = own
+    return State(
+        u=zeros((count, form.freedoms)),
+        v=zeros((count, form.freedoms)),
+        history=history,
+        sums=np.zeros(len(TERMS)) if form.ledger else None,
+        closure=np.zeros((len(model.held.block), form.freedoms)) if form.matched else None,
+        turn=np.ones(count) if form.finite else None,
+    )
+
+
+def samples_for(model: Model, count: int) -> Samples:
+    """Return empty samples of this number."""
+    form, places, closure = model.form, len(model.places), None
+    displacement = np.zeros((places, form.freedoms + form.finite, count))
+    velocity = np.zeros((places, form.freedoms, count))
+    contact = np.zeros((len(model.watched), form.recorded, count))
+    if form.matched:
+        closure = np.zeros((len(model.held.block), form.freedoms, count))
+    energy = np.zeros((len(TERMS), count)) if form.ledger else None
+    return Samples(displacement, velocity, contact, energy, closure)
+
+
+def first_of(samples: Samples, count: int) -> Samples:
+    """Return the first of samples."""
+    return Samples._make(None if one is None else one[..., :count] for one in samples)

@@ -1,0 +1,249 @@
+"""Relative motion of blocks at contacts in the plane and in space; its adjoint, their forces.
+
+With finite rotations, as `kernel` has it: points of block i, seen from block j in the axes that
+turn with it. Rows of relative motion are then the jump at the centre of the face, and what further
+points along the first and the second tangent add to it, per metre.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from jointwave.dem.contacts.chunks import LANES as L
+from jointwave.dem.kernel.model import KernelFlags
+from jointwave.dem.kernel.rotation import (
+    columns_less_one,
+    cross,
+    dot,
+    further,
+    further_back,
+    minus,
+    plus,
+    product,
+    three,
+    times,
+    turned,
+)
+from jointwave.joints.formula import formula
+
+
+@formula
+def put(q, row, values):
+    """Put three numbers into rows of the buffer."""
+    q[row], q[row + L], q[row + 2 * L] = values
+
+
+@formula
+def in_axes(k, frame, a):
+    """Return a vector given in the frame of a contact, which begins at a place of the table."""
+    found = plus(times(a[0], three(k, frame, L)), times(a[1], three(k, frame + 3 * L, L)))
+    return plus(found, times(a[2], three(k, frame + 6 * L, L)))
+
+
+def orientations_for(form: KernelFlags) -> Callable:
+    """Return the formula of the quaternions of the blocks of a contact, among what is gathered."""
+    VECTOR, SCALAR = form.buffer.gathered + 3 * L, form.buffer.gathered + 9 * L
+
+    @formula
+    def orientations(q, c):
+        """Return those of i and of j in lane c."""
+        x, y, z = three(q, VECTOR + c, L)
+        i = q[SCALAR + c], x, y, z
+        x, y, z = three(q, VECTOR + 3 * L + c, L)
+        return i, (q[SCALAR + L + c], x, y, z)
+
+    return orientations
+
+
+def finite_jump_for(form: KernelFlags) -> Callable:
+    """Return the formula of the relative motion of a chunk's contacts, of what is gathered."""
+    ARM_I, ARM_J, FRAME = form.table.arm_i, form.table.arm_j, form.table.frame
+    GATHERED, JUMP = form.buffer.gathered, form.buffer.jump
+    SCALAR, orientations = GATHERED + 9 * L, orientations_for(form)
+
+    @formula
+    def finite_jump(turn, at, k, q):
+        """Put the rows of relative motion; turn : scalar parts of the blocks' quaternions."""
+        for c in range(L):
+            i, j = np.uint64(at[c]), np.uint64(at[L + c])
+            q[SCALAR + c], q[SCALAR + L + c] = turn[i // np.uint64(6)], turn[j // np.uint64(6)]
+        for c in range(L):
+            of_i, of_j = orientations(q, c)
+            back = of_j[0], -of_j[1], -of_j[2], -of_j[3]
+            seen, frame = columns_less_one(product(back, of_i)), columns_less_one(of_j)
+            arm, apart = three(k, ARM_I + c, L), three(q, GATHERED + c, L)
+            between = plus(apart, minus(arm, three(k, ARM_J + c, L)))
+            jump = minus(plus(apart, further_back(frame, between)), further(seen, arm))
+            first, second = FRAME + 3 * L + c, FRAME + 6 * L + c
+            along = further(seen, three(k, first, L))
+            across = further(seen, three(k, second, L))
+            for a in range(3):
+                e, row = three(k, FRAME + 3 * a * L + c, L), JUMP + a * L + c
+                q[row] = dot(e, jump)
+                q[row + 3 * L] = -dot(e, along)
+                q[row + 6 * L] = -dot(e, across)
+
+    return finite_jump
+
+
+def finite_moments_for(form: KernelFlags) -> Callable:
+    """Return the formula of the force on j and the moments about both centroids."""
+    ARM_I, ARM_J, FRAME = form.table.arm_i, form.table.arm_j, form.table.frame
+    rows, orientations = form.buffer, orientations_for(form)
+    GATHERED, JUMP, FORCE, SPREAD, ON_J, ON_I = (
+        rows.gathered, rows.jump, rows.force, rows.spread, rows.on_j, rows.on_i
+    )  # fmt: skip
+
+    @formula
+    def finite_moments(k, q):
+        """Put the force on j, and the moments about the centroids of j and of i, into rows."""
+        for c in range(L):
+            force, jump = three(q, FORCE + c, L), three(q, JUMP + c, L)
+            x, y, z = three(q, JUMP + 3 * L + c, L)
+            moment = cross((-x, 1.0 - y, -z), three(q, SPREAD + c, L))
+            x, y, z = three(q, JUMP + 6 * L + c, L)
+            moment = plus(moment, cross((-x, -y, 1.0 - z), three(q, SPREAD + 3 * L + c, L)))
+            moment = in_axes(k, FRAME + c, minus(moment, cross(jump, force)))
+            force, arm = in_axes(k, FRAME + c, force), three(k, ARM_J + c, L)
+            frame = columns_less_one(orientations(q, c)[1])
+            moment = turned(frame, plus(moment, cross(arm, force)))
+            force = turned(frame, force)
+            apart = plus(three(q, GATHERED + c, L), minus(three(k, ARM_I + c, L), arm))
+            put(q, ON_J + c, force)
+            put(q, ON_J + 3 * L + c, moment)
+            put(q, ON_I + c, plus(moment, cross(apart, force)))
+
+    return finite_moments
+
+
+def relative_for(form: KernelFlags) -> Callable:
+    """Return the formula of the relative motion of a chunk's contacts."""
+    dim, turns, freedoms, rotations = form.dim, form.turns, form.freedoms, form.rotations
+    shaken, in_row, GATHERED = form.shaken, form.in_row, form.buffer.gathered
+    finite, finite_jump = form.finite, finite_jump_for(form)
+    FRAME, ARM_I, ARM_J = form.table.frame, form.table.arm_i, form.table.arm_j
+
+    @formula
+    def gather(m, walls, n, kind, still, at, row_from, q):
+        """Put displacements of j less those of i, and the rotations of both, into rows. Loops that
+        gather are not vectorised, those along a row of blocks from `row_from` on are."""
+        if in_row and row_from >= 0:
+            i = m[row_from:]
+            for b in range(dim):
+                for c in range(L):
+                    q[GATHERED + b * L + c] = i[freedoms * (c + 1) + b] - i[freedoms * c + b]
+            for b in range(rotations):
+                for c in range(L):
+                    q[GATHERED + (dim + b) * L + c] = i[freedoms * c + dim + b]
+                    q[GATHERED + (freedoms + b) * L + c] = i[freedoms * (c + 1) + dim + b]
+            return
+        for c in range(L):
+            i, j = np.uint64(at[c]), np.uint64(at[L + c])  # unsigned: they do not wrap around
+            for b in range(dim):
+                a = np.uint64(b)
+                moved = m[j + a]
+                if shaken:
+                    w = at[L + c] - still
+                    moved = walls[n, kind, w + b] if w > 0 else moved
+                q[GATHERED + b * L + c] = moved - m[i + a]
+            for b in range(rotations):
+                a = np.uint64(dim + b)
+                q[GATHERED + (dim + b) * L + c] = m[i + a]
+                q[GATHERED + (freedoms + b) * L + c] = m[j + a]
+
+    @formula
+    def relative(m, turn, walls, n, kind, still, at, row_from, k, q, to):
+        """Put the jump at the centres of contacts, and the rotation of j against i, in their frame,
+        into the rows from `to` on.
+
+        m : motion of blocks. turn : as in `State`. kind : row of it in the motion of walls. still :
+        where theirs begins, less one block. k : the chunk's table. q : the buffer.
+        """
+        gather(m, walls, n, kind, still, at, row_from, q)
+        if finite:
+            finite_jump(turn, at, k, q)
+            return
+        for c in range(L):
+            r = GATHERED + c
+            if dim == 2:
+                n_x, n_y, x, y = k[FRAME + c], k[FRAME + L + c], q[r], q[r + L]
+                i, j = q[r + 2 * L], q[r + 3 * L]
+                x -= j * k[ARM_J + L + c] - i * k[ARM_I + L + c]
+                y += j * k[ARM_J + c] - i * k[ARM_I + c]
+                q[to + c], q[to + L + c] = n_x * x + n_y * y, n_x * y - n_y * x
+                q[to + 2 * L + c] = j - i
+            else:
+                moved, turned_by = three(q, r, L), (0.0, 0.0, 0.0)
+                if turns:
+                    of_i, of_j = three(q, r + 3 * L, L), three(q, r + 6 * L, L)
+                    swept = cross(of_j, three(k, ARM_J + c, L))
+                    moved = plus(moved, minus(swept, cross(of_i, three(k, ARM_I + c, L))))
+                    turned_by = minus(of_j, of_i)
+                for a in range(3):
+                    e, row = three(k, FRAME + 3 * a * L + c, L), to + a * L + c
+                    q[row] = dot(e, moved)
+                    if turns:
+                        q[row + 3 * L] = dot(e, turned_by)
+
+    return relative
+
+
+def onto_blocks_for(form: KernelFlags) -> Callable:
+    """Return the formula that adds the forces of a chunk's contacts to their blocks."""
+    dim, turns, freedoms, in_row = form.dim, form.turns, form.freedoms, form.in_row
+    finite, finite_moments = form.finite, finite_moments_for(form)
+    FRAME, ARM_I, ARM_J = form.table.frame, form.table.arm_i, form.table.arm_j
+    FORCE, SPREAD, ON_J, ON_I = (
+        form.buffer.force, form.buffer.spread, form.buffer.on_j, form.buffer.on_i
+    )  # fmt: skip
+
+    @formula
+    def about_centroids(k, q):
+        """Put the force on j, and the moments about the centroids of j and of i, into rows."""
+        for c in range(L):
+            f_n, j, i = q[FORCE + c], ON_J + c, ON_I + c
+            if dim == 2:
+                n_x, n_y, f_t = k[FRAME + c], k[FRAME + L + c], q[FORCE + L + c]
+                x, y, m = n_x * f_n - n_y * f_t, n_y * f_n + n_x * f_t, -q[SPREAD + c]
+                q[j], q[j + L] = x, y
+                q[j + 2 * L] = m + (k[ARM_J + c] * y - k[ARM_J + L + c] * x)
+                q[i] = m + (k[ARM_I + c] * y - k[ARM_I + L + c] * x)
+            else:
+                force = in_axes(k, FRAME + c, three(q, FORCE + c, L))
+                put(q, j, force)
+                if turns:
+                    s = SPREAD + c
+                    moment = q[s + 2 * L] - q[s + 4 * L], q[s + 3 * L], -q[s]
+                    moment = in_axes(k, FRAME + c, moment)
+                    put(q, j + 3 * L, plus(moment, cross(three(k, ARM_J + c, L), force)))
+                    put(q, i, plus(moment, cross(three(k, ARM_I + c, L), force)))
+
+    @formula
+    def onto_blocks(k, q, at, row_from, lanes, last, force):
+        """Add what acts on blocks, in the order of the contacts.
+
+        lanes : contacts of the chunk. last : where the motion of walls begins.
+        """
+        if finite:
+            finite_moments(k, q)
+        else:
+            about_centroids(k, q)
+        if in_row and row_from >= 0:
+            own = force[row_from:]
+            for b in range(freedoms):
+                on_j, on_i = ON_J + b * L, (ON_J if b < dim else ON_I - dim * L) + b * L
+                own[b] -= q[on_i]
+                for c in range(1, L):
+                    own[freedoms * c + b] += q[on_j + c - 1] - q[on_i + c]
+                own[freedoms * L + b] += q[on_j + L - 1]
+            return
+        for c in range(lanes):
+            i, j = np.uint64(at[c]), np.uint64(at[L + c])
+            for b in range(freedoms):
+                on_i = (ON_J if b < dim else ON_I - dim * L) + b * L
+                force[i + np.uint64(b)] -= q[on_i + c]
+            if at[L + c] < last:
+                for b in range(freedoms):
+                    force[j + np.uint64(b)] += q[ON_J + b * L + c]
+
+    return onto_blocks

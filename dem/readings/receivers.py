@@ -1,0 +1,189 @@
+"""Receivers of rigid blocks in any dimension: motion and stress at points, tractions at joints.
+
+The motion of a block is that of the rock in its middle. Between blocks that a cut through intact
+rock parts, motion and stress at a point are interpolated: those of the point's block, and their
+gradient by least squares over its neighbours, which is exact to second order. Where all neighbours
+are beyond joints, the block moves as it is: u + phi x r, with its mean stress.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_matrix, kron
+
+from jointwave.cases.errors import SceneError
+from jointwave.cases.geometry.blocks import Blocks, Facets
+from jointwave.cases.geometry.locate import contact_at, rock_neighbours, sides_at
+from jointwave.cases.partition.lattice import squared
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.dem.contacts.faces import Contacts
+
+#: Of the largest singular value of the neighbours' places: below it they lie on a line or a plane.
+FLAT = 0.05
+#: Of a value that triangles have, the part of the neighbours: those that point up and those that
+#: point down are displaced against each other by the strain times their size.
+SHARED = 0.5
+#: Of a contact's size: the distance below which it shares a corner, or lies in one plane.
+SAME = 1e-6
+
+
+class Stencil(NamedTuple):
+    """One side of a receiver: blocks or contacts that it is read from, the nearest first, their
+    weights, and the arm that is left to the rotation of the first [d], m."""
+
+    receiver: int
+    at: list[int]
+    weight: np.ndarray
+    arm: np.ndarray
+
+
+class Receivers(NamedTuple):
+    """Receivers as linear combinations of blocks and contacts.
+
+    places : blocks that are read [r]. volume : of each [r], m^d. touching : contacts of the places
+    [k, 3]: row of `watched`, place, and whether the place is block j. watched : contacts that are
+    read [w]. faces : these contacts. motion : matrix [points d, r F], of the places' freedoms.
+    weights : matrix [points, r]. joints : matrix [joints, w].
+    """
+
+    places: np.ndarray
+    volume: np.ndarray
+    touching: np.ndarray
+    watched: np.ndarray
+    faces: Contacts
+    motion: csr_matrix
+    weights: csr_matrix
+    joints: csr_matrix
+
+
+def receivers_of(scene: RockMass, blocks: Blocks, faces: Contacts, onto: np.ndarray) -> Receivers:
+    """Return the receivers of a scene; raises SceneError for a point outside the rock.
+
+    faces : all contacts, those of the blocks first. onto : of a block, by `boundaries.freedoms`.
+    """
+    sets, dim = len(scene.joint_sets), blocks.body.dim
+    points, joints = (
+        np.array(places, dtype=float).reshape(-1, dim)
+        for places in (scene.record.points, scene.record.joints)
+    )
+    sides = sides_at(blocks, points, sets)
+    if [] in sides:
+        k = sides.index([])
+        raise SceneError(scene.where, f"record.points[{k}]", points[k].tolist(), "must lie in rock")
+    shared = 0.0 if squared(scene) else SHARED
+    at_points = stencils_in_rock(blocks, points, sides, sets, shared)
+    along = scene.numerics.dem.block is not None
+    at_joints = stencils_on_joints(blocks, joints, sets, along) if len(joints) else []
+    return read_by(blocks.volume, faces, onto, at_points, at_joints)
+
+
+def stencils_in_rock(
+    blocks: Blocks, points: np.ndarray, sides: list[list[int]], sets: int, shared: float = 0.0
+) -> list[Stencil]:
+    """Return how points [m, d] are read in the blocks on their sides, by `sides_at`: as a mean.
+
+    sets : number of joint sets. shared : how much of the value itself is the neighbours'.
+    """
+    near = rock_neighbours(blocks, sets)
+    return [
+        _stencil(k, [block, *near.get(block, [])], blocks.centroid, at, shared, 1 / len(own))
+        for k, (at, own) in enumerate(zip(points, sides, strict=True))
+        for block in own
+    ]
+
+
+def stencils_on_joints(blocks: Blocks, points: np.ndarray, sets: int, along: bool) -> list[Stencil]:
+    """Return how joints are read near points [m, d]: by the nearest contact.
+
+    along : whether cuts through intact rock divide joints: then linearly, by the contacts beside
+    it on the joint that lie ahead, too.
+    """
+    contacts, found = blocks.contacts, []
+    for k, c in enumerate(contact_at(blocks, points, sets).tolist()):
+        own = [c, *(_ahead(contacts, c, points[k]) if along else [])]
+        found.append(_stencil(k, own, contacts.centroid, points[k]))
+    return found
+
+
+def _ahead(contacts: Facets, c: int, at: np.ndarray) -> list[int]:
+    """Return the contacts that meet contact c in its plane, on the side of a point [d]."""
+    away, corners = contacts.centroid - contacts.centroid[c], contacts.outlines.of(c)
+    beyond = SAME * float(np.linalg.norm(np.ptp(corners, axis=0)))
+    here = contacts.joint_set == contacts.joint_set[c]
+    here &= np.abs(away @ contacts.normal[c]) < beyond
+    here &= away @ (at - contacts.centroid[c]) > 0
+    return [
+        k
+        for k in np.flatnonzero(here).tolist()
+        if np.linalg.norm(contacts.outlines.of(k)[:, None] - corners, axis=2).min() < beyond
+    ]
+
+
+def _stencil(
+    receiver: int,
+    own: list[int],
+    centres: np.ndarray,
+    at: np.ndarray,
+    shared: float = 0.0,
+    share: float = 1.0,
+) -> Stencil:
+    """Return how a share of a receiver at a place [d] is read from things with these centres."""
+    off, apart = at - centres[own[0]], centres[own[1:]] - centres[own[0]]
+    if not len(apart):
+        return Stencil(receiver, own, np.array([share]), share * off)
+    mean = np.full(len(apart), shared / len(apart))
+    weight = np.linalg.pinv(apart.T, rcond=FLAT) @ (off - mean @ apart) + mean
+    rest = off - weight @ apart
+    return Stencil(receiver, own, share * np.append(1 - weight.sum(), weight), share * rest)
+
+
+def read_by(
+    volume: np.ndarray,
+    faces: Contacts,
+    onto: np.ndarray,
+    points: list[Stencil],
+    joints: list[Stencil],
+) -> Receivers:
+    """Return receivers by their stencils, of blocks at points and of contacts at joints.
+
+    onto : matrix [F, d + d^2], whose transpose gives the motion of a centroid and its gradient.
+    """
+    places = np.unique([b for one in points for b in one.at]).astype(np.int64)
+    contact, side = np.nonzero(np.isin(faces.blocks, places))
+    watched = np.unique([*contact, *(c for one in joints for c in one.at)]).astype(np.int64)
+    place = np.searchsorted(places, faces.blocks[contact, side])
+    weights, dim = _matrix(points, places), faces.frame.shape[1]
+    moves, *turns = onto.T.reshape(-1, dim, len(onto))
+    motion = kron(weights, moves)
+    for axis, turn in enumerate(turns):
+        arms = [one._replace(at=one.at[:1], weight=one.arm[[axis]]) for one in points]
+        motion += kron(_matrix(arms, places), turn)
+    return Receivers(
+        places=places,
+        volume=volume[places],
+        touching=np.stack([np.searchsorted(watched, contact), place, side], axis=1),
+        watched=watched,
+        faces=faces.some(watched),
+        motion=csr_matrix(motion),
+        weights=weights,
+        joints=_matrix(joints, watched),
+    )
+
+
+def everywhere(volume: np.ndarray, faces: Contacts) -> Receivers:
+    """Return receivers of all blocks and contacts, without points."""
+    contact, side = np.nonzero(faces.blocks < len(volume))  # others are walls
+    touching = np.stack([contact, faces.blocks[contact, side], side], axis=1)
+    all_faces, none = np.arange(len(faces.area)), csr_matrix((0, 0))
+    return Receivers(np.arange(len(volume)), volume, touching, all_faces, faces, none, none, none)
+
+
+def _matrix(stencils: list[Stencil], columns: np.ndarray) -> csr_matrix:
+    """Return the weights of stencils as a matrix [receivers, columns]; columns : ascending."""
+    row = np.repeat([one.receiver for one in stencils], [len(one.at) for one in stencils])
+    at = np.searchsorted(columns, [k for one in stencils for k in one.at])
+    weight = [w for one in stencils for w in one.weight]
+    shape = max((one.receiver + 1 for one in stencils), default=0), len(columns)
+    return csr_matrix((weight, (row.astype(int), at.astype(int))), shape)

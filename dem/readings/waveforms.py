@@ -1,0 +1,166 @@
+"""Receivers of a rock mass, at points and on joints, in the form of results.
+
+The mean stress of a block follows from the forces on it (Love 1927; Weber 1966): with arms x from
+the centroid and forces F,
+
+    V sigma_ij = sum of x_i F_j,
+
+its symmetric part, tension positive. The inertia of a block's rotation adds to the shear stress,
+in the plane rho (I_xx - I_yy) / 2 times the angular acceleration; it is zero for squares and cubes
+and left out.
+
+Samples of contacts have the rows, in the contact's frame: force on block j [d], first moments of
+the traction over the face about its centre, by axes in the face and then components [d - 1, d],
+opening and slips [d]. Blocks that do not rotate have no such moments.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from jointwave.dem.contacts.faces import Contacts, frames_of
+from jointwave.dem.kernel.model import Samples, State
+from jointwave.dem.readings.receivers import Receivers, everywhere
+from jointwave.dem.readings.samples import acting
+from jointwave.dem.system import BlockSystem
+from jointwave.results.rock_mass import rock_mass_dataset
+from jointwave.results.stress import stress_components
+
+LEVEL = 1e-9  #: of a unit normal: a component below it is round-off
+
+
+class PointsAndJoints(Receivers):
+    """Receivers of a rock mass."""
+
+    def of_all(self, blocks: Any) -> PointsAndJoints:
+        """Return receivers of all blocks and contacts."""
+        return PointsAndJoints(*everywhere(blocks.cut.volume, blocks.contacts))
+
+    def shown(
+        self, system: BlockSystem, samples: Samples, sample: int
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the mean stress of each block in a snapshot, Pa [N, components], and the slip of
+        each contact, m."""
+        stress = mean_stress(self, samples.contact, moments(self, system, samples, sample))
+        return stress[:, 0], jumps(self, samples.contact)[:, 0, 1]
+
+    def dataset(
+        self, system: BlockSystem, state: State, samples: Samples, **attributes: Any
+    ) -> xr.Dataset:
+        """Return the result of the first samples of a run."""
+        outside, contact = moments(self, system, samples), samples.contact
+        return rock_mass_dataset(
+            system.blocks.scene,
+            "dem",
+            system.time.times[: contact.shape[-1]],
+            quantities(self, samples.displacement, samples.velocity, contact, outside),
+            samples.energy,
+            scheme="leapfrog",
+            left_over=system.blocks.left_over,
+            **attributes,
+        )
+
+
+def moments(
+    receivers: Receivers, system: BlockSystem, samples: Samples, first: int = 0
+) -> np.ndarray:
+    """Return the sums of arm times force of sides and loads on the places [r, d, d, n], N m."""
+    dim, places = system.blocks.dim, receivers.places
+    found = acting(system, places, samples, first)[:, dim:]
+    return found.reshape(len(places), dim, dim, -1)
+
+
+def quantities(
+    receivers: Receivers,
+    displacement: np.ndarray,
+    velocity: np.ndarray,
+    contact: np.ndarray,
+    outside: np.ndarray | None = None,
+) -> dict[str, np.ndarray]:
+    """Return what is recorded by name, as `results.rock_mass` takes it.
+
+    displacement, velocity : of the places [r, F, n]. contact : samples of the watched contacts
+    [w, rows, n]. outside : what else acts on the places, as `mean_stress` takes it.
+
+    Displacement, gap and slip count from the first sample; gap and slip are those of the joint
+    itself, without the strain of the rock that its contact stands for.
+    """
+    found: dict[str, np.ndarray] = {}
+    if receivers.weights.shape[0]:
+        found["velocity"] = at_points(receivers, velocity)
+        found["displacement"] = at_points(receivers, displacement - displacement[..., :1])
+        stress = mean_stress(receivers, contact, outside)
+        mean = receivers.weights @ stress.reshape(len(stress), -1)
+        found["stress"] = mean.reshape(-1, *stress.shape[1:])
+    if receivers.joints.shape[0]:
+        turned = upwards(receivers.faces)
+        traction, moved = (
+            (receivers.joints @ (one @ turned).reshape(len(one), -1)).reshape(-1, *one.shape[1:])
+            for one in (tractions(receivers, contact), jumps(receivers, contact))
+        )
+        moved -= moved[:, :1]
+        found |= {"traction": traction, "gap": moved[..., 0]}
+        if moved.shape[-1] > 1:
+            found["slip"] = moved[..., 1] if moved.shape[-1] == 2 else moved[..., 1:]
+    return found
+
+
+def at_points(receivers: Receivers, motion: np.ndarray) -> np.ndarray:
+    """Return vectors at points [points, n, d] of the motion of places [r, F, n]."""
+    moved = receivers.motion @ motion.reshape(-1, motion.shape[-1])
+    dim = receivers.faces.frame.shape[1]
+    return moved.reshape(-1, dim, motion.shape[-1]).swapaxes(1, 2)
+
+
+def mean_stress(
+    receivers: Receivers, contact: np.ndarray, outside: np.ndarray | None = None
+) -> np.ndarray:
+    """Return the mean stress of the places [r, n, components], Pa, compression positive.
+
+    contact : samples of the watched contacts [w, rows, n]. outside : sums of arm times force of
+    what else acts on the places [r, d, d, n], N m.
+    """
+    faces, (row, place, side) = receivers.faces, receivers.touching.T
+    dim, count = faces.frame.shape[1], contact.shape[-1]
+    force = np.einsum("cak,can->ckn", faces.frame, contact[:, :dim])
+    own = faces.arm[row, side][:, :, None, None] * force[row, None]
+    if contact.shape[1] > 2 * dim:
+        moment = contact[:, dim:-dim].reshape(len(contact), dim - 1, dim, count)
+        own += np.einsum("cbi,cak,cban->cikn", faces.frame[:, 1:], faces.frame, moment)[row]
+    sums = np.zeros((len(receivers.places), dim, dim, count)) if outside is None else outside
+    np.add.at(sums, place, np.where(side, 1.0, -1.0)[:, None, None, None] * own)
+    mean = -(sums + sums.swapaxes(1, 2)) / (2 * receivers.volume)[:, None, None, None]
+    return np.stack([mean[:, i, j] for i, j in stress_components(dim).values()], axis=-1)
+
+
+def tractions(receivers: Receivers, contact: np.ndarray) -> np.ndarray:
+    """Return the mean traction of the watched contacts [w, n, d], normal and along, Pa."""
+    faces = receivers.faces
+    force = contact[:, : faces.frame.shape[1]]
+    return force.swapaxes(1, 2) / faces.area[:, None, None]
+
+
+def jumps(receivers: Receivers, contact: np.ndarray) -> np.ndarray:
+    """Return the opening and the slips of the joints of the watched contacts [w, n, d], m, without
+    the strain of the rock that a contact stands for."""
+    faces = receivers.faces
+    dim = faces.frame.shape[1]
+    excess = faces.excess[:, np.minimum(np.arange(dim), 1)]
+    moved = contact[:, -dim:].swapaxes(1, 2)
+    return moved + excess[:, None] * tractions(receivers, contact)
+
+
+def upwards(faces: Contacts) -> np.ndarray:
+    """Return what turns tractions and jumps of contacts, in their frames, into those on the side
+    above the joint, relative to that below, in the frame of the normal that points up: matrices
+    [w, d, d] for rows. Of a vertical joint the normal points along y, or else along x, instead.
+
+    In the plane they are the same; in space the numbers of the blocks would decide their sign.
+    """
+    normal = faces.frame[:, 0]
+    last = normal.shape[1] - 1 - (np.abs(normal[:, ::-1]) > LEVEL).argmax(axis=1)
+    sign = np.sign(np.take_along_axis(normal, last[:, None], axis=1))
+    return sign[:, None] * faces.frame @ frames_of(sign * normal).swapaxes(1, 2)

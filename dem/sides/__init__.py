@@ -1,0 +1,1 @@
+"""What acts on blocks from outside: sides, ends, loads, waves and moving bases."""

@@ -1,0 +1,102 @@
+"""The sides of a rock mass, as what acts on the blocks there: dashpots, loads, waves."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jointwave.cases.geometry.blocks import Blocks
+from jointwave.cases.geometry.locate import blocks_at
+from jointwave.cases.geometry.measure import Outlines
+from jointwave.cases.incident import IncidentField, free_field
+from jointwave.cases.loads import velocity_of
+from jointwave.cases.material.quiet_sides import base_traction, borne, impedances
+from jointwave.cases.material.rock_mass import refuse_beyond_strength
+from jointwave.cases.partition.parts import covered
+from jointwave.cases.sampling import Clock
+from jointwave.cases.schema.pulse import shortest_period
+from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.sources import PlaneLoad
+from jointwave.dem.sides.boundaries import facets_on, points_on
+from jointwave.dem.sides.loads import Pattern, Source, reactions
+from jointwave.dem.sides.shaking import Base
+from jointwave.dem.sides.surroundings import Surroundings
+from jointwave.dem.sides.waves import incoming
+
+
+def surroundings_of(scene: RockMass, cut: Blocks, sides: tuple[str, ...]) -> Surroundings:
+    """Return what acts on the blocks of a scene; sides : names of the boundary's sides, in order.
+
+    Raises SceneError for a stress that joints which must hold cannot carry.
+    """
+    if scene.gravity is None or not scene.gravity.static:
+        refuse_beyond_strength(scene)
+    quiet = points_on(cut, facets_on(cut, sides, scene.boundaries.sides("quiet")))
+    impedance = impedances(scene, quiet.normal, cut.body.region[quiet.block])
+    patterns = [load_pattern(scene, cut, sides, one) for one in scene.pushes]
+    opened = None
+    if scene.prestress is not None:
+        # Openings have been excavated: nothing holds their walls.
+        stress, openings = scene.prestress.tensor, [s for s in sides if s.startswith("opening")]
+        bear, slide, walls = (
+            facets_on(cut, sides, names)
+            for names in (
+                scene.boundaries.sides("free", "quiet"),
+                scene.boundaries.sides("roller"),
+                openings,
+            )
+        )
+        patterns.append(reactions(cut, bear, stress))
+        patterns.append(reactions(cut, slide, stress, along=True))
+        if scene.excavated:
+            opened = reactions(cut, walls, stress)
+
+    def waves(field: IncidentField | None, rows: np.ndarray, time: Clock) -> list[Source]:
+        field = free_field(scene) if field is None else field
+        return incoming(field, shortest_period(scene.waves), quiet, impedance, rows, time)
+
+    return Surroundings(
+        points=quiet,
+        impedance=impedance,
+        borne=borne(scene, quiet.normal),
+        moves=np.zeros(len(quiet.block), dtype=bool),
+        patterns=patterns,
+        bases=[Base(one.side or "", one, np.array(one.direction)) for one in scene.bases],
+        opened=opened,
+        waves=waves if scene.waves and len(quiet.block) else None,
+    )
+
+
+def load_pattern(
+    scene: RockMass, blocks: Blocks, sides: tuple[str, ...], load: PlaneLoad
+) -> Pattern:
+    """Return a pressure, a force or a compliant base of a scene; sides : the names of the blocks'
+    sides, in order."""
+    history = velocity_of(load, load.amplitude)
+    if load.kind == "force":
+        at = np.array(load.at)
+        block = blocks_at(blocks, at[None])[0][:1]
+        return Pattern(block, at - blocks.centroid[block], np.array([load.direction]), history)
+    facets, parts = facets_on(blocks, sides, [load.side or f"opening {load.opening}"]), None
+    if load.between is not None:
+        facets, parts = _covered(scene, blocks, load, facets)
+    points = points_on(blocks, facets, parts)
+    if load.kind == "base":
+        assert load.direction is not None
+        impedance = impedances(scene, points.normal, blocks.body.region[points.block])
+        traction = base_traction(impedance, load.direction)
+    else:
+        traction = -points.normal
+    return Pattern(points.block, points.arm, points.area[:, None] * traction, history)
+
+
+def _covered(
+    scene: RockMass, blocks: Blocks, load: PlaneLoad, facets: np.ndarray
+) -> tuple[np.ndarray, Outlines]:
+    """Return those of some edges that a load acts on in part, and these parts of them."""
+    edges = blocks.boundary.ends[facets]
+    part = covered(scene.domain, load, edges)
+    acts = part[:, 1] > part[:, 0]
+    start, end = edges[acts, :1], edges[acts, 1:]
+    place = part[acts, :, None]
+    ends = start * (1 - place) + end * place
+    return facets[acts], Outlines(ends.reshape(-1, 2), 2 * np.arange(acts.sum() + 1))

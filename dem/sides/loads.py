@@ -1,0 +1,143 @@
+"""External forces on blocks, in any dimension, step by step."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from jointwave.cases.geometry.blocks import Blocks
+from jointwave.cases.histories import LoadHistory
+from jointwave.cases.sampling import Clock
+from jointwave.dem.kernel.composition import instants
+from jointwave.dem.sides.boundaries import points_on, resultants, summed
+
+#: Samples times held blocks whose forces are there at once.
+AT_ONCE = 100_000
+IN_A_PERIOD = 20  # samples of the forces per period of their highest frequency
+
+
+class Pattern(NamedTuple):
+    """A force pattern: forces [m, d], N, at arms [m, d] on blocks [m], ascending, times a history;
+    None: constant."""
+
+    block: np.ndarray
+    arm: np.ndarray
+    force: np.ndarray
+    history: LoadHistory | None
+
+
+class Source(Protocol):
+    """Forces that are no pattern times a history."""
+
+    def at(self, steps: np.ndarray, dt: float, rows: np.ndarray, onto: np.ndarray) -> np.ndarray:
+        """Return what acts in equally spaced steps [n] of dt, s, on some of the rows [k],
+        ascending, as a matrix [a, d + d^2] makes it of resultants: [n, k, a]."""
+
+
+class Loads:
+    """All forces on held blocks, step by step; resultants are those of `dem.sides.boundaries`.
+
+    rows : int array [h], the block of each row, ascending. onto : `boundaries.freedoms`. composed :
+    whether they act by their values at the instants of `composition`; else by means over steps.
+    """
+
+    def __init__(
+        self,
+        rows: np.ndarray,
+        patterns: list[Pattern],
+        waves: list[Source],
+        time: Clock,
+        onto: np.ndarray,
+        composed: bool = False,
+    ) -> None:
+        self.rows, self.time, self.waves, self.onto = rows, time, waves, onto
+        self.composed = composed
+        self.histories = [one.history for one in patterns]
+        self.shapes = np.zeros((len(patterns), len(rows), onto.shape[1]))
+        for shape, one in zip(self.shapes, patterns, strict=True):
+            row = np.searchsorted(rows, one.block)
+            shape[:] = summed(resultants(one.arm, one.force), row, len(rows))
+
+    def add_steady(self, shape: np.ndarray) -> None:
+        """Add resultants [h, d + d^2] that act all the time."""
+        self.histories.append(None)
+        self.shapes = np.concatenate([self.shapes, shape[None]])
+
+    @property
+    def steady(self) -> np.ndarray:
+        """Constant forces and moments [h, F], N and N m."""
+        own = [k for k, history in enumerate(self.histories) if history is None]
+        return self.shapes[own].sum(axis=0) @ self.onto.T
+
+    def resultants(self, steps: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Return what acts in equally spaced steps [n] on some rows [k], ascending:
+        [n, k, d + d^2]. Of a history it is the mean over each step, or its value if composed."""
+        return self._acting(steps, rows, np.eye(self.onto.shape[1]))
+
+    def drive(self, steps: np.ndarray) -> np.ndarray:
+        """Return forces and moments in equally spaced steps [n, h, F], or in their stages
+        [n stages, h, F], N and N m."""
+        return self._on_blocks(instants(steps) if self.composed else steps)
+
+    def _on_blocks(self, steps: np.ndarray) -> np.ndarray:
+        return self._acting(steps, np.arange(len(self.rows)), self.onto)
+
+    def _acting(self, steps: np.ndarray, rows: np.ndarray, onto: np.ndarray) -> np.ndarray:
+        means = np.ones((len(self.histories), len(steps)))
+        for mean, history in zip(means, self.histories, strict=True):
+            if history is not None and self.composed:
+                mean[:] = history.value(self.time.dt * steps)
+            elif history is not None:
+                mean[:] = mean_of(history, steps, self.time.dt)
+        found = np.tensordot(means, self.shapes[:, rows] @ onto.T, axes=(0, 0))
+        for wave in self.waves if len(steps) else ():
+            found += wave.at(steps, self.time.dt, rows, onto)
+        return found
+
+    def impulse(self, inertia: np.ndarray, frequency: float | None) -> float:
+        """Return a bound on what all of it adds to sqrt(2 E), sqrt(J), sample by sample, or more
+        often where samples are too rare to see it.
+
+        inertia : of each row's freedoms [h, F]. frequency : the highest that acts, Hz; None: none.
+        What is steady acts from the start, and is in equilibrium with the stress that it stands
+        for.
+        """
+        time = self.time
+        periods = time.dt * time.stride * (frequency or 0.0)
+        stride = max(1, int(time.stride / max(1.0, IN_A_PERIOD * periods)))
+        steps = np.arange(0, time.stride * time.samples, stride)
+        parts = -(-len(steps) * max(1, len(self.rows)) // AT_ONCE)
+        felt = 0.0
+        for some in np.array_split(steps, parts):
+            forces = self._on_blocks(some) - self.steady
+            felt += float(np.sqrt((forces**2 / inertia).sum(axis=(1, 2))).sum())
+        return time.dt * stride * felt
+
+
+def mean_of(
+    history: LoadHistory, steps: np.ndarray, dt: float, late: np.ndarray | float = 0.0
+) -> np.ndarray:
+    """Return the mean of a history over equally spaced steps [n] of dt, s, [..., n].
+
+    late : by how much the history begins later [..., 1], s. Means over consecutive steps add up to
+    its impulse to the last digit.
+    """
+    if len(steps) and steps[-1] - steps[0] == len(steps) - 1:
+        edges = dt * (np.append(steps, steps[-1] + 1) - 0.5)
+        return np.diff(history.impulse(edges - late), axis=-1) / dt
+    edges = dt * (steps + np.array([[0.5], [-0.5]]))
+    after, before = (history.impulse(one - late) for one in edges)
+    return (after - before) / dt
+
+
+def reactions(
+    blocks: Blocks, facets: np.ndarray, stress: np.ndarray, along: bool = False
+) -> Pattern:
+    """Return the forces by which the rock beyond boundary facets, int array, goes on to bear a
+    stress [d, d], Pa, compression positive; along : those along the facets alone."""
+    points = points_on(blocks, facets)
+    traction = -points.normal @ stress
+    if along:
+        traction -= (traction * points.normal).sum(axis=1)[:, None] * points.normal
+    return Pattern(points.block, points.arm, points.area[:, None] * traction, None)

@@ -1,0 +1,92 @@
+"""Surroundings of blocks in any dimension: forces, dashpots and moving bases on ends and sides."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from jointwave.cases.sampling import Clock
+from jointwave.dem.sides.boundaries import BoundaryPoints
+from jointwave.dem.sides.loads import Pattern, Source
+from jointwave.dem.sides.shaking import Base, Shaking
+from jointwave.joints.ends import half_spring
+
+if TYPE_CHECKING:
+    from jointwave.cases.incident import IncidentField
+
+
+class EndSpring(NamedTuple):
+    """Springs between a block and the dashpots of its end: the half of a joint.
+
+    lever : makes the block's motion that of the end face [F, F]. stiffness, dashpot : of the face
+    against its motion [F], N/m and N s/m, N m and N m s. eta : s.
+    """
+
+    block: int
+    lever: np.ndarray
+    stiffness: np.ndarray
+    dashpot: np.ndarray
+    eta: float
+
+    def at(self, dt: float) -> np.ndarray:
+        """Return the matrices of `model.Held` for steps of dt, s [3, F, F]."""
+        stiffness, _, decay, gain, _ = self._halves(dt)
+        along = gain[:, None] * self.lever
+        return np.stack([np.diag(decay), along, self.lever.T * stiffness])
+
+    @property
+    def critical(self) -> np.ndarray:
+        """Stiffness at the critical step [F, F]."""
+        return self.lever.T * self._halves(0.0)[4] @ self.lever
+
+    def _halves(self, dt: float) -> np.ndarray:
+        pairs = zip(self.stiffness, self.dashpot, strict=True)
+        return np.array([half_spring(k, self.eta, z, dt) for k, z in pairs]).T
+
+
+class Surroundings(NamedTuple):
+    """What acts on blocks from outside.
+
+    points : where dashpots act, sides that waves pass among them. impedance : there
+    [m, d, d], Pa s/m. borne : what bears the weight there, likewise, of 1 or 0.
+    moves : which of them are before the first base, bool array [m]. patterns : forces. opened : by
+    which walls of openings hold their blocks before these are excavated; None without. bases :
+    walls that move. springs : before dashpots. waves : of a field, the blocks of the rows and the
+    clock, what the field does to them; None where no wave enters.
+    """
+
+    points: BoundaryPoints
+    impedance: np.ndarray
+    borne: np.ndarray
+    moves: np.ndarray
+    patterns: list[Pattern]
+    bases: list[Base]
+    springs: tuple[EndSpring, ...] = ()
+    opened: Pattern | None = None
+    waves: Callable[[IncidentField | None, np.ndarray, Clock], list[Source]] | None = None
+
+    @property
+    def rows(self) -> np.ndarray:
+        """The blocks that something acts on, ascending."""
+        own = [self.points.block, *(one.block for one in self.patterns)]
+        return np.unique(np.concatenate(own))
+
+
+class DashpotsOfBase:
+    """What the dashpots before a moving base push with: `dem.sides.loads.Source`.
+
+    row : of the block. push : resultants over the base's velocity [d + d^2, d], N s/m.
+    """
+
+    def __init__(self, row: int, push: np.ndarray, moving: Shaking) -> None:
+        self.row, self.push, self.moving = row, push, moving
+
+    def at(self, steps: np.ndarray, dt: float, rows: np.ndarray, onto: np.ndarray) -> np.ndarray:
+        """See `loads.Source`: by the mean velocity of the base over both half steps."""
+        found = np.zeros((len(steps), len(rows), len(onto)))
+        begin = self.moving(np.maximum(steps - 1, 0))[:, 0] * (steps > 0)[:, None]
+        mean = (begin + self.moving(steps)[:, 0]) / 2
+        found[:, rows == self.row] = (mean @ (onto @ self.push).T)[:, None]
+        return found
