@@ -123,7 +123,7 @@ def test_a_scene_is_warned_of_and_refused_where_warnings_are_errors(run):
     result.assert_outcomes(passed=1, warnings=1)
     line = r"SceneWarning:\s+\S*scene\.toml: load\.period = 0\.011 s is longer"
     assert re.search(line, result.stdout.str())  # pytest 8 breaks it
-    strict = "-W", "error::jointwave.compare.cli.pytest_plugin.SceneWarning"
+    strict = "-W", "error::jointwave.pytest_plugin.SceneWarning"
     result = run(*strict, scene=late)
     result.assert_outcomes(failed=1)
     result.stdout.re_match_lines([r"\S+scene.toml: load.period = 0.011 s is longer"])
@@ -219,7 +219,7 @@ def test_a_run_without_scenes_imports_nothing_heavy(pytester):
         import sys
 
         def test_nothing_heavy_is_there():
-            assert "jointwave.compare.cli.pytest_plugin" in sys.modules
+            assert "jointwave.pytest_plugin" in sys.modules
             heavy = {"numpy", "numba", "xarray", "pydantic", "dolfinx", "matplotlib", "cases"}
             assert not heavy & set(sys.modules)
         """
