@@ -34,7 +34,7 @@ def is_spatial(scene: Scene) -> bool:
 def effects(scene: AnyScene) -> list[Effect]:
     """Return every effect that this version knows of this kind of scene, in the order of cost."""
     own = _of_column(scene) if scene.is_column else _of_joint_sets(scene)
-    found = [*own, *_of_sides(scene), *_of_record(scene), *_of_rock(scene)]
+    found = [*own, *_of_any(scene)]
     return [Effect(name, bool(why), str(why or why_not)) for name, why, why_not in found]
 
 
@@ -118,9 +118,10 @@ def _carries(slides: bool) -> str:
     return "every joint carries tension" + ", also with friction" * slides
 
 
-def _of_sides(scene: AnyScene) -> Iterator[Called]:
-    for kind in ENDS if scene.is_column else SIDES:
-        noun = "end" if scene.is_column else "side"
+def _of_any(scene: AnyScene) -> Iterator[Called]:
+    """Yield the effects of sides, of what is recorded, and on blocks themselves."""
+    kinds, noun = (ENDS, "end") if scene.is_column else (SIDES, "side")
+    for kind in kinds:
         places = ", ".join(key for key, held in scene.sides.items() if held == kind)
         yield f"{kind} {noun}s", places, f"no {noun} is {kind}"
     if scene.is_column:
@@ -128,17 +129,10 @@ def _of_sides(scene: AnyScene) -> Iterator[Called]:
         yield "shaken base", shakes and still, still
     else:
         yield "shaken base", scene.bases and "a load of kind 'base'", "no base is shaken"
-
-
-def _of_record(scene: AnyScene) -> Iterator[Called]:
     record = scene.record
     yield "energy ledger", record.energy and "record.energy is on", "record.energy = false"
     every = record.fields
     yield "field output", every and f"a snapshot every {every:g} s", "no record.fields"
-
-
-def _of_rock(scene: AnyScene) -> Iterator[Called]:
-    """Yield the effects on blocks themselves."""
     local, quality, gravity = scene.damping.local, scene.rock.quality_factor, scene.gravity
     alpha, stress = scene.damping.alpha, scene.prestress
     mass = alpha is not None and f"alpha = {alpha:.4g} 1/s"

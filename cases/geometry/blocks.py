@@ -119,7 +119,12 @@ def blocks_of(body: Complex, tolerance: float, in_rows: bool = True) -> Blocks:
     """
     moments, half = facet_moments(body), body.halves()
     m = cell_moments(body, half, moments.of(half.facet))
-    order = _in_rows(body, m) if in_rows else np.flatnonzero(m.size > 0)
+    order = np.flatnonzero(m.size > 0)
+    if in_rows:  # along the longest extent first
+        away, size = m.centroid[order] - body.vertices.min(axis=0), m.size[order].mean()
+        *axes, last = np.argsort(-np.ptp(body.vertices, axis=0), kind="stable")
+        rows = [np.floor(away[:, axis] / size ** (1 / body.dim)) for axis in axes]
+        order = order[np.lexsort([away[:, last], *reversed(rows)])]
     number = np.full(body.count + 1, OUTSIDE)
     number[order] = np.arange(len(order))
     body = replace(body, sides=number[body.sides], region=body.region[order], count=len(order))
@@ -130,16 +135,6 @@ def blocks_of(body: Complex, tolerance: float, in_rows: bool = True) -> Blocks:
     key = np.stack([j, body.side, body.plane, body.joint_set, into], axis=1)
     boundary = _grouped(body, ~body.inner, key, moments, tolerance)
     return Blocks(body, *m.of(order), contacts, boundary)
-
-
-def _in_rows(body: Complex, m: Moments) -> np.ndarray:
-    """Return the cells that there are, int array, in rows, along the longest extent first."""
-    used = np.flatnonzero(m.size > 0)
-    away = m.centroid[used] - body.vertices.min(axis=0)
-    size = m.size[used].mean() ** (1 / body.dim)
-    axes = np.argsort(-np.ptp(body.vertices, axis=0), kind="stable")
-    rows = [np.floor(away[:, axis] / size) for axis in axes[:-1]]
-    return used[np.lexsort([away[:, axes[-1]], *reversed(rows)])]
 
 
 def _grouped(

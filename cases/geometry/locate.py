@@ -33,14 +33,12 @@ def sides_at(blocks: Blocks, points: np.ndarray, sets: int) -> list[list[int]]:
     """
     found = blocks_at(blocks, points)
     near = rock_neighbours(blocks, sets) if any(len(here) > 1 for here in found) else {}
-    return [_first_of_sides(here.tolist(), near) for here in found]
-
-
-def _first_of_sides(here: list[int], near: dict[int, list[int]]) -> list[int]:
-    """Return the first of each group of blocks, ascending, that are joined by intact rock."""
-    pairs = [(i, here.index(k)) for i, j in enumerate(here) for k in near.get(j, ()) if k in here]
-    group = joined(np.array(pairs, dtype=np.int64), len(here))
-    return [here[k] for k in np.sort(np.unique(group, return_index=True)[1])]
+    for k, here in enumerate(found):
+        beside = [(i, near.get(block, [])) for i, block in enumerate(here.tolist())]
+        pairs = [(i, j) for i, own in beside for j in np.flatnonzero(np.isin(here, own))]
+        group = joined(np.array(pairs, dtype=np.int64), len(here))
+        found[k] = here[np.sort(np.unique(group, return_index=True)[1])]
+    return [here.tolist() for here in found]
 
 
 def rock_neighbours(blocks: Blocks, sets: int) -> dict[int, list[int]]:

@@ -158,6 +158,7 @@ def around(x: np.ndarray, of: np.ndarray, normal: np.ndarray, tolerance: float) 
     """Return convex pieces by the corners that they have, in any order, float array [m, d].
 
     of : int array [m], the piece of each corner, in order. normal : float array [n, d], of each.
+    In space without corners within the tolerance (m) of the line between those beside them.
     """
     number, dim = len(normal), x.shape[1]
     if dim == 2:
@@ -172,23 +173,16 @@ def around(x: np.ndarray, of: np.ndarray, normal: np.ndarray, tolerance: float) 
         order = np.arange(len(x))
     x, of = x[order], of[order]
     first = np.searchsorted(of, np.arange(number + 1))
-    return without_straight(x, first, tolerance) if dim == 3 else Outlines(x, first)
-
-
-def without_straight(x: np.ndarray, first: np.ndarray, tolerance: float) -> Outlines:
-    """Return closed outlines without corners within the tolerance (m) of the line between those
-    beside them."""
-    size = np.diff(first)
-    of, at = np.repeat(np.arange(len(size)), size), np.arange(len(x))
-    before = first[of] + (at - first[of] - 1) % size[of]
-    after = first[of] + (at - first[of] + 1) % size[of]
+    if dim < 3:
+        return Outlines(x, first)
+    size, at = np.diff(first)[of], np.arange(len(x)) - first[of]
+    before, after = (first[of] + (at + step) % size for step in (-1, 1))
     chord = x[after] - x[before]
     along = chord / np.maximum(np.linalg.norm(chord, axis=1), tolerance)[:, None]
     out = x - x[before]
     away = np.linalg.norm(out - (out * along).sum(axis=1)[:, None] * along, axis=1)
     kept = away > tolerance
-    count = np.bincount(of[kept], minlength=len(size))
-    return Outlines(x[kept], np.append(0, np.cumsum(count)))
+    return Outlines(x[kept], np.searchsorted(of[kept], np.arange(number + 1)))
 
 
 def frames(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -9,8 +9,7 @@ import numpy as np
 from jointwave.cases.geometry.cell_complex import Complex, GeometryError
 from jointwave.cases.geometry.cut import Planes, cut, planes_of
 
-#: Of the sets that one ends at, the signed number of the joint below each cell.
-Stops = dict[str, np.ndarray]
+Stops = dict[str, np.ndarray]  #: of sets that one ends at, the signed number of the joint below
 
 #: Half the width of the uniform distribution of spacings, in standard deviations.
 SPREAD = 3**0.5
@@ -61,11 +60,13 @@ def cut_by_sets(
     Raises GeometryError where one of them cuts nothing, or the point of a single joint is outside.
     """
     needed = len(sets) if needed is None else needed
-    numbers: Stops = {}
+    numbers, ordered = Stops(), in_order(sets)
     index = {one.name: i for i, one in enumerate(sets)}
-    for one in in_order(sets):
-        i = index[one.name]
-        stops = {name: numbers[name] for name in _stops(one, sets)}
+    for one in ordered:
+        i, ends = index[one.name], set(one.ends_at)
+        for other in reversed(ordered):  # with those at which they end themselves
+            ends.update(other.ends_at if other.name in ends else ())
+        stops = {name: numbers[name] for name in index if name in ends}
         found = cut(body, _planes(body, sets, i, stops, tolerance), tolerance)
         if i < needed and not (found.body.inner & (found.body.joint_set == i)).any():
             cause = "does not cut the domain, or only where sets before it do"
@@ -90,23 +91,12 @@ def in_order(sets: Sequence[PlaneSet]) -> list[PlaneSet]:
     return ordered
 
 
-def _stops(one: PlaneSet, sets: Sequence[PlaneSet]) -> list[str]:
-    """Return the sets that a set ends at, with those at which they end themselves, in order."""
-    by_name, found, waiting = {s.name: s for s in sets}, set(), list(one.ends_at)
-    while waiting:
-        name = waiting.pop()
-        if name not in found:
-            found.add(name)
-            waiting += by_name[name].ends_at
-    return [s.name for s in sets if s.name in found]
-
-
 def _planes(
     body: Complex, sets: Sequence[PlaneSet], index: int, stops: Stops, tolerance: float
 ) -> Planes:
     """Return the planes of a set in every part of the rock between the joints that it ends at.
 
-    stops : of each set that it ends at, the signed number of the joint below each cell.
+    stops : of each set that it ends at the number of each cell.
     """
     one = sets[index]
     table = np.stack([*stops.values(), np.zeros(body.count, np.int64)], axis=1)
@@ -176,17 +166,13 @@ def places_between(
         first = int(np.floor((low - origin) / one.spacing))
         k = np.arange(first, int(np.ceil((high - origin) / one.spacing)) + 1)
         return origin + k * one.spacing, first
-    above = origin + _spacings(one, part, 0, high - origin)
-    below = origin - _spacings(one, part, 1, origin - low)
-    return np.concatenate([below[::-1], [origin], above]), -len(below)
-
-
-def _spacings(one: PlaneSet, part: np.ndarray, side: int, reach: float) -> np.ndarray:
-    """Return the distances of planes from the origin, one beyond the reach at least, m."""
-    assert one.spacing is not None and one.seed is not None
-    half = SPREAD * one.scatter
-    count = max(int(np.ceil(reach / (one.spacing * (1 - half)))), 0) + 1
+    assert one.seed is not None
+    half, away = SPREAD * one.scatter, []
     folded = [2 * k if k >= 0 else -2 * k - 1 for k in map(int, part)]
-    draws = np.random.default_rng([one.seed, side, *folded]).random(count)
-    places = np.cumsum(one.spacing * (1 + half * (2 * draws - 1)))
-    return places[: np.searchsorted(places, reach) + 1]
+    for side, reach in enumerate((high - origin, origin - low)):  # one beyond it at least
+        count = max(int(np.ceil(reach / (one.spacing * (1 - half)))), 0) + 1
+        draws = np.random.default_rng([one.seed, side, *folded]).random(count)
+        places = np.cumsum(one.spacing * (1 + half * (2 * draws - 1)))
+        away.append(places[: np.searchsorted(places, reach) + 1])
+    above, below = away
+    return np.concatenate([origin - below[::-1], [origin], origin + above]), -len(below)

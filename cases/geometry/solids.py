@@ -133,7 +133,8 @@ def cut_into_regions(
 
 def taken_out(body: Complex, solids: Sequence[tuple[Solid, int]], tolerance: float) -> Complex:
     """Return a complex less some solids, each with the side that its faces become, its blocks cut
-    in convex parts along these faces."""
+    in convex parts along these faces; pieces of a block of one rock are joined as far as they stay
+    convex."""
     whole = np.arange(body.count)  # the block that a cell is a part of
     for solid, side in solids:
         near = _near(body, body.halves(), solid.points(), tolerance)
@@ -146,7 +147,13 @@ def taken_out(body: Complex, solids: Sequence[tuple[Solid, int]], tolerance: flo
         at = np.flatnonzero(near)
         gone[at] = solid.contains(body.centres(body.beside(near))[at])
         body = body.removed(gone, side)
-    return _rejoined(body, tolerance)
+    whole_again: Complex | None = body
+    while whole_again is not None:  # the thinnest first, each across its largest face
+        body, cuts = whole_again, _through_rock(whole_again)
+        pieces = Pieces(body, np.isin(np.arange(body.count), body.sides[cuts]), cuts)
+        order = sorted(pieces.thickness, key=lambda cell: (pieces.thickness[cell], cell))
+        whole_again = pieces.joined(order, tolerance)[0]
+    return body
 
 
 def check_convex(body: Complex, solids: Sequence[tuple[Solid, int]]) -> None:
@@ -196,15 +203,3 @@ def _passed(
 def _through_rock(body: Complex) -> np.ndarray:
     """Return which facets are cuts through rock of one region, bool array [f]."""
     return body.in_rock & (body.joint_set == NO_SET)
-
-
-def _rejoined(body: Complex, tolerance: float) -> Complex:
-    """Return a complex with pieces of a block of one rock joined as far as they stay convex, the
-    thinnest first, each across its largest face."""
-    found: Complex | None = body
-    while found is not None:
-        body, cuts = found, _through_rock(found)
-        pieces = Pieces(body, np.isin(np.arange(body.count), body.sides[cuts]), cuts)
-        order = sorted(pieces.thickness, key=lambda cell: (pieces.thickness[cell], cell))
-        found = pieces.joined(order, tolerance)[0]
-    return body

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.geometry.measure import widths
 from jointwave.cases.material.rigid_blocks import rigid_joints
@@ -22,7 +21,9 @@ SIZES = {2: ("area", "length"), 3: ("volume", "area")}
 
 
 def block_summary(scene: RockMass) -> dict[str, Any]:
-    """Cut a rock mass into blocks and return what they are, SI, with its rigid blocks.
+    """Cut a rock mass into blocks and return what they are, SI, with each region and last "rock",
+    the rest; how many rigid blocks there are, and what part of the intact rock's stiffness they
+    cannot have.
 
     Raises SceneError where the rock cannot be cut.
     """
@@ -40,44 +41,32 @@ def block_summary(scene: RockMass) -> dict[str, Any]:
         area = float(found.contacts.area[own].sum())
         return {"contacts": int(own.sum()), contact_size: area}
 
+    facts, further = {}, further_sets(scene)
+    names = [*(one.name for one in scene.regions), REST]
+    for k, (name, rock) in enumerate(zip(names, rocks_of(scene), strict=True)):
+        own, elastic = found.body.region % len(names) == k, elastic_rock(rock)
+        facts[name] = {
+            "blocks": int(own.sum()),
+            size: float(found.volume[own].sum()),
+            "p_speed": float(elastic.p_speed),
+            "s_speed": float(elastic.s_speed),
+        }
+    try:
+        lack = rigid_joints(scene, further).left_over
+    except SceneError:  # there are no rigid blocks
+        lack = None
     return {
         "blocks": found.count,
         "contacts": len(found.contacts),
         size: float(found.volume.sum()),
         "smallest": block(found.volume.argmin()),
         "largest": block(found.volume.argmax()),
-        "regions": _regions(scene, found) if scene.regions or scene.in_space else {},
+        "regions": facts if scene.regions or scene.in_space else {},
         "joint_sets": {one.name: of_set(k) for k, one in enumerate(scene.joint_sets)},
         "cuts_through_rock": of_set(NO_SET),
         "boundary": {name: int(n) for name, n in zip(sides, number, strict=True) if n},
         "bytes_at_most": partition_bytes(scene),
         "bytes": found.nbytes,
-        **_rigid_blocks(scene, found),
+        "rigid_blocks": blocks_of_scene(scene, further).count if further else found.count,
+        "rigid_blocks_lack": lack,
     }
-
-
-def _rigid_blocks(scene: RockMass, found: Blocks) -> dict[str, Any]:
-    """Return how many rigid blocks there are, and what part of the intact rock's stiffness they
-    cannot have; None where there are no rigid blocks."""
-    further = further_sets(scene)
-    try:
-        lack = rigid_joints(scene, further).left_over
-    except SceneError:
-        lack = None
-    count = blocks_of_scene(scene, further).count if further else found.count
-    return {"rigid_blocks": count, "rigid_blocks_lack": lack}
-
-
-def _regions(scene: RockMass, found: Blocks) -> dict[str, Any]:
-    """Return what each region is, with what is left as "rock"."""
-    facts, names = {}, [*(one.name for one in scene.regions), REST]
-    for k, (name, rock) in enumerate(zip(names, rocks_of(scene), strict=True)):
-        own, elastic = found.body.region % len(names) == k, elastic_rock(rock)
-        size = float(found.volume[own].sum())
-        facts[name] = {
-            "blocks": int(own.sum()),
-            SIZES[scene.domain.dimension][0]: size,
-            "p_speed": float(elastic.p_speed),
-            "s_speed": float(elastic.s_speed),
-        }
-    return facts

@@ -10,7 +10,7 @@ MPa and mm, of the third cycle of loading, to which joints in the ground are nea
 """
 
 from math import sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,8 +18,7 @@ from jointwave.cases.loads import velocity_of
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.pulse import Load, Pulse
-from jointwave.cases.schema.scene import Scene
+from jointwave.cases.schema.pulse import Pulse
 
 SAMPLES = 10_001  # of a pulse, for its peak, in addition to its breaks
 
@@ -56,21 +55,16 @@ def bandis_closure(roughness: float, wall_strength: float, rock_strength: float)
 def stress_in_reach(scene: AnyScene) -> float:
     """Return the normal stress (Pa) for which the critical step accounts in joint closure.
 
-    The initial stress plus twice the peaks of all loads and waves, as at a rigid wall. Focusing
-    waves can exceed it: it is not a strict bound.
+    The initial stress, that of a sudden weight doubled, plus twice the peaks of all loads and
+    waves, as at a rigid wall. Focusing waves can exceed it: it is not a strict bound.
     """
-    pulses = sum(_stress_of(one, scene) * _peak(one, scene.time.duration) for one in scene.pulses)
-    return _at_rest(scene) + 2 * pulses
-
-
-def _at_rest(scene: AnyScene) -> float:
-    """Return the stress of prestress and weight, doubled for a sudden weight, Pa."""
     stress = 0.0 if scene.prestress is None else scene.prestress.largest(scene.excavated)
-    if scene.gravity is None:
-        return stress
-    density = max(scene.rock.density, *(one.density or 0.0 for one in scene.regions), 0.0)
-    weight = density * scene.gravity.acceleration * scene.reach
-    return stress + (1 if scene.gravity.static else 2) * weight
+    if scene.gravity is not None:
+        density = max(scene.rock.density, *(one.density or 0.0 for one in scene.regions), 0.0)
+        weight = density * scene.gravity.acceleration * scene.reach
+        stress = stress + (1 if scene.gravity.static else 2) * weight
+    pulses = sum(_stress_of(one, scene) * _peak(one, scene.time.duration) for one in scene.pulses)
+    return stress + 2 * pulses
 
 
 def _peak(pulse: Pulse, duration: float) -> float:
@@ -80,11 +74,16 @@ def _peak(pulse: Pulse, duration: float) -> float:
     return float(np.abs(history.value(np.append(times, history.breaks))).max())
 
 
-def _stress_of(pulse: Pulse, scene: AnyScene) -> float:
+def _stress_of(pulse: Any, scene: AnyScene) -> float:
     """Return the stress in rock by a pulse of one: itself, that of a velocity by the impedance, of
-    a force over the least spacing of joints."""
+    a force over the least spacing of joints; on a pillar's start at the edges of the section."""
+    if scene.is_column and pulse.is_motion:
+        p = calibrate(scene).at_start
+        return sqrt((p.intact_modulus or p.modulus) * p.density)
     if scene.is_column:
-        return _at_start(scene.load, scene)
+        lever = sum(map(abs, pulse.at)) + (pulse.arm or 0.0)
+        acts = 2 if pulse.quantity == "incident-stress" else 1
+        return acts * (1 + 6 * lever / scene.pillar.side)
     if pulse.quantity == "stress":
         return 1.0
     if pulse.quantity == "force":
@@ -93,13 +92,3 @@ def _stress_of(pulse: Pulse, scene: AnyScene) -> float:
     from jointwave.cases.partition.joints import rocks_of  # with shapely
 
     return max(float(elastic_rock(one).p_impedance) for one in rocks_of(scene))
-
-
-def _at_start(load: Load, scene: Scene) -> float:
-    """Return the same of the load on the start of a column."""
-    if load.is_motion:
-        p = calibrate(scene).at_start
-        return sqrt((p.intact_modulus or p.modulus) * p.density)
-    lever = sum(map(abs, load.at)) + (load.arm or 0.0)
-    acts = 2 if load.quantity == "incident-stress" else 1
-    return acts * (1 + 6 * lever / scene.pillar.side)  # at the edges of the section

@@ -53,26 +53,20 @@ def compliant(sets: Iterable[schema.JointSet], dimension: int = 2) -> list[Joint
 
 
 def slowest(scene: RockMass) -> float:
-    """Return the least speed (m/s) of long waves in any direction, through joints that have a
-    spacing."""
+    """Return the least speed (m/s) of long waves through joints that have a spacing, in directions
+    over half of all."""
     dim = scene.domain.dimension
-    directions = _directions(dim)
+    level = np.linspace(0.0, np.pi, DIRECTIONS, endpoint=False)
+    directions = np.stack([np.cos(level), np.sin(level)], axis=-1)
+    if dim == 3:  # rows of a level
+        level, turned = np.meshgrid(level, level)
+        across = np.sin(level) * np.cos(turned), np.sin(level) * np.sin(turned)
+        directions = np.stack([*across, np.cos(level)], axis=-1).reshape(-1, 3)
     media = (
         (stiffness(elastic_rock(one.rock), compliant(one.joint_sets, dim), dim), one.rock.density)
         for one in within(scene, scene.joint_sets)
     )
     return min(float(speeds(medium, rho, directions)[0].min()) for medium, rho in media)
-
-
-def _directions(dimension: int) -> np.ndarray:
-    """Return unit vectors [n, d] over half of all directions, in space in rows of a level."""
-    angle = np.linspace(0.0, np.pi, DIRECTIONS, endpoint=False)
-    around = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    if dimension == 2:
-        return around
-    level, turned = np.meshgrid(angle, angle)
-    across = np.sin(level) * np.cos(turned), np.sin(level) * np.sin(turned)
-    return np.stack([*across, np.cos(level)], axis=-1).reshape(-1, 3)
 
 
 def compliance(rock: ElasticRock, sets: list[JointSet], dimension: int = 2) -> np.ndarray:

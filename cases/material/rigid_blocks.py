@@ -175,9 +175,17 @@ def against(scene: RockMass) -> str | None:
     are alone can where no wave is to be resolved."""
     if scene.domain.mesh is not None:
         return "cannot make rigid blocks from the cells of domain.mesh"
-    if scene.domain.blocks is not None and (why := _against_blocks(scene)):
-        return why
-    if scene.numerics.dem.block is not None or (scene.joint_sets and not _drives_waves(scene)):
+    if (rock := scene.domain.given) is not None:
+        if scene.numerics.dem.block is not None:
+            return "has no effect on domain.blocks, which are rigid as they are"
+        if scene.boundaries.sides("periodic"):
+            return "cannot be cut along periodic sides where domain.blocks are given"
+        if (rock.joint_set[rock.inner] == NO_SET).any():
+            return "cannot join domain.blocks at their contacts that belong to no joint set"
+    frequency, size = highest_frequency(scene), scene.domain.extent.max()
+    slowest = min(float(elastic_rock(one).s_speed) for one in rocks_of(scene))
+    drives_waves = frequency is not None and slowest < LEAST_BLOCKS * size * frequency
+    if scene.numerics.dem.block is not None or (scene.joint_sets and not drives_waves):
         return None
     names = [*(f"region {one.name!r}" for one in scene.regions), "this domain"]
     for name, one in zip(names, within(scene, scene.joint_sets), strict=True):
@@ -188,26 +196,6 @@ def against(scene: RockMass) -> str | None:
                 f"{name} {has}"
             )
     return None
-
-
-def _against_blocks(scene: RockMass) -> str | None:
-    """Return why rigid blocks cannot be those of a file, None if they can: joints part them all."""
-    rock = scene.domain.given
-    assert rock is not None
-    if scene.numerics.dem.block is not None:
-        return "has no effect on domain.blocks, which are rigid as they are"
-    if scene.boundaries.sides("periodic"):
-        return "cannot be cut along periodic sides where domain.blocks are given"
-    if (rock.joint_set[rock.inner] == NO_SET).any():
-        return "cannot join domain.blocks at their contacts that belong to no joint set"
-    return None
-
-
-def _drives_waves(scene: RockMass) -> bool:
-    """Return whether something sends waves that are short against the domain."""
-    frequency, size = highest_frequency(scene), scene.domain.extent.max()
-    slowest = min(float(elastic_rock(one).s_speed) for one in rocks_of(scene))
-    return frequency is not None and slowest < LEAST_BLOCKS * size * frequency
 
 
 def _apart(group: list[int], sets: list[JointSet], real: int) -> dict[int, float]:

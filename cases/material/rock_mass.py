@@ -9,7 +9,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.partition.joints import attitude, rocks_beside
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import JointSet
-from jointwave.cases.schema.plane import InSituStress, IntactRock
+from jointwave.cases.schema.plane import IntactRock
 from jointwave.cases.schema.rock_mass import RockMass
 
 SLACK = 1e-9  # of the stress: tractions that are at a limit
@@ -53,17 +53,15 @@ def set_time_constants(scene: RockMass) -> np.ndarray | None:
 def refuse_beyond_strength(scene: AnyScene) -> None:
     """Raise SceneError where a joint opens or slides under the prestress: the scene would not start
     in equilibrium."""
-    if scene.is_column or scene.prestress is None:
-        return
-    for one in scene.joint_sets:
-        if what := beyond_strength(one, scene.prestress):
+    for one in scene.joint_sets if scene.prestress is not None else ():
+        if what := beyond_strength(one, scene.prestress.tensor):  # type: ignore[union-attr]
             allowed = f"exceeds the strength of a joint: '{one.name}' {what} under it"
             raise SceneError(scene.where, "prestress", None, allowed)
 
 
-def beyond_strength(joint: JointSet, stress: InSituStress) -> str | None:
-    """Return whether a joint "opens" or "slides" under a stress, None if it carries it."""
-    sigma = stress.tensor
+def beyond_strength(joint: JointSet, sigma: np.ndarray) -> str | None:
+    """Return whether a joint "opens" or "slides" under a stress [d, d], Pa; None if it carries
+    it."""
     normal, _ = attitude(joint, len(sigma))
     traction = sigma @ normal
     t_n, slack = float(normal @ traction), SLACK * np.abs(sigma).max()
