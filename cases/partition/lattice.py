@@ -130,7 +130,15 @@ def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
         anchor = next((one.through for one in scene.joint_sets if one.through), None)
         found += [_planes(place, axis, block, anchor) for axis in wide]
     thin = [axis for axis in across if place.extent(axis) <= block]
-    return found + (_seams(scene, np.array(thin)) if normals and thin else [])
+    if normals and thin:
+        # Cuts along periodic sides across directions in which rock is not cut: there blocks touch
+        # their own images, and share the rock's compliance with the other cuts.
+        corners, sides = np.array(scene.domain.corners), shape_of(scene.domain).sides
+        for k in sorted({sides.index(side) // 2 for side in scene.boundaries.sides("periodic")}):
+            if np.abs(np.array(thin)[:, k]).max() > ALIKE:
+                extent, low = float(np.ptp(corners[:, k])), corners.min(axis=0).tolist()
+                found.append(_set(np.eye(dim)[k], extent, low))
+    return found
 
 
 def _across(groups: list[list[JointSet]], dim: int) -> list[np.ndarray]:
@@ -142,18 +150,6 @@ def _across(groups: list[list[JointSet]], dim: int) -> list[np.ndarray]:
         axis = np.cross(*normals[:2])
         return [axis / np.linalg.norm(axis)]
     return [*np.eye(dim)[::-1]] if rank == 0 else [*frames[0][1]] if rank == 1 else []
-
-
-def _seams(scene: RockMass, thin: np.ndarray) -> list[JointSet]:
-    """Return cuts along the periodic sides across directions in which rock is not cut [n, d]: there
-    blocks touch their own images, and share the rock's compliance with the other cuts."""
-    corners, sides = np.array(scene.domain.corners), shape_of(scene.domain).sides
-    axes = sorted({sides.index(side) // 2 for side in scene.boundaries.sides("periodic")})
-    return [
-        _set(np.eye(thin.shape[1])[k], float(np.ptp(corners[:, k])), corners.min(axis=0).tolist())
-        for k in axes
-        if np.abs(thin[:, k]).max() > ALIKE
-    ]
 
 
 def squared(scene: RockMass) -> bool:

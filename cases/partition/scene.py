@@ -45,48 +45,34 @@ def blocks_of_domain(
     further: Sequence[JointSet] = (),
     regions: Sequence[Region] = (),
 ) -> Blocks:
-    """Return a domain in convex blocks; of a mesh, its cells. `side` of their boundary is an index
-    in the `sides` of the domain's shape.
+    """Return a domain in convex blocks without slivers; of a mesh, its cells. `side` of their
+    boundary is an index in the `sides` of the domain's shape.
 
-    further : sets of cuts, of which some or all may be where joints are.
+    further : sets of cuts, of which some or all may be where joints are. Of such a lattice thin
+    blocks at the sides, which would decide the step, are joined to others where that is possible.
 
     Raises GeometryError, with place and cause, where a joint set cuts nothing, a block is not
     convex or a sliver is left.
     """
-    shape = shape_of(domain)
+    shape, every = shape_of(domain), [*sets, *further]
+    tolerance = shape.tolerance
     if domain.given is not None:
         body = domain.cells([one.name for one in sets])
     else:
-        body = _body(domain, shape, sets, further, regions)
-    found = blocks_of(body, shape.tolerance)
+        planes = plane_sets(every, regions, shape.hull.dim)
+        body = cut_by_sets(rock_of(shape, regions), planes, tolerance, len(sets))
+        body = taken_out(body, shape.solids, tolerance)
+        if domain.non_convex == "refuse":
+            check_convex(body, shape.solids)
+        merge, kept = domain.slivers == "merge", len(sets) if further else 0
+        limits = domain.least_angle, merge, tolerance, kept
+        with suppress(Sliver):
+            if further and domain.least_width is None:
+                body = without_slivers(body, least_width(domain, every, LATTICE), *limits)
+        body = without_slivers(body, least_width(domain, every), *limits)
+    found = blocks_of(body, tolerance)
     side = shape.sides_of(found.boundary.outlines, found.boundary.side)
     return replace(found, boundary=replace(found.boundary, side=side))
-
-
-def _body(
-    domain: Domain,
-    shape: Shape,
-    sets: Sequence[JointSet],
-    further: Sequence[JointSet],
-    regions: Sequence[Region],
-) -> Complex:
-    """Return a domain in cells without slivers; of a lattice without thin blocks at its sides, as
-    far as they can be joined to others: they would decide the step."""
-    body, tolerance, every = rock_of(shape, regions), shape.tolerance, [*sets, *further]
-    body = cut_by_sets(body, plane_sets(every, regions, body.dim), tolerance, len(sets))
-    body = taken_out(body, shape.solids, tolerance)
-    if domain.non_convex == "refuse":
-        check_convex(body, shape.solids)
-
-    def joined(thin: float) -> Complex:
-        width, merges = least_width(domain, every, thin), domain.slivers == "merge"
-        kept = len(sets) if further else 0
-        return without_slivers(body, width, domain.least_angle, merges, tolerance, kept)
-
-    if further and domain.least_width is None:
-        with suppress(Sliver):
-            return joined(LATTICE)
-    return joined(THIN)
 
 
 def least_width(domain: Domain, sets: Sequence[JointSet], thin: float = THIN) -> float:

@@ -123,7 +123,10 @@ def shape_of(domain: Domain) -> Shape:
     else:
         whole = _polygon(domain.corners, "domain.outline")
         hull, outer = polygon(corners_of(whole.convex_hull)), polygon_solid(corners_of(whole))
-        bays = [polygon_solid(corners_of(one)) for one in _parts(whole.convex_hull - whole)]
+        left = whole.convex_hull - whole
+        least = TOLERANCE * np.hypot(*np.ptp(np.reshape(whole.bounds, (2, 2)), axis=0)) ** 2
+        parts = (one for one in shapely.get_parts(left) if one.area > least)  # but round-off
+        bays = [polygon_solid(corners_of(one)) for one in parts]
     found = Shape(hull, outer.faces(), [(bay, 0) for bay in bays], 0.0)
     found = replace(found, tolerance=TOLERANCE * found.size)
     if domain.given is not None and domain.dimension == 3:
@@ -179,13 +182,6 @@ def _polygon(corners: list[list[float]], key: str) -> shapely.Polygon:
         why = "it has no area" if polygon.is_valid else shapely.is_valid_reason(polygon)
         raise GeometryError(None, f"must be a polygon that does not cross itself ({why})", key)
     return polygon
-
-
-def _parts(shape: shapely.Geometry) -> list[shapely.Polygon]:
-    """Return the polygons of a shape but those that are round-off of a straight side."""
-    parts = [one for one in shapely.get_parts(shape) if isinstance(one, shapely.Polygon)]
-    least = TOLERANCE * np.hypot(*np.ptp(shapely.bounds(shape).reshape(2, 2), axis=0)) ** 2
-    return [one for one in parts if one.area > least]
 
 
 def _check_opening(shape: Shape, solid: Solid, key: str, names: list[str]) -> None:

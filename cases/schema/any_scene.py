@@ -17,7 +17,8 @@ class SceneBase(Table):
     kind : in words.
     is_column : whether it is a row of blocks along y with free sides, whose sections have an axial
         stress, not a body in two or three dimensions.
-    law_tables : which hold joint laws. side_table : which holds the conditions of its sides.
+    law_tables, source_tables : which hold joint laws, and what acts over time. side_table : which
+        holds the conditions of its sides.
     """
 
     title: Words  #: used in tables and figures
@@ -25,6 +26,7 @@ class SceneBase(Table):
 
     kind: ClassVar[str]
     law_tables: ClassVar[tuple[str, ...]]
+    source_tables: ClassVar[tuple[str, ...]]
     side_table: ClassVar[str]
     _where: str = PrivateAttr(default="")
 
@@ -55,9 +57,28 @@ class SceneBase(Table):
         return [(f"{table}[{i}]", one) for i, one in enumerate(held)]
 
     @property
-    def pulses(self: Any) -> tuple[Any, ...]:
+    def sources(self) -> dict[str, Any]:
+        """Everything that acts over time, by its table."""
+        return {key: one for table in self.source_tables for key, one in self.entries(table)}
+
+    @property
+    def pulses(self) -> tuple[Any, ...]:
         """Everything that acts over time."""
         return tuple(self.sources.values())
+
+    @property
+    def bases(self: Any) -> list[Any]:
+        """The loads that are the motion of a fixed side."""
+        return [one for one in self.loads if self.shakes(one)]
+
+    @property
+    def pushes(self: Any) -> list[Any]:
+        """The loads that are forces on the rock, those of compliant bases among them."""
+        return [one for one in self.loads if not self.shakes(one)]
+
+    def shakes(self: Any, load: Any) -> bool:
+        """Return whether a load is the motion of a fixed side."""
+        return load.is_motion and getattr(self.boundaries, load.side or "", None) == "fixed"
 
     @property
     def interval(self: Any) -> float:

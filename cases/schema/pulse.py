@@ -87,6 +87,11 @@ class Pulse(Table):
         return self._timed
 
     @property
+    def is_motion(self) -> bool:
+        """Whether a load is the motion of a base rather than a stress."""
+        return self.quantity in ("velocity", "acceleration")
+
+    @property
     def time_scale(self) -> float | None:
         """The period, or that of the half sine that lasts as long as a triangle, s; None of a step
         or a record."""
@@ -122,11 +127,6 @@ class Load(Pulse):
                 allowed = f"has no meaning for load.quantity '{self.quantity}'"
                 raise contradiction(f"load.{key}", value, allowed)
         return self
-
-    @property
-    def is_motion(self) -> bool:
-        """Whether the load is the motion of a base rather than a stress."""
-        return self.quantity in ("velocity", "acceleration")
 
     @property
     def is_eccentric(self) -> bool:

@@ -53,6 +53,7 @@ class RockMass(SceneBase):
     kind: ClassVar[str] = "rock mass"
     is_column: ClassVar[Literal[False]] = False
     law_tables: ClassVar[tuple[str, ...]] = ("joint_sets",)
+    source_tables: ClassVar[tuple[str, ...]] = ("waves", "loads")
     side_table: ClassVar[str] = "boundaries"
     rotation: ClassVar[str] = "small"
 
@@ -77,26 +78,7 @@ class RockMass(SceneBase):
         return float(np.linalg.norm(self.domain.extent))
 
     @property
-    def sources(self) -> dict[str, Wave | PlaneLoad]:
-        """Everything that acts over time, by its table."""
-        waves = {f"waves[{i}]": one for i, one in enumerate(self.waves)}
-        return waves | {f"loads[{i}]": one for i, one in enumerate(self.loads)}
-
-    @property
-    def bases(self) -> list[PlaneLoad]:
-        """The loads that are the motion of a fixed side."""
-        return [one for one in self.loads if self._shakes(one)]
-
-    @property
-    def pushes(self) -> list[PlaneLoad]:
-        """The loads that are forces on the rock, those of compliant bases among them."""
-        return [one for one in self.loads if not self._shakes(one)]
-
-    @property
     def excavated(self) -> bool:
         """Whether openings have been excavated in rock under a prestress: the scene then starts
         from the state that this leaves."""
         return self.prestress is not None and bool(self.domain.holes)
-
-    def _shakes(self, load: PlaneLoad) -> bool:
-        return load.kind == "base" and getattr(self.boundaries, load.side or "") == "fixed"

@@ -56,6 +56,7 @@ class Scene(SceneBase):
     kind: ClassVar[str] = "pillar"
     is_column: ClassVar[Literal[True]] = True
     law_tables: ClassVar[tuple[str, ...]] = ("joints", "soft_layers")
+    source_tables: ClassVar[tuple[str, ...]] = ("load",)
     side_table: ClassVar[str] = "ends"
     #: As of a rock mass that has none.
     in_plane: ClassVar[Literal[False]] = False
@@ -81,29 +82,19 @@ class Scene(SceneBase):
         return self.pillar.length
 
     @property
-    def sources(self) -> dict[str, Load]:
-        """Everything that acts over time, by its table."""
-        return {"load": self.load}
+    def loads(self) -> list[Load]:
+        """The load, where there is one."""
+        return [self.load] if self.load.amplitude else []
 
     @property
     def shakes_base(self) -> bool:
         """Whether the load is the motion of a rigid base, on which the start is fixed."""
-        return self.load.is_motion and self.ends.start == "fixed"
+        return self.shakes(self.load)
 
     @property
     def boundaries(self) -> Ends:
         """The conditions of its sides, which are its ends."""
         return self.ends
-
-    @property
-    def bases(self) -> list[Load]:
-        """The load where it is the motion of a base."""
-        return [self.load] if self.shakes_base else []
-
-    @property
-    def pushes(self) -> list[Load]:
-        """The load where it is a force on the rock."""
-        return [self.load] if self.load.amplitude and not self.shakes_base else []
 
     @property
     def bears(self) -> tuple[bool, bool]:
