@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Iterator
 from copy import deepcopy
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from jointwave.cases.errors import SceneError, all_of, nearest
 from jointwave.cases.files import parse_toml, read_toml
@@ -59,8 +59,7 @@ def load_variant(
 
     asked : whether the user gave the overrides, which may then name files anywhere.
     """
-    tables = _of_file(path, overrides)
-    return (tables if asked else tables._replace(asked=frozenset())).named(name)
+    return _of_file(path, overrides, asked).named(name)
 
 
 def load_tables(
@@ -70,20 +69,27 @@ def load_tables(
 
     Files that it names lie in the working folder or below.
     """
-    return _parts(deepcopy(tables), Path("scene"), overrides).named(name)
+    return _Tables(deepcopy(tables), Path("scene"), overrides or {}).named(name)
 
 
-class _Tables(NamedTuple):
-    """The tables of a scene and of its variants, and the overrides of each.
+class _Tables:
+    """The tables of a scene, which are changed, and of its variants, and the overrides of each.
 
-    asked : the keys that the user gave himself.
+    asked : whether the user gave these himself.
     """
 
-    path: Path
-    base: dict[str, Any]
-    variants: list[dict[str, Any]]
-    overrides: dict[str, Any]
-    asked: frozenset[str]
+    def __init__(
+        self, table: dict[str, Any], path: Path, overrides: dict[str, Any], asked: bool = True
+    ) -> None:
+        _override(table, overrides, path)
+        variants = table.pop("variants", [])
+        if not isinstance(variants, list) or not all(isinstance(v, dict) for v in variants):
+            raise SceneError(str(path), "variants", variants, "must be [[variants]] tables")
+        if len(variants) > MOST_VARIANTS:
+            allowed = f"{len(variants):,} variants given; at most {MOST_VARIANTS:,}"
+            raise SceneError(str(path), "variants", None, allowed)
+        self.base, self.path, self.variants, self.overrides = table, path, variants, overrides
+        self.asked = frozenset(overrides if asked else ())
 
     def named(self, name: str) -> AnyScene:
         """Return the variant of a name; the empty name is the scene itself."""
@@ -107,28 +113,15 @@ class _Tables(NamedTuple):
         return validated(table, self.path, self.asked)
 
 
-def _of_file(path: str | Path, overrides: dict[str, Any] | None) -> _Tables:
-    path = Path(path)
+def _of_file(path: str | Path, overrides: dict[str, Any] | None, asked: bool = True) -> _Tables:
+    path, overrides = Path(path), overrides or {}
     try:
         table = read_toml(path, LARGEST_FILE)
     except ValueError as error:
         raise SceneError(str(path), "", None, str(error)) from None
-    if (name := (table | (overrides or {})).get("name")) is not None:
+    if (name := (table | overrides).get("name")) is not None:
         raise SceneError(str(path), "name", name, "only [[variants]] take a name")
-    return _parts(table, path, overrides)
-
-
-def _parts(table: dict[str, Any], path: Path, overrides: dict[str, Any] | None) -> _Tables:
-    """Return the table of a scene, changed, and those of its variants."""
-    overrides = overrides or {}
-    _override(table, overrides, path)
-    variants = table.pop("variants", [])
-    if not isinstance(variants, list) or not all(isinstance(v, dict) for v in variants):
-        raise SceneError(str(path), "variants", variants, "must be [[variants]] tables")
-    if len(variants) > MOST_VARIANTS:
-        allowed = f"{len(variants):,} variants given; at most {MOST_VARIANTS:,}"
-        raise SceneError(str(path), "variants", None, allowed)
-    return _Tables(path, table, variants, overrides, frozenset(overrides))
+    return _Tables(table, path, overrides, asked)
 
 
 def parse_override(text: str) -> tuple[str, Any]:

@@ -91,11 +91,22 @@ def read_columns(path: Path, time_name: str = "time", least: int = 2, gaps: bool
     with line, value and what is allowed.
     """
     content = read_bytes(path, LARGEST_FILE, SPREAD)
+    where: Where
     try:
         if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
             content = content.decode("utf-16").encode()
         if b"\0" in content:
-            found, where, gaps = *_of_seismogram(content), False
+            if not (form := format_of(content)):
+                line = content[: content.index(b"\0")].count(b"\n") + 1
+                allowed = f"nor a seismogram in {', '.join(FORMATS)}"
+                raise ValueError(f"is neither text (line {line} holds a NUL byte) {allowed}")
+            seconds, traces = read_traces(content, form)
+            rest = [Column(printable(name), "", values) for name, values in traces.items()]
+            found, where, gaps = (
+                Columns(Column("time", "s", seconds), rest),
+                "sample {}".format,
+                False,
+            )
         else:
             text = content.removeprefix(b"\xef\xbb\xbf")
             text = text.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
@@ -126,16 +137,6 @@ def require_series(columns: Columns, where: Where, least: int, gaps: bool = Fals
         fault = "is repeated; each time must be" if time[i] == time[i + 1] else "must be"
         allowed = f"{fault} later than the one before it, {time[i]:.12g}"
         raise ValueError(f"{where(i + 1)}: time = {time[i + 1]:.12g}: {allowed}")
-
-
-def _of_seismogram(content: bytes) -> tuple[Columns, Where]:
-    if not (form := format_of(content)):
-        line = content[: content.index(b"\0")].count(b"\n") + 1
-        allowed = f"nor a seismogram in {', '.join(FORMATS)}"
-        raise ValueError(f"is neither text (line {line} holds a NUL byte) {allowed}")
-    time, traces = read_traces(content, form)
-    rest = [Column(printable(name), "", values) for name, values in traces.items()]
-    return Columns(Column("time", "s", time), rest), "sample {}".format
 
 
 def _of_text(content: bytes, time_name: str) -> tuple[Columns, Where]:

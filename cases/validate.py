@@ -73,21 +73,16 @@ def _error(where: str, first: Any, model: Any) -> SceneError:
         key = f"{table}{key}" if key.startswith(".") else key
         allowed = allowed.replace("{table}", table)
     elif kind == "extra_forbidden":
-        known = _known_keys(first["loc"], model)
+        at = model
+        for part in (one for one in first["loc"][:-1] if isinstance(one, str)):
+            at = model_in(at.model_fields[part].annotation)
+        known = [k for k in at.model_fields if k != "name" or at is not model]
         allowed += ", ".join(known) + nearest(str(first["loc"][-1]), known)
     elif kind == "list_type" and isinstance(value, dict):
         allowed = f"must be written [[{key}]]"
     if isinstance(value, dict) or kind == "missing":
         value = None
     return SceneError(where, key, value, allowed)
-
-
-def _known_keys(location: tuple[int | str, ...], model: Any) -> list[str]:
-    top = model
-    for part in location[:-1]:
-        if isinstance(part, str):
-            model = model_in(model.model_fields[part].annotation)
-    return [k for k in model.model_fields if k != "name" or model is not top]
 
 
 def _dotted(location: tuple[int | str, ...]) -> str:

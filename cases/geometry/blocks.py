@@ -140,39 +140,32 @@ def blocks_of(body: Complex, tolerance: float, in_rows: bool = True) -> Blocks:
 def _grouped(
     body: Complex, chosen: np.ndarray, key: np.ndarray, moments: Moments, tolerance: float
 ) -> Facets:
-    """Return some facets (bool array [f]), those of one key (int array [f, n]) as one piece."""
+    """Return some facets (bool array [f]), those of one key (int array [f, n]) as one piece.
+
+    moments : of all facets. What is left of a face beside others need not be convex, nor in one
+    piece: then it is as many facets as there are.
+    """
     facets = np.flatnonzero(chosen)
     first, group, order = _groups(key[facets])
-    found = _united(body, facets[first], facets[order], group, moments, tolerance)
-    apart = np.abs(outline_moments(found.outlines).size - found.area) > CONVEX * found.area
-    if apart.any():  # what is left beside others of a face need not be convex, nor in one piece
-        own = np.where(apart[group], order, -1)[np.argsort(order)]
-        first, group, order = _groups(np.column_stack([key[facets], own]))
-        return _united(body, facets[first], facets[order], group, moments, tolerance)
-    return found
-
-
-def _united(
-    body: Complex,
-    one: np.ndarray,
-    facets: np.ndarray,
-    group: np.ndarray,
-    moments: Moments,
-    tolerance: float,
-) -> Facets:
-    """Return facets, int array [m], those of one group (int array [m], in order) as one piece; one
-    : a facet of each group. moments : of all facets."""
+    one, parts = facets[first], facets[order]
     blocks = body.sides[one]
     turned = (blocks[:, 0] == OUTSIDE) | ((blocks[:, 1] != OUTSIDE) & (blocks[:, 0] > blocks[:, 1]))
     normal = np.where(turned[:, None], -1.0, 1.0) * body.normals[body.plane[one]]
-    return Facets(
+    found = Facets(
         np.where(turned[:, None], blocks[:, ::-1], blocks),
         normal,
-        *united(moments.of(facets), group, len(one)),
+        *united(moments.of(parts), group, len(one)),
         joint_set=body.joint_set[one],
         side=body.side[one],
-        outlines=outlines(body, facets, group, normal, tolerance),
+        outlines=outlines(body, parts, group, normal, tolerance),
     )
+    apart = np.abs(outline_moments(found.outlines).size - found.area) > CONVEX * found.area
+    apart &= np.bincount(group, minlength=len(one)) > 1
+    if apart.any():
+        own = np.full(len(key), -1)
+        own[parts] = np.where(apart[group], order, -1)
+        return _grouped(body, chosen, np.column_stack([key, own]), moments, tolerance)
+    return found
 
 
 def _groups(key: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

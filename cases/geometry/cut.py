@@ -8,7 +8,7 @@ So a facet that one of its two cells is cut at is split for the other as well.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -122,34 +122,29 @@ class _Work:
             self.codes.append(_span(self.rows[k], self.codes[k - 1], self.number[k]))
         self.codes[dim][planes.family < 0] = [1, 0]
         self.held = Lookup(planes.held, len(planes.places) + 1)
-        none = np.empty((0, 2), np.int64)
-        self.crossed, self.parts = [none] * dim + [self._crossed_cells()], [none] * (dim + 1)
-        for k in range(dim, 1, -1):
-            self.crossed[k - 1] = self._crossed_below(k)
-
-    def _crossed_cells(self) -> np.ndarray:
-        """Return the pairs (cell, plane) of planes of a cell's family between its vertices."""
-        cell = np.flatnonzero(self.planes.family >= 0)
-        family, (low, high) = self.planes.family[cell], self.codes[-1][cell].T
+        cell = np.flatnonzero(planes.family >= 0)
+        family, (low, high) = planes.family[cell], self.codes[-1][cell].T
         first, after = self.held.index(family, (low + 1) // 2), self.held.index(family, high // 2)
-        at, which = ranges(first, after)
-        return np.stack([cell[which], self.planes.held[at, 1]], axis=1)
-
-    def _crossed_below(self, k: int) -> np.ndarray:
-        """Return the pairs ((k-1)-cell, plane) that split k-cells share with what bounds them."""
-        split = np.zeros(self.number[k], bool)
-        split[self.crossed[k][:, 0]] = True
-        rows = self.rows[k][split[self.rows[k][:, 0]]]
-        found = composed(rows[:, ::-1], self.crossed[k])[0]
-        low, high = self.codes[k - 1][found[:, 0]].T
-        code = 2 * found[:, 1] + 1
-        return distinct(found[(low < code) & (code < high)])
+        at, which = ranges(first, after)  # planes of a cell's family between its vertices
+        none = np.empty((0, 2), np.int64)
+        self.crossed, self.parts = [none] * (dim + 1), [none] * (dim + 1)
+        self.crossed[dim] = np.stack([cell[which], planes.held[at, 1]], axis=1)
+        for k in range(dim, 1, -1):  # those that split k-cells share with what bounds them
+            split = np.zeros(self.number[k], bool)
+            split[self.crossed[k][:, 0]] = True
+            rows = self.rows[k][split[self.rows[k][:, 0]]]
+            found = composed(rows[:, ::-1], self.crossed[k])[0]
+            low, high = self.codes[k - 1][found[:, 0]].T
+            code = 2 * found[:, 1] + 1
+            self.crossed[k - 1] = distinct(found[(low < code) & (code < high)])
 
     def split(self, k: int) -> None:
         """Split the k-cells, whose (k-1)-cells are split already, and add what they gain."""
         cross = Lookup(self.crossed[k], len(self.planes.places) + 1)
         (cell, plane), first = self.crossed[k].T, self.number[k]
-        self._replace_split(k)
+        mine = np.isin(self.rows[k][:, 1], self.parts[k - 1][:, 0])  # bounded by split (k-1)-cells
+        more = composed(self.rows[k][mine], self.parts[k - 1])[0]
+        self.rows[k] = np.concatenate([self.rows[k], more])
         gained = self.number[k - 1] + np.arange(len(cell))
         above = first + np.arange(len(cell))
         begins = np.diff(cell, prepend=-1) > 0
@@ -177,12 +172,6 @@ class _Work:
         self.parts[k] = np.stack([cell, above], axis=1)
         self.number[k] += len(cell)
         self.number[k - 1] += len(cell)
-
-    def _replace_split(self, k: int) -> None:
-        """Add the parts of split (k-1)-cells to the rows of the k-cells that they bound."""
-        mine = np.isin(self.rows[k][:, 1], self.parts[k - 1][:, 0])
-        more = composed(self.rows[k][mine], self.parts[k - 1])[0]
-        self.rows[k] = np.concatenate([self.rows[k], more])
 
     def _bound_gained(self, k: int, cross: Lookup) -> None:
         """Bound the (k-1)-cells that k-cells gain: by vertices' places, or by (k-2)-cells of their
@@ -243,35 +232,29 @@ class _Work:
         sides = np.full((self.number[dim - 1], 2), OUTSIDE)
         sides[: len(body.sides)] = body.sides
         sides[facets, into.astype(np.int64)] = cells
+        family, joint_set = planes.family[parent], of_facets(body.joint_set, planes.joint_set)
+        low, high = self.codes[dim - 1].T  # joints where there were none, on planes of their cells
+        on = np.flatnonzero((low == high) & (low % 2 == 1) & (joint_set == NO_SET))
+        here = [
+            self.held.holds(k, low[on] // 2) & (k >= 0) for k in np.append(family, -1)[sides[on]].T
+        ]
+        joint_set[on[np.any(here, axis=0)]] = planes.joint_set
         found = Complex(
             vertices=np.concatenate(self.vertices),
             bounds=tuple(self.rows[1:dim]),
             sides=sides,
             plane=of_facets(body.plane, plane),
-            joint_set=of_facets(body.joint_set, planes.joint_set),
+            joint_set=joint_set,
             side=of_facets(body.side, 0),
             normals=normals,
             region=body.region[parent],
             count=self.number[dim],
         )
-        family, low = planes.family[parent], self.codes[dim][:, 0]
-        number = np.full(found.count, -1)
+        low, number = self.codes[dim][:, 0], np.full(found.count, -1)
         mine = np.flatnonzero(family >= 0)
         slab = self.held.below(family[mine], (low[mine] + 1) // 2)
         number[mine] = planes.base[family[mine]] + slab - 1
-        return Cut(self._with_joints(found, parent), parent, number)
-
-    def _with_joints(self, found: Complex, parent: np.ndarray) -> Complex:
-        """Return a complex whose facets on a plane of their cells' own are joints of these planes,
-        where they were none."""
-        low, high = self.codes[self.body.dim - 1].T
-        on = np.flatnonzero((low == high) & (low % 2 == 1) & (found.joint_set == NO_SET))
-        owner = found.sides[on]
-        family = np.append(self.planes.family[parent], -1)[owner]
-        here = np.stack([self.held.holds(one, low[on] // 2) & (one >= 0) for one in family.T])
-        joint_set = found.joint_set.copy()
-        joint_set[on[here.any(axis=0)]] = self.planes.joint_set
-        return replace(found, joint_set=joint_set)
+        return Cut(found, parent, number)
 
 
 def _span(rows: np.ndarray, codes: np.ndarray, number: int) -> np.ndarray:

@@ -8,7 +8,7 @@ pieces have the same edges as those beside them.
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from itertools import chain, pairwise, product
+from itertools import pairwise, product
 from pathlib import Path
 
 import numpy as np
@@ -59,21 +59,14 @@ def complex_of_file(path: Path, mesh: bool = False) -> tuple[Complex, list[str] 
     body = from_facets(places, [loops[k] for k in held], sides[held], normal[face[held]])
     if given.joints is None:
         return _with_sides(body), None
-    if mesh:
-        _check_whole(given, number)
+    if mesh:  # all vertices that coincide are those of its joints
+        used = np.unique([v for one in given.blocks for part in one for loop in part for v in loop])
+        times = np.bincount(number[used], minlength=len(number))
+        times[number[[v for one in given.joints.values() for facet in one for v in facet]]] = 0
+        if (times > 1).any():
+            at = f"no group 'joint ...', the first{near(given.x[times > 1][:1])}"
+            raise MeshError(f"{(times > 1).sum()} vertices coincide with others and are in {at}")
     return _with_sides(_with_joints(body, blocks, given, number)), list(given.joints)
-
-
-def _check_whole(given: Given, number: np.ndarray) -> None:
-    """Raise MeshError where vertices of a mesh coincide, but for those of its joints."""
-    loops = chain.from_iterable(chain.from_iterable(given.blocks))
-    used = np.unique(list(chain.from_iterable(loops)))
-    times = np.bincount(number[used], minlength=len(number))
-    assert given.joints is not None
-    times[number[[v for facets in given.joints.values() for facet in facets for v in facet]]] = 0
-    if (times > 1).any():
-        no_group = f"no group 'joint ...', the first{near(given.x[times > 1][:1])}"
-        raise MeshError(f"{(times > 1).sum()} vertices coincide with others and are in {no_group}")
 
 
 def _with_joints(body: Complex, blocks: list, given: Given, number: np.ndarray) -> Complex:

@@ -102,13 +102,9 @@ class HalfSpace:
     normal: np.ndarray
     through: np.ndarray
 
-    def heights(self, points: np.ndarray) -> np.ndarray:
-        """Return the heights of points [n, d] above the plane [n], m."""
-        return (points - self.through) @ self.normal
-
     def contains(self, points: np.ndarray) -> np.ndarray:
         """Return which points [n, d] lie above, bool array."""
-        return self.heights(points) > 0
+        return (points - self.through) @ self.normal > 0
 
 
 def cut_into_regions(

@@ -127,9 +127,16 @@ def _share(scene: RockMass, sets: list[JointSet], real: int) -> RockShare:
     index = {one.name: k for k, one in enumerate(sets)}
     direction, apart = np.full(len(sets), -1), np.ones(len(spaced))
     for k, group in enumerate(spaced):
-        distances = _apart([index[member.name] for member in group], sets, real)
-        direction[list(distances)] = k
-        apart[k] = next(iter(distances.values()))
+        own = [index[member.name] for member in group]
+        cuts, joints = (
+            [m for m in own if m >= real],
+            [m for m in own if m < real and sets[m].spacing],
+        )
+        # The lines of a lattice hold the first set, or the joint, that it is made for; a joint
+        # alone without one has none beside it.
+        lines = [*cuts, *joints[1:]] if cuts else joints
+        direction[own if cuts else joints] = k
+        apart[k] = 1 / sum(1 / (sets[m].spacing or np.inf) for m in lines)
     return RockShare(normals, fit.compliance, apart, direction, fit.left_over)
 
 
@@ -196,13 +203,3 @@ def against(scene: RockMass) -> str | None:
                 f"{name} {has}"
             )
     return None
-
-
-def _apart(group: list[int], sets: list[JointSet], real: int) -> dict[int, float]:
-    """Return the distance of lines beside each set of one direction, m: those of a lattice hold
-    the first set, or the joint, that it is made for. A joint alone without one has none."""
-    cuts = [k for k in group if k >= real]
-    spaced = [k for k in group if k < real and sets[k].spacing]
-    lines = [*cuts, *spaced[1:]] if cuts else spaced
-    distance = 1 / sum(1 / (sets[k].spacing or np.inf) for k in lines)
-    return dict.fromkeys(group if cuts else spaced, distance)

@@ -28,7 +28,9 @@ def blocks_of_pillar(
     the parts, without joints on either side.
     """
     y, along = block_ends(scene), dim // 2
-    law, blocks = _laws(scene, y), [one.blocks for one in scene.parts]
+    law, blocks = np.where(welds(scene), NO_SET, 0), [one.blocks for one in scene.parts]
+    for k, layer in enumerate(scene.soft_layers):
+        law[np.abs(y[1:-1] - layer.y).argmin()] = 1 + k
     region = np.repeat(np.arange(len(blocks)), blocks)
     for k, (joint, thickness) in enumerate(sorted((layers or {}).items())):
         at = joint + k + 1
@@ -81,11 +83,3 @@ def drawn(scene: Scene, part: int, what: int, count: int) -> np.ndarray:
 def _is_intact(scene: Scene, part: Part) -> bool:
     """Return whether a part has no joints."""
     return part.segment is not None and not scene.segments[part.segment].joints
-
-
-def _laws(scene: Scene, y: np.ndarray) -> np.ndarray:
-    """Return the `joint_set` of each contact between blocks that begin at y, int array [N - 1]."""
-    found = np.where(welds(scene), NO_SET, 0)
-    for k, layer in enumerate(scene.soft_layers):
-        found[np.abs(y[1:-1] - layer.y).argmin()] = 1 + k
-    return found

@@ -77,7 +77,7 @@ class Domain(Table):
             if self.holes:
                 raise contradiction("domain.openings", None, f"are part of {key}")
             self._mesh_path = named_file(info, key, self.mesh or self.blocks or "")
-            self._read(self._mesh_path)
+            self._read(key, self._mesh_path)
             if info.context:
                 info.context["dimension"] = self.dimension  # of all tables after this one
         return self
@@ -89,7 +89,7 @@ class Domain(Table):
             return None
         return "domain.blocks" if self.mesh is None else "domain.mesh"
 
-    def _read(self, path: Path) -> None:
+    def _read(self, key: str, path: Path) -> None:
         from jointwave.cases.geometry import own_blocks
         from jointwave.cases.gmsh_file import MeshError
 
@@ -97,8 +97,7 @@ class Domain(Table):
             self._body, self._groups = own_blocks.complex_of_file(path, self.mesh is not None)
             self._outlines = [one.tolist() for one in own_blocks.outlines_of(self._body)]
         except MeshError as error:
-            assert self.file_key is not None
-            raise contradiction(self.file_key, self.mesh or self.blocks, str(error)) from None
+            raise contradiction(key, self.mesh or self.blocks, str(error)) from None
 
     def join(self, names: list[str], normals: np.ndarray) -> None:
         """Let the contacts of a file belong to joint sets, once: scenes that are made of this one

@@ -89,14 +89,9 @@ class InSituStress(Table):
     @property
     def tensor(self) -> np.ndarray:
         """The stress [d, d], Pa."""
-        if self.zz is None:
-            return np.array([[self.xx, self.xy], [self.xy, self.yy]])
-        x, y, z = (
-            (self.xx, self.xy, self.xz),
-            (self.xy, self.yy, self.yz),
-            (self.xz, self.yz, self.zz),
-        )
-        return np.array([x, y, z])
+        rows = ("xx", "xy", "xz"), ("xy", "yy", "yz"), ("xz", "yz", "zz")
+        dim = 2 if self.zz is None else 3
+        return np.array([[getattr(self, key) for key in row[:dim]] for row in rows[:dim]])
 
     @property
     def words(self) -> str:

@@ -31,7 +31,7 @@ def met(scene: RockMass) -> Met:
     """Return what waves and loads meet in a rock mass."""
     keys, sets = ("friction_angle", "cohesion", "tensile_strength"), scene.entries("joint_sets")
     fails = any(one.tension is False or any(getattr(one, k) for k in keys) for _, one in sets)
-    rock, acting = elastic_rock(scene.rock), list(_acting(scene).values())
+    rock, acting = elastic_rock(scene.rock), [one for one in scene.pulses if one.amplitude]
     arrivals = (
         (f"{key}[{i}] = {_at(place)}", min(_arrival(scene, x, np.array(place)) for x in acting))
         for key in ("points", "joints")
@@ -51,11 +51,6 @@ def met(scene: RockMass) -> Met:
 
 def _fastest(scene: RockMass) -> float:
     return max(float(elastic_rock(one).p_speed) for one in rocks_of(scene))
-
-
-def _acting(scene: RockMass) -> dict[str, Wave | PlaneLoad]:
-    """Return waves and loads of nonzero amplitude by their tables."""
-    return {table: one for table, one in scene.sources.items() if one.amplitude}
 
 
 def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
@@ -206,16 +201,11 @@ def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> flo
     if pulse.kind in ("P", "S"):
         lateness = plane_wave(scene, cast("Wave", pulse)).lateness(place[None])[0]
     else:
-        away = _nearest(scene, cast("PlaneLoad", pulse), place)
+        load = cast("PlaneLoad", pulse)
+        faces = shape_of(scene.domain).faces_of(load.side, load.opening) if load.at is None else []
+        away = distance(place, faces) if load.at is None else np.linalg.norm(place - load.at)
         lateness = away / _fastest(scene)
     return onset(pulse) + float(lateness)
-
-
-def _nearest(scene: RockMass, load: PlaneLoad, place: np.ndarray) -> float:
-    """Return the distance of a point from a load, m."""
-    if load.at is not None:
-        return float(np.linalg.norm(place - load.at))
-    return distance(place, shape_of(scene.domain).faces_of(load.side, load.opening))
 
 
 def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
