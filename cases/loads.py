@@ -172,10 +172,9 @@ def frequency_of(pulse: Pulse, duration: float) -> float | None:
     assert isinstance(history, Recorded)
     if not history.stress.any():
         return None
-    start, end = float(history.time[0]), float(history.time[-1])
+    start, end = history.time[[0, -1]].tolist()
     if pulse.quantity == "acceleration":
-        edges = np.linspace(start, end, BINS)
-        return _below(history.impulse(edges), (end - start) / BINS)
+        return _below(history.impulse(np.linspace(start, end, BINS)), (end - start) / BINS)
     a, b = history.stress[:-1], history.stress[1:]  # piecewise linear
     energy = float(np.diff(history.time) @ (a * a + a * b + b * b)) / 3
     return _below(*_means(history, start, end), energy)

@@ -85,7 +85,11 @@ def implausible(scene: AnyScene) -> Iterator[str]:
                 "say tension = false, or true where that is meant"
             )
     yield from _of_sources(scene)
-    yield from _of_prestress(scene)
+    for key in OF_PRESTRESS if scene.prestress is not None else ():
+        value = getattr(scene.prestress, key, None) or 0.0
+        if value < 0:
+            yield f"prestress.{key} = {value:g} Pa is tension: compression is positive"
+        yield from of_value(f"prestress.{key}", abs(value), OF_PRESTRESS[key])
 
 
 def of_value(key: str, value: float | None, usual: Usual, others: str = "rock's") -> Iterator[str]:
@@ -124,14 +128,6 @@ def _of_sources(scene: AnyScene) -> Iterator[str]:
             whose = f"{table}.amplitude" if one.file is None else f"the peak of {table}"
             acts = abs(one.amplitude) * peak
             yield from of_value(whose, acts, usual[one.quantity], "that of a load on rock")
-
-
-def _of_prestress(scene: AnyScene) -> Iterator[str]:
-    for key in OF_PRESTRESS if scene.prestress is not None else ():
-        value = getattr(scene.prestress, key, None) or 0.0
-        if value < 0:
-            yield f"prestress.{key} = {value:g} Pa is tension: compression is positive"
-        yield from of_value(f"prestress.{key}", abs(value), OF_PRESTRESS[key])
 
 
 def meant(value: float, usual: Usual) -> str:

@@ -167,9 +167,13 @@ def _compas(path: Path) -> Given:
         if faces:
             name = f"block {len(objects)}"
             objects[name] = [[number[str(key)] for key in face] for face in faces]
-    return Given(
-        np.reshape(x, (-1, 3)), [[faces] for faces in objects.values()], list(objects), None
-    )
+    return _of_objects(x, objects)
+
+
+def _of_objects(x: list[list[float]], objects: dict[str, list[Loop]]) -> Given:
+    """Return blocks by the faces of each."""
+    blocks = [[faces] for faces in objects.values()]
+    return Given(np.reshape(x, (-1, 3)), blocks, list(objects), None)
 
 
 def _meshes(node) -> Iterator[tuple[dict, list]]:
@@ -199,17 +203,15 @@ def _obj(path: Path) -> Given:
     mark = "o" if any(words[:1] == ["o"] for words in lines) else "g"
     x: list[list[float]] = []
     objects: dict[str, list[Loop]] = {}
-    name = ""
+    name = "''"
     for words in lines:
         kind, *rest = words or [""]
         if kind == "v":
             x.append([float(word) for word in rest[:3]])
         elif kind == mark:
-            name = " ".join(rest)
+            name = repr(" ".join(rest))
         elif kind == "f":
             corners = [int(word.split("/")[0]) for word in rest]
             loop = [k - 1 if k > 0 else len(x) + k if k else -1 for k in corners]
             objects.setdefault(name, []).append(loop)
-    return Given(
-        np.reshape(x, (-1, 3)), [[faces] for faces in objects.values()], [*map(repr, objects)], None
-    )
+    return _of_objects(x, objects)

@@ -92,7 +92,21 @@ def blocks_of_scene(scene: RockMass, further: Sequence[JointSet] = ()) -> Blocks
     Raises SceneError, in one line with place and cause, where it cannot be cut into convex blocks,
     periodic sides do not fit each other, or the blocks would take more memory than a run may.
     """
-    refuse_too_many(scene, further)
+    size, limit = partition_bytes(scene, further), memory()
+    if size > limit:
+        spaced = [(one.spacing, i) for i, one in enumerate(scene.joint_sets) if one.spacing]
+        spacing, index = min(spaced, default=(None, 0))
+        key = f"joint_sets[{index}].spacing"
+        if further:
+            key, spacing = "numerics.dem.block", scene.numerics.dem.block
+        raise SceneError(
+            scene.where,
+            key,
+            spacing,
+            f"gives about {size / OF_BLOCK[scene.domain.dimension]:,.0f} blocks, which would need "
+            f"about {spoken(size)} of memory;  {spoken(limit)} available (set {LIMIT} to change "
+            "it, in GB)",
+        )
     try:
         found = blocks_of_domain(scene.domain, scene.joint_sets, further, scene.regions)
         across_periodic(scene, found)  # whether its sides fit each other
@@ -142,23 +156,3 @@ def partition_bytes(scene: RockMass, further: Sequence[JointSet] = ()) -> float:
     """Return the memory for the blocks of a rock mass while they are cut, bytes."""
     each = OF_BLOCK[scene.domain.dimension]
     return each * block_count(scene.domain, [*scene.joint_sets, *further])
-
-
-def refuse_too_many(scene: RockMass, further: Sequence[JointSet] = ()) -> None:
-    """Raise SceneError where the blocks would take more memory than a run may."""
-    size, limit = partition_bytes(scene, further), memory()
-    if size <= limit:
-        return
-    spaced = [(one.spacing, i) for i, one in enumerate(scene.joint_sets) if one.spacing]
-    spacing, index = min(spaced, default=(None, 0))
-    key = f"joint_sets[{index}].spacing"
-    if further:
-        key, spacing = "numerics.dem.block", scene.numerics.dem.block
-    blocks = block_count(scene.domain, [*scene.joint_sets, *further])
-    raise SceneError(
-        scene.where,
-        key,
-        spacing,
-        f"gives about {blocks:,.0f} blocks, which would need about {spoken(size)} of memory;  "
-        f"{spoken(limit)} available (set {LIMIT} to change it, in GB)",
-    )

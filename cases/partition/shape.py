@@ -194,26 +194,20 @@ def _check_opening(shape: Shape, solid: Solid, key: str, names: list[str]) -> No
     if outside.any():
         raise GeometryError(corners[outside][0], "must lie in the domain", key)
     for (other, side), name in zip(shape.solids, names, strict=True):
-        at = _common(shape, solid, other)
-        if at is not None:
+        both = corners, other.points()
+        low, high = ([at(one, axis=0) for one in both] for at in (np.min, np.max))
+        if (np.maximum(*low) >= np.minimum(*high) - shape.tolerance).any():
+            continue
+        body = cut_into_regions(shape.hull, [solid], shape.tolerance)
+        body = body.removed(body.region == ROCK, 0)
+        body = replace(body, region=np.full(body.count, ROCK))
+        m = cell_moments(body := cut_into_regions(body, [other], shape.tolerance))
+        size = np.where(body.region == ROCK, 0.0, m.size)
+        if size.sum() > TOLERANCE * min(solid.volume, other.volume):
             what = f"not overlap {name.removeprefix('domain.')}" if side else "lie in the domain"
-            raise GeometryError(at, f"must {what}", key)
+            raise GeometryError(m.centroid[size.argmax()], f"must {what}", key)
     left = cell_moments(shape.hull).size[0] - sum(
         one.volume for one in (solid, *(one for one, _ in shape.solids))
     )
     if left <= TOLERANCE * shape.size**shape.hull.dim:
         raise GeometryError(corners.mean(axis=0), "must leave rock", key)
-
-
-def _common(shape: Shape, one: Solid, other: Solid) -> np.ndarray | None:
-    """Return a place in both of two solids [d], m; None where they have none in common."""
-    low, high = ([at(solid.points(), axis=0) for solid in (one, other)] for at in (np.min, np.max))
-    if (np.maximum(*low) >= np.minimum(*high) - shape.tolerance).any():
-        return None
-    body = cut_into_regions(shape.hull, [one], shape.tolerance)
-    body = body.removed(body.region == ROCK, 0)
-    body = replace(body, region=np.full(body.count, ROCK))
-    m = cell_moments(body := cut_into_regions(body, [other], shape.tolerance))
-    size = np.where(body.region == ROCK, 0.0, m.size)
-    enough = size.sum() > TOLERANCE * min(one.volume, other.volume)
-    return m.centroid[size.argmax()] if enough else None

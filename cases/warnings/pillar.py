@@ -17,7 +17,11 @@ ON_JOINT = 1e-9  # of the pillar's length, and of a block: rounding of a receive
 def met(scene: Scene) -> Met:
     """Return what the load of a pillar meets."""
     load, p = scene.load, calibrate(scene)
-    speed, begin, fails = _fastest(scene), onset(load), bool(p.given) or not p.tension.all()
+    # Bending runs ahead of shear, up to the speed of the bar (Timoshenko 1921).
+    shear_alone = load.is_across and not load.direction[1] and scene.motion.rotation == "none"
+    twist = load.arm is not None and not load.is_across
+    speed = p.shear_speed if shear_alone or twist else p.bar_speed
+    begin, fails = onset(load), bool(p.given) or not p.tension.all()
     arrivals = (
         (f"{key} = {y:g} m", begin + (y / speed if p.is_uniform else p.travel_time(y)))
         for key in ("stress", "velocity")
@@ -69,17 +73,6 @@ def _of_wavelength(scene: Scene) -> Iterator[str]:
         gives = f"numerics.continuum.elements_per_block = {count}, of order {order}, gives"
         nodes = order * count * wave.blocks
         yield from of_resolution(gives, nodes, f"nodes per wavelength {where}")
-
-
-def _fastest(scene: Scene) -> float:
-    """Return the speed (m/s) of the fastest wave that the load drives.
-
-    Bending runs ahead of shear, up to the speed of the bar (Timoshenko 1921).
-    """
-    load, p = scene.load, calibrate(scene)
-    shear_alone = load.is_across and not load.direction[1] and scene.motion.rotation == "none"
-    twist = load.arm is not None and not load.is_across
-    return p.shear_speed if shear_alone or twist else p.bar_speed
 
 
 def _of_quiet_ends(scene: Scene) -> Iterator[str]:
