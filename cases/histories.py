@@ -39,7 +39,7 @@ class LoadHistory:
     @property
     def breaks(self) -> list[float]:
         """Times at which the load is not smooth, s."""
-        return [0.0]
+        return [0.0, self.stop] if self.stop < inf else [0.0]
 
     def value(self, t: np.ndarray) -> np.ndarray:
         """Return the stress (Pa) at times t (s)."""
@@ -87,10 +87,6 @@ class Sine(LoadHistory):
         return self.cycles * self.period
 
     stop = end
-
-    @property
-    def breaks(self):
-        return [0.0, self.end]
 
 
 @dataclass(frozen=True)

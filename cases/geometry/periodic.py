@@ -120,8 +120,17 @@ def _check_ends(
     """
     if not len(rock):
         return
-    x = blocks.body.vertices[:, axis]
-    traces = [_traces(blocks, axis, place, len(names), least) for place in (x.min(), x.max())]
+    x, contacts, traces = blocks.body.vertices[:, axis], blocks.contacts, []
+    for place in (x.min(), x.max()):  # where joints end: set, line in the side, a point of it
+        found: list[tuple[int, shapely.Geometry, np.ndarray]] = []
+        for k in np.flatnonzero(contacts.of_joints(len(names))):
+            corners = contacts.outlines.of(k)
+            on = corners[np.abs(corners[:, axis] - place) <= least]
+            if len(on) == blocks.body.dim - 1 > 0:
+                own = np.delete(on, axis, axis=1)
+                ends = own if len(own) > 1 else [[own[0, 0], 0.0], [own[0, 0], 1.0]]
+                found.append((int(contacts.joint_set[k]), shapely.LineString(ends), on[0]))
+        traces.append(found)
     inner = shapely.buffer(shapely.box(*shapely.total_bounds(rock)), -least)
     for one, beyond, name in zip(traces, traces[::-1], sides[::-1], strict=True):
         for k, trace, at in one:
@@ -134,20 +143,3 @@ def _check_ends(
                     f"place on the {name}"
                 )
                 raise GeometryError(at, cause, f"boundaries.{sides[0]}")
-
-
-def _traces(
-    blocks: Blocks, axis: int, place: float, joints: int, least: float
-) -> list[tuple[int, shapely.Geometry, np.ndarray]]:
-    """Return where joints end at a side: the set, the line in the plane of the other axes, and a
-    point of it [d]."""
-    contacts, found = blocks.contacts, []
-    for k in np.flatnonzero(contacts.of_joints(joints)):
-        corners = contacts.outlines.of(k)
-        on = corners[np.abs(corners[:, axis] - place) <= least]
-        if len(on) == blocks.body.dim - 1 and len(on):
-            own = np.delete(on, axis, axis=1)
-            if own.shape[1] == 1:
-                own = np.array([[own[0, 0], 0.0], [own[0, 0], 1.0]])
-            found.append((int(contacts.joint_set[k]), shapely.LineString(own), on[0]))
-    return found

@@ -106,8 +106,16 @@ def _planes(
     if one.regions is not None:
         inside = np.isin(body.region, one.regions)
     if one.spacing is None:
-        here = _part(body, one, f"joint_sets[{index}].through", family, inside, tolerance)
-        single = np.where(inside & (family == here), 0, -1)
+        key, depth = f"joint_sets[{index}].through", body.depths(one.through)
+        depth = np.where(inside, depth, -np.inf)
+        cell = int(np.argmax(depth))  # in the part of the rock that contains the point
+        if depth[cell] < -tolerance:
+            of = "the domain" if one.regions is None else "its regions"
+            raise GeometryError(one.through, f"must lie in {of}", key)
+        if len(np.unique(family[depth > -tolerance])) > 1:
+            cause = f"must not lie on a joint of {', '.join(one.ends_at)}"
+            raise GeometryError(one.through, cause, key)
+        single = np.where(inside & (family == family[cell]), 0, -1)
         return planes_of(one.normal, single, [np.array([one.normal @ one.through])], None, index)
     low, high = np.full(len(parts), np.inf), np.full(len(parts), -np.inf)
     least, most = body.extents(body.halves(), body.vertices @ one.normal)
@@ -117,26 +125,6 @@ def _planes(
     each = [places_between(one, *part) for part in zip(parts, origin, low, high, strict=True)]
     places, base = zip(*each, strict=True)
     return planes_of(one.normal, np.where(inside, family, -1), places, base, index, tolerance)
-
-
-def _part(
-    body: Complex,
-    one: PlaneSet,
-    key: str,
-    family: np.ndarray,
-    inside: np.ndarray,
-    tolerance: float,
-) -> int:
-    """Return the part of the rock that contains the point of a single plane."""
-    depth = np.where(inside, body.depths(one.through), -np.inf)
-    cell = int(np.argmax(depth))
-    if depth[cell] < -tolerance:
-        of = "the domain" if one.regions is None else "its regions"
-        raise GeometryError(one.through, f"must lie in {of}", key)
-    if len(np.unique(family[depth > -tolerance])) > 1:
-        cause = f"must not lie on a joint of {', '.join(one.ends_at)}"
-        raise GeometryError(one.through, cause, key)
-    return int(family[cell])
 
 
 def _shifts(one: PlaneSet, stops: Stops, parts: np.ndarray, sets: Sequence[PlaneSet]) -> np.ndarray:

@@ -42,12 +42,9 @@ def loaded_lines(outline: Shape, load: PlaneLoad) -> list[tuple[np.ndarray, np.n
     i, j = _off(lines, between).argmin(axis=1)
     if gaps.size and j < i:
         i, j, between = j, i, between[::-1]
-    found = [(between[0], lines[i, 1])]
-    k = (i + 1) % len(lines)
-    while k != j:
-        found.append((lines[k, 0], lines[k, 1]))
-        k = (k + 1) % len(lines)
-    return [*found, (lines[j, 0], between[1])]
+    found = lines[np.arange(i, j + 1 + (len(lines) if j < i else 0)) % len(lines)]
+    found[0, 0], found[-1, 1] = between
+    return [(start, end) for start, end in found]
 
 
 def _off(lines: np.ndarray, points: np.ndarray) -> np.ndarray:

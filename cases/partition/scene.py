@@ -13,8 +13,8 @@ from jointwave.cases.geometry.blocks import Blocks, blocks_of
 from jointwave.cases.geometry.cell_complex import Complex, GeometryError, Sliver
 from jointwave.cases.geometry.measure import cell_moments
 from jointwave.cases.geometry.periodic import Across, contacts_across
+from jointwave.cases.geometry.pieces import without_slivers
 from jointwave.cases.geometry.sets import cut_by_sets
-from jointwave.cases.geometry.slivers import without_slivers
 from jointwave.cases.geometry.solids import check_convex, cut_into_regions, taken_out
 from jointwave.cases.partition.joints import attitude, bounded, plane_sets
 from jointwave.cases.partition.shape import SIDES, Shape, shape_of

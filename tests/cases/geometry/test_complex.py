@@ -12,8 +12,8 @@ from jointwave.cases.geometry.blocks import blocks_of
 from jointwave.cases.geometry.cell_complex import OUTSIDE, GeometryError, box
 from jointwave.cases.geometry.measure import least_angles, outline_moments, widths
 from jointwave.cases.geometry.periodic import contacts_across
+from jointwave.cases.geometry.pieces import without_slivers
 from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
-from jointwave.cases.geometry.slivers import without_slivers
 from jointwave.cases.geometry.solids import Solid, prism, taken_out
 from tests.cases.partition.polygons import closed
 
