@@ -23,7 +23,6 @@ KINDS = {
     "hexahedron": "hexahedron",
 }
 FACET_NAMES = {
-    "interval": "vertex",
     "triangle": "line",
     "quadrilateral": "line",
     "tetrahedron": "triangle",

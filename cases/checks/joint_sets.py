@@ -25,8 +25,7 @@ def of_sets(scene: RockMass) -> Iterator[Wrong]:
     sets, file = scene.joint_sets, scene.domain.file_key
     for i, one in enumerate(sets):
         names = _of_names(one, [other.name for other in sets], i)
-        places = _of_places_in_file(one, file) if file else _of_places(one)
-        for rule in (names, places, _of_law(one, scene)):
+        for rule in (names, _of_places(one, file), _of_law(one, scene)):
             yield from within(f"joint_sets[{i}]", rule)
     try:
         in_order(plane_sets([one.model_copy(update={"regions": []}) for one in sets]))
@@ -45,13 +44,12 @@ def _of_names(one: JointSet, names: list[str], index: int) -> Iterator[Wrong]:
         yield "ends_at", one.ends_at, "must not repeat a set"
 
 
-def _of_places_in_file(one: JointSet, file: str) -> Iterator[Wrong]:
-    for key in ("through", "ends_at", "regions", "offset", "scatter", "seed"):
+def _of_places(one: JointSet, file: str | None) -> Iterator[Wrong]:
+    for key in ("through", "ends_at", "regions", "offset", "scatter", "seed") if file else ():
         if value := getattr(one, key):
             yield key, value, f"has no effect: {file} has the joints"
-
-
-def _of_places(one: JointSet) -> Iterator[Wrong]:
+    if file:
+        return
     if one.spacing is None and one.through is None:
         allowed = "give a spacing, or through = [x, y], in space [x, y, z], for one joint"
         yield "spacing", None, allowed

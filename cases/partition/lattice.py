@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.geometry.blocks import Blocks, blocks_of
+from jointwave.cases.geometry.blocks import blocks_of
 from jointwave.cases.partition.joints import ROCK, attitude, dips_of, within
 from jointwave.cases.partition.scene import rock_of
 from jointwave.cases.partition.shape import shape_of
@@ -66,6 +66,8 @@ def further_sets(scene: RockMass) -> list[JointSet]:
 
     Raises SceneError, in one line, for joints whose planes have no lattice.
     """
+    from scipy.spatial import ConvexHull
+
     block = scene.numerics.dem.block
     if block is None and not scene.boundaries.sides("periodic"):
         return []
@@ -76,30 +78,25 @@ def further_sets(scene: RockMass) -> list[JointSet]:
             raise SceneError(scene.where, "numerics.dem.block", block, allowed)
     shape, found = shape_of(scene.domain), []
     rock = blocks_of(rock_of(shape, scene.regions), shape.tolerance)
-    names = [*(one.name for one in scene.regions), REST] if scene.regions else []
+    body, edge, names = rock.body, rock.boundary, [*(one.name for one in scene.regions), REST]
+    held, side = scene.boundaries.model_dump(), shape.sides_of(edge.outlines, edge.side)
+    rests = np.array([AT_SIDE[held.get(name, "free")] for name in shape.sides])
     for k, own in enumerate(within(scene, scene.joint_sets)):
-        cells = rock.body.region == (k if k < len(scene.regions) else ROCK)
-        sets = _cuts(own, _place(scene, rock, cells), block or inf)
-        found += [one.model_copy(update={"regions": names[k : k + 1]}) for one in sets]
+        cells = body.region == (k if k < len(scene.regions) else ROCK)
+        inside, outer = cells[rock.contacts.blocks].sum(axis=1) == 1, cells[edge.blocks[:, 0]]
+        corners = body.vertices[np.unique(body.corners(body.beside(cells))[:, 1])]
+        place = Place(
+            corners[ConvexHull(corners).vertices],
+            np.concatenate([rock.contacts.centroid[inside], edge.centroid[outer]]),
+            np.append(np.ones(inside.sum()), rests[side[outer]]),
+            shape.tolerance,
+        )
+        sets = _cuts(own, place, block or inf)
+        found += [
+            one.model_copy(update={"regions": names[k : k + 1] if scene.regions else []})
+            for one in sets
+        ]
     return [one.model_copy(update={"name": f"cut {k}"}) for k, one in enumerate(found)]
-
-
-def _place(scene: RockMass, rock: Blocks, cells: np.ndarray) -> Place:
-    """Return the place of one region; cells : those of it, of the domain's rock, bool array."""
-    from scipy.spatial import ConvexHull
-
-    shape, body = shape_of(scene.domain), rock.body
-    inside = cells[rock.contacts.blocks].sum(axis=1) == 1
-    outer = cells[rock.boundary.blocks[:, 0]]
-    side = shape.sides_of(rock.boundary.outlines, rock.boundary.side)[outer]
-    held = [getattr(scene.boundaries, shape.sides[k]) for k in side]
-    corners = body.vertices[np.unique(body.corners(body.beside(cells))[:, 1])]
-    return Place(
-        corners[ConvexHull(corners).vertices],
-        np.concatenate([rock.contacts.centroid[inside], rock.boundary.centroid[outer]]),
-        np.array([*np.ones(inside.sum()), *(AT_SIDE[one] for one in held)]),
-        shape.tolerance,
-    )
 
 
 def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
