@@ -47,8 +47,8 @@ def complex_of_file(path: Path, mesh: bool = False) -> tuple[Complex, list[str] 
     of_group = normals[order[np.unique(group[order], return_index=True)[1]]][group]
     normal = of_group * np.sign((of_group * normals).sum(axis=1))[:, None]
     sides = np.stack([cell[face], np.where(shared, cell[beyond], OUTSIDE)], axis=1)
-    places = np.concatenate([x, *(one.corners for one in pieces)])
-    ends = np.cumsum([len(x), *(len(one.corners) for one in pieces)])
+    places = np.concatenate([x, *(one[0] for one in pieces)])
+    ends = np.cumsum([len(x), *(len(one[0]) for one in pieces)])
     around = np.split(merged(places, tolerance), ends[:-1])[1:]
     loops = _with_vertices(places, around, tolerance)
     held = [

@@ -23,6 +23,9 @@ def near(x: np.ndarray) -> str:
     return " near [{}]".format(", ".join(f"{place:.6g}" for place in x.mean(axis=0)))
 
 
+Piece = tuple[np.ndarray, int, int]
+
+
 class Solid(NamedTuple):
     """A convex block: its corners [n, d], m; the corners [k, d] of each face, around its normal out
     of the block, in the plane from one end to the other; these normals [f, d], and their distances
@@ -69,15 +72,6 @@ def width_of(x: np.ndarray) -> float:
         return length
     away = x[1:] - x[0]
     return float(np.linalg.norm(np.cross(away[:-1], away[1:]).sum(axis=0))) / 2 / length
-
-
-class Piece(NamedTuple):
-    """A convex piece of a face, by its corners [k, d], m: the face, numbered over all blocks, of
-    the block that its normal points out of; and that of the block beyond, or OUTSIDE."""
-
-    corners: np.ndarray
-    face: int
-    beyond: int
 
 
 def solids_of(x: np.ndarray, blocks: list, names: list[str], tolerance: float) -> list[Solid]:
@@ -147,8 +141,10 @@ def _volumes(x: np.ndarray, blocks: list, names: list[str], tolerance: float) ->
 
 
 def pieces_between(solids: list[Solid], names: list[str], tolerance: float) -> list[Piece]:
-    """Return the faces of blocks in convex pieces: what two share, once, and what is left of each.
-    Raises MeshError for blocks that overlap."""
+    """Return the faces of blocks in convex pieces: what two share, once, and what is left of each,
+    by their corners [k, d], m; the face, numbered over all blocks, of the block that their normal
+    points out of; and that of the block beyond, or OUTSIDE. Raises MeshError for blocks that
+    overlap."""
     first = np.cumsum([0, *(len(one.faces) for one in solids)])
     found, left = list[Piece](), [[face] for one in solids for face in one.faces]
     for i, j in _close(solids, tolerance):
@@ -168,11 +164,11 @@ def pieces_between(solids: list[Solid], names: list[str], tolerance: float) -> l
         common = face if alike else other.split(face, m, tolerance)[0]
         if common is None or np.abs(other.heights(common)[:, m]).max() > 2 * tolerance:
             continue
-        found.append(Piece(common, first[i] + k, first[j] + m))
+        found.append((common, first[i] + k, first[j] + m))
         for n, by, against in ((first[i] + k, other, m), (first[j] + m, one, k)):
             rest = [] if alike else left[n]
             left[n] = [x for piece in rest for x in by.split(piece, against, tolerance)[1]]
-    return [*found, *(Piece(x, face, OUTSIDE) for face, own in enumerate(left) for x in own)]
+    return [*found, *((x, face, OUTSIDE) for face, own in enumerate(left) for x in own)]
 
 
 def _close(solids: list[Solid], tolerance: float) -> list[list[int]]:

@@ -16,7 +16,7 @@ def warnings(scene: AnyScene) -> list[str]:
     own: Any = pillar
     if not scene.is_column:
         from jointwave.cases.warnings import rock_mass as own  # with shapely
-    found = [*implausible(scene), *of_sources(scene, own.met(scene))]
+    found = [*implausible(scene), *of_sources(scene, **own.met(scene))]
     found += [line for rule in own.RULES for line in rule(scene)]
     if scene.damping.local and any(one.amplitude for one in scene.pulses):
         found.append(

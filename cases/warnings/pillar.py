@@ -1,20 +1,21 @@
 """Warnings of likely mistakes in a pillar, one line each."""
 
 from collections.abc import Iterator
+from typing import Any
 
 from jointwave.cases.effects import bends
 from jointwave.cases.loads import LEAST_BLOCKS, shortest_wave
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.tables import Rock
-from jointwave.cases.warnings.sources import Met, of_resolution, onset
+from jointwave.cases.warnings.sources import of_resolution, onset
 
 POISSON = Rock.model_fields["intact_poisson"].default
 MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
 ON_JOINT = 1e-9  # of the pillar's length, and of a block: rounding of a receiver's place
 
 
-def met(scene: Scene) -> Met:
+def met(scene: Scene) -> dict[str, Any]:
     """Return what the load of a pillar meets."""
     load, p = scene.load, calibrate(scene)
     # Bending runs ahead of shear, up to the speed of the bar (Timoshenko 1921).
@@ -29,7 +30,7 @@ def met(scene: Scene) -> Met:
     )
     breaks = any(one.tensile_strength is not None for one in (scene.joints, *scene.layers))
     opens = bends(scene) and (breaks or not p.tension.all())
-    return Met(
+    return dict(
         crossings=p.bar_speed / scene.pillar.length,
         block=scene.pillar.block if fails else None,
         speed=lambda _: p.shear_speed if load.is_across else p.bar_speed,

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -20,14 +20,14 @@ from jointwave.cases.plausible import LENGTH, of_dip, of_value
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad, Wave
-from jointwave.cases.warnings.sources import Met, of_resolution, onset
+from jointwave.cases.warnings.sources import of_resolution, onset
 
 NEAR = 0.05  # of the domain's size: distance of a receiver from the joint that it is meant for
 COINCIDENT = 1e-9  # of the domain's size: distance of two joints that are one
 EARLY = 1e-6  # of the duration: by which a wave may seem to be early
 
 
-def met(scene: RockMass) -> Met:
+def met(scene: RockMass) -> dict[str, Any]:
     """Return what waves and loads meet in a rock mass."""
     keys, sets = ("friction_angle", "cohesion", "tensile_strength"), scene.entries("joint_sets")
     fails = any(one.tension is False or any(getattr(one, k) for k in keys) for _, one in sets)
@@ -38,7 +38,7 @@ def met(scene: RockMass) -> Met:
         for i, place in enumerate(getattr(scene.record, key))
     )
     loads, opening = scene.entries("loads"), {} if scene.in_space else dict(sets)  # others in space
-    return Met(
+    return dict(
         crossings=_fastest(scene) / float(scene.domain.extent.max()),
         block=(scene.numerics.dem.block or _block_size(scene)) if fails else None,
         speed=lambda one: float(rock.s_speed if one.kind == "S" else rock.p_speed),

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import islice
 from math import nan
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -23,53 +23,51 @@ STATIC = 100.0
 OF_A_RISE = 40  # blocks that the front of a load passes while it rises
 
 
-class Met(NamedTuple):
-    """What the loads and waves of a scene meet.
+def of_sources(
+    scene: AnyScene,
+    *,
+    crossings: float,
+    block: float | None,
+    speed: Callable[[Any], float],
+    pressed: Mapping[str, str],
+    instead: str,
+    arrivals: Iterable[tuple[str, float]],
+    opening: Mapping[str, Any],
+) -> Iterator[str]:
+    """Say where loads or waves act outside the run, or not as they are meant to.
 
     crossings : of the rock by a wave in a second. block : the size of blocks between joints that
     can fail, m; None without. speed : of a pulse's wave, m/s. pressed : the side that a load acts
     on as a stress, by its table. instead : what enters such a side whole. arrivals : receivers, and
     when waves reach them, s. opening : joints that may open under bending, by their tables.
     """
-
-    crossings: float
-    block: float | None
-    speed: Callable[[Any], float]
-    pressed: Mapping[str, str]
-    instead: str
-    arrivals: Iterable[tuple[str, float]]
-    opening: Mapping[str, Any]
-
-
-def of_sources(scene: AnyScene, met: Met) -> Iterator[str]:
-    """Say where loads or waves act outside the run, or not as they are meant to."""
     end = scene.time.duration
     for table, pulse in scene.sources.items():
         if not pulse.amplitude:
             continue
-        frequency, held = frequency_of(pulse, end), scene.sides.get(met.pressed.get(table, ""))
-        yield from _of_pulse(table, pulse, end, met.crossings / frequency if frequency else nan)
-        if pulse.shape == "step" and met.block is not None:
+        frequency, held = frequency_of(pulse, end), scene.sides.get(pressed.get(table, ""))
+        yield from _of_pulse(table, pulse, end, crossings / frequency if frequency else nan)
+        if pulse.shape == "step" and block is not None:
             yield (
-                f"{table}.shape = 'step': blocks of {met.block:.3g} m overshoot behind its front "
+                f"{table}.shape = 'step': blocks of {block:.3g} m overshoot behind its front "
                 "by up to 27 %, and joints that slip, open or break do so too early: a load that "
-                f"rises in {OF_A_RISE * met.block / met.speed(pulse):.3g} s (a 'triangle' of long "
+                f"rises in {OF_A_RISE * block / speed(pulse):.3g} s (a 'triangle' of long "
                 "decay, a 'table') overshoots by at most 2 %"
             )
         if held in ("quiet", "matched"):
             yield (
                 f"{table}.amplitude = {pulse.amplitude:g} acts on the dashpot of "
-                f"{met.pressed[table]} = '{held}', too, which takes half: {pulse.amplitude / 2:g} "
-                f"enters; {met.instead}"
+                f"{pressed[table]} = '{held}', too, which takes half: {pulse.amplitude / 2:g} "
+                f"enters; {instead}"
             )
     if scene.gravity is None or scene.gravity.static:  # else all falls
-        for receiver, at in met.arrivals:
+        for receiver, at in arrivals:
             if at >= end:
                 yield (
                     f"record.{receiver} is reached at {at:.4g} s: after the end of the scene at "
                     f"time.duration = {end:g} s"
                 )
-    levers = (line for table, joints in met.opening.items() for line in _of_lever(table, joints))
+    levers = (line for table, joints in opening.items() for line in _of_lever(table, joints))
     yield from islice(levers, 1)
 
 
