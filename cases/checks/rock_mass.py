@@ -10,7 +10,7 @@ from jointwave.cases.geometry.cell_complex import GeometryError
 from jointwave.cases.geometry.sets import cut_by_sets
 from jointwave.cases.partition.joints import attitude, plane_sets
 from jointwave.cases.partition.scene import rock_of
-from jointwave.cases.partition.shape import Shape, distance, shape_of
+from jointwave.cases.partition.shape import BESIDE, Shape, distance, shape_of
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.cases.schema.tables import LEAN
@@ -18,8 +18,6 @@ from jointwave.cases.schema.tables import LEAN
 GRAZING = 1e-6  #: cosine below which a wave travels along a side or a joint
 PARTNER = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
 PARTNER |= {"front": "back", "back": "front"}
-#: Tolerance of points on the boundary, over the size of the domain.
-BESIDE = 1e-6
 
 
 def rules(scene: RockMass) -> list[Iterator[Wrong]]:

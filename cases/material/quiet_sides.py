@@ -14,7 +14,6 @@ from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.joints import within
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.tables import LEAN
 
 
@@ -27,18 +26,14 @@ def impedances(scene: AnyScene, normals: np.ndarray, region: np.ndarray) -> np.n
     dim = normals.shape[1]
     found, scenes = np.zeros((len(normals), dim, dim)), within(scene, scene.joint_sets)
     for own in np.unique(region):
-        there = region == own
-        found[there] = _of_one_rock(scenes[own], normals[there])
+        there, rock = region == own, elastic_rock(scenes[own].rock)
+        if sets := compliant(scenes[own].joint_sets, dim):
+            C = stiffness(rock, sets, dim)
+            found[there] = impedance(C, scenes[own].rock.density, normals[there])
+        else:
+            pair = np.array([[rock.p_impedance, rock.s_impedance]])
+            found[there] = along_and_across(normals[there], pair.repeat(there.sum(), axis=0))
     return found
-
-
-def _of_one_rock(scene: RockMass, normals: np.ndarray) -> np.ndarray:
-    rock, dim = elastic_rock(scene.rock), normals.shape[1]
-    sets = compliant(scene.joint_sets, dim)
-    if not sets:
-        pair = np.array([[rock.p_impedance, rock.s_impedance]])
-        return along_and_across(normals, pair.repeat(len(normals), axis=0))
-    return impedance(stiffness(rock, sets, dim), scene.rock.density, normals)
 
 
 def along_and_across(normal: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -13,9 +13,8 @@ from jointwave.cases.incident import plane_wave
 from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.joints import attitude, rocks_of
-from jointwave.cases.partition.parts import loaded_lines
 from jointwave.cases.partition.scene import blocks_of_scene
-from jointwave.cases.partition.shape import distance, shape_of
+from jointwave.cases.partition.shape import distance, loaded_lines, shape_of
 from jointwave.cases.plausible import LENGTH, of_dip, of_value
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass

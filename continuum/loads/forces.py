@@ -10,8 +10,7 @@ from jointwave.cases.histories import LoadHistory
 from jointwave.cases.incident import FaceTractions, FreeField, IncidentField, free_field, tractions
 from jointwave.cases.loads import force_history, step_means
 from jointwave.cases.material.quiet_sides import base_traction
-from jointwave.cases.partition.parts import BESIDE, loaded_lines
-from jointwave.cases.partition.shape import shape_of
+from jointwave.cases.partition.shape import BESIDE, loaded_lines, shape_of
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.rock_mass import RockMass

@@ -11,7 +11,7 @@ from jointwave.cases.incident import IncidentField, free_field
 from jointwave.cases.loads import velocity_of
 from jointwave.cases.material.quiet_sides import base_traction, borne, impedances
 from jointwave.cases.material.rock_mass import refuse_beyond_strength
-from jointwave.cases.partition.parts import covered
+from jointwave.cases.partition.shape import covered
 from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.rock_mass import RockMass
