@@ -9,7 +9,7 @@ from jointwave.cases.partition.pillar import block_ends, welds
 from jointwave.cases.schema.joint import SoftLayer
 from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.scene import Scene
-from jointwave.cases.schema.segment import CLOSE, Segment
+from jointwave.cases.schema.segment import CLOSE
 from jointwave.cases.schema.tables import ContinuumNumerics
 
 #: Forces that depend on velocity or history, for which drifts backwards in time are wrong, and
@@ -81,25 +81,13 @@ def of_segments(scene: Scene) -> Iterator[Wrong]:
     if scene.block_count < 2:
         yield "segments", None, "must leave at least 2 blocks"
     for i, one in enumerate(scene.segments):
-        yield from within(f"segments[{i}]", _of_intact(one, scene))
-    yield from _beside(scene)
-    yield from _of_layers(scene)
-
-
-def _of_intact(one: Segment, scene: Scene) -> Iterator[Wrong]:
-    rock = one.rock(scene.rock)
-    if rock.intact_modulus is None:
-        if not one.joints:
-            yield "intact_modulus", None, "is required with joints = false"
-        return
-    given = None if one.normal_stiffness else equivalent_constants(rock)
-    if one.joints and given and rock.intact_modulus <= given[0]:
-        allowed = f"must exceed the equivalent modulus {given[0]:.4g}, or give joints = false"
-        yield "intact_modulus", rock.intact_modulus, allowed
-
-
-def _beside(scene: Scene) -> Iterator[Wrong]:
-    """Yield the keys that segments and random joints exclude."""
+        rock, key = one.rock(scene.rock), f"segments[{i}].intact_modulus"
+        given = None if one.normal_stiffness else equivalent_constants(rock)
+        if rock.intact_modulus is None and not one.joints:
+            yield key, None, "is required with joints = false"
+        if rock.intact_modulus and one.joints and given and rock.intact_modulus <= given[0]:
+            allowed = f"must exceed the equivalent modulus {given[0]:.4g}, or give joints = false"
+            yield key, rock.intact_modulus, allowed
     mesh, scheme = scene.numerics.continuum.mesh, scene.numerics.dem.scheme
     if why := off_axis(scene):
         table, count = "segments" if scene.segments else "scatter", len(scene.segments)
@@ -115,10 +103,6 @@ def _beside(scene: Scene) -> Iterator[Wrong]:
     if scheme != "leapfrog":
         allowed = "needs blocks of equal mass: with segments or scatter give 'leapfrog'"
         yield "numerics.dem.scheme", scheme, allowed
-
-
-def _of_layers(scene: Scene) -> Iterator[Wrong]:
-    """Yield the same of soft layers, where these are on joints."""
     inner, no_joint = block_ends(scene)[1:-1], welds(scene)
     for i, layer in enumerate(scene.soft_layers):
         if layer.thickness is not None:
