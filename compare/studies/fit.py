@@ -4,24 +4,28 @@ lmfit searches and gives the Jacobian at the best fit, from which standard error
 follow; the 95 % interval is that of Student's t. Positive keys are searched on a logarithmic scale.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from math import inf
+from math import inf, isnan
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from lmfit import Parameters, minimize
+from scipy.interpolate import CubicSpline
 from scipy.stats import t as student
 
-from jointwave.cases.errors import SceneError, StoppedError, require
+from jointwave.cases.errors import SceneError, StoppedError, UnstableError, require
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import Progress, applies
+from jointwave.compare.engines import ENGINES, Progress, applies, solve
 from jointwave.compare.exact.blocks import row_of_blocks
+from jointwave.compare.misfit.alignment import INSTANT, align_curve, static_level
 from jointwave.compare.misfit.external import READ_CURVES, Curves
+from jointwave.compare.misfit.metrics import rms
 from jointwave.compare.scenes import AnySource, load
 from jointwave.compare.solvers.dem import DEM
-from jointwave.compare.studies.fit_keys import CLOCK, FreeKey, changed, free_keys
-from jointwave.compare.studies.fit_trials import started, trials_of
+from jointwave.compare.studies.elements import period_of
+from jointwave.compare.studies.fit_keys import CLOCK, ORIGIN, FreeKey, changed, free_keys
 from jointwave.compare.studies.forecast import Run
 
 STEPS = 6  # of a search that converges, usually
@@ -30,6 +34,11 @@ POOR = 0.2  # misfit above which another start may fit better
 NEAR = 1e-6  # of an unknown to its bound
 ALIKE = 0.99  # correlation above which two keys are indistinguishable
 LOST = 3e4  # times the error of a key fitted alone: derivatives by differences tell no more
+FINER = 4  # samples of the solution per sample of the scene, if the clock is free
+EXACT_STEP, COMPUTED_STEP = 1e-4, 1e-3  # of an unknown, for differences
+LEAST_SAMPLES = 10  # of a waveform
+TOLERANCE = 1e-12  # of the squares, the unknowns and the gradient
+MOST = 60  # steps of a search, each with its derivatives
 
 
 @dataclass(frozen=True)
@@ -87,42 +96,143 @@ def fit(
         raise SceneError(scene.where, "", None, "a fit needs a curve of this scene and a free key")
     for one in curves:
         require(one, Curves, "fit", "curves", READ_CURVES)
-    keys = free_keys([free] if isinstance(free, str) else list(free), scene)
-    first = changed(scene, {k.key: k.start for k in keys if k.key != CLOCK})
-    name = _solver_of(first, solver)
-    keys = [started(key, first, name, curves[0]) if key.key == CLOCK else key for key in keys]
-    trials = trials_of(first, name, curves, keys, progress)
-    before = list(map(np.linalg.norm, trials.residuals(key.unknown(key.start) for key in keys)))
+    keys, first, name = _asked(scene, [free] if isinstance(free, str) else free, solver)
+    trials = _Trials(first, name, curves, keys, progress)
+    before = trials.residuals(key.unknown(key.start) for key in trials.keys)
     best = trials.search()
     if best is None:
         raise StoppedError(
             f"fit: not converged after {trials.count} solutions: start closer "
             "(--free KEY=START), bound the keys, or free fewer"
         )
-    after = list(map(np.linalg.norm, trials.residuals(best.x.tolist())))
-    waveforms = pd.DataFrame(trials.measured)[["name", "place"]].assign(before=before, after=after)
-    values, correlation = _estimates(keys, best)
+    waveforms = pd.DataFrame({"name": trials.names, "place": trials.places})
+    for when, residuals in {"before": before, "after": trials.residuals(best.x)}.items():
+        waveforms[when] = [np.linalg.norm(one) for one in residuals]
+    values, correlation = _estimates(trials.keys, best)
     fitted = changed(scene, {k: v for k, v in values.value.items() if k != CLOCK})
-    notes = _notes(values, correlation, float(max(after)))
+    notes = _notes(values, correlation, waveforms.after.max())
     return Fit(fitted, name, values, correlation, waveforms, trials.count, notes)
 
 
 def planned(scene: AnyScene, free: Sequence[str], solver: str | None = None) -> Run:
     """Return the runs of a fit: usually some `STEPS` of its search, with derivatives of each key
     from both sides."""
+    keys, first, name = _asked(scene, free, solver)
+    return Run("", first, name, 2 + STEPS * (2 * len(keys) + 1))
+
+
+def _asked(
+    scene: AnyScene, free: Sequence[str], solver: str | None
+) -> tuple[list[FreeKey], AnyScene, str]:
+    """Return the keys, the scene with their starts, and the solver of every trial; raises
+    SceneError if it does not apply."""
     keys = free_keys(list(free), scene)
     first = changed(scene, {k.key: k.start for k in keys if k.key != CLOCK})
-    count = 2 + STEPS * (2 * len(keys) + 1)
-    return Run("", first, _solver_of(first, solver), count)
+    short = first.is_column and first.block_count <= SHORT and row_of_blocks.applies(first)
+    name = solver or (row_of_blocks.AXIAL.name if short else DEM.name)
+    if not (answer := applies(name, first)):
+        raise SceneError(first.where, "", None, f"{name} does not apply: {answer.reason}")
+    return keys, first, name
 
 
-def _solver_of(scene: AnyScene, asked: str | None) -> str:
-    """Return the solver of every trial; raises SceneError if it does not apply."""
-    short = scene.is_column and scene.block_count <= SHORT and row_of_blocks.applies(scene)
-    name = asked or (row_of_blocks.AXIAL.name if short else DEM.name)
-    if not (answer := applies(name, scene)):
-        raise SceneError(scene.where, "", None, f"{name} does not apply: {answer.reason}")
-    return name
+class _Trials:
+    """Solutions of a scene for values of its free keys, beside the measured waveforms.
+
+    scene : with the sampling and duration that the fit needs. names, places : of the waveforms.
+    count : of the solutions tried. Raises SceneError if a curve shares too few samples.
+    """
+
+    def __init__(
+        self,
+        scene: AnyScene,
+        solver: str,
+        curves: Sequence[Curves],
+        keys: list[FreeKey],
+        progress: Progress | None,
+    ) -> None:
+        self.solver, self.progress, self.count = solver, progress, 0
+        self.keys = [_clock(x, scene, solver, curves[0]) if x.key == CLOCK else x for x in keys]
+        shift = next((key.start for key in self.keys if key.key == CLOCK), None)
+        interval = scene.interval / (FINER if shift is not None else 1)
+        record = {"interval": interval, "energy": False, "fields": None}
+        end = scene.time.duration
+        longer = {"duration": end + (0.0 if shift is None else period_of(scene))}
+        tables: dict[str, Any] = {"record": scene.record.model_copy(update=record), "expect": {}}
+        tables["time"] = scene.time.model_copy(update=longer)
+        self.scene = scene.model_copy(update=tables)
+        result = solve(solver, self.scene)
+        found = []
+        for one in curves:
+            own = one.time + (shift or 0.0)
+            inside = (own >= -INSTANT) & (own <= end + 1e-6 * scene.interval)
+            for place, values in one.waveforms.items():
+                if place.waveform(result) is None:
+                    continue
+                if inside.sum() < LEAST_SAMPLES:
+                    allowed = (
+                        f"must share at least {LEAST_SAMPLES} samples with the scene, 0 to "
+                        f"{end:g} s, not {inside.sum()}; --free clock shifts its time"
+                    )
+                    raise SceneError(one.name, str(place), None, allowed)
+                size = rms(values[inside] - static_level(place, result)) or 1.0
+                found.append((one.name, place, one.time[inside], values[inside], size))
+        if not found:
+            raise SceneError(curves[0].file, "", None, "has no waveform at a receiver of the scene")
+        self.names, self.places, self._times, self._values, self._sizes = zip(*found, strict=True)
+
+    def search(self) -> Any:
+        """Return lmfit's result; None if the search does not converge."""
+        given = Parameters()
+        for i, key in enumerate(self.keys):
+            low, start, high = map(key.unknown, (key.low, key.start, key.high))
+            given.add(f"key_{i}", start, min=low, max=high)
+        step = COMPUTED_STEP if self.solver in ENGINES else EXACT_STEP
+        options: dict[str, Any] = {"jac": "3-point", "diff_step": step / ORIGIN, "x_scale": "jac"}
+        options |= dict.fromkeys(("ftol", "xtol", "gtol"), TOLERANCE)
+        options |= {"nan_policy": "propagate", "max_nfev": MOST * (2 * len(self.keys) + 1)}
+        try:
+            found = minimize(self._all_residuals, given, method="least_squares", **options)
+        except ValueError:  # no derivative: a neighbour has no solution
+            return None
+        return found if found.success else None
+
+    def _all_residuals(self, unknowns: Parameters) -> np.ndarray:
+        """Return all residuals in one; infinite without a solution, so that the search takes its
+        step back."""
+        try:
+            return np.concatenate(self.residuals(unknowns.valuesdict().values()))
+        except (SceneError, UnstableError):
+            return np.full(sum(map(len, self._times)), inf)
+
+    def residuals(self, x: Iterable[float]) -> list[np.ndarray]:
+        """Return solution minus measurement [n] of each waveform, whose norm is its relative L2
+        misfit, for the search variables [p]; raises SceneError or UnstableError if there is no
+        solution."""
+        self.count += 1
+        if self.progress:
+            self.progress(1 - 0.97**self.count)  # the number of trials is unknown
+        values = {key.key: key.value(float(u)) for key, u in zip(self.keys, x, strict=True)}
+        shift = values.pop(CLOCK, 0.0)
+        result = solve(self.solver, changed(self.scene, values))
+        time, found = result.time.values, []
+        for place, at, measured, size in zip(
+            self.places, self._times, self._values, self._sizes, strict=True
+        ):
+            at = np.clip(at + shift, time[0], time[-1])  # at rest before its first sample
+            off = CubicSpline(time, place.waveform(result))(at) - measured
+            found.append(off / (size * np.sqrt(len(off))))
+        return found
+
+
+def _clock(clock: FreeKey, scene: AnyScene, solver: str, curve: Curves) -> FreeKey:
+    """Return the clock with its start, unless given the shift with the best correlation of a file
+    to the solution, and with bounds a period of the load away at most."""
+    start, reach = clock.start, period_of(scene)
+    if isnan(start):
+        found = align_curve(curve, scene, {solver: solve(solver, scene)}, align=True).shift
+        start = found.seconds if found else 0.0
+    low, high = max(clock.low, start - reach), min(clock.high, start + reach)
+    return clock._replace(start=start, low=low, high=high)
 
 
 def _estimates(keys: list[FreeKey], best: Any) -> tuple[pd.DataFrame, pd.DataFrame]:

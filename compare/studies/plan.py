@@ -30,7 +30,7 @@ from jointwave.compare.studies.elements import (
     plain,
     rock,
 )
-from jointwave.compare.studies.reference import Reference, exact_reference
+from jointwave.compare.studies.measure import Reference, exact_reference
 from jointwave.compare.studies.store import FAILURES, reason_of
 
 LONGEST = {"pillar": 20.0, "rock mass": 60.0}  # s of stepping: no run is longer, unless asked for

@@ -1,6 +1,6 @@
 """Reflection and transmission of P and SV waves at joints, by every solver of rock masses.
 
-The scenes of the waves, and what is read off their motion, are those of `joint_waves`.
+The scenes of the waves, and what is read off their motion, are those of `transmission`.
 """
 
 from collections.abc import Sequence
@@ -27,14 +27,14 @@ from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies import store
 from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.forecast import Run
-from jointwave.compare.studies.joint_waves import (
+from jointwave.compare.studies.store import Store
+from jointwave.compare.studies.transmission import (
     SCENE,
     ParallelJoints,
     amplitudes,
     closed_form,
     scene_of,
 )
-from jointwave.compare.studies.store import Store
 from jointwave.compare.text import percent
 
 ANGLES = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0)  # degrees from the joints' normal

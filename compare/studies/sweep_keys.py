@@ -1,17 +1,111 @@
-"""Values of swept keys: `--sweep KEY=FROM:TO:COUNT`, `KEY=log:FROM:TO:COUNT` or `KEY=A,B,C`."""
+"""The points of sweeps and ensembles: a scene at every value of some keys.
+
+Values are given as `--sweep KEY=FROM:TO:COUNT`, `KEY=log:FROM:TO:COUNT` or `KEY=A,B,C`. Members 1,
+2, ... of an ensemble have the seed of the scene's joints, the next one, ...; in a rock mass those
+of each joint set.
+"""
 
 import json
 import re
+from itertools import product
 from math import isfinite, prod
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.read import parse_override
+from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.scenes import find, load, load_variants
 
+MEMBER = "member"  # the key of an ensemble
 MOST = 10_000  # points
+LONGEST = 100  # characters of a folder's name
 FORMS = "must be KEY=FROM:TO:COUNT, KEY=log:FROM:TO:COUNT or KEY=A,B,C"
+
+
+class Case(NamedTuple):
+    """A variant of a scene with its swept keys set.
+
+    folder : for its files, in which variants have their own; None writes nothing. scene : None if
+    it is invalid, for the reason in `message`.
+    """
+
+    settings: dict[str, Any]
+    folder: Path | None
+    scene: AnyScene | None
+    message: str = ""
+
+    @property
+    def point(self) -> str:
+        """The keys with their values."""
+        return ", ".join(f"{key}={value}" for key, value in self.settings.items())
+
+    @property
+    def columns(self) -> dict[str, Any]:
+        """Its values, variant and folder, as columns of a table."""
+        variant = self.scene.name if self.scene else ""
+        folder = str(self.folder / variant) if self.folder else ""
+        return {
+            key: json.dumps(value, default=str) if isinstance(value, list | dict) else value
+            for key, value in self.settings.items()
+        } | {"variant": variant, "folder": folder}
+
+
+def cases_of(
+    scene: str,
+    changes: list[str],
+    variant: str | None,
+    given: list[str],
+    out: Path | None,
+    members: int = 0,
+) -> list[Case]:
+    """Return all variants at every point of `--set`, `--variant`, `--sweep` and `--ensemble`;
+    raises SceneError in one line, also if no point has a valid scene."""
+    fixed = dict(map(parse_override, changes))
+    values = axes(given, list(fixed)) | ({MEMBER: [*range(1, members + 1)]} if members else {})
+    path, found, errors = find(scene), [], []
+    for i, combination in enumerate(product(*values.values()), start=1):
+        setting = dict(zip(values, combination, strict=True))
+        folder = None if out is None else out / _folder(setting, i)
+        try:
+            scenes = _scenes(path, variant, {**fixed, **setting})
+        except SceneError as error:
+            errors.append(error)
+            found.append(Case(setting, folder, None, str(error)))
+        else:
+            found += [Case(setting, folder, one) for one in scenes]
+    if errors and len(errors) == len(found):
+        raise errors[0]
+    return found
+
+
+def _scenes(path: Path, variant: str | None, changes: dict[str, Any]) -> list[AnyScene]:
+    if (number := changes.pop(MEMBER, 0)) > 0:
+        changes |= _seeds(load(path, variant or "", changes), number)
+    return load_variants(path, changes) if variant is None else [load(path, variant, changes)]
+
+
+def _folder(setting: dict[str, Any], number: int) -> str:
+    """Return the name of a point's folder: its values, or its number if they are no valid name."""
+    name = ",".join(f"{k}={v}" for k, v in setting.items())
+    plain = name.isprintable() and not set(name) & set("/\\[{") and len(name.encode()) <= LONGEST
+    return name if plain else f"point-{number:05d}"
+
+
+def _seeds(scene: AnyScene, number: int) -> dict[str, int]:
+    """Return the changes that turn a scene into its member `number`, from 1; raises SceneError if
+    its joints are not random."""
+    scatter = getattr(scene, "scatter", None)
+    found = {} if scatter is None else {"scatter.seed": scatter.seed}
+    for i, one in enumerate(getattr(scene, "joint_sets", [])):
+        if one.seed is not None:
+            found[f"joint_sets.{i}.seed"] = one.seed
+    if not found:
+        allowed = "needs random joints: [scatter] or joint_sets.*.scatter, with a seed"
+        raise SceneError(scene.where, "--ensemble", None, allowed)
+    return {key: seed + number - 1 for key, seed in found.items()}
 
 
 def axes(given: list[str], fixed: list[str]) -> dict[str, list[Any]]:

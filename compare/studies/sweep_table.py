@@ -1,21 +1,30 @@
-"""The summary of a sweep; of an ensemble also the statistics over its members."""
+"""The summary of a sweep; of an ensemble also the statistics over its members, mean and
+percentiles."""
 
 import json
+from math import inf, nan
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
+import xarray as xr
 
 from jointwave.cases.errors import SceneError
 from jointwave.compare.engines import in_words
+from jointwave.compare.figures import bands
+from jointwave.compare.figures.export import save
 from jointwave.compare.figures.style import UNITS
 from jointwave.compare.misfit.metrics import Distance
 from jointwave.compare.misfit.places import Place
-from jointwave.compare.runs.output import write_csv
-from jointwave.compare.studies import ensemble
-from jointwave.compare.studies.ensemble import MEMBER
+from jointwave.compare.runs.output import write_csv, write_dataset
 from jointwave.compare.studies.experiment import Summary
+from jointwave.compare.studies.sweep_keys import MEMBER
+from jointwave.results.netcdf import load_netcdf
 
+PERCENTILES = (5, 25, 50, 75, 95)
+STATISTICS = ("mean", *(f"p{q}" for q in PERCENTILES))
+#: What identifies the numbers of a row, besides the swept keys.
+OF_ROW = ("variant", "engine", "pair", "one", "other", "quantity", "x", "y", "z")
 #: Numbers at a receiver of a run, and of a pair of solutions, by the column that names them.
 NUMBERS = {
     "engine": ("peak", "time_of_peak", "steps", "freedoms", "seconds", "energy_residual"),
@@ -41,13 +50,13 @@ def summarise(scene: str, keys: list[str], out: Path | None, rows: pd.DataFrame)
     by = "pair" if "pair" in done else "engine"
     shown, numbers, legend = done, list(NUMBERS[by]), "All numbers are in sweep.csv."
     if MEMBER in keys:
-        shown = ensemble.statistics(done, keys, numbers)
+        shown = statistics(done, keys, numbers)
         facts["statistics"] = _records(shown)
         if out is not None:
-            files += ensemble.write(out, shown, done, keys)
+            files += write_ensemble(out, shown, done, keys)
         shown = shown[shown.number == numbers[0]]
         legend = f"{numbers[0]}: mean and percentiles over the members; all are in ensemble.csv."
-        numbers = [*ensemble.STATISTICS, "members"]
+        numbers = [*STATISTICS, "members"]
     elif by == "pair":  # the worst waveform of each
         loud = done[done.faint == "false"].sort_values("misfit")
         shown = loud.drop_duplicates([*keys, "variant", by], keep="last").sort_index()
@@ -85,3 +94,67 @@ def _receiver(row: dict[str, Any]) -> str:
     name = row["quantity"]
     unit = f" ({UNITS[name]})" if "peak" in row and name else ""
     return Place(name, "", at).heading + unit if name else ""
+
+
+def statistics(done: pd.DataFrame, keys: list[str], numbers: list[str]) -> pd.DataFrame:
+    """Return mean and percentiles over the members of each number of the completed rows.
+
+    One row per number: the swept keys, its identification, `number`, STATISTICS, and `members`, the
+    number of members that have it.
+    """
+    same = [key for key in (*keys, *OF_ROW) if key in done and key != MEMBER]
+    long = done.melt(same, numbers, "number")
+    long = long.replace({"value": [inf, -inf]}, nan).dropna(subset="value")
+    groups = long.groupby([*same, "number"], sort=False)["value"]
+    found = groups.describe([q / 100 for q in PERCENTILES])
+    found = found.rename(columns={f"{q}%": f"p{q}" for q in PERCENTILES} | {"count": "members"})
+    return found[[*STATISTICS, "members"]].astype({"members": int}).reset_index()
+
+
+def write_ensemble(
+    out: Path, numbers: pd.DataFrame, done: pd.DataFrame, keys: list[str]
+) -> list[Path]:
+    """Write ensemble.csv, and mean and percentiles of every waveform, with their figure.
+
+    numbers : from `statistics`. done : rows of the members, with the folder of their results. keys
+    : of the sweep.
+    """
+    files = [write_csv(out / "ensemble.csv", numbers)]
+    others = [key for key in keys if key != MEMBER]
+    for point, rows in done.groupby([*others, "variant"], sort=False):
+        folders = [Path(folder) for folder in rows.folder.unique()]
+        rest = ",".join(f"{key}={value}" for key, value in zip(others, point, strict=False))
+        place = out / rest / point[-1]
+        results = sorted({file.stem for folder in folders for file in folder.glob("*.nc")})
+        found = {
+            name: waveforms([f for folder in folders if (f := folder / f"{name}.nc").is_file()])
+            for name in results
+            if "." not in name  # as in NAME.stopped.nc, of a run that was interrupted
+        }
+        files += [write_dataset(place / f"{name}-ensemble.nc", x) for name, x in found.items()]
+        by_solver = {name.removeprefix("exact-"): x for name, x in found.items()}
+        if (figure := bands.draw(by_solver)) is not None:
+            files += save(figure, place, "ensemble-waveforms", "Waveforms of an ensemble").drawings
+    return files
+
+
+def waveforms(files: list[Path]) -> xr.Dataset:
+    """Return mean and percentiles over the members of every waveform, at the same times and
+    receivers in all, with `statistic` as their first dimension."""
+    results = [load_netcdf(file).drop_encoding() for file in files]
+    first = results[0]
+    same = [
+        name
+        for name, one in first.data_vars.items()
+        if "time" in one.dims
+        and one.size
+        and all(name in other and other[name].shape == one.shape for other in results)
+    ]
+    same_grid: dict[str, Any] = {"join": "override", "coords": "minimal", "compat": "override"}
+    members = xr.concat([one[same] for one in results], MEMBER, **same_grid)
+    quantiles = members.quantile([q / 100 for q in PERCENTILES], MEMBER, keep_attrs=True)
+    quantiles = quantiles.drop_vars("quantile").rename(quantile="statistic")
+    found = [members.mean(MEMBER, keep_attrs=True), quantiles]
+    about = {key: first.attrs[key] for key in ("engine", "model") if key in first.attrs}
+    both = xr.concat(found, "statistic").assign_coords(statistic=list(STATISTICS))
+    return both.transpose("statistic", ...).assign_attrs(about, members=len(results))

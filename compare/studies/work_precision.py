@@ -22,8 +22,7 @@ from jointwave.compare.runs.timings import machine
 from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.findings import done, floor, judged, orders, sentences
 from jointwave.compare.studies.forecast import Run
-from jointwave.compare.studies.measure import PointRow, is_valid, measure
-from jointwave.compare.studies.reference import references
+from jointwave.compare.studies.measure import PointRow, is_valid, measure, references
 from jointwave.compare.studies.store import Store
 from jointwave.compare.studies.store import key as store_key
 from jointwave.compare.studies.study import Study, StudyPoint

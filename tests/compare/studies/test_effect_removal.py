@@ -6,7 +6,7 @@ from jointwave.cases.effects import active_effects, effects
 from jointwave.cases.errors import SceneError
 from jointwave.cases.read import load_tables
 from jointwave.cases.schema.law_parts import PARTS
-from jointwave.compare.studies.effect_removal import WITHOUT, left_out
+from jointwave.compare.studies.effects import WITHOUT, left_out
 
 LAYER = [{"y": 20.0, "spacing_stiffness": 4e8, "damping_ratio": 0.05, "tension": False}]
 ACROSS = {"load__direction": [0.6, 0.8, 0.0]}

@@ -12,8 +12,7 @@ from jointwave import dem
 from jointwave.cases.effects import active_effects
 from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.compare.studies import effects
-from jointwave.compare.studies.effect_removal import left_out
-from jointwave.compare.studies.effects import EffectRow, Effects, experiment
+from jointwave.compare.studies.effects import EffectRow, Effects, experiment, left_out
 from jointwave.compare.studies.effects_summary import draw, sentences, summarise, table
 from jointwave.compare.studies.step_cost import StepCost
 

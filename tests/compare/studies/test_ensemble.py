@@ -11,8 +11,8 @@ import xarray as xr
 from jointwave import cases
 from jointwave.cases.errors import SceneError
 from jointwave.compare.scenes import find
-from jointwave.compare.studies.ensemble import PERCENTILES, STATISTICS
-from jointwave.compare.studies.sweep import cases_of
+from jointwave.compare.studies.sweep_keys import cases_of
+from jointwave.compare.studies.sweep_table import PERCENTILES, STATISTICS
 from jointwave.dem import simulate
 
 SCENE = "beyond/random-joints"

@@ -14,7 +14,7 @@ from jointwave.compare.engines import solve
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.places import Place
-from jointwave.compare.studies import fit_trials
+from jointwave.compare.studies import fit
 from jointwave.compare.studies.fit_keys import changed
 
 LAYER, LOAD, RATIO = "soft_layers.0.spacing_stiffness", "load.amplitude", "joints.damping_ratio"
@@ -180,7 +180,7 @@ def test_a_search_begins_near_the_edge_of_what_is_possible(scene):
 
 
 def test_search_that_does_not_end_is_an_error(scene, monkeypatch):
-    monkeypatch.setattr(fit_trials, "MOST", 2)
+    monkeypatch.setattr(fit, "MOST", 2)
     with pytest.raises(StoppedError, match="not converged after"):
         jointwave.fit(scene, [heard(scene)], list(TRUE))
 
@@ -241,7 +241,7 @@ def test_fault_is_one_line_and_exit_2(arguments, words, files, command):
 
 
 def test_no_convergence_is_exit_3(files, monkeypatch, command):
-    monkeypatch.setattr(fit_trials, "MOST", 1)
+    monkeypatch.setattr(fit, "MOST", 1)
     assert "not converged" in command(*asked(files), "--free", LAYER, code=3).err
 
 

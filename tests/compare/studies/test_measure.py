@@ -11,8 +11,7 @@ from jointwave.compare.misfit.metrics import misfit, pairings
 from jointwave.compare.studies import measure as measuring
 from jointwave.compare.studies import work_precision
 from jointwave.compare.studies.findings import judged, orders, sentences
-from jointwave.compare.studies.measure import measure
-from jointwave.compare.studies.reference import finest_of, own_of
+from jointwave.compare.studies.measure import finest_of, measure, own_of
 from jointwave.compare.studies.store import alone
 from jointwave.compare.studies.study import FineRun, load, shipped
 from jointwave.compare.studies.work_precision import experiment, key

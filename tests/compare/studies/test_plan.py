@@ -15,11 +15,11 @@ from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.runs import timings
 from jointwave.compare.scenes import find
 from jointwave.compare.studies import elements as candidates
+from jointwave.compare.studies import measure as references
 from jointwave.compare.studies import plan as plans
-from jointwave.compare.studies import reference as references
 from jointwave.compare.studies.elements import coarsest, configured, elements, halved, plain, rock
+from jointwave.compare.studies.measure import Reference
 from jointwave.compare.studies.plan import Plan, PlannedRun, plan
-from jointwave.compare.studies.reference import Reference
 
 PILLAR = find("guo-li-2002/fig-03")
 RICKER = {"shape": "ricker", "amplitude": 1e6, "period": 0.01}

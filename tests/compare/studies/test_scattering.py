@@ -6,7 +6,6 @@ import pytest
 
 from jointwave.compare.engines import solve
 from jointwave.compare.studies import scattering as points
-from jointwave.compare.studies.joint_waves import amplitudes, scene_of
 from jointwave.compare.studies.scattering import (
     WAVES,
     JointsRow,
@@ -15,6 +14,7 @@ from jointwave.compare.studies.scattering import (
     joints_of,
     measure,
 )
+from jointwave.compare.studies.transmission import amplitudes, scene_of
 
 #: |R_p|, |R_s|, |T_p|, |T_s| of P at nu = 0.25, K_n = Z_p omega, K_s = Z_s omega, found by solving
 #: the four boundary conditions as they stand.
