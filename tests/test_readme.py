@@ -48,7 +48,7 @@ def test_study_runs_on_its_scene(scene_file):
     path.write_text(blocks("toml", STUDY)[0], encoding="utf-8")
     study = load(str(path))
     rows = experiment(study, scene_file.parent / "points").rows()
-    assert [row.state for row in rows] == ["done"] * 3
+    assert [row["state"] for row in rows] == ["done"] * 3
     (order,) = orders(study, judged(rows))
     assert order.measured == pytest.approx(order.theory, abs=0.1)
 

@@ -23,8 +23,7 @@ from jointwave.compare.exact.bar import images
 from jointwave.compare.misfit.external_netcdf import read_netcdf
 from jointwave.compare.misfit.places import COMPONENT_DIMENSIONS
 from jointwave.compare.report import peers
-from jointwave.compare.runs.output import read_kept
-from jointwave.compare.studies.measure import PointRow
+from jointwave.compare.runs.output import read_rows
 from jointwave.results.labels import QUANTITIES, RECEIVERS
 from jointwave.results.netcdf import load_netcdf
 
@@ -255,7 +254,7 @@ def scene_of(path):
 
 def kept(path, text):
     path.write_text(text)
-    return read_kept(path, PointRow)
+    return read_rows(path)
 
 
 def lines(path, text):
@@ -277,7 +276,7 @@ BOMBS = {
     "curves in one line": lambda p: read_columns(lines(p / "a.csv", "0," * 1_500_000)),
     "a hollow CSV": lambda p: read_columns(hollow(p / "a.csv", b"0,0\n", 20_000_000)),
     "a load": lambda p: read_history(p, lines(p / "a.csv", "0,0\n" * 5_000_000).name, "stress"),
-    "a row": lambda p: read_kept(hollow(p / "a.json", b"{"), PointRow),
+    "a row": lambda p: read_rows(hollow(p / "a.json", b"{")),
     "a row of lists": lambda p: kept(p / "a.json", "[" + "[]," * 2_000_000 + "0]"),
     "a row of depth": lambda p: kept(p / "a.json", "[" * 500_000),
     "a table of peers": lambda p: peers.read(hollow(p / "a.csv", b"curve\n")),

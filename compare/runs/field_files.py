@@ -25,7 +25,11 @@ def write_pvd(path: Path, s: Snapshots) -> Path:
     def save(new: Path) -> None:
         new.mkdir()
         for i, name in enumerate(names):
-            _mesh(s, i).write(new / name)
+            cell_data: dict[str, Any] = {"block": [s.block]}
+            if s.stress is not None:
+                cell_data["stress"] = [s.stress[i]]
+            vectors = {"displacement": s.displacement[i], "velocity": s.velocity[i]}
+            meshio.Mesh(s.points, [(s.kind, s.cells)], vectors, cell_data).write(new / name)
 
     write(folder, save)
     root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
@@ -37,11 +41,3 @@ def write_pvd(path: Path, s: Snapshots) -> Path:
     tree = ElementTree.ElementTree(root)
     ElementTree.indent(tree)
     return write(path, lambda file: tree.write(file, encoding="utf-8", xml_declaration=True))
-
-
-def _mesh(s: Snapshots, i: int) -> meshio.Mesh:
-    cell_data: dict[str, Any] = {"block": [s.block]}
-    if s.stress is not None:
-        cell_data["stress"] = [s.stress[i]]
-    vectors = {"displacement": s.displacement[i], "velocity": s.velocity[i]}
-    return meshio.Mesh(s.points, [(s.kind, s.cells)], vectors, cell_data)

@@ -6,20 +6,18 @@ import tempfile
 from collections.abc import Callable
 from errno import EIO
 from pathlib import Path
-from typing import TypeVar
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
-from pydantic import TypeAdapter
 
 from jointwave.cases.errors import SceneError, printable
 from jointwave.cases.files import is_number, read_json
 
-T = TypeVar("T")
-
 LARGEST_ROW = 100_000_000  # bytes, of a point saved by a study, a sweep or the robustness suite
 FORMULA = ("=", "+", "-", "@")  # first characters of a spreadsheet formula
+OVERWRITTEN = "would be overwritten: choose another --out"
 UNFINISHED = ".unfinished-"  # in the names of folders being filled, which begin with a dot
 
 
@@ -99,16 +97,12 @@ def refuse_foreign(path: Path, begins: tuple[bytes, ...] = NETCDF) -> None:
     if path.is_symlink() or not path.exists():
         return
     found = "is a folder" if path.is_dir() else "is not a result"
-    if not path.is_file() or not _begins(path, begins):
-        raise SceneError(
-            str(path), "", None, f"{found} and would be overwritten: choose another --out"
-        )
-
-
-def _begins(path: Path, begins: tuple[bytes, ...]) -> bool:
-    with path.open("rb") as file:
-        head = file.read(8)
-    return not head or head.startswith(begins)
+    if path.is_file():
+        with path.open("rb") as file:
+            head = file.read(8)
+        if not head or head.startswith(begins):
+            return
+    raise SceneError(str(path), "", None, f"{found} and {OVERWRITTEN}")
 
 
 def _refuse_foreign_folder(path: Path, new: Path) -> None:
@@ -118,8 +112,7 @@ def _refuse_foreign_folder(path: Path, new: Path) -> None:
         return
     foreign = [path] if path.is_file() else [f for f in path.iterdir() if f.suffix not in kinds]
     if foreign:
-        allowed = "is not a result and would be overwritten: choose another --out"
-        raise SceneError(str(min(foreign)), "", None, allowed)
+        raise SceneError(str(min(foreign)), "", None, f"is not a result and {OVERWRITTEN}")
 
 
 def write_csv(path: Path, table: pd.DataFrame, digits: int = 9) -> Path:
@@ -148,27 +141,25 @@ def write_text(path: Path, text: str) -> Path:
     return write(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
 
 
-def read_kept(path: Path, form: type[T]) -> T:
-    """Return JSON written by `write_text` as a `form`: a NamedTuple or a list of them.
-
-    Raises SceneError if the file does not match that type.
-    """
+def read_rows(path: Path) -> Any:
+    """Return a row, or a list of rows, from JSON; raises SceneError if the file has none."""
     try:
-        return TypeAdapter(form).validate_python(read_json(path, LARGEST_ROW))
-    except ValueError as error:  # pydantic's messages have several lines
-        reason = str(error).partition("\n")[0]
-        raise SceneError(str(path), "", None, f"is damaged, remove it: {reason}") from None
+        found = read_json(path, LARGEST_ROW)
+        if not all(
+            isinstance(one, dict) for one in (found if isinstance(found, list) else [found])
+        ):
+            raise ValueError("it has no rows")
+        return found
+    except ValueError as error:
+        raise SceneError(str(path), "", None, f"is damaged, remove it: {error}") from None
 
 
 def write_dataset(path: Path, result: xr.Dataset) -> Path:
     """Write a result as NetCDF 3, whose integers have 32 bits."""
     refuse_foreign(path)
     texts = {k: v.astype(str) for k, v in result.variables.items() if v.dtype == object}
-    large = {k: float(v) for k, v in result.attrs.items() if _is_long(v)}
+    whole = {k: v for k, v in result.attrs.items() if isinstance(v, int | np.integer)}
+    large = {k: float(v) for k, v in whole.items() if abs(int(v)) >= 2**31}
     found = result.assign(texts).assign_attrs(large)
     plain = {k: {"_FillValue": None} for k, v in found.variables.items() if v.dtype.kind == "f"}
     return write(path, lambda file: found.to_netcdf(file, engine="scipy", encoding=plain))
-
-
-def _is_long(value: object) -> bool:
-    return isinstance(value, int | np.integer) and abs(int(value)) >= 2**31

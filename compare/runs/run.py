@@ -4,7 +4,6 @@ import json
 import os
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 import xarray as xr
@@ -127,7 +126,13 @@ def _write(
 
 def _done(job: Job, keeper: RunCheckpointer, result: xr.Dataset) -> Done:
     """Write the snapshots of a result and return its facts; its checkpoints are removed."""
-    has_ledger = "energy" in result
+    has_ledger, fields = "energy" in result, list[str]()
+    if job.scene.record.fields is not None:
+        from jointwave.compare.runs.field_files import write_pvd
+        from jointwave.results.snapshots import snapshots_of
+
+        if (found := snapshots_of(result)) is not None:
+            fields.append(str(write_pvd(job.path.with_suffix(".pvd"), found)))
     facts = {
         "variant": job.scene.name,
         "engine": job.name,
@@ -137,19 +142,8 @@ def _done(job: Job, keeper: RunCheckpointer, result: xr.Dataset) -> Done:
         "file": str(job.path),
         "fragments": json.loads(result.attrs.get("fragments", "null")),
         "static_out_of_balance": result.attrs.get("static_out_of_balance"),
-        "fields": list(map(str, _write_snapshots(job, result))),
+        "fields": fields,
     }
     done = Done(job, open_ledger(result) if has_ledger else "", facts)
     keeper.files.remove()
     return done
-
-
-def _write_snapshots(job: Job, result: xr.Dataset) -> list[Path]:
-    """Write a result's snapshots, if any, beside it; return the files to open."""
-    if job.scene.record.fields is None:
-        return []
-    from jointwave.compare.runs.field_files import write_pvd
-    from jointwave.results.snapshots import snapshots_of
-
-    found = snapshots_of(result)
-    return [] if found is None else [write_pvd(job.path.with_suffix(".pvd"), found)]

@@ -2,6 +2,11 @@
 
 Both are measured in rigid blocks and, if it applies, in the jointed rock: each effect is left out
 in turn. The misfit is relative L2 from the engine's own result of the complete scene.
+Columns of the table: `scene`, `title`, `variant`, `engine`, `effect`; `reason` why the effect
+cannot be left out, "" if it can; `misfit` of the result without it; `steps` with it over those
+without it; `ns` that it adds to a step of one block, or of one degree of freedom of the rock;
+`noise`, the resolution of timings; `share` of such a step with all effects of the scene, which
+takes `own`, ns; `everything`, ns with every effect there is, in as many rigid blocks.
 """
 
 from collections.abc import Sequence
@@ -10,7 +15,7 @@ from dataclasses import replace
 from itertools import chain
 from math import nan
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pandas as pd
 
@@ -38,7 +43,7 @@ from jointwave.compare.studies.step_cost import (
     step_costs,
     with_every_effect,
 )
-from jointwave.compare.studies.store import FAILURES, Pool, Store, alone, reason_of
+from jointwave.compare.studies.store import FAILURES, Pool, Row, Store, alone, reason_of
 from jointwave.results.dataset import scene_hash
 
 BLOCKS, ROCK = DEM.name, JOINTED_ROCK.name
@@ -73,33 +78,12 @@ WITHOUT: dict[str, dict[str, Any]] = {
     "prestress": {"prestress": None},
 }
 
+COLUMNS = (
+    *("scene", "title", "variant", "engine", "effect", "reason"),
+    *("misfit", "steps", "ns", "noise", "share", "own", "everything"),
+)
 Variant = tuple[str, AnyScene]  #: a scene's name as its user knows it, and one of its variants
 Point = tuple[Variant, str]  #: a variant, and the engine that it is run in
-
-
-class EffectRow(NamedTuple):
-    """One effect of a scene in an engine; missing numbers are nan.
-
-    reason : why the effect cannot be left out; "" if it can. misfit : of the result without it.
-    steps : with it over those without it. ns : that it adds to a step of one block, or of one
-    degree of freedom of the rock; noise : the resolution of timings; share : of such a step with
-    all effects of the scene, which takes `own`, ns. everything : ns with every effect there is, in
-    as many rigid blocks.
-    """
-
-    scene: str
-    title: str
-    variant: str
-    engine: str
-    effect: str
-    reason: str = ""
-    misfit: float = nan
-    steps: float = nan
-    ns: float = nan
-    noise: float = nan
-    share: float = nan
-    own: float = nan
-    everything: float = nan
 
 
 def left_out(scene: Either, name: str) -> Either:
@@ -142,7 +126,7 @@ class Effects(Experiment):
             runs = replace(self.store, folder=None).compute(left, measure, pool)
             rows = dict(zip(map(key, left), runs, strict=True))
 
-            def work(point: Point) -> list[EffectRow]:
+            def work(point: Point) -> list[Row]:
                 return timed(point, rows[key(point)])
 
             return self.store.compute(self.points, work, progress=progress)
@@ -150,7 +134,7 @@ class Effects(Experiment):
 
 def experiment(title: str, wanted: list[Variant], folder: Path) -> Experiment:
     """Return the study of all effects of some variants; results and files are in `folder`."""
-    saved = Store[Point, Any](list[EffectRow], folder, key)
+    saved = Store(folder, key)
     points = [
         (one, engine)
         for one in wanted
@@ -158,8 +142,8 @@ def experiment(title: str, wanted: list[Variant], folder: Path) -> Experiment:
         if engine == BLOCKS or applies(engine, one[1])
     ]
 
-    def told(rows: list[list[EffectRow]]) -> Summary:
-        return summarise(folder, pd.DataFrame(chain(*rows), columns=EffectRow._fields))
+    def told(rows: list[list[Row]]) -> Summary:
+        return summarise(folder, pd.DataFrame(chain(*rows), columns=COLUMNS))
 
     return Effects(title, points, saved, measure, runs, told)
 
@@ -185,7 +169,7 @@ def key(point: Point) -> str:
     return store.key(name, scene.name, scene_hash(scene), engine)
 
 
-def measure(point: Point) -> list[EffectRow]:
+def measure(point: Point) -> list[Row]:
     """Return the rows of a variant in an engine, not yet timed; none for rock that cannot be run.
 
     Raises the errors of `solve` for rigid blocks, and SceneError for a scene without effects.
@@ -193,38 +177,35 @@ def measure(point: Point) -> list[EffectRow]:
     (name, scene), engine = point
     if not active_effects(scene):
         raise SceneError(scene.where, "", None, "has no effect to leave out")
-    rows = [EffectRow(name, scene.title, scene.name, engine, x) for x in active_effects(scene)]
+    about: Row = {"scene": name, "title": scene.title, "variant": scene.name, "engine": engine}
     try:
         result = solve(engine, scene)
     except FAILURES:
         if engine == BLOCKS:
             raise
         return []
-    for i, row in enumerate(rows):
+    rows = [about | {"effect": effect, "reason": ""} for effect in active_effects(scene)]
+    for row in rows:
         try:
-            other = solve(engine, left_out(scene, row.effect))
+            other = solve(engine, left_out(scene, row["effect"]))
         except FAILURES as error:
-            rows[i] = row._replace(reason=reason_of(error))
+            row["reason"] = reason_of(error)
         else:
             steps = float(result.attrs["steps"] / other.attrs["steps"])
-            rows[i] = row._replace(misfit=misfit(other, result), steps=steps)
+            row |= {"misfit": misfit(other, result), "steps": steps}
     return rows
 
 
-def timed(point: Point, rows: list[EffectRow]) -> list[EffectRow]:
+def timed(point: Point, rows: list[Row]) -> list[Row]:
     """Return the rows of a variant in an engine with the cost of their effects."""
     (_, scene), engine = point
     if not rows:
         return []
-    without = [left_out(scene, row.effect) for row in rows if not row.reason]
-    own, *less = step_costs([scene, *without], engine)
+    able = [row for row in rows if not row["reason"]]
+    own, *less = step_costs([scene, *(left_out(scene, row["effect"]) for row in able)], engine)
     whole = engine == BLOCKS and not scene.in_space
-    everything = cost_of_every_effect(scene).ns if whole else nan
-    found, costs = [], iter(less)
-    for row in rows:
-        if not row.reason:
-            one = next(costs)
-            ns, noise = own.ns - one.ns, own.noise + one.noise
-            row = row._replace(ns=ns, noise=noise, share=ns / own.ns)
-        found.append(row._replace(own=own.ns, everything=everything))
-    return found
+    every = {"own": own.ns, "everything": cost_of_every_effect(scene).ns if whole else nan}
+    for row, one in zip(able, less, strict=True):
+        ns = own.ns - one.ns
+        row |= {"ns": ns, "noise": own.noise + one.noise, "share": ns / own.ns}
+    return [row | every for row in rows]

@@ -22,7 +22,7 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#56b4e9", "#0
 
 
 def summarise(folder: Path, found: pd.DataFrame) -> Summary:
-    """Return the summary of `EffectRow`s; write effects.csv and the diagram into `folder`."""
+    """Return the summary of the effects; write effects.csv and the diagram into `folder`."""
     figure = save(draw(found), folder, NAME, TITLE)
     files = [write_csv(folder / f"{NAME}.csv", found), *figure.drawings]
     data, about = {"rows": found.to_dict("records")}, "; ".join(_labels(found).unique())

@@ -48,14 +48,14 @@ class Summary(NamedTuple):
 class Experiment:
     """A study: each of its points is measured once and saved, and the rows of all summarised.
 
-    store : of the rows. measure : returns the row of a point. runs : returns the solutions that
-    some points need. summarise : writes the files of all rows. timed : only one such study runs on
-    a machine at a time. shares : whether several processes may share the points.
+    store : of the rows. measure : returns the row of a point, or several. runs : returns the
+    solutions that some points need. summarise : writes the files of all rows. timed : only one such
+    study runs on a machine at a time. shares : whether several processes may share the points.
     """
 
     title: str
     points: Sequence[Any]
-    store: Store[Any, Any]
+    store: Store
     measure: Callable[[Any], Any]
     runs: Callable[[Sequence[Any]], list[Run]]
     summarise: Callable[[list[Any]], Summary]

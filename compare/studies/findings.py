@@ -12,7 +12,8 @@ import numpy as np
 import pandas as pd
 
 from jointwave.compare.misfit.metrics import JUDGED
-from jointwave.compare.studies.measure import PointRow
+from jointwave.compare.studies.measure import COUNTS, ERRORS, WORDS
+from jointwave.compare.studies.store import Row
 from jointwave.compare.studies.study import Curve, FineRun, Study
 from jointwave.compare.text import in_seconds, percent
 
@@ -22,13 +23,14 @@ ROUND_OFF = 1e-11  # below, an error no longer falls
 KNOWN = 10  # least ratio of an error to its floor for an order accurate to some per cent
 
 
-def judged(rows: Sequence[PointRow]) -> pd.DataFrame:
+def judged(rows: Sequence[Row]) -> pd.DataFrame:
     """Return the table of a study, a row a point in its order, SI.
 
-    Beside the fields of `PointRow`: held, the error that counts, of the sum or, where that is
+    Beside the columns of `measure`: held, the error that counts, of the sum or, where that is
     unknown, the numerical one; cancels, whether the point measures less than that.
     """
-    table = pd.DataFrame(rows, columns=list(PointRow._fields))
+    numbers = dict.fromkeys((*ERRORS, *COUNTS), float)
+    table = pd.DataFrame(rows, columns=[*WORDS, *numbers]).astype(numbers)
     held = _held(table, "total").fillna(_held(table, "numerical"))
     alone = table[["numerical", "modelling"]].max(axis=1)
     counted = table["total"].fillna(table["numerical"])
@@ -40,17 +42,14 @@ def _held(table: pd.DataFrame, error: str) -> pd.Series:
     """Return the largest error of each point and of all finer ones of its curve, with the same
     physics; nan where a point has no error. Finer has more work or, if not counted, stands later.
     """
-    model = table["curve"] + " " + table["settings"].map(_physics)
+    free = ("pillar.block", "numerics.")  # these do not change the problem
+    physics = table["settings"].map(
+        lambda of: repr(sorted((k, v) for k, v in of.items() if not k.startswith(free)))
+    )
+    model = table["curve"] + " " + physics
     finest_first = table.sort_values("work", kind="stable").index[::-1]
     errors = table[error].where(table["state"] == "done")[finest_first]
     return errors.groupby(model).cummax().sort_index()
-
-
-def _physics(settings: dict[str, Any]) -> str:
-    """Return the varied keys other than numerics and block size: these change the problem."""
-    free = ("pillar.block", "numerics.")
-    kept = {k: v for k, v in settings.items() if not k.startswith(free)}
-    return repr(sorted(kept.items()))
 
 
 def done(table: pd.DataFrame, error: str, cost: str) -> pd.DataFrame:

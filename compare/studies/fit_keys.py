@@ -94,11 +94,17 @@ def _free_key(text: str, scene: AnyScene) -> FreeKey:
 
 def _held(key: str, scene: AnyScene) -> tuple[str, Any]:
     """Return a dotted key's allowed values in words and its value, None if the scene leaves it
-    out."""
+    out. The first table of a list stands for all of them where a key is without its number."""
+
+    def numbered(name: str) -> str:
+        first, dot, rest = name.partition(".")
+        is_list = dot and isinstance(getattr(scene, first, None), list)
+        return f"{first}.0.{rest}" if is_list else name
+
     known, parts = dict(keys(type(scene))), key.split(".")
     name = ".".join(part for part in parts if not part.isdecimal())
-    if name not in known or key == name != _numbered(name, scene):
-        allowed = f"is not a key of a scene{nearest(name, [_numbered(k, scene) for k in known])}"
+    if name not in known or key == name != numbered(name):
+        allowed = f"is not a key of a scene{nearest(name, map(numbered, known))}"
         raise SceneError("--free", key, None, allowed)
     words = in_words(known[name])
     if not words.startswith("number") or any(fnmatch(key, fixed) for fixed in FIXED):
@@ -107,12 +113,6 @@ def _held(key: str, scene: AnyScene) -> tuple[str, Any]:
         return words, reduce(_part, parts, scene)
     except (AttributeError, IndexError, ValueError):
         raise SceneError("--free", key, None, "is in a table that the scene has not") from None
-
-
-def _numbered(name: str, scene: AnyScene) -> str:
-    """Return a key without numbers as that of the first table, where its table is a list."""
-    first, dot, rest = name.partition(".")
-    return f"{first}.0.{rest}" if dot and isinstance(getattr(scene, first, None), list) else name
 
 
 def _part(table: Any, name: str) -> Any:

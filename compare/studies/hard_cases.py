@@ -18,7 +18,7 @@ from contextlib import suppress
 from functools import partial
 from math import inf, isfinite, nan, pi
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -40,14 +40,13 @@ from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.hard_map import (
     SCENE,
-    Column,
     cells_of,
     cells_to_run,
     columns,
     computed,
     draw_maps,
 )
-from jointwave.compare.studies.store import Store
+from jointwave.compare.studies.store import Row, Store
 from jointwave.results.dataset import energy_residual, scene_hash
 
 NAME = "stability"
@@ -68,60 +67,42 @@ FRACTION = 1.001  # of the critical step
 ABOVE_CRITICAL = f"{FRACTION:g} of the critical step"
 
 
-class HardRow(NamedTuple):
-    """A variant of a shipped scene on one engine by one scheme, and how its run has ended.
-
-    should : how it should end: STABLE; or, at steps above the critical one, REFUSED or, where the
-    scene allows them, STOPPED. energy : imbalance of the ledger, and fall : largest decrease of
-    dissipated energy, both over the work. misfit : from `reference`. Nan where nothing is bounded.
-    """
-
-    scene: str
-    variant: str
-    engine: str
-    scheme: str
-    should: str = STABLE
-    ended: str = ""
-    energy: float = nan
-    energy_bound: float = nan
-    fall: float = nan
-    fall_bound: float = nan
-    misfit: float = nan
-    misfit_bound: float = nan
-    reference: str = ""
-    message: str = ""
-
-    @property
-    def title(self) -> str:
-        """Its scene, variant and step, as the table has them."""
-        steps = {REFUSED: ABOVE_CRITICAL, STOPPED: f"{ABOVE_CRITICAL}, allowed"}
-        parts = self.scene.partition("/")[2], self.variant, steps.get(self.should)
-        return ", ".join(filter(None, parts))
-
-    @property
-    def margin(self) -> float:
-        """The least bound over its value; infinite without, nan if a value is."""
-        values, bounds = np.array(self[6:12:2]), np.array(self[7:12:2])
-        bounded = np.isfinite(bounds)
-        with np.errstate(divide="ignore"):
-            return float(np.min(bounds[bounded] / values[bounded], initial=inf))
-
-    @property
-    def holds(self) -> bool:
-        """Whether it ended as it should, within all bounds: nan is within none."""
-        return self.ended in (self.should, NONE) and self.margin >= 1
-
-    @property
-    def name(self) -> str:
-        """Its title, engine and scheme."""
-        return f"{self.title}, {label_of(self.engine)}, {self.scheme}"
+#: Columns of a case: its scene, variant, engine, scheme, and how its run should end; how and why it
+#: has ended; over the work the imbalance of the ledger of energy and the largest fall of what was
+#: dissipated, the misfit from `reference`, and their bounds. What is not judged is missing.
+POINT = ("scene", "variant", "engine", "scheme", "should")
+NUMBERS = ("energy", "energy_bound", "fall", "fall_bound", "misfit", "misfit_bound")
+COLUMNS = (*POINT, "ended", *NUMBERS, "reference", "message")
 
 
-def hard_cases() -> list[HardRow]:
-    """Return every row before its run: each variant of each scene of cases/hard, and steps above
+def title_of(row: Row) -> str:
+    """Return the scene of a case, its variant and step, as the table has them."""
+    steps = {REFUSED: ABOVE_CRITICAL, STOPPED: f"{ABOVE_CRITICAL}, allowed"}
+    parts = row["scene"].partition("/")[2], row["variant"], steps.get(row["should"])
+    return ", ".join(filter(None, parts))
+
+
+def judged(rows: Sequence[Row]) -> pd.DataFrame:
+    """Return the table of all cases, with their `title` and `name`; the `margin`, the least bound
+    over its value, infinite without bounds, nan if a value is; and whether a case `holds`: it has
+    ended as it should, within all bounds."""
+    found = pd.DataFrame(rows, columns=COLUMNS).astype(dict.fromkeys(NUMBERS, float))
+    texts = found[["reference", "message"]].fillna("")
+    values, bounds = found[[*NUMBERS[::2]]].to_numpy(), found[[*NUMBERS[1::2]]].to_numpy()
+    with np.errstate(divide="ignore"):
+        margin = np.where(np.isfinite(bounds), bounds / values, inf).min(axis=1)
+    title = found.apply(title_of, axis=1)
+    how = found.engine.map(label_of) + ", " + found.scheme
+    holds = ((found.ended == found.should) | (found.ended == NONE)) & (margin >= 1)
+    about = {"title": title, "how": how, "name": title + ", " + how}
+    return found.assign(**texts, **about, margin=margin, holds=holds)
+
+
+def hard_cases() -> list[Row]:
+    """Return every case before its run: each variant of each scene of cases/hard, and steps above
     the critical one."""
     found = [
-        HardRow(name, scene.name, engine.name, scheme)
+        (name, scene.name, engine.name, scheme)
         for name in shipped()
         if name.startswith("hard/")
         for scene in cases.load(find(name))
@@ -129,36 +110,38 @@ def hard_cases() -> list[HardRow]:
         for scheme in engine.schemes
         if scene.is_column or scheme in ("leapfrog", "explicit")
     ]
-    short = [row for row in found if row[:2] == (SCENE, "") and row.scheme != "implicit"]
-    return found + [row._replace(should=state) for row in short for state in (REFUSED, STOPPED)]
+    short = [one for one in found if one[:2] == (SCENE, "") and one[3] != "implicit"]
+    ends = [(one, STABLE) for one in found]
+    ends += [(one, state) for one in short for state in (REFUSED, STOPPED)]
+    return [dict(zip(POINT, (*one, state), strict=True)) for one, state in ends]
 
 
-def scene_of(row: HardRow) -> AnyScene:
+def scene_of(row: Row) -> AnyScene:
     """Return the scene that is run."""
-    table = f"numerics.{ENGINES[row.engine].engine}"
+    table = f"numerics.{ENGINES[row['engine']].engine}"
     changes: dict[str, Any] = {}
-    if row.scheme != "leapfrog":  # the only one of rigid blocks in the plane
-        changes[f"{table}.scheme"] = row.scheme
-    if row.should != STABLE:
+    if row["scheme"] != "leapfrog":  # the only one of rigid blocks in the plane
+        changes[f"{table}.scheme"] = row["scheme"]
+    if row["should"] != STABLE:
         changes |= RINGING | {f"{table}.step_fraction": FRACTION}
-        changes[f"{table}.allow_unstable"] = row.should == STOPPED
-    return cases.load_variant(find(row.scene), row.variant, changes)
+        changes[f"{table}.allow_unstable"] = row["should"] == STOPPED
+    return cases.load_variant(find(row["scene"]), row["variant"], changes)
 
 
-def run(row: HardRow) -> HardRow:
-    """Return a row after its run; all errors of a run are states of it."""
+def run(row: Row) -> Row:
+    """Return a case after its run; all errors of a run are states of it."""
     try:
         scene = scene_of(row)
-        if reason := applies(row.engine, scene).reason:
-            return row._replace(ended=NONE, message=reason)
-        result, _ = solved(row.engine, scene)
+        if reason := applies(row["engine"], scene).reason:
+            return row | {"ended": NONE, "message": reason}
+        result, _ = solved(row["engine"], scene)
     except UnstableError as error:
-        return row._replace(ended=STOPPED, message=str(error).partition(": ")[2])
+        return row | {"ended": STOPPED, "message": str(error).partition(": ")[2]}
     except SceneError as error:
         ended = NONE if error.key.endswith(".scheme") else REFUSED
-        return row._replace(ended=ended, message=error.allowed)
-    found = _of_energy(row.scheme, scene, result) | _of_misfit(row, scene, result)
-    return row._replace(ended=STABLE, **found)
+        return row | {"ended": ended, "message": error.allowed}
+    found = _of_energy(row["scheme"], scene, result) | _of_misfit(row, scene, result)
+    return row | {"ended": STABLE} | found
 
 
 def _of_energy(scheme: str, scene: AnyScene, result: xr.Dataset) -> dict[str, Any]:
@@ -172,12 +155,12 @@ def _of_energy(scheme: str, scene: AnyScene, result: xr.Dataset) -> dict[str, An
     return found
 
 
-def _of_misfit(row: HardRow, scene: AnyScene, result: xr.Dataset) -> dict[str, Any]:
+def _of_misfit(row: Row, scene: AnyScene, result: xr.Dataset) -> dict[str, Any]:
     """Return the misfit from the first exact solution that the scene expects and that applies."""
     for key, bound in scene.expect.items():
         first, other, of = bound_of(key)
-        if first == row.engine and not of and solver(other).exact and applies(other, scene):
-            if row.scheme == "implicit":  # nan for a jump, which has no shortest period
+        if first == row["engine"] and not of and solver(other).exact and applies(other, scene):
+            if row["scheme"] == "implicit":  # nan for a jump, which has no shortest period
                 omega, end = 2 * pi / (shortest_period(scene.pulses) or nan), scene.time.duration
                 bound += (omega * end / result.attrs["steps"]) ** 2 / 6 * CUBES * omega * end
             found = misfit(result, solved(other, scene)[0])
@@ -198,78 +181,79 @@ def largest_fall(result: xr.Dataset) -> float:
     return max(falls, default=0.0) / work if work else 0.0
 
 
-def key(point: HardRow | Column) -> str:
-    """Return the key of a row or of a map's column: everything that determines it."""
-    if isinstance(point, Column):
-        return store.key(point)
-    scene = cases.load_variant(find(point.scene), point.variant)
-    return store.key(point[:5], scene_hash(scene))
-
-
-def runs(points: Sequence[HardRow | Column]) -> list[Run]:
-    """Return the runs of rows, with what they are held against, and of maps' cells; a cell above
-    the critical step ends early."""
-    found = [Run("maps", *cells_to_run(one)) for one in points if isinstance(one, Column)]
-    for row in (one for one in points if isinstance(one, HardRow)):
-        with suppress(SceneError):
-            scene = scene_of(row)
-            bounds = (bound_of(key) for key in scene.expect)
-            exact = (one.other for one in bounds if one.one == row.engine and not one.of)
-            names = [row.engine, *(one for one in exact if one not in ENGINES)][:2]
-            solver(row.engine).prepare(scene)
-            found += [Run("cases", scene, one) for one in names if applies(one, scene)]
-    return found
-
-
 def experiment(out: Path) -> Experiment:
-    """Return the study of all cases and the maps, saved in OUT/stability/, with files in `out`."""
-    saved = Store[Any, Any](HardRow | Column, out / NAME, key)
+    """Return the study of the maps and of all cases, saved in OUT/stability/, with files in `out`.
+
+    A point is a case or, with a `ratio`, a column of a map.
+    """
+    saved = Store(out / NAME, key)
     points, told = [*columns(), *hard_cases()], partial(summarise, out)
     return Experiment(TITLE, points, saved, measure, runs, told)
 
 
-def measure(point: HardRow | Column) -> HardRow | Column:
-    """Return a row after its run, or a column of a map with its cells."""
-    return computed(point) if isinstance(point, Column) else run(point)
+def key(point: Row) -> str:
+    """Return the key of a point: everything that determines it."""
+    if "ratio" in point:
+        return store.key(point)
+    scene = cases.load_variant(find(point["scene"]), point["variant"])
+    return store.key(point, scene_hash(scene))
 
 
-def summarise(out: Path, found: Sequence[HardRow | Column]) -> Summary:
-    """Return the summary of rows and maps; write their tables and figure into `out`."""
-    cells = cells_of([one for one in found if isinstance(one, Column)])
-    rows = [one for one in found if isinstance(one, HardRow)]
+def measure(point: Row) -> Row:
+    """Return a case after its run, or a column of a map with its cells."""
+    return computed(point) if "ratio" in point else run(point)
+
+
+def runs(points: Sequence[Row]) -> list[Run]:
+    """Return the runs of cases, with what they are held against, and of maps' cells; a cell above
+    the critical step ends early."""
+    found = [Run("maps", *cells_to_run(one)) for one in points if "ratio" in one]
+    for row in (one for one in points if "ratio" not in one):
+        with suppress(SceneError):
+            scene, engine = scene_of(row), row["engine"]
+            bounds = (bound_of(key) for key in scene.expect)
+            exact = (one.other for one in bounds if one.one == engine and not one.of)
+            names = [engine, *(one for one in exact if one not in ENGINES)][:2]
+            solver(engine).prepare(scene)
+            found += [Run("cases", scene, one) for one in names if applies(one, scene)]
+    return found
+
+
+def summarise(out: Path, found: Sequence[Row]) -> Summary:
+    """Return the summary of maps and cases; write their tables and figure into `out`."""
+    cells = cells_of([one for one in found if "ratio" in one])
+    rows = judged([one for one in found if "ratio" not in one])
     drawn = save(draw_maps(cells), out, NAME, TITLE)
-    tables = {NAME: pd.DataFrame(rows, columns=HardRow._fields), f"{NAME}-map": cells}
+    tables = {NAME: rows[[*COLUMNS]], f"{NAME}-map": cells}
     files = [write_csv(out / f"{name}.csv", table) for name, table in tables.items()]
     files.append(drawn.file("svg"))
-    failed = [f"{row.name}: {row.ended} {row.message}" for row in rows if not row.holds]
-    shown = table(rows), sentences(rows, cells), failed, files, {"rows": rows}, drawn
-    return Summary(NAME, TITLE, *shown, about=NOTE)
+    failed = [f"{row.name}: {row.ended} {row.message}" for row in rows[~rows.holds].itertuples()]
+    shown = table(rows), sentences(rows, cells), failed, files
+    data = {"rows": tables[NAME].to_dict("records")}
+    return Summary(NAME, TITLE, *shown, data, drawn, about=NOTE)
 
 
-def table(rows: list[HardRow]) -> pd.DataFrame:
-    """Return the rows under headings of their case."""
-    labels = [(row.title, f"{label_of(row.engine)}, {row.scheme}") for row in rows]
-    cells = [(x.ended, x.energy, x.fall, x.misfit, x.margin, _remark(x)) for x in rows]
-    index = pd.MultiIndex.from_tuples(labels, names=["", "engine and scheme"])
-    return pd.DataFrame(cells, index, ["ends", "energy", "decrease", "misfit", "margin", ""])
+def table(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return judged cases under headings of their titles."""
+    said = rows.message.where(rows.message != "", "misfit from " + rows.reference)
+    said = said.where((rows.message + rows.reference) != "", "")
+    found = rows.rename(columns={"ended": "ends", "fall": "decrease"})
+    found[""] = said.where(rows.holds, "failed: " + said)
+    found = found[["ends", "energy", "decrease", "misfit", "margin", ""]]
+    labels = [rows.title, rows.how]
+    return found.set_index(pd.MultiIndex.from_arrays(labels, names=["", "engine and scheme"]))
 
 
-def _remark(row: HardRow) -> str:
-    said = row.message or f"misfit from {row.reference}" * bool(row.reference)
-    return said if row.holds else f"failed: {said}"
-
-
-def sentences(rows: list[HardRow], cells: pd.DataFrame) -> list[str]:
-    """Return the number of rows that hold, the least margin, and cells that contradict theory."""
-    asked = [row for row in rows if row.ended != NONE]
-    held = [row for row in asked if row.holds]
+def sentences(rows: pd.DataFrame, cells: pd.DataFrame) -> list[str]:
+    """Return the number of cases that hold, the least margin, and cells that contradict theory."""
+    asked = rows[rows.ended != NONE]
+    held = asked[asked.holds].sort_values("margin", kind="stable")
     found = [
         f"{len(held)} of {len(asked)} rows hold; {len(rows) - len(asked)} do not apply, each with "
         "its reason."
     ]
-    least = min(held, key=lambda row: row.margin, default=None)
-    if least is not None and isfinite(least.margin):
-        found.append(f"The least margin is {least.margin:.3g}: {least.name}.")
+    if len(held) and isfinite(least := held.margin.iloc[0]):
+        found.append(f"The least margin is {least:.3g}: {held['name'].iloc[0]}.")
     return found + [
         f"{label_of(str(engine))}: {len(own):,} cells, {own.wrong.sum()} on the wrong side of the "
         f"line, {own.far.sum()} of them beyond one cell of it."

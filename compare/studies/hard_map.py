@@ -7,7 +7,7 @@ stable if the divergence monitor lets the run end.
 """
 
 from math import pi
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -22,6 +22,7 @@ from jointwave.compare.engines import ENGINES, label_of, solve
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.style import style
 from jointwave.compare.scenes import find
+from jointwave.compare.studies.store import Row
 
 #: A short pillar with free ends, pushed by a step, in which all modes move.
 SCENE = "hard/short-pillar"
@@ -39,70 +40,69 @@ CELLS = 24
 LIGHT = "#eceff2"  # of unstable cells
 
 
-class Column(NamedTuple):
-    """The cells of an engine at one damping ratio of the highest mode; steps : over the critical
-    one of the undamped pillar, at the centres of the cells, in equal ratios."""
-
-    engine: str
-    ratio: float
-    steps: list[float]
-    stable: list[bool]
-
-
 def boundary(ratio: np.ndarray) -> np.ndarray:
     """Return the critical step over the undamped one at damping ratios of the highest mode."""
     return 1 / (np.sqrt(1 + 4 * ratio**2) + 2 * ratio)
 
 
-def columns(engines: tuple[str, ...] = tuple(ENGINES), cells: int = CELLS) -> list[Column]:
-    """Return the columns of the maps of some engines, not yet computed."""
+def columns(engines: tuple[str, ...] = tuple(ENGINES), cells: int = CELLS) -> list[Row]:
+    """Return the columns of the maps of some engines, not yet computed: the engine, the damping
+    `ratio` of the highest mode, and the `steps` over the critical one of the undamped pillar at the
+    centres of the cells."""
     steps, ratios = np.geomspace(0.02, 2, cells).tolist(), np.geomspace(1e-3, 10, cells).tolist()
-    return [Column(engine, zeta, steps, []) for engine in engines for zeta in ratios]
+    return [{"engine": x, "ratio": zeta, "steps": steps} for x in engines for zeta in ratios]
 
 
-def computed(column: Column) -> Column:
-    """Return a column with its cells."""
-    engine = ENGINES[column.engine]
-    critical = engine.prepare(cases.load_variant(find(SCENE), "", PUSHED)).critical
-    beta = column.ratio * critical  # eta = 2 zeta / omega
+def computed(column: Row) -> Row:
+    """Return a column and which of its cells are `stable`."""
+    engine, critical = ENGINES[column["engine"]], _prepared(column["engine"], {})
+    beta = column["ratio"] * critical  # eta = 2 zeta / omega
     # Ratios in proportion to frequencies leave Rayleigh's alpha zero.
     rayleigh = {"frequencies": [1.0, 2.0], "ratios": [pi * beta, 2 * pi * beta]}
-    damped = PUSHED | {"damping.rayleigh": rayleigh}
-    own = engine.prepare(cases.load_variant(find(SCENE), "", damped)).critical
+    damping = {"damping.rayleigh": rayleigh}
+    own = _prepared(column["engine"], damping)
 
     def is_stable(dt: float) -> bool:
-        table, interval = f"numerics.{engine.engine}", dt * STEPS / SAMPLES
-        times = {"record.interval": interval, "time.duration": interval * SAMPLES}
-        step = {f"{table}.step_fraction": dt / own * (1 + 1e-9), f"{table}.allow_unstable": True}
+        fraction = dt / own * (1 + 1e-9)
         try:
-            solve(engine.name, cases.load_variant(find(SCENE), "", damped | times | step))
+            solve(engine.name, _scene(engine.engine, dt, fraction, damping))
         except UnstableError:
             return False
         return True
 
-    return column._replace(stable=[is_stable(x * critical) for x in column.steps])
+    return column | {"stable": [is_stable(x * critical) for x in column["steps"]]}
 
 
-def cells_to_run(column: Column) -> tuple[AnyScene, str, int]:
+def cells_to_run(column: Row) -> tuple[AnyScene, str, int]:
     """Return the scene of a column's longest step, its engine, and its number of stable cells."""
-    engine = ENGINES[column.engine]
-    critical = engine.prepare(cases.load_variant(find(SCENE), "", PUSHED)).critical
-    interval = critical * STEPS / SAMPLES
+    engine, critical = ENGINES[column["engine"]], _prepared(column["engine"], {})
+    stable = sum(x < boundary(np.array(column["ratio"])) for x in column["steps"])
+    return _scene(engine.engine, critical, 1.0, {}), engine.name, int(stable)
+
+
+def _prepared(engine: str, changes: dict[str, Any]) -> float:
+    """Return the critical step of the pushed pillar with some changes, s."""
+    return ENGINES[engine].prepare(cases.load_variant(find(SCENE), "", PUSHED | changes)).critical
+
+
+def _scene(table: str, dt: float, fraction: float, changes: dict[str, Any]) -> AnyScene:
+    """Return the pushed pillar with STEPS steps of dt, a fraction of the critical one."""
+    interval = dt * STEPS / SAMPLES
     times = {"record.interval": interval, "time.duration": interval * SAMPLES}
-    step = {f"numerics.{engine.engine}.step_fraction": 1.0}
-    stable = sum(x < boundary(np.array(column.ratio)) for x in column.steps)
-    return cases.load_variant(find(SCENE), "", PUSHED | times | step), engine.name, int(stable)
+    table = f"numerics.{table}"
+    step = {f"{table}.step_fraction": fraction, f"{table}.allow_unstable": True}
+    return cases.load_variant(find(SCENE), "", PUSHED | changes | times | step)
 
 
-def cells_of(found: list[Column]) -> pd.DataFrame:
+def cells_of(found: list[Row]) -> pd.DataFrame:
     """Return the cells of computed columns.
 
     wrong : whether a cell differs from theory at its centre; far : and lies further than a cell
     from the boundary.
     """
-    cells = pd.DataFrame(found, columns=Column._fields).explode(["steps", "stable"])
+    cells = pd.DataFrame(found).explode(["steps", "stable"])
     cells = cells.rename(columns={"steps": "step"}).astype({"step": float, "stable": bool})
-    limit, size = boundary(cells.ratio), found[0].steps[1] / found[0].steps[0]
+    limit, size = boundary(cells.ratio), found[0]["steps"][1] / found[0]["steps"][0]
     wrong = cells.stable != (cells.step < limit)
     beyond = np.abs(np.log(cells.step / limit)) > 1.5 * np.log(size)
     return cells.assign(wrong=wrong, far=wrong & beyond)

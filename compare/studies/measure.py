@@ -1,6 +1,16 @@
 """One point of a study, measured: its errors against references, its counts, time and memory.
 
-References are exact solutions, or fine runs whose own error is bounded.
+References are exact solutions, or fine runs whose own error is bounded. Columns of a row:
+
+state : "done" or "failed", with the reason in `message`.
+numerical : misfit from the exact solution of the method's own model; modelling : of that from the
+    finest physics; total : sum of both and their floors, an upper bound. measured : from the finest
+    physics, where the two may cancel.
+numerical_floor, total_floor : below which they are not known, 0 against closed forms.
+dt : s. steps : of time. work : freedoms times evaluations of all forces, which are
+    degree-of-freedom-steps where a step takes one. bytes : of the model and its state.
+seconds, spread : stepping, median and half the range of the repeats, or of the first run where that
+    takes long; setup, compile : of the first run.
 """
 
 from collections.abc import Sequence
@@ -17,47 +27,17 @@ from jointwave.compare.engines import ENGINES, EXACT, applies, solver
 from jointwave.compare.misfit.metrics import Worst, pairings, relative_l2, worst
 from jointwave.compare.misfit.ranking import applicable, finest, own_exact
 from jointwave.compare.runs.timings import solved
-from jointwave.compare.studies.store import FAILURES
+from jointwave.compare.studies.store import FAILURES, Row
 from jointwave.compare.studies.study import FINEST, NONE, FineRun, Study, StudyPoint
 from jointwave.results.dataset import scene_hash
 
 LONG = 0.1  # s: longer steps are timed once
 
 
-class PointRow(NamedTuple):
-    """A point in the table of a study; numbers that a method does not have are nan.
-
-    state : "done" or "failed", with the reason in `message`.
-    numerical : misfit from the exact solution of the method's own model; modelling : of that from
-        the finest physics; total : sum of both and their floors, an upper bound. measured :
-        from the finest physics, where the two may cancel.
-    numerical_floor, total_floor : below which they are not known, 0 against closed forms.
-    dt : s. steps : of time. work : freedoms times evaluations of all forces, which are
-        degree-of-freedom-steps where a step takes one. bytes : of the model and its state.
-    seconds, spread : stepping, median and half the range of the repeats, or of the
-        first run where that takes long; setup, compile : of the first run.
-    """
-
-    curve: str
-    method: str
-    settings: dict[str, Any]
-    state: str
-    message: str
-    numerical: float = nan
-    modelling: float = nan
-    total: float = nan
-    measured: float = nan
-    numerical_floor: float = nan
-    total_floor: float = nan
-    dt: float = nan
-    steps: float = nan
-    freedoms: float = nan
-    work: float = nan
-    bytes: float = nan
-    seconds: float = nan
-    spread: float = nan
-    setup: float = nan
-    compile: float = nan
+#: Columns of a point's row; a number that it has not is missing.
+WORDS = ("curve", "method", "settings", "state", "message")
+ERRORS = ("numerical", "modelling", "total", "measured", "numerical_floor", "total_floor")
+COUNTS = ("dt", "steps", "freedoms", "work", "bytes", "seconds", "spread", "setup", "compile")
 
 
 class Reference(NamedTuple):
@@ -73,21 +53,20 @@ class Reference(NamedTuple):
     settings: str = ""
 
 
-def measure(point: StudyPoint) -> PointRow:
+def measure(point: StudyPoint) -> Row:
     """Run a point and return its row; a point that fails gives a row with the reason."""
-    row = PointRow(point.curve.label, point.curve.method, point.settings, "done", "")
-    study = point.study
+    study, about = point.study, (point.curve.label, point.curve.method, point.settings)
+    row: Row = dict(zip(WORDS, (*about, "done", ""), strict=True))
     try:
         result = _run(point)
         seconds = [float(result.attrs["seconds_stepping"])]
         if study.timed and study.repeats > 1 and seconds[0] <= LONG:  # all is compiled by now
             again = (_run(point) for _ in range(study.repeats))
             seconds = [float(one.attrs["seconds_stepping"]) for one in again]
-        found = errors(point, result) | _counts(result)
-        spread = (max(seconds) - min(seconds)) / 2
-        return row._replace(**found, seconds=median(seconds), spread=spread)  # type: ignore[arg-type]
+        took = {"seconds": median(seconds), "spread": (max(seconds) - min(seconds)) / 2}
+        return row | errors(point, result) | _counts(result) | took
     except FAILURES as failure:
-        return row._replace(state="failed", message=str(failure))
+        return row | {"state": "failed", "message": str(failure)}
 
 
 def _run(point: StudyPoint) -> xr.Dataset:
@@ -117,7 +96,7 @@ def _counts(result: xr.Dataset) -> dict[str, float]:
 
 
 def errors(point: StudyPoint, result: xr.Dataset) -> dict[str, float]:
-    """Return the errors of a result and their floors, as `PointRow` has them; nan if unknown."""
+    """Return the errors of a result and their floors, by column; nan if unknown."""
     study = point.study
     own = _known(own_of(point), study, point.physics)
     finest = _known(finest_of(study), study, {})
@@ -134,13 +113,18 @@ def errors(point: StudyPoint, result: xr.Dataset) -> dict[str, float]:
     }
 
 
+def able(scene: AnyScene) -> list[str]:
+    """Return the names of all that applies to a scene."""
+    return [name for name, answer in applicable(scene).items() if answer]
+
+
 def finest_of(study: Study) -> str | FineRun | None:
     """Return the reference of total errors: as set by the study, else the finest exact solution;
     None if the finest that applies is an engine and the study gives no fine run of it."""
     if study.finest is not None:
         return None if study.finest == NONE else study.finest
     scene = study.changed({})
-    found = finest([name for name, answer in applicable(scene).items() if answer], scene)
+    found = finest(able(scene), scene)
     return None if found is None or found.name in ENGINES else found.name
 
 

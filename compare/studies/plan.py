@@ -30,7 +30,7 @@ from jointwave.compare.studies.elements import (
     plain,
     rock,
 )
-from jointwave.compare.studies.measure import Reference, exact_reference
+from jointwave.compare.studies.measure import Reference, able, exact_reference
 from jointwave.compare.studies.store import FAILURES, reason_of
 
 LONGEST = {"pillar": 20.0, "rock mass": 60.0}  # s of stepping: no run is longer, unless asked for
@@ -133,7 +133,7 @@ def plan(
     began, scene = perf_counter(), load(scene)
     if not (isinstance(misfit, Real) and misfit > 0):
         raise SceneError("plan", "misfit", misfit, "must be a positive number, as 0.02")
-    found = ranking.finest(_applicable(scene), scene)
+    found = ranking.finest(able(scene), scene)
     if found is None:
         raise SceneError(scene.where, "", None, "no solver resolves all physics of the scene")
     made = Plan(scene, misfit, seconds, _reference(scene, found.name, {}, misfit), found.reason)
@@ -199,17 +199,13 @@ def own_model(made: Plan, one: Elements) -> tuple[Reference, float]:
 
 def _found_own(made: Plan, one: Elements) -> tuple[Reference, float]:
     scene, finest = configured(made.scene, one.name, one.model), made.finest
-    exact = ranking.own_exact(one.name, _applicable(scene), scene)
+    exact = ranking.own_exact(one.name, able(scene), scene)
     block = getattr(made.scene.numerics.dem, "block", None)
     is_own = finest.name == one.name and one.model.get("block", block) == block
     if is_own or finest.name == exact:
         return finest, 0.0
     found = _reference(made.scene, exact or one.name, one.model, made.asked, finest.result)
     return found, misfit(found.result, finest.result) + finest.error
-
-
-def _applicable(scene: AnyScene) -> list[str]:
-    return [name for name, answer in ranking.applicable(scene).items() if answer]
 
 
 def _reference(

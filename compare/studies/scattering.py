@@ -1,6 +1,11 @@
 """Reflection and transmission of P and SV waves at joints, by every solver of rock masses.
 
-The scenes of the waves, and what is read off their motion, are those of `transmission`.
+The scenes of the waves, and what is read off their motion, are those of `transmission`. Columns of
+the table: `solver`, `incidence` ("P" or "SV"), `angle` from the joints' normal (degrees), number of
+`joints`; R_p to T_s, moduli of particle velocity over the incident one at the pulse's frequency;
+`error`, the largest difference from the closed form; `residual`, the part of the motion that plane
+waves do not explain; `freedoms` of the blocks or the rock; `cpu`, CPU time of the run with set-up,
+without compiling (s).
 """
 
 from collections.abc import Sequence
@@ -8,13 +13,14 @@ from functools import partial
 from math import nan
 from pathlib import Path
 from time import process_time
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
 from jointwave.cases.read import load
+from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.engines import solve, solver
 from jointwave.compare.exact.plane.oblique_joint import Joint
 from jointwave.compare.exact.plane.waves import KINDS, Kind
@@ -27,7 +33,7 @@ from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies import store
 from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.forecast import Run
-from jointwave.compare.studies.store import Store
+from jointwave.compare.studies.store import Row, Store
 from jointwave.compare.studies.transmission import (
     SCENE,
     ParallelJoints,
@@ -65,50 +71,21 @@ LEGEND = (
 INK = "#30363b"
 
 
-class JointsRow(NamedTuple):
-    """A point of a study, and a solver's scattering of the wave at the joints there, nan until it
-    is known.
-
-    incidence : "P" or "SV". angle : of the wave from the joints' normal, degrees. joints : their
-    number. R_p to T_s : moduli of particle velocity over the incident one at the pulse's frequency.
-    error : the largest difference from the closed form. residual : part of the motion not explained
-    by plane waves. freedoms : of the blocks or the rock. cpu : CPU time of the run, including
-    set-up but not compiling, s.
-    """
-
-    solver: str
-    incidence: Kind
-    angle: float
-    joints: int
-    R_p: float = nan
-    R_s: float = nan
-    T_p: float = nan
-    T_s: float = nan
-    error: float = nan
-    residual: float = nan
-    freedoms: float = nan
-    cpu: float = nan
-
-
-def points(study: str, brief: bool = False) -> list[JointsRow]:
-    """Return the points of a study, solver by solver: one joint at all angles, or many at one.
+def points(study: str, brief: bool = False) -> list[Row]:
+    """Return the points of a study, solver by solver: one joint at all angles (degrees), or many at
+    one.
 
     brief : only every other angle or number of joints.
     """
     one = study == "oblique-joint"
     places = [(x, 1) for x in ANGLES] if one else [(AT, count) for count in COUNTS]
-    solvers = study, JOINTED_ROCK.name, DEM.name
+    names = ("solver", "incidence", "angle", "joints")
     return [
-        JointsRow(name, kind, *place)
-        for name in solvers
+        dict(zip(names, (name, kind, *place), strict=True))
+        for name in (study, JOINTED_ROCK.name, DEM.name)
         for kind in KINDS
         for place in places[:: 2 if brief else 1]
     ]
-
-
-def key(point: JointsRow) -> str:
-    """Return the key of a point: everything that determines its row."""
-    return store.key(point[:4], load(SCENE)[0].model_dump_json())
 
 
 def joints_of(count: int) -> ParallelJoints:
@@ -119,21 +96,26 @@ def joints_of(count: int) -> ParallelJoints:
     return ParallelJoints(base.rock, [joint] * count, np.full(count - 1, SPACING), period)
 
 
-def measure(point: JointsRow) -> JointsRow:
+def scene_at(point: Row) -> RockMass:
+    """Return the scene of a point."""
+    return scene_of(joints_of(point["joints"]), point["incidence"], point["angle"])
+
+
+def measure(point: Row) -> Row:
     """Run a point and return its row; raises the errors of `solve`."""
-    joints, incidence, angle = joints_of(point.joints), point.incidence, point.angle
-    scene = scene_of(joints, incidence, angle)
+    scene = scene_at(point)
     for _ in range(2):
         began = process_time()
-        result = solve(point.solver, scene)
+        result = solve(point["solver"], scene)
         cpu = process_time() - began
         if float(result.attrs.get("seconds_compile", 0.0)) <= COMPILED:
             break
     *found, residual = amplitudes(scene, result.velocity.values)
-    off = float(np.abs(found - closed_form(joints, incidence, angle)).max())
+    exact = closed_form(joints_of(point["joints"]), point["incidence"], point["angle"])
+    error = float(np.abs(found - exact).max())
     freedoms = float(result.attrs.get("degrees_of_freedom", nan))
-    numbers = *found, off, residual, freedoms, cpu
-    return JointsRow(*point[:4], *numbers)
+    numbers = {"error": error, "residual": residual, "freedoms": freedoms, "cpu": cpu}
+    return point | dict(zip(WAVES, found, strict=True)) | numbers
 
 
 def experiment(name: str, out: Path, brief: bool = False) -> Experiment:
@@ -143,14 +125,17 @@ def experiment(name: str, out: Path, brief: bool = False) -> Experiment:
     other point, see `points`.
     """
 
-    def runs(left: Sequence[JointsRow]) -> list[Run]:
-        return [Run(name, scene_of(joints_of(x.joints), *x[1:3]), x.solver) for x in left]
+    def key(point: Row) -> str:
+        return store.key(point, load(SCENE)[0].model_dump_json())
 
-    saved, told = Store[Any, Any](JointsRow, out / name, key), partial(summarise, name, out)
+    def runs(left: Sequence[Row]) -> list[Run]:
+        return [Run(name, scene_at(one), one["solver"]) for one in left]
+
+    saved, told = Store(out / name, key), partial(summarise, name, out)
     return Experiment(TITLES[name], points(name, brief), saved, measure, runs, told, timed=True)
 
 
-def summarise(name: str, out: Path, found: list[JointsRow]) -> Summary:
+def summarise(name: str, out: Path, found: list[Row]) -> Summary:
     """Return the summary of a study; write its table and its figure into `out`."""
     rows, title = pd.DataFrame(found), TITLES[name]
     data = rows.rename_axis("row").to_xarray().assign_attrs(title=title, **machine())

@@ -33,7 +33,7 @@ def step_costs(scenes: Sequence[AnyScene], name: str = DEM.name) -> list[StepCos
     of the machine affects all of them. The rates are stored, see `compare.runs.timings`.
     Raises SceneError if the engine does not apply, UnstableError if a run becomes unstable.
     """
-    short = [on_one_thread(shortened(scene, name)) for scene in scenes]
+    short = [shortened(scene, name, threads=1) for scene in scenes]
     for scene in short:
         solve(name, scene)  # compiles
     found: list[list[float]] = [[] for _ in short]
@@ -46,22 +46,24 @@ def step_costs(scenes: Sequence[AnyScene], name: str = DEM.name) -> list[StepCos
     return [StepCost(min(ns), median(ns) - min(ns)) for ns in found]
 
 
-def shortened(scene: AnyScene, name: str = DEM.name, unit_steps: int = UNIT_STEPS) -> AnyScene:
+def shortened(
+    scene: AnyScene,
+    name: str = DEM.name,
+    unit_steps: int = UNIT_STEPS,
+    threads: int | None = None,
+) -> AnyScene:
     """Return the beginning of a scene, one sample or more, without snapshots; of what has no steps
-    an eighth. unit_steps : steps of one block or freedom, about."""
+    an eighth. unit_steps : steps of one block or freedom, about. threads : of rigid blocks, if not
+    the scene's own."""
     run = solver(name).prepare(scene)
     steps = run.steps * solver(name).units(scene, run.freedoms)
     part = min(1.0, unit_steps / steps) if steps else 1 / 8
     duration = scene.time.duration * part
     time = scene.time.model_copy(update={"duration": max(scene.interval, duration)})
     record = scene.record.model_copy(update={"interval": scene.interval, "fields": None})
-    return scene.model_copy(update={"time": time, "record": record})
-
-
-def on_one_thread(scene: AnyScene) -> AnyScene:
-    """Return a scene whose rigid blocks are run by one thread."""
-    dem = scene.numerics.dem.model_copy(update={"threads": 1})
-    return scene.model_copy(update={"numerics": scene.numerics.model_copy(update={"dem": dem})})
+    dem = scene.numerics.dem.model_copy(update={"threads": threads or scene.numerics.dem.threads})
+    numerics = scene.numerics.model_copy(update={"dem": dem})
+    return scene.model_copy(update={"time": time, "record": record, "numerics": numerics})
 
 
 def with_every_effect(scene: AnyScene) -> AnyScene:

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from tempfile import gettempdir
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from joblib import Parallel, delayed
@@ -26,11 +26,12 @@ from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.compare.engines import Progress
 from jointwave.compare.runs.checkpoint.lock import exclusive
 from jointwave.compare.runs.checkpoint.signature import program
-from jointwave.compare.runs.output import read_kept, write_text
+from jointwave.compare.runs.output import read_rows, write_text
 from jointwave.compare.runs.processes import Processes
 
 P = TypeVar("P")
 T = TypeVar("T")
+Row = dict[str, Any]  #: the readings of a point, by column
 #: Yields the name and the result of each point as soon as it is done; None: its process has died.
 Pool = Callable[[Callable[[Any], Any], Mapping[str, Any]], Iterator[tuple[str, Any]]]
 
@@ -61,29 +62,28 @@ def plain(value: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class Store(Generic[P, T]):
+class Store:
     """The results of a study's points.
 
-    form : the type of a result: a NamedTuple, or a list of them. folder : of the files; None:
-    nothing is saved. key : returns the name of a point. is_valid : whether a saved result is still
-    valid. fresh : take none. lost : returns the result, not saved, of a point whose process has
-    died; None: MemoryError is raised.
+    A result is a row, or a list of rows. folder : of the files; None: nothing is saved. key :
+    returns the name of a point. is_valid : whether a saved result is still valid. fresh : take
+    none. lost : returns the result, not saved, of a point whose process has died; None: MemoryError
+    is raised.
     """
 
-    form: Any
     folder: Path | None
-    key: Callable[[P], str]
-    is_valid: Callable[[T], bool] = lambda result: True
+    key: Callable[[Any], str]
+    is_valid: Callable[[Any], bool] = lambda result: True
     fresh: bool = False
-    lost: Callable[[P], T] | None = None
+    lost: Callable[[Any], Any] | None = None
 
     def compute(
         self,
-        points: Sequence[P],
-        work: Callable[[P], T],
+        points: Sequence[Any],
+        work: Callable[[Any], Any],
         pool: Pool | None = None,
         progress: Progress | None = None,
-    ) -> list[T]:
+    ) -> list[Any]:
         """Return the results of points, in order; saved ones are not recomputed.
 
         work : returns the result of a point. pool : does the work; None: this process, one point
@@ -94,7 +94,7 @@ class Store(Generic[P, T]):
         missing = {name: point for name, point in named.items() if name not in found}
         for name, result in (pool or partial(in_processes, 1))(work, missing):
             if result is not None and self.folder is not None:
-                write_text(self.folder / f"{name}.json", json.dumps(plain(result), indent=1))
+                write_text(self.folder / f"{name}.json", json.dumps(result, indent=1))
             elif result is None:
                 if self.lost is None:
                     raise MemoryError(f"a point has no result: {DIED}")
@@ -104,16 +104,16 @@ class Store(Generic[P, T]):
                 progress(len(found) / len(named))
         return [found[self.key(point)] for point in points]
 
-    def missing(self, points: Sequence[P]) -> list[P]:
+    def missing(self, points: Sequence[Any]) -> list[Any]:
         """Return the points without a saved result."""
         return [point for point in points if self._saved(self.key(point)) is None]
 
-    def _saved(self, name: str) -> T | None:
+    def _saved(self, name: str) -> Any:
         """Return a saved result; None without one, or if it is no longer valid."""
         path = self.folder and self.folder / f"{name}.json"
         if self.fresh or path is None or not path.is_file():
             return None
-        found: T = read_kept(path, self.form)
+        found = read_rows(path)
         return found if self.is_valid(found) else None
 
 

@@ -1,7 +1,7 @@
 """Studies: a scene, curves of varied keys, and the references of errors, read from TOML."""
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -91,22 +91,21 @@ class Curve(StudyTable):
     own: Annotated[str | FineRun | None, KNOWN] = None
     order: float | None = None
 
-    def expanded(self) -> Iterator["Curve"]:
-        """Yield the curves into which `each` expands this one."""
-        for values in combinations(self.each):
-            label = self.label
-            for key, value in values.items():
-                label = label.replace(f"{{{key.rpartition('.')[2]}}}", str(value))
-            changes = self.changes | values
-            yield self.model_copy(update={"label": label, "changes": changes, "each": {}})
-
 
 def _expanded(curves: list[Curve]) -> list[Curve]:
-    """Return the curves without `each`; raises ValueError for more points than allowed."""
+    """Return the curves into which `each` expands some; raises ValueError for more points than
+    allowed."""
     lengths = ([*map(len, (*one.each.values(), *one.vary.values()))] for one in curves)
     if (count := sum(map(prod, lengths))) > MOST_POINTS:
         raise ValueError(f"give {count:.6g} points, at most {MOST_POINTS}")
-    return [one for curve in curves for one in curve.expanded()]
+    found = []
+    for one, values in ((curve, x) for curve in curves for x in combinations(curve.each)):
+        label = one.label
+        for key, value in values.items():
+            label = label.replace(f"{{{key.rpartition('.')[2]}}}", str(value))
+        update = {"label": label, "changes": one.changes | values, "each": {}}
+        found.append(one.model_copy(update=update))
+    return found
 
 
 class Study(StudyTable):

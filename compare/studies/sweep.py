@@ -60,13 +60,10 @@ def experiment(
         return summarise(scene, list(cases[0].settings), out, pd.DataFrame(rows))
 
     folder, lost = out and out / "points", lambda _: _failed(DIED)
-    saved = Store[Case, Rows](Rows, folder, key, _has_files, fresh, lost)
+    whole = lambda rows: all(Path(row["file"]).is_file() for row in rows if "file" in row)  # noqa: E731
+    saved = Store(folder, key, whole, fresh, lost)
     measure = partial(_outcome, work=work, fresh=fresh)
     return Experiment(f"{len(cases)} points", cases, saved, measure, list, told)
-
-
-def _has_files(rows: Rows) -> bool:
-    return all(Path(row["file"]).is_file() for row in rows if "file" in row)
 
 
 def _outcome(case: Case, work: Work, fresh: bool) -> Rows:

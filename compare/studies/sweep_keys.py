@@ -5,6 +5,8 @@ Values are given as `--sweep KEY=FROM:TO:COUNT`, `KEY=log:FROM:TO:COUNT` or `KEY
 of each joint set.
 """
 
+from __future__ import annotations
+
 import json
 import re
 from itertools import product

@@ -22,8 +22,8 @@ from jointwave.compare.runs.timings import machine
 from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.findings import done, floor, judged, orders, sentences
 from jointwave.compare.studies.forecast import Run
-from jointwave.compare.studies.measure import PointRow, is_valid, measure, references
-from jointwave.compare.studies.store import Store
+from jointwave.compare.studies.measure import is_valid, measure, references
+from jointwave.compare.studies.store import Row, Store
 from jointwave.compare.studies.store import key as store_key
 from jointwave.compare.studies.study import Study, StudyPoint
 
@@ -41,7 +41,7 @@ LEGEND = (
     "the references. Measured is the misfit from the finest physics; it does not count where "
     f"errors cancel or a finer point is worse ({CANCELS})."
 )
-#: Columns of the table, with those of `PointRow` and their factors.
+#: Columns of the table, with those of `measure` and their factors.
 COLUMNS = {
     "numerical, %": ("numerical", 100),
     "modelling, %": ("modelling", 100),
@@ -77,12 +77,12 @@ def experiment(study: Study, folder: Path) -> Experiment:
             *(Run("references", scene, name) for name, scene in references(valid)),
         ]
 
-    saved, told = Store[Any, Any](PointRow, folder, key), partial(summarise, study, folder)
+    saved, told = Store(folder, key), partial(summarise, study, folder)
     shares = study.timed, not study.timed
     return Experiment(study.title, study.points(), saved, measure, runs, told, *shares)
 
 
-def summarise(study: Study, folder: Path, rows: list[PointRow]) -> Summary:
+def summarise(study: Study, folder: Path, rows: list[Row]) -> Summary:
     """Return the summary of a study; write its files beside `folder`."""
     out, name = folder.parent, folder.name
     table = judged(rows)

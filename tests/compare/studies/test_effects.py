@@ -12,7 +12,7 @@ from jointwave import dem
 from jointwave.cases.effects import active_effects
 from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.compare.studies import effects
-from jointwave.compare.studies.effects import EffectRow, Effects, experiment, left_out
+from jointwave.compare.studies.effects import COLUMNS, Effects, experiment, left_out
 from jointwave.compare.studies.effects_summary import draw, sentences, summarise, table
 from jointwave.compare.studies.step_cost import StepCost
 
@@ -42,7 +42,8 @@ def damped(pillar):
 
 def run(variant, folder, progress=None):
     """Return the table of the effects of a variant."""
-    return pd.DataFrame(chain(*experiment("", [variant], folder).rows(None, progress)))
+    rows = experiment("", [variant], folder).rows(None, progress)
+    return pd.DataFrame(chain(*rows), columns=COLUMNS)
 
 
 def test_effects_are_measured_by_leaving_them_out(damped, known, tmp_path):
@@ -78,18 +79,19 @@ def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, known):
     load = {"shape": "sine", "amplitude": 0.1, "period": 0.01, "quantity": "velocity"}
     scene = pillar(ends__start="fixed", load=load, damping={"local": 0.1}, time__duration=0.01)
     point = ("a/b", scene), effects.BLOCKS
-    rows = {one.effect: one for one in effects.timed(point, effects.measure(point))}
+    rows = {one["effect"]: one for one in effects.timed(point, effects.measure(point))}
     fixed, local = rows["fixed ends"], rows["local damping"]
-    assert "is the motion of a base" in fixed.reason
-    assert np.isnan([fixed.ns, fixed.share, fixed.misfit]).all()
-    assert local.reason == "" and np.isfinite(local.ns)
+    assert "is the motion of a base" in fixed["reason"]
+    assert not {"ns", "share", "misfit"} & {*fixed}
+    assert local["reason"] == "" and np.isfinite(local["ns"])
     assert effects.measure((("a/b", scene), effects.ROCK)) == []
 
 
 def row(effect, misfit, ns, share, steps=1.0, of=("set/one", "One", "", "dem"), **more):
     """Return a row of a scene whose step takes 4 ns, timed to 0.2 ns."""
     about = {"reason": "", "own": 4.0, "everything": 40.0, "ns": ns, "noise": 0.2, "share": share}
-    return EffectRow(*of, effect=effect, misfit=misfit, steps=steps, **about | more)
+    about |= dict(zip(COLUMNS, (*of, effect), strict=False))
+    return about | {"misfit": misfit, "steps": steps} | more
 
 
 TWO = {"of": ("set/two", "Two", "hard", "dem"), "everything": 20.0}
@@ -101,7 +103,8 @@ FOUND = pd.DataFrame(
         row("spatial motion", nan, nan, nan, nan, **TWO, reason=SUBJECT),
         row("dashpots", 0.05, 2.0, 0.5, 4.0, **TWO),
         row("dashpots", 0.04, 1.5, 0.375, of=("set/two", "Two", "hard", "rock"), everything=nan),
-    ]
+    ],
+    columns=COLUMNS,
 )
 
 

@@ -5,7 +5,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from jointwave.compare.studies.findings import TARGETS, cheapest, floor, judged, orders, sentences
-from jointwave.compare.studies.measure import PointRow
 from jointwave.compare.studies.study import load, shipped
 from jointwave.compare.studies.work_precision import experiment
 
@@ -13,7 +12,7 @@ from jointwave.compare.studies.work_precision import experiment
 def row(**numbers):
     """Return a row that was done, with these numbers."""
     about = {"curve": "a", "method": "dem", "settings": {}, "state": "done", "message": ""}
-    return PointRow(**(about | numbers))
+    return about | numbers
 
 
 def test_leapfrog_is_of_second_order(study, tmp_path):
@@ -46,7 +45,7 @@ def test_no_order_where_none_is_claimed_or_errors_are_not_known(study):
     assert orders(study([curve]), judged(rows)) == []
     (order,) = orders(study([curve | {"order": 2}]), judged(rows))
     assert order.measured == pytest.approx(2)
-    still = [one._replace(numerical=1e-15) for one in rows]
+    still = [one | {"numerical": 1e-15} for one in rows]
     assert orders(study([curve | {"order": 2}]), judged(still)) == []
 
 
@@ -62,12 +61,12 @@ def test_a_point_counts_for_what_all_finer_ones_hold(pairs):
         for i, (total, cost) in enumerate(pairs)
     ]
     held = list(judged(rows)["held"])
-    assert held == [max(one.total for one in rows[i:]) for i in range(len(rows))]
+    assert held == [max(one["total"] for one in rows[i:]) for i in range(len(rows))]
     assert list(judged(rows[::-1])["held"]) == held[::-1]
     for target in TARGETS:
         for point in cheapest(judged(rows), target).itertuples():
-            finer = [one for one in rows if one.work >= point.work]
-            assert all(one.total <= target for one in finer)
+            finer = [one for one in rows if one["work"] >= point.work]
+            assert all(one["total"] <= target for one in finer)
 
 
 def test_points_of_other_physics_are_not_finer_and_uncounted_ones_are_in_their_order():
@@ -86,7 +85,7 @@ def test_no_point_is_the_cheapest_within_a_misfit_that_is_not_known():
     points = [("a", 0.05), ("b", 1e-4)]
     rows = [row(total=e, total_floor=3e-3, seconds=1.0, curve=name) for name, e in points]
     assert [len(cheapest(judged(rows), target)) for target in TARGETS] == [2, 0, 0, 0]
-    known = [one._replace(total_floor=0.0) for one in rows]
+    known = [one | {"total_floor": 0.0} for one in rows]
     assert list(cheapest(judged(known), 1e-4).curve) == ["b"]
 
 
@@ -158,6 +157,6 @@ def test_shipped_orders_are_within_a_tenth_of_theory(name, cut, tmp_path):
 def test_a_smaller_step_is_worse_on_the_uniform_chain(tmp_path):
     """At c dt = d the error is round-off over some hundred steps; then it only grows."""
     study = load("uniform-chain")
-    found = [one.numerical for one in experiment(study, tmp_path).rows()]
+    found = [one["numerical"] for one in experiment(study, tmp_path).rows()]
     assert found[0] < 1e-12
     assert found[1:] == sorted(found[1:]) and found[1] > 0.01

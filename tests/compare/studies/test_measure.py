@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,6 +21,16 @@ STEP = "numerics.dem.step_fraction"
 FINE = {"method": "dem", "changes": {STEP: 0.01}, "coarser": {STEP: 0.02}}
 
 
+def measured(point):
+    """Return the row of a point."""
+    return SimpleNamespace(**measure(point))
+
+
+def rows_of(experiment, pool=None):
+    """Return the rows of a study."""
+    return [SimpleNamespace(**row) for row in experiment.rows(pool)]
+
+
 def fine(study, **keys):
     """Return the study of rigid blocks, measured against their own fine run."""
     curve = {"label": "blocks", "method": "dem", "own": "finest", "order": 2}
@@ -30,7 +41,7 @@ def fine(study, **keys):
 def test_the_floor_is_how_far_the_coarser_run_is_from_the_finer(study):
     """And bounds the finer run's own error: leapfrog of second order, it is a third of that."""
     asked = fine(study)
-    row = measure(asked.points()[0])
+    row = measured(asked.points()[0])
     runs = [solve("dem", asked.changed({STEP: f})) for f in (0.01, 0.02, 0.4)]
     exact = solve("lattice", asked.changed({}))
     assert row.total_floor == row.numerical_floor == misfit(runs[1], runs[0])
@@ -42,13 +53,13 @@ def test_the_floor_is_how_far_the_coarser_run_is_from_the_finer(study):
 def test_errors_against_a_fine_run_are_nearly_those_against_the_exact_solution(study, tmp_path):
     asked = fine(study, timed=True, repeats=1)
     exact = study([asked.curves[0].model_dump() | {"own": "lattice"}])
-    rows = experiment(asked, tmp_path).rows()
-    for one, other in zip(rows, experiment(exact, tmp_path).rows(), strict=True):
+    rows = rows_of(experiment(asked, tmp_path))
+    for one, other in zip(rows, rows_of(experiment(exact, tmp_path)), strict=True):
         assert one.numerical == pytest.approx(other.numerical, rel=0.02)
         assert 0 < other.numerical_floor < 1e-11  # a matrix exponential knows its round-off
-    (order,) = orders(asked, judged(rows))
+    (order,) = orders(asked, judged([*map(vars, rows)]))
     assert order.measured == pytest.approx(2, abs=0.1)
-    said = " ".join(sentences(asked, judged(rows)))
+    said = " ".join(sentences(asked, judged([*map(vars, rows)])))
     assert "The finest physics is a fine run of dem; a coarser one is 0.0" in said
 
 
@@ -83,7 +94,7 @@ def test_a_fine_run_of_one_model_of_the_rock_stands_for_that_of_the_other(study)
 
 def test_modelling_error_is_that_of_the_own_model_whatever_the_step(study):
     asked = study(finest="jointed-bar")
-    rows = [measure(point) for point in asked.points()[:2]]
+    rows = [measured(point) for point in asked.points()[:2]]
     lattice, rock = (solve(name, asked.changed({})) for name in ("lattice", "jointed-bar"))
     assert [row.modelling for row in rows] == [misfit(lattice, rock)] * 2
     for row in rows:
@@ -97,11 +108,11 @@ def test_an_error_is_that_of_the_waveform_furthest_off_or_of_one_quantity_in_spa
     places = study().changes | {"record.stress": [0.5, 2.0], "record.velocity": [1.0, 5.0]}
     asked = study(changes=places)
     pairs = pairings(solve("dem", asked.points()[0].scene), solve("lattice", asked.changed({})))
-    assert measure(asked.points()[0]).numerical == max(p.misfit for p in pairs)
+    assert measured(asked.points()[0]).numerical == max(p.misfit for p in pairs)
     of = [p for p in pairs if p.place.quantity == "velocity"]
     off = sum(np.sum((p.one - p.other) ** 2) for p in of)
     size = sum(np.sum(p.other**2) for p in of)
-    row = measure(study(changes=places, quantity="velocity").points()[0])
+    row = measured(study(changes=places, quantity="velocity").points()[0])
     assert len(of) == 2 and row.numerical == pytest.approx(np.sqrt(off / size))
 
 
@@ -127,7 +138,7 @@ def test_every_point_of_shipped_studies_can_be_run(name):
 
 def test_an_interrupted_study_ends_with_the_same_table(study, tmp_path, monkeypatch):
     """Completed points are kept, including seconds; only the rest is run, to the same counts."""
-    whole, calls = experiment(study(), tmp_path / "whole").rows(), []
+    whole, calls = rows_of(experiment(study(), tmp_path / "whole")), []
 
     def until_third(point):
         if len(calls) == 2:
@@ -137,10 +148,10 @@ def test_an_interrupted_study_ends_with_the_same_table(study, tmp_path, monkeypa
 
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
         patch.setattr(work_precision, "measure", until_third)
-        experiment(study(), tmp_path / "resumed").rows()
+        rows_of(experiment(study(), tmp_path / "resumed"))
     kept = {p.name: p.read_text() for p in (tmp_path / "resumed").iterdir()}
     assert len(kept) == 2
-    rows = experiment(study(), tmp_path / "resumed").rows()
+    rows = rows_of(experiment(study(), tmp_path / "resumed"))
     assert [(r.settings, r.numerical, r.work) for r in rows] == [
         (r.settings, r.numerical, r.work) for r in whole
     ]
@@ -159,15 +170,15 @@ def test_points_that_cannot_be_run_say_why(study, tmp_path):
     vary = {STEP: [0.1, 1.5]}
     curve = {"label": "blocks", "method": "dem", "own": "lattice", "vary": vary}
     none = {"label": "series", "method": "series"}
-    good, unstable, wrong = experiment(study([curve, none]), tmp_path).rows()
+    good, unstable, wrong = rows_of(experiment(study([curve, none]), tmp_path))
     assert (good.state, unstable.state, wrong.state) == ("done", "failed", "failed")
     assert "step_fraction" in unstable.message and "not a sine" in wrong.message
-    assert good.numerical < 0.01 and unstable.numerical != unstable.numerical
+    assert good.numerical < 0.01 and not hasattr(unstable, "numerical")
 
 
 def test_timed_points_are_run_one_at_a_time_whatever_the_pool(study, tmp_path):
     """A pool that cannot be made is not asked for; a second timed study waits for the first."""
-    rows = experiment(study(timed=True, repeats=2), tmp_path).rows(lambda work, points: 1 / 0)
+    rows = rows_of(experiment(study(timed=True, repeats=2), tmp_path), lambda work, points: 1 / 0)
     assert all(row.seconds > 0 and row.spread >= 0 for row in rows)
     program = "from jointwave.compare.studies.store import alone\nwith alone(): print('in')"
     with alone():

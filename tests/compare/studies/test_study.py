@@ -10,7 +10,6 @@ import xarray as xr
 
 from jointwave.cases.errors import SceneError
 from jointwave.compare.studies.findings import judged
-from jointwave.compare.studies.measure import PointRow
 from jointwave.compare.studies.study import load
 from jointwave.compare.studies.work_precision import COSTS, draw, experiment
 
@@ -127,7 +126,7 @@ def test_points_whose_errors_cancel_are_crossed_where_they_measure(study):
     about = {"settings": {}, "state": "done", "message": "", "numerical": 0.01, "modelling": 0.02}
     numbers = {"total": 0.03, "steps": 1.0, "freedoms": 1.0, "work": 1.0, "total_floor": 0.0}
     rows = [
-        PointRow(**about, **numbers, curve=name, method="dem", measured=measured)
+        dict(**about, **numbers, curve=name, method="dem", measured=measured)
         for name, measured in (("a", 0.03), ("b", 0.005))
     ]
     (_, total) = draw("wp", judged(rows), {"work": "work"}).axes
