@@ -28,9 +28,10 @@ from jointwave.compare.studies import catalogue
 from jointwave.compare.studies import effects as measuring
 from jointwave.compare.studies import plan as plans
 from jointwave.compare.studies.experiment import Experiment
-from jointwave.compare.studies.reference import Reference
+from jointwave.compare.studies.measure import Reference
 from jointwave.compare.studies.store import on_pool, plain
-from jointwave.compare.studies.sweep import Work, cases_of, experiment
+from jointwave.compare.studies.sweep import Work, experiment
+from jointwave.compare.studies.sweep_keys import cases_of
 from jointwave.compare.text import percent
 
 

@@ -20,13 +20,13 @@ from typing import Any
 import pandas as pd
 
 from jointwave import cases
-from jointwave.cases.checks.scene import checked
 from jointwave.cases.effects import SIDES, active_effects
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.strength import SLIP
+from jointwave.cases.material.properties import SLIP
 from jointwave.cases.scene_type import AnyScene, Either
 from jointwave.cases.schema.damping import Attenuating
 from jointwave.cases.schema.law_parts import PARTS
+from jointwave.cases.validate import checked
 from jointwave.compare.engines import Progress, applies, solve
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.scenes import find
