@@ -29,7 +29,7 @@ from jointwave.compare.studies import effects as measuring
 from jointwave.compare.studies import plan as plans
 from jointwave.compare.studies.experiment import Experiment
 from jointwave.compare.studies.measure import Reference
-from jointwave.compare.studies.store import on_pool, plain
+from jointwave.compare.studies.store import on_pool
 from jointwave.compare.studies.sweep import Work, experiment
 from jointwave.compare.studies.sweep_keys import cases_of
 from jointwave.compare.text import percent
@@ -71,7 +71,7 @@ def run_and_show(one: Experiment, out: Path | None, workers: int, shown: PrintOp
     if found is None:
         return
     if shown.as_json:
-        print_json(plain(found.facts))
+        print_json(found.facts)
         return
     show_frame(found.table)
     for line in filter(None, [found.legend, *found.sentences]):

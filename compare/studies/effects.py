@@ -145,7 +145,7 @@ def experiment(title: str, wanted: list[Variant], folder: Path) -> Experiment:
     def told(rows: list[list[Row]]) -> Summary:
         return summarise(folder, pd.DataFrame(chain(*rows), columns=COLUMNS))
 
-    return Effects(title, points, saved, measure, runs, told)
+    return Effects(title, points, saved, measure, told, runs)
 
 
 def runs(points: Sequence[Point]) -> list[Run]:

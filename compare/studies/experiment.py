@@ -48,8 +48,8 @@ class Summary(NamedTuple):
 class Experiment:
     """A study: each of its points is measured once and saved, and the rows of all summarised.
 
-    store : of the rows. measure : returns the row of a point, or several. runs : returns the
-    solutions that some points need. summarise : writes the files of all rows. timed : only one such
+    store : of the rows. measure : returns the row of a point, or several. summarise : writes the
+    files of all rows. runs : returns the solutions that some points need. timed : only one such
     study runs on a machine at a time. shares : whether several processes may share the points.
     """
 
@@ -57,8 +57,8 @@ class Experiment:
     points: Sequence[Any]
     store: Store
     measure: Callable[[Any], Any]
-    runs: Callable[[Sequence[Any]], list[Run]]
     summarise: Callable[[list[Any]], Summary]
+    runs: Callable[[Sequence[Any]], list[Run]] = lambda points: []
     timed: bool = False
     shares: bool = True
 

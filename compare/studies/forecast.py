@@ -16,6 +16,7 @@ from jointwave.compare.runs import timings
 from jointwave.compare.runs.reuse import ResultFolder
 from jointwave.compare.studies.measure import LONG
 from jointwave.compare.studies.step_cost import shortened
+from jointwave.compare.studies.store import Row
 
 ENOUGH = 10_000_000  # steps of one block or freedom, in which the start of a run costs little
 
@@ -49,30 +50,18 @@ def runs_of(
     return [Run(point, scene, name, is_read=stored.has(name, scene, suffix)) for name in able]
 
 
-class Forecast(NamedTuple):
-    """The estimate of a run.
-
-    steps : of time, exactly; 0 for exact solutions. size : blocks or freedoms, in words. stepping :
-    seconds of it, at the rate last measured here; None if never measured. setup : seconds before
-    the first step. seconds : of all its `times`, with snapshots. bytes : of memory,
-    as the run itself estimates it at its start; for exact solutions that of their waveforms, a
-    lower bound.
-    """
-
-    point: str
-    variant: str
-    engine: str
-    scheme: str
-    steps: int
-    size: str
-    stepping: float | None
-    setup: float
-    times: float
-    seconds: float
-    bytes: float
+#: Columns of an estimate. steps : of time, exactly; 0 for exact solutions. size : blocks or
+#: freedoms, in words. stepping : seconds of it, at the rate last measured here; None if never
+#: measured. setup : seconds before the first step. seconds : of all its `times`, with snapshots.
+#: bytes : of memory, as the run itself estimates it at its start; for exact solutions that of their
+#: waveforms, a lower bound.
+COLUMNS = (
+    *("point", "variant", "engine", "scheme", "steps", "size"),
+    *("stepping", "setup", "times", "seconds", "bytes"),
+)
 
 
-def forecast(run: Run) -> Forecast:
+def forecast(run: Run) -> Row:
     """Return the estimated cost of a run of an engine or an exact solution.
 
     Raises SceneError if it cannot be run, as the run would.
@@ -91,8 +80,9 @@ def forecast(run: Run) -> Forecast:
     if found.steps and (interval := run.scene.record.fields):
         taken = timings.OTHERWISE[one.unit + " for ParaView" * run.for_paraview]
         each += (run.scene.time.duration / interval + 1) * units * taken
+    about = run.point, run.scene.name, run.name, found.scheme, found.steps, size
     cost = stepping, setup, times, times * each, found.bytes
-    return Forecast(run.point, run.scene.name, run.name, found.scheme, found.steps, size, *cost)
+    return dict(zip(COLUMNS, (*about, *cost), strict=True))
 
 
 def forecasts(
@@ -100,25 +90,25 @@ def forecasts(
     progress: Progress = lambda fraction: None,
     spare: float = 0.0,
 ) -> tuple[pd.DataFrame, dict[str, str]]:
-    """Return the table of estimates of what is not read, a `Forecast` a row, and why points would
+    """Return the table of estimates of what is not read, a row each, and why points would
     fail.
 
     spare : seconds of CPU time, within which the first steps of kinds of runs that were never timed
     on this machine are run. Raises SceneError for a run that is not possible and has no point.
     """
-    found: list[Forecast] = []
+    found: list[Row] = []
     failing, kinds, began = {}, set(), process_time()
     for i, run in enumerate(wanted):
         if run.is_read:
             continue
         try:
             one = forecast(run)
-            if one.stepping is None and process_time() < began + spare:
+            if one["stepping"] is None and process_time() < began + spare:
                 _time(run)
                 one = forecast(run)
-            kind = one.engine, one.scheme, *active_effects(run.scene)
-            if one.stepping is None and one.steps and kind not in kinds:
-                one = one._replace(seconds=one.seconds + timings.OTHERWISE["kernels"])
+            kind = one["engine"], one["scheme"], *active_effects(run.scene)
+            if one["stepping"] is None and one["steps"] and kind not in kinds:
+                one["seconds"] += timings.OTHERWISE["kernels"]
                 kinds.add(kind)
             found.append(one)
         except SceneError as error:
@@ -126,7 +116,7 @@ def forecasts(
                 raise
             failing[run.point] = str(error)
         progress((i + 1) / len(wanted))
-    table = pd.DataFrame(found, columns=Forecast._fields)
+    table = pd.DataFrame(found, columns=COLUMNS)
     return table.astype({"seconds": float}), failing
 
 

@@ -188,7 +188,7 @@ def experiment(out: Path) -> Experiment:
     """
     saved = Store(out / NAME, key)
     points, told = [*columns(), *hard_cases()], partial(summarise, out)
-    return Experiment(TITLE, points, saved, measure, runs, told)
+    return Experiment(TITLE, points, saved, measure, told, runs)
 
 
 def key(point: Row) -> str:

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
@@ -116,22 +115,20 @@ def draw_maps(cells: pd.DataFrame) -> Figure:
     """
     with blank(3.6) as figure:
         axes = figure.subplots(1, cells.engine.nunique(), squeeze=False, sharey=True)[0]
+        ratio = np.geomspace(cells.ratio.min(), cells.ratio.max(), 200)
         for k, (engine, own) in enumerate(cells.groupby("engine", sort=False)):
-            _draw(axes[k], str(engine), own, k)
+            ax, grid = axes[k], own.pivot(index="step", columns="ratio", values="stable")
+            colours = ListedColormap([LIGHT, style(str(engine)).colour])
+            mesh = ax.pcolormesh(grid.columns, grid.index, grid, shading="nearest", cmap=colours)
+            mesh.set(gid=f"stability-map-{k}", clim=(0, 1))
+            line = {"color": "#000000", "linewidth": 1.4, "gid": f"stability-line-{k}"}
+            ax.plot(ratio, boundary(ratio), **line)
+            wrong = own[own.wrong]
+            ax.plot(wrong.ratio, wrong.step, "x", color="#d00000", markersize=5)
+            ax.set(xscale="log", yscale="log", xlabel="damping ratio of the highest mode")
+            words = f"{label_of(str(engine))}: {len(wrong)} cells on the wrong side"
+            ax.set_title(f"({chr(97 + k)})  {words}")
+            ax.text(0.06, 0.12, "stable", transform=ax.transAxes)
+            ax.text(0.94, 0.9, "unstable", transform=ax.transAxes, ha="right")
         axes[0].set_ylabel("step over undamped critical step")
     return figure
-
-
-def _draw(ax: Axes, engine: str, cells: pd.DataFrame, k: int) -> None:
-    grid = cells.pivot(index="step", columns="ratio", values="stable")
-    colours = ListedColormap([LIGHT, style(engine).colour])
-    mesh = ax.pcolormesh(grid.columns, grid.index, grid, shading="nearest", cmap=colours)
-    mesh.set(gid=f"stability-map-{k}", clim=(0, 1))
-    ratio = np.geomspace(grid.columns[0], grid.columns[-1], 200)
-    ax.plot(ratio, boundary(ratio), color="#000000", linewidth=1.4, gid=f"stability-line-{k}")
-    wrong = cells[cells.wrong]
-    ax.plot(wrong.ratio, wrong.step, "x", color="#d00000", markersize=5)
-    ax.set(xscale="log", yscale="log", xlabel="damping ratio of the highest mode")
-    ax.set_title(f"({chr(97 + k)})  {label_of(engine)}: {len(wrong)} cells on the wrong side")
-    ax.text(0.06, 0.12, "stable", transform=ax.transAxes)
-    ax.text(0.94, 0.9, "unstable", transform=ax.transAxes, ha="right")

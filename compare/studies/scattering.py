@@ -132,7 +132,7 @@ def experiment(name: str, out: Path, brief: bool = False) -> Experiment:
         return [Run(name, scene_at(one), one["solver"]) for one in left]
 
     saved, told = Store(out / name, key), partial(summarise, name, out)
-    return Experiment(TITLES[name], points(name, brief), saved, measure, runs, told, timed=True)
+    return Experiment(TITLES[name], points(name, brief), saved, measure, told, runs, timed=True)
 
 
 def summarise(name: str, out: Path, found: list[Row]) -> Summary:

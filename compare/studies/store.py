@@ -19,7 +19,6 @@ from pathlib import Path
 from tempfile import gettempdir
 from typing import Any, TypeVar
 
-import numpy as np
 from joblib import Parallel, delayed
 
 from jointwave.cases.errors import SceneError, UnstableError
@@ -48,17 +47,6 @@ def key(*about: Any) -> str:
     """Return the key of a point: a hash of its determining data (JSON) and of this program."""
     text = json.dumps([*about, program()], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
-
-
-def plain(value: Any) -> Any:
-    """Return a result in JSON's types: named tuples as objects, arrays and tuples as lists."""
-    if hasattr(value, "_asdict"):
-        return plain(value._asdict())
-    if isinstance(value, dict):
-        return {name: plain(part) for name, part in value.items()}
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return [plain(part) for part in value] if isinstance(value, list | tuple) else value
 
 
 @dataclass(frozen=True)

@@ -63,7 +63,7 @@ def experiment(
     whole = lambda rows: all(Path(row["file"]).is_file() for row in rows if "file" in row)  # noqa: E731
     saved = Store(folder, key, whole, fresh, lost)
     measure = partial(_outcome, work=work, fresh=fresh)
-    return Experiment(f"{len(cases)} points", cases, saved, measure, list, told)
+    return Experiment(f"{len(cases)} points", cases, saved, measure, told)
 
 
 def _outcome(case: Case, work: Work, fresh: bool) -> Rows:

@@ -79,7 +79,7 @@ def experiment(study: Study, folder: Path) -> Experiment:
 
     saved, told = Store(folder, key), partial(summarise, study, folder)
     shares = study.timed, not study.timed
-    return Experiment(study.title, study.points(), saved, measure, runs, told, *shares)
+    return Experiment(study.title, study.points(), saved, measure, told, runs, *shares)
 
 
 def summarise(study: Study, folder: Path, rows: list[Row]) -> Summary:
@@ -103,7 +103,7 @@ def summarise(study: Study, folder: Path, rows: list[Row]) -> Summary:
         sentences(study, table),
         [f"{one.curve}, {_settings(one.settings)}: {one.message}" for one in failed.itertuples()],
         files,
-        {"rows": rows, "orders": orders(study, table)},
+        {"rows": rows, "orders": [one._asdict() for one in orders(study, table)]},
         figure,
         study.note,
         LEGEND if table["total"].notna().any() else "",

@@ -2,6 +2,7 @@
 
 import json
 import tracemalloc
+from types import SimpleNamespace
 
 import pytest
 
@@ -18,9 +19,14 @@ SPACE = {"load__direction": [0.6, 0.8, 0.0]}
 SCENE = "guo-li-2002/fig-03"
 
 
+def foretold(run):
+    """Return the estimate of a run."""
+    return SimpleNamespace(**forecast(run))
+
+
 def stepping(scene, name):
     """Return the seconds of stepping that are foretold for a run."""
-    return forecast(Run("", scene, name)).stepping
+    return foretold(Run("", scene, name)).stepping
 
 
 RUNS = {
@@ -39,7 +45,7 @@ RUNS = {
 def test_steps_and_size_are_those_of_the_run(pillar, name):
     engine, changes = RUNS[name]
     scene = pillar(**SHORT, **changes)
-    found, result = forecast(Run("", scene, engine)), solve(engine, scene)
+    found, result = foretold(Run("", scene, engine)), solve(engine, scene)
     assert found.steps == result.attrs.get("steps", 0)
     assert found.bytes > 0 and found.seconds > 0 and found.stepping is None
     if engine == "dem":
@@ -69,7 +75,7 @@ def test_memory_is_what_the_arrays_take_within_a_factor_of_three(pillar, engine,
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert most > 2e6
-    assert most / 3 <= forecast(Run("", scene, engine)).bytes <= 3 * most
+    assert most / 3 <= foretold(Run("", scene, engine)).bytes <= 3 * most
 
 
 def test_a_run_beyond_the_memory_is_refused_as_the_run_would_be(pillar, monkeypatch):
@@ -77,7 +83,7 @@ def test_a_run_beyond_the_memory_is_refused_as_the_run_would_be(pillar, monkeypa
     monkeypatch.setenv(LIMIT, "0.1")
     for name in ("dem", "continuum-jointed"):
         with pytest.raises(SceneError, match="would need about") as told:
-            forecast(Run("", scene, name))
+            foretold(Run("", scene, name))
         with pytest.raises(SceneError) as refused:
             solve(name, scene)
         assert str(told.value) == str(refused.value)
@@ -104,7 +110,7 @@ def test_time_is_that_of_the_last_run_of_the_kind(pillar, engine):
     timings.note(engine, scene, about | {"seconds_stepping": 1e-3})  # too short to tell
     assert stepping(scene, engine) == pytest.approx(2.0)
     timings.note(engine, scene, about | {"seconds_stepping": 8.0, "seconds_compile": 1.0}, 11.0)
-    found = forecast(Run("", scene, engine, 3))
+    found = foretold(Run("", scene, engine, 3))
     assert found.stepping == pytest.approx(8.0) and found.setup == pytest.approx(2.0)
     assert found.seconds == pytest.approx(3 * (8.0 + 2.0))
 
@@ -132,9 +138,9 @@ def test_what_was_never_timed_is_timed_on_its_first_steps(pillar):
 
 def test_snapshots_take_longer_and_their_files_more(pillar):
     scene = pillar(**SHORT, record__fields=1e-3)
-    plain, shown = forecast(Run("", pillar(**SHORT), "dem")), forecast(Run("", scene, "dem"))
+    plain, shown = foretold(Run("", pillar(**SHORT), "dem")), foretold(Run("", scene, "dem"))
     assert plain.stepping == shown.stepping
-    filed = forecast(Run("", scene, "dem", for_paraview=True))
+    filed = foretold(Run("", scene, "dem", for_paraview=True))
     assert plain.seconds - plain.setup < shown.seconds - shown.setup < filed.seconds - filed.setup
 
 
@@ -148,7 +154,7 @@ def test_what_explain_measures_is_known(pillar):
     assert stepping(scene, "dem") is None
     (found,) = step_costs([scene])
     assert 0 < found.ns < 1e4 and found.noise >= 0
-    told = forecast(Run("", scene, "dem"))
+    told = foretold(Run("", scene, "dem"))
     assert told.stepping > 0.5e-9 * found.ns * 100 * told.steps
 
 

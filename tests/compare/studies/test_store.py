@@ -5,23 +5,14 @@ import os
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
-from math import inf, isnan, nan
+from math import isnan, nan
 from multiprocessing import get_context
-from typing import NamedTuple
 
-import numpy as np
 import pytest
 
 from jointwave.cases.errors import SceneError
 from jointwave.compare import studies
-from jointwave.compare.studies.store import Store, in_processes, key, on_executor, plain
-
-
-class Order(NamedTuple):
-    """A result that is no row."""
-
-    curve: str
-    order: float
+from jointwave.compare.studies.store import Store, in_processes, key, on_executor
 
 
 def square(number):
@@ -132,9 +123,3 @@ def test_keys_tell_all_that_decides_a_point_apart(monkeypatch):
     before = key("a")
     monkeypatch.setattr(studies.store, "program", lambda: "another")
     assert key("a") != before
-
-
-def test_results_are_plain_objects_lists_and_numbers():
-    found = plain({"rows": (Order("a", inf), square(2)), "array": np.array([[1.0], [2.0]])})
-    assert found["rows"][0]["order"] == inf and found["rows"][1]["number"] == 2
-    assert found["array"] == [[1.0], [2.0]]
