@@ -6,14 +6,13 @@ import numpy as np
 
 from jointwave.cases.errors import StoppedError
 from jointwave.cases.geometry.periodic import of_all
-from jointwave.cases.scene_type import AnyScene
-from jointwave.continuum.bounds import highest_speed
+from jointwave.cases.schema.pulse import shortest_period
+from jointwave.continuum.plan import Plan
 from jointwave.continuum.scene import SceneBody
-from jointwave.continuum.scheme import Choice
 from jointwave.continuum.space.evaluation import nodes_of_cells, places_of_nodes
 from jointwave.continuum.stepping.implicit import Implicit
 from jointwave.continuum.stepping.leapfrog import Leapfrog
-from jointwave.numerics.divergence import ENERGY, SPEED, audit, guard
+from jointwave.numerics.divergence import ENERGY, SPEED, audit, guard, speed_that
 from jointwave.numerics.instability import Divergence, stopped
 from jointwave.numerics.small_motion import (
     LARGEST,
@@ -25,6 +24,8 @@ from jointwave.numerics.small_motion import (
     refuse_large_motion,
 )
 
+IN_PERIOD = 50  # forces that are looked at in the period of a pulse, at least
+
 
 class Monitor:
     """Stops a run that exceeds its bounds.
@@ -33,18 +34,13 @@ class Monitor:
     """
 
     def __init__(
-        self,
-        scene: AnyScene,
-        found: SceneBody,
-        steps: Leapfrog | Implicit,
-        choice: Choice,
-        critical: float,
-        start: np.ndarray | None = None,
+        self, plan: Plan, steps: Leapfrog | Implicit, start: np.ndarray | None = None
     ) -> None:
-        """critical : step, s. start : displacements at the start, m; None where at rest."""
-        self.scene, self.found, self.steps, self.time = scene, found, steps, choice.time
-        self.explicit, self.critical = choice.scheme == "explicit", critical
-        self.guard = guard(highest_speed(found, steps.problem, choice.time, start))
+        """start : displacements at the start, m; None where at rest."""
+        self.found, _, choice, self.critical = plan
+        self.scene, self.steps, self.time = plan.found.scene, steps, choice.time
+        self.explicit = choice.scheme == "explicit"
+        self.guard = guard(self._highest_speed(start))
 
     def check(self, first: int, last: int) -> None:
         """Raise StoppedError where a run leaves its bounds in samples first .. last - 1."""
@@ -82,6 +78,49 @@ class Monitor:
             return found
         return overlapping(self.found.blocks, motion_of_blocks(self.found, u)) or found
 
+    def _highest_speed(self, u: np.ndarray | None) -> float:
+        """Return a bound on the speed of any node, m/s; u : displacements at the start, m.
+
+        Where forces F put energy in, d sqrt(2 E) / dt is at most |F| in the norm of 1 / m, and
+        m v^2 of any node at most 2 E.
+        """
+        problem, time, mass = self.steps.problem, self.time, self.found.body.mass
+        duration, pushed, shaken, weight, stored = time.dt * (time.steps + time.stride), *[0.0] * 4
+        if problem.forces is not None:
+            period, apart = shortest_period(self.scene.pulses), time.stride
+            if period is not None:  # no pulse is missed
+                apart = max(1, min(apart, int(period / (IN_PERIOD * time.dt))))
+            pushed = problem.forces.impulse(mass, time.steps, apart)
+        if problem.held is not None and problem.held.moved is not None:
+            moved = problem.held.moved(np.arange(time.steps + 1)) / time.dt
+            speed = np.diff(moved, prepend=0.0, append=0.0)
+            shaken = np.abs(speed).sum() * np.sqrt(mass.sum())
+        if problem.steady is not None:
+            weight = np.sqrt((problem.steady**2 / mass).sum())
+            stored = 0.0 if u is None else np.sqrt(2 * abs(problem.steady @ u))
+        least = np.sqrt((1 / mass).max())
+        with np.errstate(over="ignore"):
+            pressed = self._prestressed(duration * least)
+            return float(least * speed_that(pushed, shaken, duration * weight, stored, pressed))
+
+    def _prestressed(self, pushing: float) -> float:
+        """Return the root of twice the energy (sqrt(J)) that a prestress keeps in rock and joints,
+        and that rock gives off by pushing on both sides of joints that open, so long
+        (s/sqrt(kg))."""
+        problem = self.steps.problem
+        stress, joints, law = problem.stress, problem.body.joints, problem.law
+        if stress is None:
+            return 0.0
+        softest = min(np.linalg.eigvalsh(one.stiffness).min() for one in self.found.materials)
+        softest *= 1.0 if problem.mechanisms is None else problem.mechanisms.relaxed
+        stored = float((stress**2).sum()) / softest * float(self.found.blocks.volume.sum())
+        if joints is None or law is None:
+            return float(np.sqrt(stored))
+        size, area = float(np.abs(stress).max()), float(joints.weight.sum())
+        springs = [k for k in (law.normal_stiffness, law.shear_stiffness) if k is not None]
+        stored += 4 * size**2 * area * max(np.max(1 / k) for k in springs)
+        return float(np.sqrt(stored)) + pushing * 4 * size * area
+
 
 def farthest_joint(found: SceneBody, u: np.ndarray) -> Moved | None:
     """Return where a joint has moved furthest over the size of its smaller block, under
@@ -110,19 +149,17 @@ def farthest_joint(found: SceneBody, u: np.ndarray) -> Moved | None:
 def motion_of_blocks(found: SceneBody, u: np.ndarray) -> np.ndarray:
     """Return displacement (m) and rotation of each block in the plane [n, 3], those of a rigid
     block that are nearest to the displacements u [freedoms] of its nodes."""
-    body, count = found.body, found.blocks.count
-    nodes, block = nodes_of_cells(body), found.body.block
-    block = np.repeat(block, nodes.shape[1])
-    arm = places_of_nodes(body).reshape(-1, 2) - found.blocks.centroid[block]
+    nodes, count = nodes_of_cells(found.body), found.blocks.count
+    block = np.repeat(found.body.block, nodes.shape[1])
+
+    def means(values: np.ndarray) -> np.ndarray:
+        sums = [np.bincount(block, one, count) for one in values.T]
+        return np.stack(sums, axis=1) / np.bincount(block, minlength=count)[:, None]
+
+    arm = places_of_nodes(found.body).reshape(-1, 2) - found.blocks.centroid[block]
     moved = u.reshape(-1, 2)[nodes.ravel()]
-    middle, mean = (_means(block, one, count) for one in (arm, moved))
+    middle, mean = means(arm), means(moved)
     arm, moved = arm - middle[block], moved - mean[block]
     twist = arm[:, 0] * moved[:, 1] - arm[:, 1] * moved[:, 0]
     turn = np.bincount(block, twist, count) / np.bincount(block, (arm**2).sum(axis=1), count)
     return np.column_stack([mean + turn[:, None] * middle[:, ::-1] * [1, -1], turn])
-
-
-def _means(group: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
-    """Return the means of values [n, d] of each group [count, d]."""
-    sums = [np.bincount(group, one, count) for one in values.T]
-    return np.stack(sums, axis=1) / np.bincount(group, minlength=count)[:, None]

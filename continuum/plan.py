@@ -3,20 +3,41 @@
 from __future__ import annotations
 
 import logging
+from math import ceil
 from typing import Any, NamedTuple
 
+import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from jointwave.cases.errors import SceneError
 from jointwave.cases.material.rock_mass import refuse_beyond_strength
 from jointwave.cases.run_memory import load_bytes, refuse_beyond_memory, waveform_bytes
+from jointwave.cases.sampling import MOST_STEPS, Clock, clock, sample_times
 from jointwave.cases.scene_type import AnyScene
+from jointwave.continuum.mesh.size import resolved_period
 from jointwave.continuum.problem import problem_of
 from jointwave.continuum.scene import SceneBody, body_of
-from jointwave.continuum.scheme import Choice, choose
 from jointwave.continuum.space.rock import Rock
 from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.scaling import scaled_mass
 from jointwave.continuum.validity import refuse
 
 log = logging.getLogger("jointwave")
+STEPS_PER_IMPLICIT = 20  # explicit steps that one implicit step must replace to be looked into
+#: Entries that a step takes in a second: of products, and of triangular factors.
+PRODUCT_RATE, FACTOR_RATE = 1e9, 3e8
+#: Operations a second of a factorisation, and what an implicit step costs besides, s.
+FACTORISATION_RATE, OVERHEAD = 1e9, 1e-3
+ITERATIONS = 3  # of Newton's method where joints open, slide or break
+
+
+class Choice(NamedTuple):
+    """How a scene is stepped: "explicit" or "implicit", its clock, and the reason in a phrase."""
+
+    scheme: str
+    time: Clock
+    reason: str
 
 
 class Plan(NamedTuple):
@@ -63,3 +84,59 @@ def plan_of(
     }
     refuse_beyond_memory(scene, parts)
     return Plan(found, problem._replace(comm=comm), choice, critical)
+
+
+def choose(scene: AnyScene, problem: Problem, critical: float) -> Choice:
+    """Return the scheme of a scene, of "auto" the faster one by operation counts; critical : the
+    critical step of explicit steps, s.
+
+    Raises SceneError for a step that cannot be taken.
+    """
+    numerics = scene.numerics.continuum
+
+    def explicit(reason: str) -> Choice:
+        given = numerics.step_fraction, numerics.allow_unstable
+        return Choice("explicit", clock(scene, critical, *given, "continuum"), reason)
+
+    by_key = f"numerics.continuum.scheme = '{numerics.scheme}'"
+    if numerics.scheme == "explicit":
+        return explicit(by_key)
+    implicit = Choice("implicit", _implicit(scene), by_key)
+    if numerics.scheme == "implicit":
+        return implicit
+    many, few = scene.time.duration / (critical * numerics.step_fraction), implicit.time.steps
+    if many < STEPS_PER_IMPLICIT * few:
+        few_more = f"{STEPS_PER_IMPLICIT} x {few:,} implicit ones"
+        return explicit(f"{many:,.0f} explicit steps are fewer than {few_more}")
+    stiffness, parts = problem.stiffness, problem.parts
+    bends = parts is not None and (parts.no_tension or parts.softening or parts.slip)
+    cheap = many * (stiffness.nnz + 10 * stiffness.shape[0]) / PRODUCT_RATE
+    costly = _implicit_seconds(stiffness, bends, few)
+    reason = (
+        f"{many:,.0f} explicit steps, some {cheap:.2g} s, against {few:,} implicit ones, some "
+        f"{costly:.2g} s"
+    )
+    return explicit(reason) if cheap <= costly else implicit._replace(reason=reason)
+
+
+def _implicit(scene: AnyScene) -> Clock:
+    many = scene.numerics.continuum.steps_per_period
+    stride = max(1, ceil(scene.interval * many / resolved_period(scene) * (1 - 1e-12)))
+    time = Clock(scene.interval / stride, stride, len(sample_times(scene)))
+    if time.steps > MOST_STEPS:
+        key = "numerics.continuum.steps_per_period"
+        raise SceneError(scene.where, key, many, f"gives {time.steps:.3g} steps")
+    return time
+
+
+def _implicit_seconds(stiffness: csr_matrix, bends: bool, steps: int) -> float:
+    """Return a guess of the seconds of implicit steps, whose triangular factors fill the envelope
+    of a narrow numbering."""
+    order = reverse_cuthill_mckee(stiffness, symmetric_mode=True)
+    narrow = stiffness[order][:, order].tocoo()
+    reach = np.zeros(stiffness.shape[0], dtype=np.int64)
+    np.maximum.at(reach, narrow.row, narrow.row - narrow.col)
+    entries = float(2 * reach.sum() + reach.size)
+    solve = entries / FACTOR_RATE + OVERHEAD
+    factorise = entries**2 / max(stiffness.shape[0], 1) / FACTORISATION_RATE
+    return steps * ITERATIONS * (solve + factorise) if bends else steps * solve + factorise

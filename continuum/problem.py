@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -44,19 +44,12 @@ def with_law(found: SceneBody) -> tuple[Body, Law | None]:
     else:
         sets, which = scene.joint_sets, of_all(found.blocks, found.across, "joint_set")
         which = np.clip(which, 0, len(sets) - 1)  # cuts through rock are no joints
-        normal, shear = (
-            np.array([getattr(one, key) for one in sets], dtype=float)
-            for key in ("normal_stiffness", "shear_stiffness")
-        )
+        stiffness = [[one.normal_stiffness, one.shear_stiffness] for one in sets]
+        normal, shear = np.array(stiffness, dtype=float).T
         etas, tension = set_time_constants(scene), np.array([i.tension is not False for i in sets])
         strengths = strength_of(sets, which).strengths()
-    own = law(
-        normal[which],
-        None if etas is None else etas[which],
-        tension[which],
-        shear_stiffness=None if shear is None else shear[which],
-        **strengths,
-    )
+    etas, shear = (None if one is None else one[which] for one in (etas, shear))
+    own = law(normal[which], etas, tension[which], shear_stiffness=shear, **strengths)
     return body, own if own.maximum_closure is None else own._replace(rock_compliance=0.0)
 
 
@@ -66,37 +59,29 @@ def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
     Masses, forces and energies of a pillar in one and two dimensions are per unit area or
     thickness; `receivers.sections.extent_of` turns them into those of the pillar.
     """
-    body, own = with_law(found)
+    (body, own), stress = with_law(found), None
     steady = [one for one in (weight_of(scene, body), released(scene, body)) if one is not None]
-    stress = None
     if scene.prestress is not None:
         stress = scene.prestress.tensor[np.ix_(directions(body), directions(body))]
-    read = readings_of_pillar if scene.is_column else readings_of
+
+    def impedances(facets: Facets) -> np.ndarray:
+        """Return those of rock of a script, tensors [n, d, d], Pa s/m."""
+        which = found.of_cell[cells_behind(body, facets)]
+        return impedances_along([found.materials[k] for k in which], facets.normal)
+
+    read: Any = readings_of_pillar if scene.is_column else readings_of
     return Problem(
         body,
-        read(scene, found, stress),  # type: ignore[arg-type]
+        read(scene, found, stress),
         law=own,
         stiffest=None if own is None else stiffest(own, scene),
         stress=stress,
         alpha=scene.damping.alpha or 0.0,
         mechanisms=mechanisms_of(scene, found.model),
         steady=np.sum(steady, axis=0) if steady else None,
-        quiet=quiet_sides(scene, body, found.model, own_impedances(found)),
+        quiet=quiet_sides(scene, body, found.model, impedances if found.scripted else None),
         held=held_sides(scene, body),
     )
-
-
-def own_impedances(found: SceneBody) -> Callable[[Facets], np.ndarray] | None:
-    """Return the function that gives the impedances of facets, tensors [n, d, d], Pa s/m, of rock
-    of a script; None of the scene's own."""
-    if not found.scripted:
-        return None
-
-    def impedances(facets: Facets) -> np.ndarray:
-        which = found.of_cell[cells_behind(found.body, facets)]
-        return impedances_along([found.materials[k] for k in which], facets.normal)
-
-    return impedances
 
 
 def in_time(
@@ -104,11 +89,10 @@ def in_time(
 ) -> Problem:
     """Return a problem with forces and motion that have a history, for the steps of a clock;
     incident : of the waves, in intact rock where absent."""
-    body = problem.body
+    body, forces = problem.body, None
     pushed, waves = pushes(scene, body), waves_of(scene, body, incident)
-    forces = None
     if pushed or waves is not None:
-        forces = Loads(body.stiffness.shape[0], time.dt, pushed, waves)
+        forces = Loads(body.mass.size, time.dt, pushed, waves)
     return problem._replace(forces=forces, held=held_sides(scene, body, time))
 
 

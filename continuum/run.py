@@ -15,12 +15,11 @@ from jointwave.cases.errors import StoppedError
 from jointwave.cases.incident import IncidentField
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.monitor import Monitor
-from jointwave.continuum.plan import plan_of
+from jointwave.continuum.plan import Choice, Plan, plan_of
 from jointwave.continuum.problem import at_rest, in_time
 from jointwave.continuum.processes.leapfrog import SharedLeapfrog
 from jointwave.continuum.receivers.snapshots import RockRecorder
 from jointwave.continuum.receivers.waveforms import recorded
-from jointwave.continuum.scheme import Choice
 from jointwave.continuum.space.fenicsx import dolfinx
 from jointwave.continuum.space.rock import Rock
 from jointwave.continuum.stepping.implicit import Implicit
@@ -64,12 +63,12 @@ def simulate(
     motion leaves its bounds.
     """
     began, comm = perf_counter(), comm if comm is not None and comm.size > 1 else None
-    found, still, choice, critical = plan_of(scene, model, rock, dim, comm)
-    time = choice.time
-    problem, rest, sudden = at_rest(scene, in_time(scene, still, time, incident))
-    steps = stepper(scene, problem, choice, rest, sudden)
-    monitor = Monitor(scene, found, steps, choice, critical, None if rest is None else rest.u)
-    recorder = None if scene.record.fields is None else RockRecorder(scene, found, steps)
+    plan = plan_of(scene, model, rock, dim, comm)
+    time = plan.choice.time
+    problem, rest, sudden = at_rest(scene, in_time(scene, plan.problem, time, incident))
+    steps = stepper(scene, problem, plan.choice, rest, sudden)
+    monitor = Monitor(plan, steps, None if rest is None else rest.u)
+    recorder = None if scene.record.fields is None else RockRecorder(scene, plan.found, steps)
     built = perf_counter()
     steps.take(0, 0, time.stride)
     compiled = perf_counter()
@@ -77,7 +76,7 @@ def simulate(
     def result(count: int) -> xr.Dataset:
         about = {
             "model": model,
-            **about_run(scene, choice, critical, steps, rest),
+            **about_run(scene, plan, steps, rest),
             "seconds_setup": built - began,
             "seconds_compile": compiled - built,
             "seconds_stepping": perf_counter() - compiled,
@@ -94,9 +93,8 @@ def simulate(
         steps.take(done, last * time.stride, time.stride)
         monitor.check(first, last)
 
-    work = steps.work_of_a_step * problem.body.stiffness.shape[0] * time.stride
-    chunk = FREEDOM_STEPS_AT_ONCE // work
-    chunk = min(chunk, time.samples // LEAST_CHUNKS)
+    work = steps.work_of_a_step * problem.body.mass.size * time.stride
+    chunk = min(FREEDOM_STEPS_AT_ONCE // work, time.samples // LEAST_CHUNKS)
     parts = steps.parts, steps.samples, monitor.guard
     try:
         run_in_chunks(time.samples, chunk, march, parts, progress, recorder, keeper)
@@ -107,55 +105,45 @@ def simulate(
 
 
 def about_run(
-    scene: AnyScene,
-    choice: Choice,
-    critical: float,
-    steps: Leapfrog | Implicit,
-    rest: Rest | None,
+    scene: AnyScene, plan: Plan, steps: Leapfrog | Implicit, rest: Rest | None
 ) -> dict[str, Any]:
-    """Return the attributes of a result about its run; critical : step, s. All processes that share
-    it call this alike."""
-    problem, time = steps.problem, choice.time
-    comm, static = problem.comm, {}
-    if rest is not None:
-        static = {"static_steps": rest.steps, "static_out_of_balance": rest.ratio}
-    return {
+    """Return the attributes of a result about its run. All processes that share it call this
+    alike."""
+    (_, _, choice, critical), body, comm = plan, steps.problem.body, steps.problem.comm
+    about = {
         "scheme": choice.scheme,
         "scheme_reason": choice.reason,
-        "dim": problem.body.x.shape[1],
-        "cell": problem.body.cell.kind,
+        "dim": body.x.shape[1],
+        "cell": body.cell.kind,
         "order": scene.numerics.continuum.order,
-        "dt": time.dt,
+        "dt": choice.time.dt,
         "critical_dt": critical,
-        "steps": time.steps,
-        "degrees_of_freedom": problem.body.stiffness.shape[0],
+        "steps": choice.time.steps,
+        "degrees_of_freedom": body.mass.size,
         "bytes": steps.bytes if comm is None else comm.allreduce(steps.bytes),
         "processes": 1 if comm is None else comm.size,
         "versions": json.dumps({one.__name__: one.__version__ for one in (np, numba, dolfinx)}),
-        **static,
-        **steps.attributes,
     }
+    if rest is not None:
+        about |= {"static_steps": rest.steps, "static_out_of_balance": rest.ratio}
+    return about | steps.attributes
 
 
 def stepper(
-    scene: AnyScene,
-    problem: Problem,
-    choice: Choice,
-    rest: Rest | None,
-    sudden: np.ndarray | None = None,
+    scene: AnyScene, problem: Problem, choice: Choice, rest: Rest | None, sudden: np.ndarray | None
 ) -> Leapfrog | Implicit:
     """Return the steps of a run, from a state at rest if there is one; sudden : forces (N) that
     begin to act at t = 0."""
-    time, energy = choice.time, scene.record.energy
+    given = problem, choice.time.dt, choice.time.samples
     steps: Leapfrog | Implicit
     if choice.scheme == "explicit":
         of = Leapfrog if problem.comm is None else SharedLeapfrog
-        steps = of(problem, time.dt, time.samples, energy)
+        steps = of(*given, scene.record.energy)
         if sudden is not None:
             steps.drop(sudden)
     else:
         rho = scene.numerics.continuum.spectral_radius
-        steps = Implicit(problem, time.dt, time.samples, rho, energy)
+        steps = Implicit(*given, rho, scene.record.energy)
     if rest is not None:
         steps.start(rest.u, rest.history)
     return steps

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -15,6 +15,7 @@ from jointwave.cases.geometry.cell_complex import Complex, GeometryError
 from jointwave.cases.geometry.measure import Outlines
 from jointwave.cases.geometry.periodic import Across, of_all
 from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.effective_medium import tensor
 from jointwave.cases.partition.pillar import blocks_of_pillar
 from jointwave.cases.partition.scene import across_periodic, blocks_of_scene
 from jointwave.cases.partition.shape import shape_of
@@ -49,6 +50,24 @@ class SceneBody(NamedTuple):
     scripted: bool
     body: Body
     model: str = "jointed"
+
+    def of_cells(self, name: str) -> np.ndarray:
+        """Return a property of the material of each cell [cells, ...]."""
+        return np.array([getattr(one, name) for one in self.materials])[self.of_cell]
+
+    def moduli(self, pairs: Iterable[tuple[int, int]]) -> np.ndarray:
+        """Return the components i, j of the stress by the gradient of the displacement in each
+        material [materials, n, components, d], Pa; in one dimension that along it."""
+        stiffness = np.array([one.stiffness for one in self.materials])
+        if self.body.x.shape[1] > 1:
+            full = np.array([tensor(one) for one in stiffness])
+            return np.stack([full[:, i, j] for i, j in pairs], axis=1)
+        moduli, along = (
+            np.zeros((len(stiffness), 1, stiffness.shape[1], 1)),
+            self.body.components // 2,
+        )
+        moduli[:, 0, along, 0] = stiffness[:, along, along]
+        return moduli
 
 
 #: The resolved scene, its blocks, contacts across periodic sides, elements, and its own materials.

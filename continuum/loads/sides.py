@@ -34,19 +34,15 @@ AXIS = {
 def facets_on(body: Body, names: list[str]) -> Facets:
     """Return the facets of sides, one after the other, at their nodes; each node once for each
     direction that its side has there."""
-    own = [body.sides[name] for name in names if name in body.sides]
-    dim = body.components
+    own, none = [body.sides[name] for name in names if name in body.sides], np.zeros(0, np.int64)
     if not own:
-        none = np.zeros((0, dim))
-        index = np.zeros(0, np.int64)
-        return Facets(index, np.zeros(0), none, none, index)
+        empty = np.zeros((0, body.components))
+        return Facets(none, np.zeros(0), empty, empty)
     every = Facets(*(np.concatenate(parts) for parts in zip(*own, strict=True)))
     key = np.column_stack([every.node, np.rint(1e9 * every.normal)])
     _, first, group = np.unique(key, axis=0, return_index=True, return_inverse=True)
-    weight = np.bincount(group.ravel(), every.weight)
-    return Facets(
-        every.node[first], weight, every.normal[first], every.place[first], every.block[first]
-    )
+    found = Facets(*(part[first] for part in every))
+    return found._replace(weight=np.bincount(group.ravel(), every.weight))
 
 
 def absorbing(scene: AnyScene, body: Body) -> Facets:

@@ -7,12 +7,12 @@ and cells of the complex are gmsh's points, lines, surfaces and volumes.
 
 from collections import defaultdict
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from jointwave.cases.geometry.cell_complex import Complex
-from jointwave.cases.geometry.relations import composed, merged
+from jointwave.cases.geometry.relations import composed, distinct, merged
 from jointwave.continuum.mesh.conforming import SIMPLICES, Conforming, on_facets
 from jointwave.continuum.mesh.session import gmsh_session
 
@@ -21,13 +21,9 @@ LINE, TRIANGLE, TETRAHEDRON = 1, 2, 4  # gmsh's types of elements
 KINDS = {1: LINE, 2: TRIANGLE, 3: TETRAHEDRON}
 
 
-class Alike(NamedTuple):
-    """Blocks that are alike, each with its first vertex and its facets, in one order: int arrays
-    cells [n], first [n] and facets [n, k]."""
-
-    cells: np.ndarray
-    first: np.ndarray
-    facets: np.ndarray
+#: Blocks that are alike, each with its first vertex and its facets, in one order: int arrays
+#: [n], [n] and [n, k].
+Alike = tuple[np.ndarray, ...]
 
 
 def simplex_mesh(
@@ -47,7 +43,7 @@ def simplex_mesh(
             gmsh.option.setNumber(name, 0)
         gmsh.option.setNumber("Mesh.MeshSizeMax", size)
         drawing = _Drawing(gmsh.model, body, size, tolerance)
-        tags = [drawing.block(one.facets[0].tolist()) for one in groups]
+        tags = [drawing.block(facets[0].tolist()) for *_, facets in groups]
         gmsh.model.geo.synchronize()
         for pairs, shift in alike if body.dim == 3 else ():
             drawing.repeat(pairs, shift)
@@ -58,35 +54,22 @@ def simplex_mesh(
 
 def _alike(body: Complex, tolerance: float) -> list[Alike]:
     """Return the blocks in groups that are equal but for a shift; in space each alone."""
-    half = body.halves()
+    half, x = body.halves(), body.vertices
     groups: dict[Any, list] = defaultdict(list)
-    pairs = np.stack([half.cell, half.facet], axis=1)
-    pairs = pairs[np.lexsort(pairs.T[::-1])]
+    facets_of = distinct(np.stack([half.cell, half.facet], axis=1))
     middles = body.means(body.corners_of_facets(), len(body.sides))
-    corners = body.corners(half)
-    starts = (np.searchsorted(one[:, 0], np.arange(body.count + 1)) for one in (pairs, corners))
-    facet_at, vertex_at = starts
-    for cell in range(body.count):
-        facets = pairs[facet_at[cell] : facet_at[cell + 1], 1]
-        vertices = corners[vertex_at[cell] : vertex_at[cell + 1], 1]
-        first, key = _first(body.vertices, vertices, tolerance)
-        away = _steps(middles[facets] - body.vertices[first], tolerance)
-        order = np.lexsort(away.T)
-        alike = (key, away[order].tobytes()) if body.dim == 2 else cell
-        groups[alike].append((cell, first, facets[order]))
-    return [Alike(*map(np.array, zip(*one, strict=True))) for one in groups.values()]
-
-
-def _first(x: np.ndarray, vertices: np.ndarray, tolerance: float) -> tuple[int, bytes]:
-    """Return one of some vertices that equal shapes have in common, and a key of the shape."""
-    order = np.lexsort(_steps(x[vertices] - x[vertices].min(axis=0), tolerance).T)
-    first = vertices[order[0]]
-    away = _steps(x[vertices] - x[first], tolerance)
-    return int(first), away[np.lexsort(away.T)].tobytes()
-
-
-def _steps(x: np.ndarray, tolerance: float) -> np.ndarray:
-    return np.rint(x / tolerance).astype(np.int64)
+    each = [np.split(of[:, 1], np.searchsorted(of[:, 0], np.arange(1, body.count)))
+            for of in (facets_of, body.corners(half))]  # fmt: skip
+    for cell, (facets, vertices) in enumerate(zip(*each, strict=True)):
+        steps = np.rint((x[vertices] - x[vertices].min(axis=0)) / tolerance).astype(np.int64)
+        first = vertices[np.lexsort(steps.T)[0]]  # that equal shapes have in common
+        key, order = [], np.zeros(0)
+        for places in (x[vertices], middles[facets]):
+            steps = np.rint((places - x[first]) / tolerance).astype(np.int64)
+            order = np.lexsort(steps.T)
+            key.append(steps[order].tobytes())
+        groups[tuple(key) if body.dim == 2 else cell].append((cell, first, facets[order]))
+    return [tuple(map(np.array, zip(*one, strict=True))) for one in groups.values()]
 
 
 class _Drawing:
@@ -173,13 +156,13 @@ def _placed(
 ) -> Conforming:
     """Return the mesh of all blocks from those of one of each group."""
     x, cells, block, on, total = [], [], [], [], 0
-    for group, (places, own, facet) in zip(groups, found, strict=True):
-        count, origin = len(group.cells), body.vertices[group.first]
+    for (of, corner, facets), (places, own, facet) in zip(groups, found, strict=True):
+        count, origin = len(of), body.vertices[corner]
         x.append((places + (origin - origin[0])[:, None]).reshape(-1, body.dim))
         first = total + len(places) * np.arange(count)
         cells.append((first[:, None, None] + own).reshape(-1, own.shape[1]))
-        block.append(np.repeat(group.cells, len(own)))
-        beyond = np.append(group.facets, np.full((count, 1), -1), axis=1)
+        block.append(np.repeat(of, len(own)))
+        beyond = np.append(facets, np.full((count, 1), -1), axis=1)
         on.append(beyond[:, facet].reshape(-1, own.shape[1]))
         total += count * len(places)
     every = np.concatenate(x)

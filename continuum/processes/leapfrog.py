@@ -16,8 +16,7 @@ import numpy as np
 from jointwave.cases.errors import SceneError
 from jointwave.continuum.processes.partition import ranks_of_nodes
 from jointwave.continuum.processes.share import share_of
-from jointwave.continuum.space.fenicsx import MPI
-from jointwave.continuum.space.petsc import PETSc, shared_by
+from jointwave.continuum.space.fenicsx import MPI, PETSc, shared_by
 from jointwave.continuum.stepping.explicit import leapfrog_for
 from jointwave.continuum.stepping.leapfrog import Leapfrog
 from jointwave.continuum.stepping.problem import Problem

@@ -55,14 +55,14 @@ def share_of(problem: Problem, rank_of: np.ndarray, rank: int) -> Share:
     """Return the share of a process; rank_of : int array [nodes], of each node."""
     body, dim = problem.body, problem.body.components
     own, (points, counted) = np.flatnonzero(rank_of == rank), _points(problem, rank_of, rank)
-    rows = _freedoms(own, dim)
-    stiffness, damping = (
-        None if one is None else csr_matrix(one)[rows] for one in (body.stiffness, body.damping)
-    )
-    joints = None if body.joints is None else _some(body.joints, points, dim)
-    matrices = [one for one in (stiffness, damping, joints and joints.matrix) if one is not None]
-    reached = np.unique(np.concatenate([one.indices // dim for one in matrices]))
-    halo = np.setdiff1d(reached, own)
+    rows, joints = _freedoms(own, dim), body.joints
+    if joints is not None:
+        each = (one[points] for one in joints[1:])
+        joints = JumpOperator(joints.matrix[_freedoms(points, dim)], *each)  # type: ignore[call-arg]
+    found = body.stiffness, body.damping
+    matrices = [None if one is None else csr_matrix(one)[rows] for one in found]
+    every = [one for one in (*matrices, joints and joints.matrix) if one is not None]
+    halo = np.setdiff1d(np.unique(np.concatenate([one.indices // dim for one in every])), own)
     number = np.full(len(rank_of), -1)
     number[np.append(own, halo)] = np.arange(len(own) + len(halo))
     freedom = np.where(number[:, None] < 0, -1, dim * number[:, None] + np.arange(dim)).ravel()
@@ -72,10 +72,7 @@ def share_of(problem: Problem, rank_of: np.ndarray, rank: int) -> Share:
         entries = matrix.data, freedom[matrix.indices], matrix.indptr
         return csr_matrix(entries, (matrix.shape[0], dim * (len(own) + len(halo))))
 
-    stiffness, damping = (
-        None if one is None else local(one).sorted_indices() for one in (stiffness, damping)
-    )
-    assert stiffness is not None
+    stiffness, damping = (None if one is None else local(one).sorted_indices() for one in matrices)
     small = body._replace(
         mesh=None,
         space=None,
@@ -83,7 +80,7 @@ def share_of(problem: Problem, rank_of: np.ndarray, rank: int) -> Share:
         x=body.x[own],
         block=np.unique(blocks_of_nodes(body)[own], return_inverse=True)[1],
         mass=body.mass[rows],
-        stiffness=stiffness,
+        stiffness=stiffness,  # type: ignore[arg-type]
         damping=damping,
         joints=joints and joints._replace(matrix=local(joints.matrix)),
         sides={},
@@ -114,38 +111,28 @@ def _points(problem: Problem, rank_of: np.ndarray, rank: int) -> tuple[np.ndarra
     return np.append(first, acts[lowest[acts] < rank]), len(first)
 
 
-def _some(joints: JumpOperator, points: np.ndarray, dim: int) -> JumpOperator:
-    """Return the operator of some points."""
-    return JumpOperator(joints.matrix[_freedoms(points, dim)], *(one[points] for one in joints[1:]))  # type: ignore[call-arg]
-
-
 def _acting(problem: Problem, number: np.ndarray, freedom: np.ndarray) -> Problem:
     """Return a problem with what acts on nodes of a process; number, freedom : those of nodes and
     freedoms in its share, -1 of others."""
     quiet, held, forces, steady = problem.quiet, problem.held, problem.forces, problem.steady
     if quiet is not None:
-        quiet = _dashpots(quiet, number)
+        there, springs = number[quiet.node] >= 0, quiet.springs
+
+        def some(dt: float) -> Springs:
+            assert springs is not None
+            return Springs(*(one[there] for one in springs(dt)))
+
+        nodes = number[quiet.node[there]]
+        quiet = Dashpots(nodes, quiet.viscosity[there], None if springs is None else some)
     if held is not None:
-        there = freedom[held.freedom] >= 0
-        held = held._replace(freedom=freedom[held.freedom[there]], direction=held.direction[there])
+        own = freedom[held.freedom] >= 0
+        held = held._replace(freedom=freedom[held.freedom[own]], direction=held.direction[own])
     return problem._replace(
         steady=None if steady is None else steady[freedom >= 0],
         quiet=quiet,
         held=held,
         forces=None if forces is None else SomeForces(forces, freedom),
     )
-
-
-def _dashpots(quiet: Dashpots, number: np.ndarray) -> Dashpots:
-    """Return the dashpots of nodes of a process."""
-    there, springs = number[quiet.node] >= 0, quiet.springs
-
-    def some(dt: float) -> Springs:
-        assert springs is not None
-        return Springs(*(one[there] for one in springs(dt)))
-
-    nodes = number[quiet.node[there]]
-    return Dashpots(nodes, quiet.viscosity[there], None if springs is None else some)
 
 
 def _readings(

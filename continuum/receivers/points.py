@@ -8,7 +8,6 @@ import numpy as np
 from scipy.sparse import csr_matrix, kron
 
 from jointwave.cases.geometry.relations import joined
-from jointwave.cases.material.effective_medium import tensor
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space import compat
@@ -39,10 +38,6 @@ def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) ->
         np.array(places, dtype=float).reshape(-1, dim)
         for places in (scene.record.points, scene.record.joints)
     )
-    moduli, lag = (
-        np.array([getattr(one, name) for one in found.materials])[found.of_cell]
-        for name in ("stiffness", "time_constant")
-    )
     at, pairs = places_in(body, points), stress_components(dim).values()
     share = shares_of_pieces(at.point, pieces_of(body)[at.cell])
     constant, carried = np.zeros((len(points), len(pairs))), np.zeros((len(joints), dim))
@@ -53,15 +48,15 @@ def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) ->
         constant[:] = [stress[i, j] for i, j in pairs]
         if body.joints is not None:
             carried = read @ body.joints.carried(stress).reshape(-1, dim)
-    viscous = lag[:, None, None] * moduli if lag.any() else None
+    recovered, viscous = _recovered(found, points, at, share)
     return Readings(
         motion=motion_at(body, at, share, len(points)),
-        stress=_recovered(body, moduli, points, at, share),
+        stress=recovered,
         constant=constant.ravel(),
         traction=csr_matrix(kron(read / area, np.eye(dim))),
         carried=carried.ravel(),
         jump=csr_matrix(kron(read, np.eye(dim))),
-        viscous=None if viscous is None else _recovered(body, viscous, points, at, share),
+        viscous=viscous,
     )
 
 
@@ -89,9 +84,10 @@ def shares_of_pieces(point: np.ndarray, piece: np.ndarray) -> np.ndarray:
 
 
 def _recovered(
-    body: Body, moduli: np.ndarray, x: np.ndarray, at: Places, share: np.ndarray
-) -> csr_matrix:
-    """Return the stress at points x [m, d], all components of one after the other [m n, freedoms].
+    found: SceneBody, x: np.ndarray, at: Places, share: np.ndarray
+) -> tuple[csr_matrix, csr_matrix | None]:
+    """Return the stress at points x [m, d], all components of one after the other [m n, freedoms],
+    and that of dashpots by the velocity; None without these.
 
     Stress from displacements of order p converges as h^(p + 1) at the Gauss points of cells
     (Barlow, Int. J. Numer. Meth. Eng. 10, 1976). A polynomial of order p + 1 through those of the
@@ -99,29 +95,23 @@ def _recovered(
     everywhere (Zienkiewicz & Zhu, Int. J. Numer. Meth. Eng. 33, 1992). Cells beyond a joint or of
     other rock do not count. Where there are too few the stress is that of the cell at the point.
     """
+    body, moduli, lag = found.body, found.of_cells("stiffness"), found.of_cells("time_constant")
     nodes, corners = nodes_of_cells(body), compat.cell_corners(body.mesh)
-    row, cells, places, weight = [], [], [], []
-    for n, (point, cell) in enumerate(zip(at.point, at.cell, strict=True)):
+    none, dim = np.zeros(0, np.int64), body.components
+    parts = [(none, none, np.zeros((0, dim)), np.zeros(0))]
+    for point, cell, own in zip(at.point, at.cell, share, strict=True):
         near = np.flatnonzero(np.isin(nodes, nodes[cell]).any(axis=1))
         near = near[(moduli[near] == moduli[cell]).all(axis=(1, 2))]
         some, local, shares = _patch(body, corners, near, cell, x[point])
-        row.append(np.full(len(some), point))
-        cells.append(some)
-        places.append(local)
-        weight.append(share[n] * shares)
-    none = np.zeros(0, np.int64)
-    row, cells = (np.concatenate([none, *one]) for one in (row, cells))
-    found = at_reference(
-        body, row, cells, np.concatenate([np.zeros((0, body.components)), *places])
-    )
-    weights = np.concatenate([np.zeros(0), *weight])
-    full = np.array([tensor(one) for one in np.unique(moduli, axis=0)])
-    which = np.unique(moduli, axis=0, return_inverse=True)[1].reshape(-1)[cells]
-    of_stress = np.stack(
-        [full[which, i, j] for i, j in stress_components(body.components).values()], 1
-    )
-    entries = -np.einsum("nscj,nkj,n->nskc", of_stress, found.gradient, weights)
-    return matrix_of(body, row, cells, entries, len(x))
+        parts.append((np.full(len(some), point), some, local, own * shares))
+    row, cells, places, weights = map(np.concatenate, zip(*parts, strict=True))
+    of_stress = found.moduli(stress_components(dim).values())[found.of_cell[cells]]
+    gradient = at_reference(body, row, cells, places).gradient
+    entries = -np.einsum("nscj,nkj,n->nskc", of_stress, gradient, weights)
+    elastic = matrix_of(body, row, cells, entries, len(x))
+    if not lag.any():
+        return elastic, None
+    return elastic, matrix_of(body, row, cells, lag[cells, None, None, None] * entries, len(x))
 
 
 def _patch(
@@ -151,7 +141,11 @@ def _patch(
 
 def nearest_points(body: Body, joints: JumpOperator, places: np.ndarray) -> np.ndarray:
     """Return the shares of joints' points at the places on joints nearest to these [r, points]."""
-    nodes, before, shares = nodes_of_cells(body), nodes_before(joints), []
+    dim, shares = body.components, []
+    entries = joints.matrix[::dim].tocoo()
+    along = entries.data * joints.frame[entries.row, 0, entries.col % dim]
+    nodes, before = nodes_of_cells(body), np.empty(len(joints.weight), np.int64)
+    before[entries.row[along < 0]] = entries.col[along < 0] // dim  # that normals point away from
     for place in places:
         nearest = int(np.linalg.norm(joints.place - place, axis=1).argmin())
         normal, share = joints.frame[nearest, 0], np.zeros(len(joints.weight))
@@ -170,13 +164,3 @@ def nearest_points(body: Body, joints: JumpOperator, places: np.ndarray) -> np.n
             share[nearest] = 1.0
         shares.append(share / share.sum())
     return np.array(shares).reshape(len(places), len(joints.weight))
-
-
-def nodes_before(joints: JumpOperator) -> np.ndarray:
-    """Return the node of each point on the side that its normal points away from, int array."""
-    dim = joints.frame.shape[1]
-    entries = joints.matrix[::dim].tocoo()
-    along = entries.data * joints.frame[entries.row, 0, entries.col % dim]
-    found = np.empty(len(joints.weight), np.int64)
-    found[entries.row[along < 0]] = entries.col[along < 0] // dim
-    return found

@@ -15,19 +15,13 @@ import numpy as np
 from numpy.polynomial import polynomial as poly
 from scipy.sparse import csr_matrix, diags, kron, vstack
 
-from jointwave.cases.material.effective_medium import tensor
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.loads.forces import pull_of
 from jointwave.continuum.mesh.conforming import SIMPLEX
 from jointwave.continuum.receivers.points import motion_at, pieces_of, shares_of_pieces
 from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space import compat
-from jointwave.continuum.space.evaluation import (
-    matrix_of,
-    nodes_of_cells,
-    places_in,
-    tabulate,
-)
+from jointwave.continuum.space.evaluation import matrix_of, nodes_of_cells, places_in, tabulate
 from jointwave.continuum.space.model import Body
 from jointwave.continuum.stepping.problem import Readings
 
@@ -104,15 +98,14 @@ def points_on_axis(body: Body, places: list[float]) -> csr_matrix:
 def sections(found: SceneBody, places: list[float]) -> Sections:
     """Return the receivers of places along the pillar."""
     body = found.body
-    none = csr_matrix((body.components, body.stiffness.shape[0]))
-    parts = [[one[:0]] for one in (none, none, none, _contact(body, on_joint(body, np.inf)))]
+    none = 3 * (csr_matrix((body.components, body.mass.size)),)
+    parts = [tuple(one[:0] for one in (*none, _contact(body, on_joint(body, np.inf))))]
     for y in places:
-        rock, on, layer = (none, none, none), on_joint(body, y), _layer(body, y)
+        rock, on, layer = none, on_joint(body, y), _layer(body, y)
         if not on.any():
             rock = _by_stress(found, y) if layer is None else _by_momentum(found, layer, y)
-        for part, one in zip(parts, (*rock, _contact(body, on)), strict=True):
-            part.append(one)
-    return Sections(*(csr_matrix(vstack(part)) for part in parts))
+        parts.append((*rock, _contact(body, on)))
+    return Sections(*(csr_matrix(vstack(part)) for part in zip(*parts, strict=True)))
 
 
 def on_joint(body: Body, y: float) -> np.ndarray:
@@ -176,7 +169,7 @@ def _by_momentum(found: SceneBody, layer: np.ndarray, y: float) -> tuple[csr_mat
     share[0] += whole[0]
     at, weight = compat.quadrature(kind, 2 * order - 1)
     volumes = weight @ tabulate(body.cell.element, at)[0]
-    density = np.array([one.density for one in found.materials])[found.of_cell[layer]]
+    density = found.of_cells("density")[layer]
     size = np.ptp(corners, axis=1).prod(axis=1)
     own = nodes[layer]
     level = np.abs((x[own] - near)[:, :, None] / thickness - levels).argmin(axis=2)
@@ -197,15 +190,13 @@ def _by_stress(found: SceneBody, y: float) -> tuple[csr_matrix, ...]:
     shares = np.meshgrid(*[weight * (high[k] - low[k]) / 2 for k in across])
     area = np.prod([one.ravel() for one in shares], axis=0)
     here = places_in(body, x)
-    which = found.of_cell[here.cell]
-    moduli = np.array([tensor(one.stiffness) for one in found.materials])[which]
-    own = moduli[:, along_first(body), axis_of(body)]
+    pairs = [(i, axis_of(body)) for i in along_first(body)]
+    own, eta = found.moduli(pairs)[found.of_cell], found.of_cells("time_constant")
     each = (area / np.bincount(here.point))[here.point]
-    entries = -np.einsum("ndcj,nkj,n->ndkc", own, here.gradient, each)
-    eta = np.array([one.time_constant for one in found.materials])[which]
+    entries = -np.einsum("ndcj,nkj,n->ndkc", own[here.cell], here.gradient, each)
     row = np.zeros(len(here.cell), np.int64)
     elastic, viscous = (
         matrix_of(body, row, here.cell, values, 1)
-        for values in (entries, eta[:, None, None, None] * entries)
+        for values in (entries, eta[here.cell, None, None, None] * entries)
     )
     return elastic, viscous, csr_matrix(elastic.shape)

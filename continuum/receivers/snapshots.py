@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.material.effective_medium import tensor
 from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.mesh.conforming import SIMPLEX
@@ -49,8 +48,7 @@ class StressOfCells:
         pairs = [(1, 1)]  # along a pillar
         if not found.scene.is_column:
             pairs = [*stress_components(body.components).values()]
-        self.moduli = -moduli_of(found, pairs)[found.of_cell]
-        lag = np.array([one.time_constant for one in found.materials])[found.of_cell]
+        self.moduli, lag = -found.moduli(pairs)[found.of_cell], found.of_cells("time_constant")
         self.lag = lag[:, None, None] if lag.any() else None
         given = found.scene.prestress
         self.constant = np.array([0.0 if given is None else given.tensor[one] for one in pairs])
@@ -65,18 +63,6 @@ class StressOfCells:
         return found.reshape(-1, found.shape[2]) + self.constant
 
 
-def moduli_of(found: SceneBody, pairs: list[tuple[int, int]]) -> np.ndarray:
-    """Return the components i, j of the stress by the gradient of the displacement in each material
-    [materials, n, components, d], Pa; in one dimension that along it."""
-    stiffness = np.array([one.stiffness for one in found.materials])
-    if found.body.x.shape[1] > 1:
-        full = np.array([tensor(one) for one in stiffness])
-        return np.stack([full[:, i, j] for i, j in pairs], axis=1)
-    moduli, along = np.zeros((len(stiffness), 1, stiffness.shape[1], 1)), stiffness.shape[1] // 2
-    moduli[:, 0, along, 0] = stiffness[:, along, along]
-    return moduli
-
-
 class RockRecorder(SnapshotRecorder):
     """The rock at every snapshot of a scene; raises SceneError for too many, or too large ones.
 
@@ -85,11 +71,8 @@ class RockRecorder(SnapshotRecorder):
 
     def __init__(self, scene: AnyScene, found: SceneBody, steps: Leapfrog | Implicit) -> None:
         self.found, self.steps, body = found, steps, found.body
-        kind, nodes, points = (
-            body.cell.kind,
-            compat.cell_nodes(body.space),
-            body.cell.element.points,
-        )
+        kind, nodes = body.cell.kind, compat.cell_nodes(body.space)
+        points = body.cell.element.points
         own = np.arange(len(points))
         if kind in SIMPLEX and body.cell.order == 2:  # a full lattice, without nodes of bubbles
             own = np.flatnonzero(np.isclose(2 * points, np.rint(2 * points)).all(axis=1))
@@ -98,7 +81,10 @@ class RockRecorder(SnapshotRecorder):
         self.node, first, number = np.unique(nodes[:, own], return_index=True, return_inverse=True)
         self.points = places_of_nodes(body)[:, own].reshape(-1, body.x.shape[1])[first]
         self.cells = number.reshape(-1, len(own))[:, parts].reshape(-1, parts.shape[1])
-        self.parts = len(parts)
+        self.block = np.repeat(body.block, len(parts))
+        if scene.is_column:  # cells of a layer are of the blocks beside it
+            height = self.points[self.cells][..., self.points.shape[1] // 2].mean(axis=1)
+            self.block = np.searchsorted(calibrate(scene).contact_y, height) - 1
         self.stress = StressOfCells(found, parts, points)
         count, values = len(self.node), len(self.cells) * len(self.stress.constant)
         size = snapshot_bytes(scene, count, 6 + values / count)
@@ -107,11 +93,10 @@ class RockRecorder(SnapshotRecorder):
 
     def frame(self, sample: int) -> Frame:
         """Return displacement and velocity of the nodes, and stress of the cells."""
-        u, v = self.steps.last
-        body = self.found.body
+        (u, v, strained), body = self.steps.last, self.found.body
         node = self.node if body.tied is None else body.tied[self.node]
         moved, moving = (one.reshape(-1, body.components)[node] for one in (u, v))
-        return moved, moving, self.stress.of(self.steps.strained, v)
+        return moved, moving, self.stress.of(strained, v)
 
     def add_to(self, result: xr.Dataset) -> xr.Dataset:
         """Return the run's result with its snapshots; in a rock mass displacement counts from the
@@ -124,13 +109,3 @@ class RockRecorder(SnapshotRecorder):
             u = u - u[0]
         cells = self.points, KINDS[self.found.body.cell.kind], self.cells, self.block
         return with_snapshots(result, snapshots(time, *cells, u, v, stress))
-
-    @property
-    def block(self) -> np.ndarray:
-        """The block of each linear cell, int array; of a layer of a pillar that before its
-        middle."""
-        scene = self.found.scene
-        if scene.is_column:
-            height = self.points[self.cells][..., self.points.shape[1] // 2].mean(axis=1)
-            return np.searchsorted(calibrate(scene).contact_y, height) - 1
-        return np.repeat(self.found.body.block, self.parts)

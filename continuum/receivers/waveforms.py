@@ -22,52 +22,50 @@ def recorded(
     about: Mapping[str, Any],
 ) -> xr.Dataset:
     """Return the samples at these times, the first ones, as a result with attributes."""
-    count, name = len(times), f"continuum-{about['model']}"
-    terms, energy = ledger(scene, problem, samples, count)
-    if scene.is_column:
-        if energy is not None:
-            energy = extent_of(scene, problem.body) * energy
-        waves = waveforms(problem, samples, count)
-        return dataset(scene, name, times, **waves, energy=energy, terms=terms, **about)
-    found = quantities(problem, samples, count)
-    return rock_mass_dataset(scene, name, times, found, energy, terms, **about)
+    name, samples = (
+        f"continuum-{about['model']}",
+        Samples(*(one[:, : len(times)] for one in samples)),
+    )
+    terms, energy = ledger(scene, problem, samples)
+    if not scene.is_column:
+        found = of_rock_mass(problem.body.components, samples)
+        return rock_mass_dataset(scene, name, times, found, energy, terms, **about)
+    if energy is not None:
+        energy = extent_of(scene, problem.body) * energy
+    waves = of_pillar(problem, samples)
+    return dataset(scene, name, times, **waves, energy=energy, terms=terms, **about)
 
 
-def waveforms(problem: Problem, samples: Samples, count: int) -> dict[str, Any]:
-    """Return what was recorded in the first samples of a pillar by name, as `dataset` takes it.
-
-    Components absent in two dimensions are zero.
-    """
-    body, dim = problem.body, problem.body.components
-    rows = samples.stress[:, :count] + samples.traction[:, :count]
-    force = vectors(rows, dim, max(dim, 3 if dim > 1 else 1))
-    turns = body.x.shape[1] > 1
-    places = samples.velocity.shape[0] // (dim + 3 * turns)
-    motion = {
-        name: vectors(getattr(samples, name)[: places * dim, :count], dim, 3 if dim > 1 else 1)
-        for name in ("velocity", "displacement")
-    }
+def of_pillar(problem: Problem, samples: Samples) -> dict[str, Any]:
+    """Return what was recorded of a pillar by name, as `dataset` takes it; components absent in two
+    dimensions are zero."""
+    dim, turns = problem.body.components, problem.body.x.shape[1] > 1
+    whole, places = 3 if dim > 1 else 1, len(samples.velocity) // (dim + 3 * turns)
+    force = vectors(samples.stress + samples.traction, dim, whole)
+    velocity, displacement = (
+        vectors(one[: places * dim], dim, whole) for one in (samples.velocity, samples.displacement)
+    )
+    found = {"stress": force, "velocity": velocity, "displacement": displacement}
     if dim == 1:
-        return {"stress": force[..., 0]} | {name: one[..., 0] for name, one in motion.items()}
-    found = {"stress": force[..., 0], "shear": force[..., 1:], **motion}
+        return {name: one[..., 0] for name, one in found.items()}
+    found |= {"stress": force[..., 0], "shear": force[..., 1:]}
     if turns:
-        found["rotation"] = vectors(samples.displacement[places * dim :, :count], 3, 3)
+        found["rotation"] = vectors(samples.displacement[places * dim :], 3)
     return found
 
 
-def vectors(rows: np.ndarray, size: int, beyond: int | None = None) -> np.ndarray:
+def vectors(rows: np.ndarray, size: int, whole: int = 0) -> np.ndarray:
     """Return vectors [places, samples, size] of rows with all components of a place together, up to
-    the size `beyond` with zeros."""
+    a whole size with zeros."""
     found = rows.reshape(-1, size, rows.shape[1]).swapaxes(1, 2)
-    return np.pad(found, ((0, 0), (0, 0), (0, (beyond or size) - size)))
+    return np.pad(found, ((0, 0), (0, 0), (0, max(0, whole - size))))
 
 
 def ledger(
-    scene: AnyScene, problem: Problem, samples: Samples, count: int
+    scene: AnyScene, problem: Problem, samples: Samples
 ) -> tuple[tuple[str, ...], np.ndarray | None]:
-    """Return the terms that a ledger has, and the energies of the first samples; None where they
-    are not recorded. What prestressed rock gives off where walls of openings give way counts with
-    what it stores."""
+    """Return the terms that a ledger has, and the energies; None where they are not recorded. What
+    prestressed rock gives off where walls of openings give way counts with what it stores."""
     parts = problem.parts
     there = {
         "fracture": parts is not None and parts.softening,
@@ -77,31 +75,26 @@ def ledger(
     terms = tuple(one for one in TERMS if there.get(one, True))
     if not samples.energy.size:
         return terms, None
-    found = samples.energy[:, :count].copy()
+    found = samples.energy.copy()
     if scene.excavated and scene.gravity is None:
         found[TERMS.index("elastic")] += found[TERMS.index("gravity")]
     return terms, found[[TERMS.index(one) for one in terms]]
 
 
-def quantities(problem: Problem, samples: Samples, count: int) -> dict[str, np.ndarray]:
-    """Return what was recorded in the first samples of a rock mass by name, as `rock_mass_dataset`
-    takes it.
+def of_rock_mass(dim: int, samples: Samples) -> dict[str, np.ndarray]:
+    """Return what was recorded of a rock mass by name, as `rock_mass_dataset` takes it.
 
     Motion counts from the state at the start. Without joints nothing is known of them.
     """
-    dim = problem.body.components
-
-    def since(rows: np.ndarray) -> np.ndarray:
-        return vectors((rows - rows[:, :1])[:, :count], dim)
-
+    displacement, jump = (
+        vectors(rows - rows[:, :1], dim) for rows in (samples.displacement, samples.jump)
+    )
     found = {
-        "velocity": vectors(samples.velocity[:, :count], dim),
-        "displacement": since(samples.displacement),
-        "stress": vectors(samples.stress[:, :count], dim * (dim + 1) // 2),
+        "velocity": vectors(samples.velocity, dim),
+        "displacement": displacement,
+        "stress": vectors(samples.stress, dim * (dim + 1) // 2),
     }
-    if len(samples.jump):
-        jump = since(samples.jump)
+    if len(jump):
         slip = jump[..., 1] if dim == 2 else jump[..., 1:]
-        traction = vectors(samples.traction[:, :count], dim)
-        found |= {"traction": traction, "gap": jump[..., 0], "slip": slip}
+        found |= {"traction": vectors(samples.traction, dim), "gap": jump[..., 0], "slip": slip}
     return found

@@ -26,7 +26,10 @@ def bubble_element(kind: str) -> Any:
     corners = np.asarray(basix.geometry(cell))
     at, weight = quadrature(kind, 2 * degree)
     shares = np.column_stack([1 - at.sum(axis=1), at])
-    functions = [shares[:, list(one)].prod(axis=1) for one in _products(shares.shape[1])]
+    number = shares.shape[1]
+    faces = [one for k in range(3, number + 1) for one in combinations(range(number), k)]
+    products = [*combinations_with_replacement(range(number), 2), *faces]
+    functions = [shares[:, list(one)].prod(axis=1) for one in products]
     legendre = basix.tabulate_polynomials(basix.PolynomialType.legendre, cell, degree, at)
     legendre = legendre if len(legendre) != len(at) else legendre.T
     span = np.linalg.qr((np.array(functions) * weight @ legendre.T).T)[0].T
@@ -35,9 +38,3 @@ def bubble_element(kind: str) -> Any:
         for entities in basix.topology(cell)
     ]
     return custom_element(kind, span, middles, 2, degree)
-
-
-def _products(corners: int) -> list[tuple[int, ...]]:
-    """Return the shares of corners whose products span the element."""
-    faces = [one for k in range(3, corners + 1) for one in combinations(range(corners), k)]
-    return [*combinations_with_replacement(range(corners), 2), *faces]

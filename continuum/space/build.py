@@ -160,13 +160,12 @@ class Elements:
             facets = Places(*np.nonzero(outer == k))
             if len(facets.cell):
                 own = self._trace(facets)
-                dim, block = own.place.shape[2], self.mesh.block[facets.cell]
+                dim = own.place.shape[2]
                 sides[name] = Facets(
                     node=own.node.ravel(),
                     weight=own.weight.ravel(),
                     normal=in_motion(own.normal.reshape(-1, dim), self.size),
                     place=own.place.reshape(-1, dim),
-                    block=np.repeat(block, own.node.shape[1]),
                 )
         return sides
 

@@ -16,6 +16,7 @@ from jointwave.continuum.space.fenicsx import MPI, dolfinx
 
 fem, mesh = dolfinx.fem, dolfinx.mesh
 NEW = hasattr(basix, "ufl")  #: whether elements of basix are UFL's
+function_space = fem.functionspace if hasattr(fem, "functionspace") else fem.FunctionSpace
 if not NEW:
     import basix.ufl_wrapper
 
@@ -53,10 +54,10 @@ def vector_space(domain: Any, element: Any, components: int) -> Any:
     """Return the space of vectors with one of basix's elements, of scalars, for each component."""
     if NEW:
         whole = basix.ufl.blocked_element(basix.ufl.wrap_element(element), shape=(components,))
-        return compiled(lambda: fem.functionspace(domain, whole))
-    scalar = basix.ufl_wrapper.BasixElement(element)
-    vector = basix.ufl_wrapper.VectorElement(scalar, components)
-    return compiled(lambda: fem.FunctionSpace(domain, vector))
+    else:
+        scalar = basix.ufl_wrapper.BasixElement(element)
+        whole = basix.ufl_wrapper.VectorElement(scalar, components)
+    return compiled(lambda: function_space(domain, whole))
 
 
 def custom_element(kind: str, span: np.ndarray, points: list, complete: int, degree: int) -> Any:
@@ -85,8 +86,7 @@ def cell_constants(domain: Any, values: np.ndarray) -> Any:
 
 def of_cells(domain: Any) -> Any:
     """Return the space of scalars that are constant in each cell."""
-    make = fem.functionspace if hasattr(fem, "functionspace") else fem.FunctionSpace
-    return compiled(lambda: make(domain, ("DG", 0)))
+    return compiled(lambda: function_space(domain, ("DG", 0)))
 
 
 def constant(domain: Any, shape: tuple[int, ...], value: float = 0.0) -> Any:
@@ -125,16 +125,12 @@ def parts_of_graph(start: np.ndarray, column: np.ndarray, parts: int) -> np.ndar
     graph, none = dolfinx.graph, np.zeros(0, np.int32)
     os.environ.setdefault("SCOTCH_PTHREAD_NUMBER", "1")  # its threads' race decides the parts
     made = graph.adjacencylist if hasattr(graph, "adjacencylist") else graph.create_adjacencylist
-    edges = made(column.astype(np.int64), start.astype(np.int32))
-    given, divide = (
-        (MPI.COMM_SELF, parts, getattr(edges, "_cpp_object", edges)),
-        graph.partitioner(),
-    )
+    edges, divide = made(column.astype(np.int64), start.astype(np.int32)), graph.partitioner()
+    given = MPI.COMM_SELF, parts, getattr(edges, "_cpp_object", edges)
     try:
-        found = divide(*given, False)
+        return np.array(divide(*given, False).array)
     except TypeError:  # newer: with weights of vertices and edges
-        found = divide(*given, none, none, False)
-    return np.array(found.array)
+        return np.array(divide(*given, none, none, False).array)
 
 
 def cell_nodes(space: Any) -> np.ndarray:

@@ -15,8 +15,9 @@ def jump_operator(
 ) -> JumpOperator:
     """Return the jump operator of facets of block i and those of block j at the same places.
 
-    column : of the law, int array [facets]. shape : nodes of the body, and components. At the end
-    of a joint in rock both sides have one node, and no jump.
+    column : of the law, int array [facets]. shape : nodes of the body, and components. In the plane
+    the tangent is the normal rotated to the left, in space they are the strike and the line of dip.
+    At the end of a joint in rock both sides have one node, and no jump.
     """
     count, points, (nodes, components) = one.node.size, one.node.shape[1], shape
     row, ones = np.tile(np.arange(count), 2), np.ones(count)
@@ -25,7 +26,12 @@ def jump_operator(
     jump.eliminate_zeros()
     open_ = np.flatnonzero(np.diff(jump.indptr))
     normal = np.repeat(one.normal[:, :1], points, axis=1).reshape(-1, one.normal.shape[2])
-    frame, each = frames_of(normal[open_], components), np.arange(len(open_) + 1)
+    normal, tangents = in_motion(normal[open_], components), tuple[np.ndarray, ...]()
+    if components == 2:
+        tangents = (np.stack([-normal[:, 1], normal[:, 0]], axis=1),)
+    elif components == 3:
+        tangents = frames(normal)
+    frame, each = np.stack([normal, *tangents], axis=1), np.arange(len(open_) + 1)
     size = len(open_) * components
     turned = bsr_matrix((frame, each[:-1], each), shape=(size, size))
     matrix = csr_matrix(turned @ kron(jump[open_], identity(components), format="csr"))
@@ -38,14 +44,3 @@ def jump_operator(
         frame=frame,
         place=one.place.reshape(count, -1)[open_],
     )
-
-
-def frames_of(normal: np.ndarray, components: int) -> np.ndarray:
-    """Return frames [n, c, c] of joints with normals [n, d]: in the plane the tangent is the normal
-    rotated to the left, in space they are the strike and the line of dip."""
-    normal, tangents = in_motion(normal, components), tuple[np.ndarray, ...]()
-    if components == 2:
-        tangents = (np.stack([-normal[:, 1], normal[:, 0]], axis=1),)
-    elif components == 3:
-        tangents = frames(normal)
-    return np.stack([normal, *tangents], axis=1)

@@ -56,14 +56,13 @@ class Facets(NamedTuple):
 
     node : int array [n]. weight : float array [n], m^(d-1): integral of a facet's function that is
     1 at the node and 0 at others. normal : float array [n, components], unit vectors out of the
-    rock. place : float array [n, d], m. block : int array [n], that the facet belongs to.
+    rock. place : float array [n, d], m.
     """
 
     node: np.ndarray
     weight: np.ndarray
     normal: np.ndarray
     place: np.ndarray
-    block: np.ndarray
 
 
 class Body(NamedTuple):

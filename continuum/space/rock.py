@@ -80,10 +80,7 @@ def strain(u: Any) -> Any:
 
 def rock_of_cells(space: Any, materials: list[Material], which: np.ndarray) -> Forms:
     """Return rock by the material of each cell of the mesh, int array [cells]."""
-    density, eta = (
-        np.array([getattr(m, name) for m in materials])[which]
-        for name in ("density", "time_constant")
-    )
+    density, eta = np.array([[m.density, m.time_constant] for m in materials])[which].T
     stiffness = np.array([m.stiffness for m in materials])[which]
     found = _of_cells(space, density, stiffness)
     if not eta.any():
@@ -152,13 +149,17 @@ def pillar(scene: Scene, model: str, components: int, dim: int) -> list[Material
     p, relaxes, found = calibrate(scene), mechanisms_of(scene, model), []
 
     def add(density: float, modulus: float, poisson: float, eta: float) -> None:
-        if scene.motion.rotation == "none" and dim > 1:
-            C = plane_sections(modulus, poisson, dim)
+        shear = shear_modulus(modulus, poisson)
+        if dim == 1:  # E along a bar, and G across it where it has three components
+            C = np.diag([modulus] if components == 1 else [shear, modulus, shear])
+        elif scene.motion.rotation == "none":  # plane sections that widen freely
+            C = np.diag([modulus] * dim + [shear] * (dim * (dim - 1) // 2))
         elif dim == 3:
             speeds = speeds_from_modulus(modulus, poisson, density)
             C = stiffness(ElasticRock(density, *speeds), [], 3)
-        else:
-            C = plane_stress(modulus, poisson) if dim == 2 else bar(modulus, poisson, components)
+        else:  # a sheet that widens freely across its plane
+            sheet = np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
+            C = modulus / (1 - poisson**2) * sheet
         found.append(Material(density, C, eta))
 
     for one, part in zip(p.each, scene.parts, strict=True):
@@ -176,22 +177,3 @@ def pillar(scene: Scene, model: str, components: int, dim: int) -> list[Material
         etas = p.joint_time_constant
         add(p.density, normal * thickness, 0.0, 0.0 if etas is None else float(etas[joint]))
     return found
-
-
-def plane_stress(modulus: float, poisson: float) -> np.ndarray:
-    """Return the stiffness of a sheet that widens freely across its plane."""
-    within = np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
-    return modulus / (1 - poisson**2) * within
-
-
-def plane_sections(modulus: float, poisson: float, dim: int) -> np.ndarray:
-    """Return the stiffness of rock in plane sections that widen freely: E along every axis, and G
-    in shear."""
-    shear = shear_modulus(modulus, poisson)
-    return np.diag([modulus] * dim + [shear] * (dim * (dim - 1) // 2))
-
-
-def bar(modulus: float, poisson: float, components: int) -> np.ndarray:
-    """Return the stiffness of a bar: E along it, and G across it where it has three components."""
-    shear = shear_modulus(modulus, poisson)
-    return np.diag([modulus] if components == 1 else [shear, modulus, shear])

@@ -92,15 +92,11 @@ class Implicit:
         return self.now.v
 
     @property
-    def last(self) -> tuple[np.ndarray, np.ndarray]:
-        """Displacement, m, and velocity, m/s, at the last step."""
-        return self.u, self.v
-
-    @property
-    def strained(self) -> np.ndarray:
-        """Displacement by which elastic rock would have the same stress at the last step, m."""
-        memory = self.balance.memory(self.dt)
-        return memory.strained(self.now.u, self.now.forces.past.elongation)
+    def last(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Displacement, m, and velocity, m/s, at the last step, and the displacement by which
+        elastic rock would have the same stress, m."""
+        elongation = self.now.forces.past.elongation
+        return self.u, self.v, self.balance.memory(self.dt).strained(self.u, elongation)
 
     @property
     def parts(self) -> tuple:
@@ -248,7 +244,7 @@ class Implicit:
         forces = now.forces
         out.velocity[:, s] = read.motion @ now.v
         out.displacement[:, s] = read.motion @ now.u
-        out.stress[:, s] = read.stress @ self.strained + read.constant
+        out.stress[:, s] = read.stress @ self.last[2] + read.constant
         if read.viscous is not None:
             out.stress[:, s] += read.viscous @ now.v
         if read.inertia is not None:

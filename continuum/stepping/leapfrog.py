@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -52,6 +52,7 @@ class Leapfrog:
     """
 
     work_of_a_step = 1
+    attributes: ClassVar[dict[str, Any]] = {}  #: that a result has of the steps
 
     def __init__(self, problem: Problem, dt: float, samples: int, energy: bool = True) -> None:
         self.problem, self.dt, body, parts = problem, dt, problem.body, problem.parts
@@ -126,25 +127,16 @@ class Leapfrog:
         return self.whole(self.state.v)
 
     @property
-    def last(self) -> tuple[np.ndarray, np.ndarray]:
-        """Displacement, m, and velocity, m/s, at the last step."""
-        before = self.whole(self.state.v_before)
-        return self.u - self.dt * self.v, (before + self.v) / 2
-
-    @property
-    def strained(self) -> np.ndarray:
-        """Displacement by which elastic rock would have the same stress at the last step, m."""
-        return self.whole(self.work.strained) if self.flags.relaxing else self.last[0]
+    def last(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Displacement, m, and velocity, m/s, at the last step, and the displacement by which
+        elastic rock would have the same stress, m."""
+        u, v = self.u - self.dt * self.v, (self.whole(self.state.v_before) + self.v) / 2
+        return u, v, self.whole(self.work.strained) if self.flags.relaxing else u
 
     @property
     def parts(self) -> tuple:
         """All arrays that change."""
         return (self.state,)
-
-    @property
-    def attributes(self) -> dict[str, Any]:
-        """What a result says of the steps."""
-        return {}
 
     @property
     def bytes(self) -> int:

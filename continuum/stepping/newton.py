@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from jointwave.continuum.space.petsc import PETSc, shared_by
+from jointwave.continuum.space.fenicsx import PETSc, shared_by
 
 MOST_ITERATIONS = 12
 #: Unknowns from which MUMPS outweighs what it costs to call; PETSc's own factors are quicker below.

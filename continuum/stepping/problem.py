@@ -150,9 +150,18 @@ class Problem(NamedTuple):
         return found
 
     def critical_step(self) -> float:
-        """Return the critical step of leapfrog, s."""
-        start = any_motion(self.body)
-        return critical_step(self.body.mass, self.stiffness, self.viscosity, self.fixed, start)
+        """Return the critical step of leapfrog, s.
+
+        The search starts from a motion that has something of every mode, the same however nodes are
+        numbered; both sides of a joint differ by the middles of their blocks.
+        """
+        body, block = self.body, blocks_of_nodes(self.body)
+        x, count = body.x - body.x.min(axis=0), np.maximum(np.bincount(block), 1)
+        middle = np.stack([np.bincount(block, one) / count for one in x.T], axis=1)
+        phase = (x + middle[block]) @ np.sqrt([2.0, 3.0, 5.0])[: x.shape[1]] / x.max()
+        waves = 1e3 * np.sqrt(np.arange(7, 7 + body.components))
+        start = np.sin(np.outer(phase, waves)).ravel()
+        return critical_step(body.mass, self.stiffness, self.viscosity, self.fixed, start)
 
     def points(self) -> Points:
         """Return the points of the joints as kernels take them."""
@@ -165,14 +174,3 @@ class Problem(NamedTuple):
         carried = np.zeros(0) if self.stress is None else joints.carried(self.stress)
         counted = count if self.counted is None else self.counted
         return Points(joints.weight, column, table, carried, counted)
-
-
-def any_motion(body: Body) -> np.ndarray:
-    """Return a motion [freedoms] that has something of every mode, the same however nodes are
-    numbered; both sides of a joint differ by the middles of their blocks."""
-    block, x = blocks_of_nodes(body), body.x - body.x.min(axis=0)
-    count = np.maximum(np.bincount(block), 1)
-    middle = np.stack([np.bincount(block, one) / count for one in x.T], axis=1)
-    weights = np.sqrt([2.0, 3.0, 5.0])[: x.shape[1]]
-    phase = (x + middle[block]) @ weights / x.max()
-    return np.sin(np.outer(phase, 1e3 * np.sqrt(np.arange(7, 7 + body.components)))).ravel()

@@ -49,10 +49,9 @@ class Scaled(NamedTuple):
 
 def scaled_mass(problem: Problem) -> Scaled | None:
     """Return the mass of a body with what small cells lack; None where that is not worth it."""
-    body = problem.body
+    body, matrices = problem.body, (problem.stiffness, problem.viscosity)
     mass = body.mass.reshape(-1, body.components)
-    stiffness, viscosity = problem.stiffness, problem.viscosity
-    elastic, viscous = (_sums(problem, one, mass.shape) for one in (stiffness, viscosity))
+    elastic, viscous = (_sums(problem, one, mass.shape) for one in matrices)
     piece = connected_components(body.stiffness, directed=False)[1]
     of_piece = np.bincount(piece, body.mass)
 
@@ -73,10 +72,8 @@ def scaled_mass(problem: Problem) -> Scaled | None:
     for _ in range(HALVINGS):
         middle = (low + high) / 2
         low, high = (middle, high) if is_little(middle) else (low, middle)
-    added = lacking(low)
-    k, c = (
-        np.zeros(mass.size) if one is None else one.diagonal() for one in (stiffness, viscosity)
-    )
+    added, none = lacking(low), np.zeros(mass.size)
+    k, c = (none if one is None else one.diagonal() for one in matrices)
     before = float(_longest(mass.ravel(), k, c).min())
     share = float(added.sum() / mass[:, 0].sum())
     return Scaled((mass + added[:, None]).ravel(), int((added > 0).sum()), share, before)

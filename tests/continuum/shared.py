@@ -14,7 +14,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.scenes import find
 from jointwave.continuum.run import simulate
-from jointwave.continuum.space.petsc import PETSc, shared_by
+from jointwave.continuum.space.fenicsx import PETSc, shared_by
 from jointwave.continuum.stepping import product
 from tests.conftest import Checkpointer
 from tests.continuum.bodies import rock_mass

@@ -46,10 +46,10 @@ def volumes(s):
 
 def snapshot(found, u, v=None):
     """Return the snapshots of a body at rest, and then at displacements u and velocities v."""
-    scene, steps = found.scene, SimpleNamespace(last=(0 * u, 0 * u), strained=0 * u)
+    scene, steps = found.scene, SimpleNamespace(last=(0 * u, 0 * u, 0 * u))
     recorder = RockRecorder(scene, found, steps)
     recorder.record_if_due(0)
-    steps.last, steps.strained = (u, 0 * u if v is None else v), u
+    steps.last = u, 0 * u if v is None else v, u
     recorder.record_if_due(recorder.every)
     time = np.arange(recorder.every + 1) * scene.interval
     empty = xr.Dataset(coords={"time": time})

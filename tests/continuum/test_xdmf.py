@@ -7,8 +7,7 @@ from mpi4py import MPI
 from jointwave.cases.gmsh_file import FROM_GMSH
 from jointwave.continuum import simulate, write_xdmf
 from jointwave.continuum.space.compat import cell_corners, input_cells
-from jointwave.continuum.space.fenicsx import dolfinx
-from jointwave.continuum.space.petsc import PETSc
+from jointwave.continuum.space.fenicsx import PETSc, dolfinx
 from jointwave.results.snapshots import snapshots_of
 from tests.continuum.test_snapshots import PUSH, SLANTED, STEEP
 
