@@ -66,7 +66,9 @@ def validated(table: dict[str, Any], path: Path, given: frozenset[str]) -> Any:
 
 def _error(where: str, first: Any, model: Any) -> SceneError:
     kind, value, context = first["type"], first["input"], first.get("ctx", {})
-    table = _dotted(first["loc"])
+    table = ""
+    for part in first["loc"]:
+        table += f"[{part}]" if isinstance(part, int) else f".{part}" if table else part
     key, allowed = table, ALLOWED.get(kind, first["msg"]).format(**context)
     if kind == "contradiction":
         key, value = context["key"], context["found"]
@@ -83,13 +85,6 @@ def _error(where: str, first: Any, model: Any) -> SceneError:
     if isinstance(value, dict) or kind == "missing":
         value = None
     return SceneError(where, key, value, allowed)
-
-
-def _dotted(location: tuple[int | str, ...]) -> str:
-    text = ""
-    for part in location:
-        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
-    return text
 
 
 def checked(scene: Either) -> Either:

@@ -10,7 +10,6 @@ from jointwave.cases.schema.joint import SoftLayer
 from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.segment import CLOSE
-from jointwave.cases.schema.tables import ContinuumNumerics
 
 #: Forces that depend on velocity or history, for which drifts backwards in time are wrong, and
 #: motion that only leapfrog supports.
@@ -39,23 +38,20 @@ def of_scheme(scene: Scene) -> Iterator[Wrong]:
 
 
 def of_discretisation(scene: Scene) -> Iterator[Wrong]:
-    """Yield contradictions between how the rock is meshed and stepped."""
-    yield from within("numerics.continuum", _of_elements(scene.numerics.continuum))
-    for i, layer in enumerate(scene.soft_layers):
-        yield from within(f"soft_layers[{i}]", _of_layer(layer, scene))
-
-
-def _of_elements(numerics: ContinuumNumerics) -> Iterator[Wrong]:
-    """Yield what contradicts in [numerics.continuum]: a file decides all that would describe the
-    elements that are built."""
+    """Yield contradictions between how the rock is meshed and stepped: a file decides all that
+    would describe the elements that are built."""
+    numerics, key = scene.numerics.continuum, "numerics.continuum"
     if numerics.mesh is not None:
         if numerics.dim == 1:
-            yield "dim", 1, "is a bar, which takes no numerics.continuum.mesh"
-        for key in ("cell", "elements_per_block", "elements_across"):
-            if numerics.gives(key):
-                yield key, getattr(numerics, key), "has no meaning with numerics.continuum.mesh"
+            yield f"{key}.dim", 1, "is a bar, which takes no numerics.continuum.mesh"
+        for one in ("cell", "elements_per_block", "elements_across"):
+            if numerics.gives(one):
+                allowed = "has no meaning with numerics.continuum.mesh"
+                yield f"{key}.{one}", getattr(numerics, one), allowed
     elif numerics.cell == "simplex" and numerics.order > 2:
-        yield "order", numerics.order, "must be 1 or 2 for cell 'simplex'"
+        yield f"{key}.order", numerics.order, "must be 1 or 2 for cell 'simplex'"
+    for i, layer in enumerate(scene.soft_layers):
+        yield from within(f"soft_layers[{i}]", _of_layer(layer, scene))
 
 
 def _of_layer(layer: SoftLayer, scene: Scene) -> Iterator[Wrong]:
