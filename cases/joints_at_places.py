@@ -39,15 +39,14 @@ def spelled_out(scene: dict[str, Any], where: str, context: Any) -> dict[str, An
         return scene
     block = pillar.get("block") or _block(scene, sqrt(intact / rock["density"]), context)
     edges = [0.0, *sorted({*places, *own}), length]
-    stiffness = joints.get("normal_stiffness")
-    alike = [{"y": y, "normal_stiffness": stiffness} for y in places if y not in own]
+    alike = [{"y": y} for y in places if y not in own]
     return scene | {
         "pillar": {"side": pillar.get("side"), "length": length, "block": _whole(length, block)},
         "segments": [
             {"y": [a, b], "joints": False, "block": _whole(b - a, block)}
             for a, b in itertools.pairwise(edges)
         ],
-        "soft_layers": [*alike, *({"normal_stiffness": stiffness} | one for one in layers)],
+        "soft_layers": [*alike, *layers],
     }
 
 

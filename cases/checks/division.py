@@ -105,6 +105,7 @@ def of_segments(scene: Scene) -> Iterator[Wrong]:
             allowed = "must be a segment when there are segments or scatter"
             yield f"soft_layers[{i}].thickness", layer.thickness, allowed
         welded = no_joint[abs(inner - layer.y) <= CLOSE * scene.pillar.block].any()
-        if welded and not (layer.normal_stiffness or layer.spacing_stiffness):
+        own = layer.normal_stiffness or layer.spacing_stiffness
+        if welded and not (own or scene.joints.normal_stiffness):
             allowed = "needs a normal_stiffness: intact segments meet without a joint"
             yield f"soft_layers[{i}].y", layer.y, allowed

@@ -88,7 +88,8 @@ def _springs(
     apart, areal_mass = _of_pairs(spacing / 2), _of_pairs(density * spacing / 2)
 
     for j, given, layer in zip(soft, scene.soft_layers, scene.layers, strict=True):
-        if k := given.own_stiffness(apart[j]):
+        welded = scene.joints.normal_stiffness if own[0, j] == 0 else None
+        if k := given.own_stiffness(apart[j]) or welded:
             own[0, j] = 1 / k
         compliance = own[0, j] + rock[0, j]
         if given.shear_stiffness:

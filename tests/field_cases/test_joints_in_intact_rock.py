@@ -14,6 +14,8 @@ import jointwave as jw
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.warnings import warnings
+from jointwave.compare.misfit.external import Curves
+from jointwave.compare.misfit.places import Place
 
 MODULUS, DENSITY, STIFFNESS = 6e10, 2600.0, 6e10
 SPEED = sqrt(MODULUS / DENSITY)
@@ -71,6 +73,26 @@ def test_blocks_are_as_fine_as_the_load_or_the_user_wants():
     sizes = np.diff(given.contact_y)
     assert sizes.max() <= 0.6 and sizes.max() == pytest.approx(7 / 12)
     assert set(given.joint_y[given.resolved]) == {8.0, 15.0, 22.0}
+
+
+def test_a_fit_finds_the_stiffness_of_a_joint():
+    """Behind one joint s' = (s_in - s) / T, T = Z / 2K: while a half sine sin(a t) passes,
+    s = (sin a t - a T (cos a t - exp(-t/T))) / (1 + (a T)^2). A fit starts at ten times K."""
+    begin = three_joints(
+        pillar=PILLAR | {"joints": [8.0]},
+        load=BLAST | {"period": 4e-3, "quantity": "incident-stress"},
+        ends={"start": "matched", "end": "matched"},
+        time={"duration": 0.0055},
+        record={"stress": [20.0]},
+    )
+    late, a = 20.0 / SPEED, pi / 2e-3
+    time = late + np.linspace(0.0, 1.9e-3, 100)
+    lag, t = DENSITY * SPEED / (2 * STIFFNESS / 10), time - late
+    passed = (np.sin(a * t) - a * lag * (np.cos(a * t) - np.exp(-t / lag))) / (1 + (a * lag) ** 2)
+    curve = Curves("gauge", "gauge.csv", time, {Place("stress", "", (20.0,)): 1e6 * passed})
+    found = jw.fit(jw.load(begin), [curve], ["joints.normal_stiffness"], "jointed-bar")
+    stiffness = found.values.value["joints.normal_stiffness"]
+    assert stiffness == pytest.approx(STIFFNESS / 10, rel=1e-3)
 
 
 def test_one_of_the_joints_may_have_a_law_of_its_own():

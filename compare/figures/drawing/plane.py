@@ -79,7 +79,7 @@ def _of_pillar(scene: Scene) -> Sketch:
     plain = (of == 0) | ((of == NO_SET) & (here != there))
     joints: Joints = [("_joints", plain, EDGE, min(0.8, 40 / (1 + plain.sum())), "-")]
     for k, layer in enumerate(scene.soft_layers):
-        stiffness = layer.own_stiffness(pillar.block)
+        stiffness = layer.own_stiffness(pillar.block) or scene.joints.normal_stiffness
         words = f", {in_unit(stiffness, 'Pa/m')}" if stiffness is not None else ""
         name, dashes = f"layer at y = {layer.y:g} m{words}", "-" if k == 0 else (0, (2, 1))
         joints.append((name, of == 1 + k, LAYER, 2.2, dashes))
