@@ -173,17 +173,21 @@ def relative_for(form: KernelFlags) -> Callable:
                 q[to + c], q[to + L + c] = n_x * x + n_y * y, n_x * y - n_y * x
                 q[to + 2 * L + c] = j - i
             else:
-                moved, turned_by = three(q, r, L), (0.0, 0.0, 0.0)
+                x, y, z, tx, ty, tz = q[r], q[r + L], q[r + 2 * L], 0.0, 0.0, 0.0
                 if turns:
-                    of_i, of_j = three(q, r + 3 * L, L), three(q, r + 6 * L, L)
-                    swept = cross(of_j, three(k, ARM_J + c, L))
-                    moved = plus(moved, minus(swept, cross(of_i, three(k, ARM_I + c, L))))
-                    turned_by = minus(of_j, of_i)
+                    a, b, i, j = ARM_I + c, ARM_J + c, r + 3 * L, r + 6 * L
+                    ix, iy, iz = three(q, i, L)
+                    jx, jy, jz = three(q, j, L)
+                    sx, sy, sz = cross((jx, jy, jz), three(k, b, L))
+                    tx, ty, tz = cross((ix, iy, iz), three(k, a, L))
+                    x, y, z = x + (sx - tx), y + (sy - ty), z + (sz - tz)
+                    tx, ty, tz = jx - ix, jy - iy, jz - iz
                 for a in range(3):
-                    e, row = three(k, FRAME + 3 * a * L + c, L), to + a * L + c
-                    q[row] = dot(e, moved)
+                    e, f = FRAME + 3 * a * L + c, to + a * L + c
+                    e_x, e_y, e_z = k[e], k[e + L], k[e + 2 * L]
+                    q[f] = e_x * x + e_y * y + e_z * z
                     if turns:
-                        q[row + 3 * L] = dot(e, turned_by)
+                        q[f + 3 * L] = e_x * tx + e_y * ty + e_z * tz
 
     return relative
 
