@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid
 
+from closed_forms.slipping_joint import slipping_joint
 from jointwave.cases.incident import plane_wave
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.engines import applies, solve
@@ -88,6 +89,17 @@ def test_a_stiff_joint_passes_what_it_can_carry(straight):
     slip += carried / 1e12
     sign = np.sign(found.slip.values[0, -1] * slip[-1])
     assert np.abs(found.slip.values[0] - sign * slip).max() <= 1.5e-2 * np.abs(slip).max()
+
+
+def test_a_joint_that_slips_moves_as_it_does_marched_in_time(straight):
+    """By Heun's method in steps of 4e-6 s, for waves at any angle; it has the wave reach its
+    strength up to a step late, which changes velocity by a part omega dt = 5e-3 there."""
+    scene = straight({"friction_angle": 0.0, "cohesion": 4e5}, {"kind": "S"})
+    found, points = solve("normal-incidence", scene), np.array(scene.record.points)
+    marched = slipping_joint(scene, points, found.time.values)
+    assert np.abs(found.slip).max() > 1e-4
+    size = np.abs(marched).max()
+    assert np.abs(found.velocity.values - marched).max() <= 5e-3 * size
 
 
 def test_space_turned_about_the_normal_is_the_plane(straight, rock_mass, joint, wave):
