@@ -53,28 +53,23 @@ def strength_of(laws: Sequence[JointLaw], which: np.ndarray) -> Strength:
     Beside joints that slip, one without friction and cohesion of its own has a cohesion without
     limit; what a joint without another part has beside ones with it, `PARTS` says.
     """
-    found = _of_slip(laws)
+    angles, given, residual = ([getattr(law, key) for law in laws] for key in SLIP)
+    never = [angle is None and own is None for angle, own in zip(angles, given, strict=True)]
+    found: dict[str, Sequence[float]] = {}
+    if not all(never):
+        whole = [UNLIMITED if n else own or 0.0 for n, own in zip(never, given, strict=True)]
+        left = [w if own is None else own for w, own in zip(whole, residual, strict=True)]
+        if any(angle is not None for angle in angles):
+            found["friction"] = [tangent(one) for one in angles]
+        if any(never) or any(own is not None for own in given):
+            found["cohesion"] = whole
+        if any(own is not None for own in residual):
+            found["residual_cohesion"] = left
     for part in PARTS:
         if any(map(part.of, laws)):
             values = zip(*map(part.parameters, laws), strict=True)
             found |= dict(zip(part.without, values, strict=True))
     return Strength({name: np.array(values, dtype=float)[which] for name, values in found.items()})
-
-
-def _of_slip(laws: Sequence[JointLaw]) -> dict[str, Sequence[float]]:
-    """Return the friction and cohesions of laws, those that any of them gives."""
-    angles, given, residual = ([getattr(law, key) for law in laws] for key in SLIP)
-    never = [angle is None and own is None for angle, own in zip(angles, given, strict=True)]
-    if all(never):
-        return {}
-    whole = [UNLIMITED if n else own or 0.0 for n, own in zip(never, given, strict=True)]
-    left = [w if own is None else own for w, own in zip(whole, residual, strict=True)]
-    found = {
-        "friction": ([tangent(one) for one in angles], any(a is not None for a in angles)),
-        "cohesion": (whole, any(never) or any(own is not None for own in given)),
-        "residual_cohesion": (left, any(own is not None for own in residual)),
-    }
-    return {name: values for name, (values, has) in found.items() if has}
 
 
 @dataclass(frozen=True, kw_only=True)

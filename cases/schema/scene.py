@@ -119,7 +119,9 @@ class Scene(SceneBase):
     def alone(self, part: Part) -> "Scene":
         """Return a part as a scene of one rock without soft layers; it is not checked."""
         update: dict[str, Any] = {"segments": [], "soft_layers": [], "scatter": None}
-        update["pillar"] = part.pillar(self.pillar.side)
+        side, length = self.pillar.side, part.stop - part.start  # one block will do
+        block = length / part.blocks
+        update["pillar"] = Pillar.model_construct(length=length, side=side, block=block)
         if part.segment is not None:
             one = self.segments[part.segment]
             update |= {"rock": one.rock(self.rock), "joints": one.law(self.joints)}

@@ -99,11 +99,6 @@ class Part(NamedTuple):
     blocks: int
     segment: int | None
 
-    def pillar(self, side: float) -> Pillar:
-        """Return it as a pillar of its own; one block will do."""
-        length = self.stop - self.start
-        return Pillar.model_construct(length=length, side=side, block=length / self.blocks)
-
 
 def parts_of(pillar: Pillar, segments: list[Segment]) -> list[Part]:
     """Return the parts of a pillar from its loaded end on: one without segments.
