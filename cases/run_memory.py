@@ -26,7 +26,7 @@ _asked: ContextVar[dict[str, float] | None] = ContextVar("_asked", default=None)
 @contextmanager
 def estimates() -> Iterator[dict[str, float]]:
     """Collect the memory of the parts of a run (bytes, by the key that decides them) in the
-    checks before it."""
+    checks before it: of several checks of one key the largest."""
     parts: dict[str, float] = {}
     token = _asked.set(parts)
     try:
@@ -38,7 +38,7 @@ def estimates() -> Iterator[dict[str, float]]:
 def refuse_beyond_memory(scene: AnyScene, parts: Mapping[str, float]) -> None:
     """Raise SceneError where a run's parts, bytes by the key that decides them, are too large."""
     if (asked := _asked.get()) is not None:
-        asked.update(parts)
+        asked.update({key: max(size, asked.get(key, 0.0)) for key, size in parts.items()})
     total, limit = sum(parts.values()), memory()
     if total <= limit:
         return
